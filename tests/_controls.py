@@ -6,17 +6,15 @@ import numpy as np
 from keymark.core.body.rotations import continuous_quaternions, to_quaternions
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.character_motion import CharacterMotion
-from keymark.core.retarget.controls.control_channels import Control, control_channels, ordered_controls
+from keymark.core.retarget.controls.control_channels import Control, ordered_controls
 from keymark.core.retarget.controls.control_motion import ControlMotion
 from keymark.core.retarget.controls.control_plan import (
     ControlKind,
     PlannedControl,
-    limb_bones,
     planned_controls,
 )
 from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
-from keymark.core.retarget.controls.control_targets import PoleSetting, control_targets, limb_paths
-from keymark.core.retarget.controls.point_tolerances import held_points
+from keymark.core.retarget.controls.control_targets import PoleSetting, on_controls
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls
 from keymark.core.retarget.options import RetargetOptions
 
@@ -53,30 +51,18 @@ def control_motion(
     index = {plan.name: number for number, plan in enumerate(planned)}
     controls = ordered_controls(
         [
-            Control(plan, "QUATERNION", change(plan, _space(character, index, plan)), turns(plan))
+            Control(
+                plan,
+                "QUATERNION",
+                change(plan, _space(character, index, plan)),
+                plan.kind is not ControlKind.POLE,
+            )
             for plan in planned
         ]
     )
     offsets = {plan.name: np.eye(4) for plan in planned}
     poles = {plan.name: POLE for plan in planned if plan.kind is ControlKind.POLE}
-    limbs = {limb: limb_bones(known, limb) for limb in known.ik}
-    wanted = control_targets([control.plan for control in controls], motion, offsets, poles, limbs)
-    return ControlMotion(
-        controls=controls,
-        channels=control_channels(controls, wanted, SIZE / character.scale),
-        wanted=wanted,
-        offsets=offsets,
-        points=held_points(character, known, motion.soles),
-        bones=motion.poses,
-        limbs=limb_paths(character, known, motion, controls, offsets, poles),
-        size=SIZE / character.scale,
-        scale=character.scale,
-    )
-
-
-def turns(plan: PlannedControl) -> bool:
-    """Whether a control's rotation is keyed."""
-    return plan.kind is not ControlKind.POLE
+    return on_controls(character, known, motion, controls, offsets, poles, SIZE / character.scale)
 
 
 def _space(character: Character, index: dict[str, int], plan: PlannedControl) -> ControlSpace:

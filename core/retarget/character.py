@@ -5,6 +5,7 @@ A role of a side ends in `.L` or `.R`, the character's own left and right.
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -12,8 +13,7 @@ from ..arrays import Array
 from ..body.skeleton import SIDES
 
 MIDDLE = ("hips", "spine", "neck", "head")
-CHAINS = ("spine", "neck")
-"""Roles that several bones may share, from the hips upward."""
+CHAINS = ("spine", "neck")  # roles that several bones may share, from the hips upward
 ARM = ("shoulder", "upper_arm", "forearm", "hand")
 LEG = ("thigh", "shin", "foot", "toe")
 ROLES = (*MIDDLE, *(f"{part}.{side}" for side in SIDES for part in (*ARM, *LEG)))
@@ -33,6 +33,21 @@ SOURCES = ("preset", "names", "shape", "you")
 """Where a role may come from: a convention's preset, the bones' names, their places, or the person."""
 
 
+def joint_roles(limb: str) -> tuple[str, ...]:
+    """The roles that begin at a limb's three joints: upper arm, forearm and hand, or thigh, shin and foot."""
+    return LIMBS[limb][1:] if limb.startswith("arm") else LIMBS[limb][:3]
+
+
+LONG_BONES = {limb: tuple(pairwise(joint_roles(limb))) for limb in LIMBS}
+"""By limb the roles at both ends of its two long bones."""
+
+
+def other_side(role: str) -> str:
+    """The same role or limb of the other side; the role itself in the middle."""
+    part, dot, side = role.partition(".")
+    return part + dot + {"L": "R", "R": "L"}.get(side, "")
+
+
 # --- A character's bones at rest, as arrays
 
 
@@ -41,14 +56,11 @@ class CharacterBone:
     """A bone at rest."""
 
     name: str
-    parent: int
-    """Index of its parent; -1 for none."""
+    parent: int  # index of its parent; -1 for none
     rest: Array
     """(4, 4) rest matrix in the armature's own space and units: the axes as columns, then the head."""
-    tail: Array
-    """(3,) in the armature's space; importers may put it anywhere, the head is what counts."""
-    deforms: bool = True
-    """Whether it moves a mesh."""
+    tail: Array  # (3,) in the armature's space; importers may put it anywhere, the head is what counts
+    deforms: bool = True  # whether it moves a mesh
     connected: bool = False
     """Whether its head is bound to its parent's tail, so that Blender ignores its location."""
 
@@ -62,12 +74,9 @@ class CharacterBone:
 class Character:
     """An armature's rest pose."""
 
-    name: str
-    """Name of the object, for sentences."""
-    bones: tuple[CharacterBone, ...]
-    """Parents before their children."""
-    scale: float = 1.0
-    """Meters a unit of the armature's space: the object's one positive scale."""
+    name: str  # name of the object, for sentences
+    bones: tuple[CharacterBone, ...]  # parents before their children
+    scale: float = 1.0  # meters a unit of the armature's space: the object's one positive scale
 
     @cached_property
     def index(self) -> dict[str, int]:

@@ -15,10 +15,8 @@ from .maps.character_map import CharacterMap
 class Similarity:
     """From the armature's space to the world: turn, place and one scale."""
 
-    rotation: Array
-    """(3, 3)."""
-    location: Array
-    """(3,) [m]."""
+    rotation: Array  # (3, 3)
+    location: Array  # (3,) [m]
     scale: float
 
     def to_world(self, points: Array) -> Array:
@@ -34,28 +32,19 @@ class Similarity:
 class FootRest:
     """A foot of the character at rest on the ground."""
 
-    limb: str
-    """`leg.L` or `leg.R`."""
-    first: int
-    """The first frame of the rest, from 0."""
-    last: int
-    """Its last frame, included."""
-    floor_m: float
-    """Height of the ground there, along the character's up from the armature's origin [m]."""
+    limb: str  # `leg.L` or `leg.R`
+    first: int  # the first frame of the rest, from 0
+    last: int  # its last frame, included
 
 
 @dataclass(frozen=True, eq=False)
 class HandGoal:
     """Where a hand of the character belongs by what the performer's hand is near."""
 
-    place_m: Array
-    """(F, 3) place of the wrist, canonical, before any way is taken off [m]."""
-    share: Array
-    """(F,) how much it counts against the direction of the arm, 0 to 1."""
-    floor_share: Array
-    """(F,) how much the floor counts in it, 0 to 1."""
-    in_reach: BoolArray
-    """(F,) whether the arm reaches it without being stretched."""
+    place_m: Array  # (F, 3) place of the wrist, canonical, before any way is taken off [m]
+    share: Array  # (F,) how much it counts against the direction of the arm, 0 to 1
+    floor_share: Array  # (F,) how much the floor counts in it, 0 to 1
+    in_reach: BoolArray  # (F,) whether the arm reaches it without being stretched
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,16 +56,13 @@ class CharacterMotion:
     bends: Mapping[str, Array]
     """(F, 3) by limb: unit vector from the line through the limb's ends toward its elbow or knee, without
     flips."""
-    root: Array | None
-    """(F, 4, 4) posed matrix of the root bone; None where it stays at rest."""
+    root: Array | None  # (F, 4, 4) posed matrix of the root bone; None where it stays at rest
     to_world: Similarity
     """Where the armature object stands; that of the object itself with `Placement.CHARACTER`."""
-    rests: tuple[FootRest, ...]
-    """Rests of the planted feet."""
+    rests: tuple[FootRest, ...]  # rests of the planted feet
     soles: Mapping[str, Array]
     """(N, 3) by role of foot and toe: points of the sole at rest, in the armature's space."""
-    size: float
-    """The character's size: its legs' length over the performer's."""
+    size: float  # the character's size: its legs' length over the performer's
     stance: Array = field(default_factory=lambda: np.eye(3))
     """(3, 3) from the armature's axes to canonical ones: Z up, facing -Y. *Canonical* places are in these
     axes and in meters, from the armature's origin."""
@@ -88,107 +74,67 @@ class CharacterMotion:
     """(F,) by limb of each planted foot: height of the ground under it, canonical [m]."""
     hands: Mapping[str, HandGoal] = field(default_factory=lambda: MappingProxyType({}))
     """Where hands belong, by side, of those that reach."""
-    notes: tuple[str, ...] = ()
-    """What a person should know, in sentences without a full stop."""
+    notes: tuple[str, ...] = ()  # what a person should know, in sentences without a full stop
 
 
 # --- How a character stands in its armature's space
 
 
-UP_SNAP_DEG = 15.0
-"""A body leans by a few degrees at rest; an axis this near to its length is up."""
-BENT_DEG = 30.0
-"""Angle of the legs to the trunk from which a body sits, crouches or bows: its length is then not upright."""
-SIDE_SNAP_DEG = 3.0
-"""An axis this near to the line from side to side is that line."""
-PAIRS = (*LEG[:3], *ARM[1:])
-"""Parts whose joints lie clearly to the sides."""
+UP_SNAP_DEG = 15.0  # a body leans by a few degrees at rest; an axis this near to its length is up
 
 
 def find_stance(character: Character, character_map: CharacterMap) -> Array:
-    """Rotation from the armature's axes to a stance with Z up, facing -Y, the character's left at +X.
+    """Rotation (3, 3) from the armature's axes to a stance with Z up, facing -Y, the character's left at +X.
 
-    Returns:
-        (3, 3); `rotation @ point` turns a point of the armature's space. The identity where the map lacks the
-        limbs that would tell.
+    The identity where the map lacks the limbs that would tell.
     """
-    left = _sideways(character, character_map)
-    up = _upward(character, character_map)
+    found = {role: character_map.bone(role) for role in character_map.roles}
+    joints = {role: character.bone(bone).head for role, bone in found.items() if bone in character.index}
+    pairs = {
+        part: (joints[f"{part}.L"], joints[f"{part}.R"])
+        for part in (*LEG[:3], *ARM[1:])  # parts whose joints lie clearly to the sides
+        if f"{part}.L" in joints and f"{part}.R" in joints
+    }
+    middle = {part: np.asarray(0.5 * (one + other)) for part, (one, other) in pairs.items()}
+    left = _mean_direction([one - other for one, other in pairs.values()])
+    heights = [middle[part] for part in ("foot", "shin", "thigh", "upper_arm") if part in middle]
+    if len(heights) < 2 and "head" in joints:
+        heights.append(joints["head"])
+    up = _mean_direction([heights[-1] - heights[0]]) if len(heights) > 1 else None
     if left is None or up is None:
         return np.eye(3)
-    up = _upright(up, character, character_map)
+    up = _upright(up, middle)
     left = left - up * float(left @ up)
     if not np.linalg.norm(left) > 1e-9:
         return np.eye(3)
-    left = _snapped(left / np.linalg.norm(left), SIDE_SNAP_DEG)
+    # An axis this near to the line from side to side is that line.
+    left = _snapped(left / np.linalg.norm(left), 3.0)
     left = left - up * float(left @ up)
     left /= np.linalg.norm(left)
     return np.stack([left, np.cross(up, left), up])
 
 
-def _sideways(character: Character, character_map: CharacterMap) -> Array | None:
-    """Mean direction from right joints to their left counterparts."""
-    found = []
-    for part in PAIRS:
-        left, right = (
-            _joint(character, character_map, f"{part}.L"),
-            _joint(character, character_map, f"{part}.R"),
-        )
-        if left is not None and right is not None and np.linalg.norm(left - right) > 1e-9:
-            found.append((left - right) / np.linalg.norm(left - right))
-    return _mean_direction(found)
-
-
-def _upward(character: Character, character_map: CharacterMap) -> Array | None:
-    """Direction from the middle of the feet to that of the shoulder joints, or as far up as is known."""
-    parts = ("foot", "shin", "thigh", "upper_arm")
-    middles = [place for part in parts if (place := _middle(character, character_map, part)) is not None]
-    head = _joint(character, character_map, "head")
-    if len(middles) < 2 and head is not None:
-        middles.append(head)
-    return _mean_direction([middles[-1] - middles[0]]) if len(middles) > 1 else None
-
-
-def _upright(up: Array, character: Character, character_map: CharacterMap) -> Array:
+def _upright(up: Array, middle: Mapping[str, Array]) -> Array:
     """The axis that is up where the body's length, or a part of a bent body, is near one; else the length."""
     snapped = _snapped(up, UP_SNAP_DEG)
     trunk, *legs = (
-        _between(character, character_map, *parts)
-        for parts in (("thigh", "upper_arm"), ("foot", "thigh"), ("foot", "shin"), ("shin", "thigh"))
+        _mean_direction([middle[high] - middle[low]] if low in middle and high in middle else [])
+        for low, high in (("thigh", "upper_arm"), ("foot", "thigh"), ("foot", "shin"), ("shin", "thigh"))
     )
     if snapped is not up or trunk is None or legs[0] is None:
         return snapped
-    if float(trunk @ legs[0]) > np.cos(np.radians(BENT_DEG)):
+    # Angle of the legs to the trunk from which a body sits, crouches or bows: its length is then not
+    # upright.
+    if float(trunk @ legs[0]) > np.cos(np.radians(30.0)):
         return up
-    axis = _snapped(up, 90.0)
-    near = [
-        part
-        for part in (trunk, *legs)
-        if part is not None and float(part @ axis) >= np.cos(np.radians(UP_SNAP_DEG))
-    ]
-    return axis if near else up
+    axis, near = _snapped(up, 90.0), np.cos(np.radians(UP_SNAP_DEG))
+    return axis if any(part is not None and float(part @ axis) >= near for part in (trunk, *legs)) else up
 
 
-def _between(character: Character, character_map: CharacterMap, low: str, high: str) -> Array | None:
-    """Direction from the middle of a part's two joints to that of another's."""
-    middles = [_middle(character, character_map, part) for part in (low, high)]
-    if middles[0] is None or middles[1] is None:
-        return None
-    return _mean_direction([middles[1] - middles[0]])
-
-
-def _middle(character: Character, character_map: CharacterMap, part: str) -> Array | None:
-    left, right = (_joint(character, character_map, f"{part}.{side}") for side in "LR")
-    return None if left is None or right is None else np.asarray(0.5 * (left + right))
-
-
-def _joint(character: Character, character_map: CharacterMap, role: str) -> Array | None:
-    bone = character_map.bone(role)
-    return character.bone(bone).head if bone is not None and bone in character.index else None
-
-
-def _mean_direction(directions: list[Array]) -> Array | None:
-    total = np.sum(directions, axis=0) if directions else np.zeros(3)
+def _mean_direction(ways: list[Array]) -> Array | None:
+    """(3,) the mean of the directions of ways (3,); None where they have none."""
+    units = [way / max(float(np.linalg.norm(way)), 1e-9) for way in ways]
+    total = np.sum(units, axis=0) if units else np.zeros(3)
     length = float(np.linalg.norm(total))
     return np.asarray(total / length) if length > 1e-9 else None
 

@@ -9,19 +9,15 @@ from ..take.conversion_settings import CharacterOptions
 class RootMotion(Enum):
     """Where the way over the ground goes."""
 
-    AS_FILMED = "as_filmed"
-    """On the hips: the character goes where the performer went."""
-    IN_PLACE = "in_place"
-    """Nowhere: the character stays where it begins, as on a treadmill."""
-    ROOT_BONE = "root_bone"
-    """On the map's root bone: the hips keep only what they do about it."""
+    AS_FILMED = "as_filmed"  # on the hips: the character goes where the performer went
+    IN_PLACE = "in_place"  # nowhere: the character stays where it begins, as on a treadmill
+    ROOT_BONE = "root_bone"  # on the map's root bone: the hips keep only what they do about it
 
 
 class Placement(Enum):
     """Where the character performs."""
 
-    PERFORMER = "performer"
-    """Where the performer stands and faces: the armature object is placed and turned."""
+    PERFORMER = "performer"  # where the performer stands and faces: the armature object is placed and turned
     CHARACTER = "character"
     """Where the character stands: its object stays, the motion begins there and is turned to its facing."""
 
@@ -31,8 +27,7 @@ class LimbKeys(Enum):
 
     FK = "fk"
     IK = "ik"
-    BOTH = "both"
-    """Both, showing IK."""
+    BOTH = "both"  # both, showing IK
 
 
 @dataclass(frozen=True)
@@ -42,8 +37,7 @@ class RetargetOptions:
     root_motion: RootMotion = RootMotion.AS_FILMED
     placement: Placement = Placement.PERFORMER
     arms: LimbKeys = LimbKeys.BOTH
-    legs: LimbKeys = LimbKeys.BOTH
-    """A limb without IK controls is keyed in FK whatever is chosen."""
+    legs: LimbKeys = LimbKeys.BOTH  # A limb without IK controls is keyed in FK whatever is chosen
     plant_feet: bool = True
     reach_hands: bool = True
     tolerance_m: float | None = 0.005
@@ -52,9 +46,6 @@ class RetargetOptions:
 
 
 # --- Options of retargeting from the words of files and of the command line
-
-
-MM = 1000.0
 
 
 def retarget_options(words: CharacterOptions) -> RetargetOptions:
@@ -66,5 +57,5 @@ def retarget_options(words: CharacterOptions) -> RetargetOptions:
         legs=LimbKeys(words.legs),
         plant_feet=words.plant_feet,
         reach_hands=words.reach_hands,
-        tolerance_m=words.tolerance_mm / MM if words.tolerance_mm > 0.0 else None,
+        tolerance_m=words.tolerance_mm / 1000.0 if words.tolerance_mm > 0.0 else None,
     )

@@ -13,48 +13,31 @@ import numpy as np
 
 from ..arrays import Array, BoolArray
 from ..body.skeleton import SIDES
+from .character import LONG_BONES
 from .character_motion import CharacterMotion, FootRest
 
-
-def _both(*bones: tuple[str, str]) -> tuple[tuple[str, str], ...]:
-    return tuple((f"{start}.{side}", f"{end}.{side}") for side in SIDES for start, end in bones)
-
-
-ARM_BONES = _both(("upper_arm", "forearm"), ("forearm", "hand"))
-"""Joints at the ends of the long bones of arms."""
-LEG_BONES = _both(("thigh", "shin"), ("shin", "foot"))
-"""Joints at the ends of the long bones of legs."""
-FULL_SHARE = 0.95
-"""Share from which a hand's goal counts in full."""
-MILLIMETERS = 1000.0
+FULL_SHARE = 0.95  # share from which a hand's goal counts in full
 
 
 @dataclass(frozen=True)
 class Quality:
     """Figures of a motion on a character; None where there is nothing to measure."""
 
-    arms_deg: float | None = None
-    """Mean angle between the arms' bones and the performer's."""
+    arms_deg: float | None = None  # mean angle between the arms' bones and the performer's
     arms_worst_deg: float | None = None
-    legs_deg: float | None = None
-    """Mean angle between the legs' bones and the performer's."""
+    legs_deg: float | None = None  # mean angle between the legs' bones and the performer's
     legs_worst_deg: float | None = None
-    skate_mm: float | None = None
-    """Mean way of a resting foot from frame to frame."""
+    skate_mm: float | None = None  # mean way of a resting foot from frame to frame
     skate_worst_mm: float | None = None
-    penetration_mm: float | None = None
-    """Greatest depth of a sole below the ground."""
+    penetration_mm: float | None = None  # greatest depth of a sole below the ground
     hands_mm: float | None = None
     """Mean distance of wrists from where they belong by the body, the other hand and the floor, in reach."""
     hands_worst_mm: float | None = None
     hands_floor_mm: float | None = None
     """Greatest error of a wrist's height over the floor where the performer's hand is at the floor."""
-    ik_fk_mm: float | None = None
-    """Greatest distance of ankles and wrists between the limbs in FK and in IK."""
-    keys: int | None = None
-    """Keys of the motion."""
-    dense_keys: int | None = None
-    """Keys that one on every frame would be."""
+    ik_fk_mm: float | None = None  # greatest distance of ankles and wrists between the limbs in FK and in IK
+    keys: int | None = None  # keys of the motion
+    dense_keys: int | None = None  # keys that one on every frame would be
 
     def to_dict(self) -> dict[str, Any]:
         """The figures as JSON has them, rounded; those that are not there are left out."""
@@ -68,12 +51,9 @@ class Quality:
 def direction_errors_deg(
     source: Mapping[str, Array], shown: Mapping[str, Array], bones: Sequence[tuple[str, str]]
 ) -> Array:
-    """(F, B) angle between the directions of the bones whose two joints both bodies have.
+    """(F, B) angle between the directions of the bones whose two joints (F, 3) by role both bodies have.
 
-    Args:
-        source: (F, 3) joints of the performer by role, turned as the character faces.
-        shown: (F, 3) joints of the character by role.
-        bones: Roles whose joints are at a bone's two ends.
+    The performer's are turned as the character faces.
     """
     there = [bone for bone in bones if all(role in paths for role in bone for paths in (source, shown))]
     if not there:
@@ -88,49 +68,33 @@ def direction_errors_deg(
 
 
 def skate_mm(ankles: Mapping[str, Array], rests: Sequence[FootRest]) -> Array:
-    """(N,) way of resting feet from each frame to the next, of all rests.
-
-    Args:
-        ankles: (F, 3) by limb, `leg.L` and `leg.R`.
-        rests: When which foot rests.
-    """
+    """(N,) way of resting feet from each frame to the next, of all rests; ankles (F, 3) are by limb."""
     steps = [
         np.linalg.norm(np.diff(ankles[rest.limb][rest.first : rest.last + 1], axis=0), axis=-1)
         for rest in rests
         if rest.limb in ankles
     ]
-    return MILLIMETERS * np.concatenate(steps) if steps else np.empty(0)
+    return 1000.0 * np.concatenate(steps) if steps else np.empty(0)
 
 
 def penetration_mm(heights_m: Mapping[str, Array], ground_m: Mapping[str, Array]) -> float | None:
-    """Greatest depth of soles below the ground; 0 where none is.
-
-    Args:
-        heights_m: (F, N) height of the points of each sole, by role of foot and toe.
-        ground_m: (F,) height of the ground under each foot by limb, `leg.L` and `leg.R`.
-    """
+    """Greatest depth below the ground (F,) by leg of soles (F, N) by role of foot and toe; 0 for none."""
     depths = [
         float((ground_m[limb][:, None] - heights).max())
         for role, heights in heights_m.items()
         if heights.size and (limb := f"leg.{role.rpartition('.')[2]}") in ground_m
     ]
-    return MILLIMETERS * max(0.0, *depths) if depths else None
+    return 1000.0 * max(0.0, *depths) if depths else None
 
 
 def hand_distances_mm(
     wrists: Mapping[str, Array], goals: Mapping[str, Array], counted: Mapping[str, BoolArray]
 ) -> Array:
-    """(N,) distance of wrists from their goals where those count.
-
-    Args:
-        wrists: (F, 3) by side.
-        goals: (F, 3) by side.
-        counted: (F,) by side.
-    """
+    """(N,) distance of wrists (F, 3) by side from their goals where those count (F,)."""
     found = [
         np.linalg.norm(wrists[side] - goals[side], axis=-1)[counted[side]] for side in goals if side in wrists
     ]
-    return MILLIMETERS * np.concatenate(found) if found else np.empty(0)
+    return 1000.0 * np.concatenate(found) if found else np.empty(0)
 
 
 def farthest_mm(
@@ -142,7 +106,7 @@ def farthest_mm(
         for role in roles
         if role in first and role in second
     ]
-    return MILLIMETERS * max(found) if found else None
+    return 1000.0 * max(found) if found else None
 
 
 def measured(
@@ -153,17 +117,14 @@ def measured(
 ) -> Quality:
     """The figures of what is shown of a solved motion, without those of controls and keys.
 
-    Args:
-        source: (F, 3) joints of the performer by role, in the world.
-        motion: What was solved.
-        shown: (F, 3) joints of the character by role, in the world, as they are shown.
-        soles: (F, N, 3) points of the soles by role of foot and toe, in the world, as they are shown.
+    In the world: joints (F, 3) by role of the performer and of the character, and points (F, N, 3) of its
+    soles.
     """
     space = motion.to_world
     up, turn = space.rotation @ motion.stance.T, motion.facing
     turned = {role: path @ turn.T for role, path in source.items()}
-    arms = direction_errors_deg(turned, shown, ARM_BONES)
-    legs = direction_errors_deg(turned, shown, LEG_BONES)
+    arms = direction_errors_deg(turned, shown, (*LONG_BONES["arm.L"], *LONG_BONES["arm.R"]))
+    legs = direction_errors_deg(turned, shown, (*LONG_BONES["leg.L"], *LONG_BONES["leg.R"]))
 
     def canonical(points: Array) -> Array:
         return np.asarray((points - space.location) @ up)

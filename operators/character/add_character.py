@@ -29,26 +29,20 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask which, where there are several and none is selected."""
         found = candidates(context.scene, context.view_layer)
         if self.armature or len(found) < 2:
             return self.execute(context)
-
-        names = [each.name for each in found]
+        names, own = [each.name for each in found], KEYMARK_OT_add_character.bl_idname
 
         def draw(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
-            """Draw an entry for each; Blender has freed the operator by then."""
-            for name in names:
-                operator = KEYMARK_OT_add_character.bl_idname
-                menu.layout.operator(
-                    operator, text=name, icon="ARMATURE_DATA", translate=False
-                ).armature = name
+            for name in names:  # Blender has freed the operator by then
+                entry = menu.layout.operator(own, text=name, icon="ARMATURE_DATA", translate=False)
+                entry.armature = name
 
         context.window_manager.popup_menu(draw, title=self.bl_label)
         return {"CANCELLED"}  # each entry is a step of its own
 
     def run(self, context: bpy.types.Context) -> None:
-        """Add it, and recognize its bones."""
         chosen = self._chosen(context)
         character = add_character(active_take(context.scene), chosen)
         if character.problem:
@@ -95,7 +89,6 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
     requirements = (take, rigify, bones_editable, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask before an add-on is enabled, which stays in the preferences."""
         if is_rigify_enabled():
             return self.execute(context)
         return context.window_manager.invoke_confirm(
@@ -107,7 +100,6 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
         )
 
     def run(self, context: bpy.types.Context) -> None:
-        """Generate the rig, and make it the chosen character where that has no armature yet."""
         active = context.view_layer.objects.active
         if active is not None and active.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
@@ -131,9 +123,6 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
             self.report({"INFO"}, f"Recognized the bones of '{rig.name}'")
 
 
-# --- Remove a character from a take's list
-
-
 class KEYMARK_OT_remove_character(BaseOperator, bpy.types.Operator):
     """Remove the chosen character from the list; its armature and Actions stay"""
 
@@ -143,7 +132,6 @@ class KEYMARK_OT_remove_character(BaseOperator, bpy.types.Operator):
     requirements = (character, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove it; the one before it is chosen."""
         take = active_take(context.scene)
         index = min(take.active_character, len(take.characters) - 1)
         take.characters.remove(index)
@@ -170,14 +158,13 @@ class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
     requirements = (linked, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Override the character and all that belongs to it, and choose the override."""
         character = active_character(context.scene)
         original = character.armature
         instance = _instance_of(context.scene, original)
-        if instance is not None:
-            overridden = _override_instance(context, original, instance)
-        else:
+        if instance is None:
             overridden = make_override(context, original)
+        else:
+            overridden = _override_instance(context, original, instance)
         known = map_of(character.character_map)
         character.armature = overridden
         if known.roles:
@@ -209,18 +196,12 @@ def _override_instance(
 
 def _instance_of(scene: bpy.types.Scene, original: bpy.types.Object) -> bpy.types.Object | None:
     """The empty of the scene that shows the linked collection an object is in; None where there is none."""
-    if original.name in scene.objects:
-        return None
-    return next(
-        (
-            each
-            for each in scene.objects
-            if each.instance_type == "COLLECTION"
-            and each.instance_collection is not None
-            and original in each.instance_collection.all_objects[:]
-        ),
-        None,
-    )
+    shown = () if original.name in scene.objects else scene.objects
+    for each in shown:
+        collection = each.instance_collection if each.instance_type == "COLLECTION" else None
+        if collection is not None and original in collection.all_objects[:]:
+            return each
+    return None
 
 
 register, unregister = bpy.utils.register_classes_factory(

@@ -11,10 +11,9 @@ from ..bridge.actor_bones import is_actor
 from ..shell.base_operator import capitalized
 from ..shell.takes import find_take
 from .map_conversion import map_of
-from .map_properties import PART_TITLES, PARTS, role_title
+from .map_properties import role_title
 
-MOST_NAMED = 3
-"""Roles or bones that a sentence names."""
+MOST_NAMED = 3  # roles or bones that a sentence names
 
 
 def may_be_character(candidate: bpy.types.Object | None) -> bool:
@@ -32,7 +31,10 @@ def candidates(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[
     """
     take = find_take(scene)
     taken = {character.armature for character in take.characters} if take is not None else set()
-    there = [*view_layer.objects, *(each for shown in view_layer.objects for each in _instanced(shown))]
+    there = list(view_layer.objects)
+    for shown in view_layer.objects:  # a linked character often stands in a scene as an empty
+        if shown.instance_type == "COLLECTION" and shown.instance_collection is not None:
+            there += shown.instance_collection.all_objects
     free = [each for each in dict.fromkeys(there) if may_be_character(each) and each not in taken]
     active = view_layer.objects.active
     selected = [each for each in view_layer.objects.selected if each in free]
@@ -40,12 +42,6 @@ def candidates(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[
         return [active]
     hidden = {each for each in view_layer.objects if not each.visible_get(view_layer=view_layer)}
     return selected or [each for each in free if each not in hidden] or free
-
-
-def _instanced(shown: bpy.types.Object) -> list[bpy.types.Object]:
-    """The objects of a collection that an empty shows, as a linked character often stands in a scene."""
-    collection = shown.instance_collection if shown.instance_type == "COLLECTION" else None
-    return [] if collection is None else list(collection.all_objects)
 
 
 def active_character(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
@@ -79,29 +75,21 @@ def add_character(
     return character
 
 
-def other_with(
-    character: bpy.types.PropertyGroup, armature_object: bpy.types.Object
-) -> bpy.types.PropertyGroup | None:
+def other_with_map(character: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:
     """Another character of the file, of any take, of the same armature, that has a map."""
-    everyone = (
-        other for scene in bpy.data.scenes for take in scene.keymark.takes for other in take.characters
-    )
-    return next(
-        (
-            other
-            for other in everyone
-            if other != character and other.armature == armature_object and len(other.character_map.roles)
-        ),
-        None,
-    )
+    for take in (take for scene in bpy.data.scenes for take in scene.keymark.takes):
+        for other in take.characters:
+            same = other != character and other.armature == character.armature
+            if same and len(other.character_map.roles):
+                return other
+    return None
 
 
 def missing_roles(character: bpy.types.PropertyGroup) -> list[str]:
     """Roles a character cannot do without that have no bone."""
     roles = character.character_map.roles
-    return [
-        role for role in REQUIRED if role not in roles or not any(entry.bone for entry in roles[role].bones)
-    ]
+    chosen = {role.name for role in roles if any(entry.bone for entry in role.bones)}
+    return [role for role in REQUIRED if role not in chosen]
 
 
 def lost_bones(character: bpy.types.PropertyGroup) -> list[str]:
@@ -114,9 +102,8 @@ def lost_bones(character: bpy.types.PropertyGroup) -> list[str]:
 
 def full_title(role: str) -> str:
     """A role's label with its side, as in a sentence: `left upper arm`."""
-    part = next((part for part, roles in PARTS.items() if role in roles and "." in part), None)
-    side = f"{PART_TITLES[part].partition(' ')[0]} " if part is not None else ""
-    return (side + role_title(role)).lower()
+    side = {"L": "left ", "R": "right "}.get(role.partition(".")[2], "")
+    return side + role_title(role).lower()
 
 
 def few(names: list[str]) -> str:
@@ -140,12 +127,10 @@ def shown_result(character: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup 
 class SourceMotion:
     """An Action and the actor it moves."""
 
-    kind: str
-    """`FINAL`, `MOTION` or `ACTION`."""
+    kind: str  # `FINAL`, `MOTION` or `ACTION`
     action: bpy.types.Action
     actor: bpy.types.Object
-    title: str
-    """What a result is named after."""
+    title: str  # what a result is named after
 
 
 def source_of(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> SourceMotion:
@@ -182,7 +167,6 @@ def missing_source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyG
 
 
 def _kind(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> str:
-    """The kind of motion, where the newest is asked for the newest."""
     if character.source != "NEWEST":
         return str(character.source)
     final = take.finish

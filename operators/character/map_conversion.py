@@ -8,8 +8,7 @@ from ...core.retarget.character import LIMBS, ROLES
 from ...core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
 from .map_properties import is_chain
 
-DIGITS = 7
-"""Significant digits of values that Blender keeps as float32."""
+DIGITS = 7  # significant digits of values that Blender keeps as float32
 WORDS = ("author", "license", "description")
 NO_DOUBTS: Mapping[str, str] = {}
 
@@ -56,13 +55,7 @@ def map_of(group: bpy.types.PropertyGroup) -> CharacterMap:
 def show_map(
     group: bpy.types.PropertyGroup, character_map: CharacterMap, doubts: Mapping[str, str] = NO_DOUBTS
 ) -> None:
-    """Set properties to a character map; every role has an entry then, those without bones an empty one.
-
-    Args:
-        group: The properties.
-        character_map: The map.
-        doubts: Sentences by role on why its bones may be the wrong ones.
-    """
+    """Set properties to a character map, with doubts by role; roles without bones have an empty entry."""
     clear_map(group)
     group.title, group.root = character_map.title, character_map.root or ""
     group.preset = character_map.preset or ""

@@ -34,19 +34,16 @@ class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Return the tooltip: of the map at hand, or of the file browser."""
         if properties.title:
             return "Use this map from your library folder, which names this armature's bones"
         return "Load which bones play which role from a file, instead of what was recognized"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file, in the user's own folder, unless a map is named."""
         if self.filepath or self.title:
             return self.execute(context)
         return browse(self, context, str(map_folders()[0]))
 
     def run(self, context: bpy.types.Context) -> None:
-        """Read the whole map and hold it against the armature, and only then show it."""
         from ...core.retarget.maps.map_registry import check_map, find_map
         from ..bridge.character.read_character import read_character
 
@@ -84,7 +81,6 @@ class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
     filter_glob: bpy.props.StringProperty(default=f"*{SUFFIX}", options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file, in the user's own folder."""
         from ...core.retarget.maps.map_registry import map_path
 
         with reported(self):
@@ -95,21 +91,18 @@ class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
         return {"CANCELLED"}
 
     def check(self, context: bpy.types.Context) -> bool:
-        """Give the file's name its suffix."""
         path = bpy.path.ensure_ext(self.filepath, SUFFIX)
         changed = path != self.filepath
         self.filepath = path
         return changed
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw what others are told of the map, beside the file browser."""
         character, column = active_character(context.scene), self.layout.column()
         if character is not None:
             for name in ("title", "author", "license", "description", "tags"):
                 column.prop(character.character_map, name)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Write the file."""
         from ...core.retarget.maps.character_map import write_character_map
 
         if not self.filepath:
@@ -125,9 +118,4 @@ def _title(character: bpy.types.PropertyGroup) -> str:
     return character.character_map.title.strip() or str(character.armature.name)
 
 
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_load_map,
-        KEYMARK_OT_save_map,
-    )
-)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_map, KEYMARK_OT_save_map))

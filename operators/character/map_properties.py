@@ -7,12 +7,7 @@ import bpy
 
 from ...core.retarget.character import CHAINS, LIMBS, MIDDLE, SOURCES
 
-SOURCE_WORDS = {
-    "preset": "Preset",
-    "names": "Names",
-    "shape": "Shape",
-    "you": "You",
-}
+SOURCE_WORDS = {"preset": "Preset", "names": "Names", "shape": "Shape", "you": "You"}
 """Labels of where a role's bones come from."""
 KINDS = (
     ("FLOAT", "Decimal", "A decimal number"),

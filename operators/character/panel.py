@@ -1,6 +1,7 @@
 """Rows of the panel that shows which bones play which role."""
 
 import bpy
+from bpy.types import Armature, Context, PropertyGroup, UILayout
 
 from ..bridge.character.read_character import needs_override
 from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
@@ -10,14 +11,11 @@ from .characters import active_character, find_character, full_title, is_shown, 
 from .map_properties import PART_TITLES, PARTS, SOURCE_WORDS, is_chain, role_title
 from .requirements import recognized
 
-LABEL_SHARE = 0.29
-"""Share of the width that a role's name takes."""
+LABEL_SHARE = 0.29  # share of the width that a role's name takes
 MOST_LINES = 5
 
 
-def draw_map(
-    layout: bpy.types.UILayout, context: bpy.types.Context, character: bpy.types.PropertyGroup
-) -> None:
+def draw_map(layout: UILayout, context: Context, character: PropertyGroup) -> None:
     """Draw recognition, the map's file, what is doubtful, and the roles of each part of the body."""
     character_map = character.character_map
     column = layout.column()
@@ -40,10 +38,7 @@ def draw_map(
     layout.operator("keymark.mirror_roles", text="Mirror Left to Right", icon="MOD_MIRROR").side = "L"
 
 
-def _draw_parts(
-    layout: bpy.types.UILayout, context: bpy.types.Context, character: bpy.types.PropertyGroup
-) -> None:
-    """Draw the roles of each part of the body in a panel of its own, which opens where there is a doubt."""
+def _draw_parts(layout: UILayout, context: Context, character: PropertyGroup) -> None:
     for part, roles in PARTS.items():
         shown = [
             character.character_map.roles[role] for role in roles if role in character.character_map.roles
@@ -60,8 +55,7 @@ def _draw_parts(
         _draw_controls(body, character, part, shown)
 
 
-def _draw_confidence(header: bpy.types.UILayout, shown: list[bpy.types.PropertyGroup]) -> None:
-    """Draw where the bones of a part come from, and how sure the least certain is."""
+def _draw_confidence(header: UILayout, shown: list[PropertyGroup]) -> None:
     found = [role for role in shown if any(entry.bone for entry in role.bones)]
     if not found:
         return
@@ -75,19 +69,13 @@ def _draw_confidence(header: bpy.types.UILayout, shown: list[bpy.types.PropertyG
     facts.label(text=source, translate=False)
 
 
-def is_marked(character: bpy.types.PropertyGroup, role: bpy.types.PropertyGroup) -> bool:
+def is_marked(character: PropertyGroup, role: PropertyGroup) -> bool:
     """Whether a role is doubtful, or one of its bones is not there any more."""
     bones = character.armature.data.bones
     return bool(role.doubt) or any(entry.bone and entry.bone not in bones for entry in role.bones)
 
 
-def _draw_role(
-    column: bpy.types.UILayout,
-    context: bpy.types.Context,
-    character: bpy.types.PropertyGroup,
-    role: bpy.types.PropertyGroup,
-) -> None:
-    """Draw a role: a row for each of its bones, and why it is doubtful."""
+def _draw_role(column: UILayout, context: Context, character: PropertyGroup, role: PropertyGroup) -> None:
     bones = character.armature.data.bones
     for index, entry in enumerate(role.bones):
         split = column.split(factor=LABEL_SHARE, align=True)
@@ -107,8 +95,7 @@ def _draw_role(
         draw_sentence(column, context, why[:1].upper() + why[1:], "BLANK1", MOST_LINES)
 
 
-def _draw_buttons(row: bpy.types.UILayout, role: bpy.types.PropertyGroup, index: int) -> None:
-    """Draw the eyedropper, and what takes an empty field out of a chain."""
+def _draw_buttons(row: UILayout, role: PropertyGroup, index: int) -> None:
     pick = row.operator("keymark.pick_bone", text="", icon="EYEDROPPER")
     pick.role, pick.index = role.name, index
     if is_chain(role.name) and not role.bones[index].bone and len(role.bones) > 1:
@@ -116,13 +103,7 @@ def _draw_buttons(row: bpy.types.UILayout, role: bpy.types.PropertyGroup, index:
         remove.role, remove.index = role.name, index
 
 
-def _draw_controls(
-    layout: bpy.types.UILayout,
-    character: bpy.types.PropertyGroup,
-    part: str,
-    shown: list[bpy.types.PropertyGroup],
-) -> None:
-    """Draw the controls that are keyed for a part, where the map has any."""
+def _draw_controls(layout: UILayout, character: PropertyGroup, part: str, shown: list[PropertyGroup]) -> None:
     keyed = [(role, entry) for role in shown for entry in role.bones if entry.control]
     limb = character.character_map.limbs.get(part)
     controls = [name for name in ("goal", "pole", "toe") if limb is not None and getattr(limb, name)]
@@ -146,13 +127,7 @@ def _draw_controls(
         split.label(text=values, translate=False)
 
 
-def _draw_control(
-    column: bpy.types.UILayout,
-    armature: bpy.types.Armature,
-    owner: bpy.types.PropertyGroup,
-    name: str,
-    text: str,
-) -> None:
+def _draw_control(column: UILayout, armature: Armature, owner: PropertyGroup, name: str, text: str) -> None:
     split = column.split(factor=LABEL_SHARE, align=True)
     left = split.row()
     left.alignment = "RIGHT"
@@ -165,17 +140,13 @@ def _draw_control(
 # --- The panel of step 8
 
 
-MOST_LINES_PANEL = 6
-"""Lines of a sentence."""
+MOST_LINES_PANEL = 6  # lines of a sentence
 
 
 class KEYMARK_UL_characters(RowList, bpy.types.UIList):
     """Characters by their armatures; the icon tells whether one has the motion."""
 
-    def draw_row(
-        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
-    ) -> None:
-        """Draw one character."""
+    def draw_row(self, context: Context, layout: UILayout, item: PropertyGroup) -> None:
         row = layout.row(align=True)
         done = any(result.action is not None for result in item.results)
         name = item.armature.name if item.armature is not None else "No Armature"
@@ -190,8 +161,7 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
     bl_label = "Character"
     step = "character"
 
-    def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw the list, the chosen character, and its result."""
+    def draw_step(self, context: Context) -> None:
         take, character = active_take(context.scene), find_character(context.scene)
         if character is None:
             buttons = self.body.column()
@@ -211,7 +181,10 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
             draw_sentence(column, context, character.problem, "ERROR", MOST_LINES_PANEL)
         elif (unmet := recognized(context)) is not None:
             draw_sentence(column, context, unmet, "ERROR", MOST_LINES_PANEL)
-        _draw_source(column, take, character)
+        column.prop(character, "source")
+        if character.source == "ACTION":
+            column.prop(character, "source_action")
+            column.prop(character, "source_actor")
         row = column.row()
         row.scale_y = 1.4
         if not draw_progress(row, context, "keymark.retarget"):
@@ -221,10 +194,7 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
             _draw_results(column, context, character)
 
 
-def _draw_choice(
-    panel: KEYMARK_PT_character, take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup
-) -> bpy.types.UILayout:
-    """Draw the list of characters and the chosen one's armature; a single character is one row."""
+def _draw_choice(panel: KEYMARK_PT_character, take: PropertyGroup, character: PropertyGroup) -> UILayout:
     row = panel.body.row()
     single = len(take.characters) == 1
     if single:
@@ -243,20 +213,7 @@ def _draw_choice(
     return column
 
 
-def _draw_source(
-    column: bpy.types.UILayout, take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup
-) -> None:
-    """Draw which motion is performed."""
-    column.prop(character, "source")
-    if character.source == "ACTION":
-        column.prop(character, "source_action")
-        column.prop(character, "source_actor")
-
-
-def _draw_results(
-    column: bpy.types.UILayout, context: bpy.types.Context, character: bpy.types.PropertyGroup
-) -> None:
-    """Draw the switch between the results, and what is known of the chosen one."""
+def _draw_results(column: UILayout, context: Context, character: PropertyGroup) -> None:
     column.separator()
     rows = column.column(align=True)
     for index, result in enumerate(character.results):
@@ -265,11 +222,9 @@ def _draw_results(
             row.label(text="Deleted", icon="ACTION")
         else:
             icon = "ERROR" if result.outdated else "ACTION"
-            shown = is_shown(character, result)
-            text = result.action.name
-            row.operator(
-                "keymark.show_result", text=text, icon=icon, depress=shown, translate=False
-            ).index = index
+            text, shown = result.action.name, is_shown(character, result)
+            show = row.operator("keymark.show_result", text=text, icon=icon, depress=shown, translate=False)
+            show.index = index
         row.operator("keymark.remove_result", text="", icon="X").index = index
     chosen = shown_result(character)
     if chosen is None or chosen.action is None:
@@ -289,8 +244,7 @@ class CharacterPart(TakePanel):
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether the chosen character has an armature."""
+    def poll(cls, context: Context) -> bool:
         character = find_character(context.scene)
         return super().poll(context) and character is not None and character.armature is not None
 
@@ -300,16 +254,10 @@ class KEYMARK_PT_retarget_options(CharacterPart, bpy.types.Panel):
 
     bl_label = "Options"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw them."""
+    def draw(self, context: Context) -> None:
         column, options = self.column(), active_character(context.scene).options
-        column.prop(options, "arms")
-        column.prop(options, "legs")
-        column.prop(options, "root_motion")
-        column.prop(options, "placement")
-        column.prop(options, "plant_feet")
-        column.prop(options, "reach_hands")
-        column.prop(options, "keys")
+        for name in ("arms", "legs", "root_motion", "placement", "plant_feet", "reach_hands", "keys"):
+            column.prop(options, name)
         few = column.column()
         few.active = options.keys == "TOLERANCE"
         few.prop(options, "tolerance_mm")
@@ -320,15 +268,13 @@ class KEYMARK_PT_character_map(CharacterPart, bpy.types.Panel):
 
     bl_label = "Bones"
 
-    def draw_header(self, context: bpy.types.Context) -> None:
-        """Draw a mark, so that doubts are noticed while the panel is closed."""
+    def draw_header(self, context: Context) -> None:
         character = active_character(context.scene)
         doubtful = any(role.doubt for role in character.character_map.roles)
         if doubtful or len(character.doubts) or missing_roles(character):
             self.layout.label(text="", icon="ERROR")
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw recognition, the map's file, and the roles by limb."""
+    def draw(self, context: Context) -> None:
         draw_map(self.layout, context, active_character(context.scene))
 
 

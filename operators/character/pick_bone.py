@@ -15,8 +15,7 @@ from .map_conversion import map_of, role_named, show_map
 from .recognition import RoleBoneOperator, active_bone_of, chain_role, give_bone, told
 from .requirements import armature
 
-NEAR_PX = 25.0
-"""Farthest that a click may be from a bone, at a UI scale of 1."""
+NEAR_PX = 25.0  # farthest that a click may be from a bone, at a UI scale of 1
 SAME_PX = 3.0
 """Bones that are hardly farther than the nearest lie over it; the one nearest to the viewer counts."""
 
@@ -24,22 +23,13 @@ SAME_PX = 3.0
 def bone_under(
     context: bpy.types.Context, armature_object: bpy.types.Object, mouse_x: int, mouse_y: int
 ) -> str | None:
-    """Return the name of the visible bone nearest to the mouse; None where none is near.
-
-    Args:
-        context: Its window is searched for a 3D viewport.
-        armature_object: The character.
-        mouse_x: Mouse position in the window, from its left edge [px].
-        mouse_y: The same from its bottom edge [px].
-    """
-    for area in context.screen.areas:
-        if area.type != "VIEW_3D":
-            continue
-        for region in area.regions:
-            inside = 0 <= mouse_x - region.x < region.width and 0 <= mouse_y - region.y < region.height
-            if region.type == "WINDOW" and inside:
-                near = NEAR_PX * context.preferences.system.ui_scale
-                mouse = np.array([mouse_x - region.x, mouse_y - region.y], dtype=np.float64)
+    """Name of the visible bone nearest to the mouse [window px], in a 3D viewport; None where none is."""
+    near = NEAR_PX * context.preferences.system.ui_scale
+    for area in (area for area in context.screen.areas if area.type == "VIEW_3D"):
+        for region in (region for region in area.regions if region.type == "WINDOW"):
+            x, y = mouse_x - region.x, mouse_y - region.y
+            if 0 <= x < region.width and 0 <= y < region.height:
+                mouse = np.array([x, y], dtype=np.float64)
                 return _nearest(context, armature_object, region, mouse, near)
     return None
 
@@ -71,13 +61,9 @@ def _nearest(
 
 
 def nearest_segment(point: Array, ends: Array, depths: Array, near: float) -> int | None:
-    """Index of the segment nearest to a point; None where all are farther than `near`.
+    """Index of the segment (N, 2, 2) nearest to a point [px]; None where all are farther than `near`.
 
-    Args:
-        point: (2,) [px].
-        ends: (N, 2, 2) first and second end of each segment [px].
-        depths: (N,) distance of each from the viewer; of segments over each other the nearest counts.
-        near: Largest distance [px].
+    Of segments over each other the one nearest to the viewer, by depth (N,), counts.
     """
     start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
     squared = np.maximum(np.sum(along**2, axis=1), 1e-12)
@@ -100,9 +86,6 @@ def is_visible(pose_bone: bpy.types.PoseBone) -> bool:
 # --- Pick a role's bone by a click on it in the viewport
 
 
-TAKES_ACTIVE = {"RET", "NUMPAD_ENTER"}
-
-
 class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     """Click on the bone in the viewport"""
 
@@ -115,13 +98,11 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Return the tooltip, which says where the role's bone comes from."""
         known = told(context, properties.role)
         asked = "Click on the bone in the viewport to choose it"
         return f"{known}. {asked}" if known else asked
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for a click on a bone."""
         if self.bone or bpy.app.background:
             return self.execute(context)
         self._ask(context, "")
@@ -131,7 +112,6 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Name the bone under the mouse, and take the one that is clicked on."""
         if cancel_click(self, context, event):
             return {"CANCELLED"}
         with reported(self):
@@ -140,7 +120,7 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         return {"CANCELLED"}
 
     def _watch(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if event.type in TAKES_ACTIVE and event.value == "PRESS":
+        if event.type in ("RET", "NUMPAD_ENTER") and event.value == "PRESS":
             return self._take(context, active_bone_of(active_character(context.scene)))
         clicked = event.type == "LEFTMOUSE" and event.value == "PRESS"
         if not clicked and event.type != "MOUSEMOVE":
@@ -167,28 +147,20 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     def _ask(self, context: bpy.types.Context, under: str) -> None:
         role = full_title(self.role)
         active = active_bone_of(active_character(context.scene))
-        if under:
-            words = f"{role.capitalize()}: {under}   |   Esc: Cancel"
-        elif active is not None:
-            words = f"Click on the bone: {role}   |   Enter: {active}, the active one   |   Esc: Cancel"
-        else:
-            words = f"Click on the bone: {role}   |   Esc: Cancel"
-        context.workspace.status_text_set(words)
+        words = f"{role.capitalize()}: {under}" if under else f"Click on the bone: {role}"
+        if not under and active is not None:
+            words += f"   |   Enter: {active}, the active one"
+        context.workspace.status_text_set(f"{words}   |   Esc: Cancel")
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore cursor and status bar; Blender calls this as well."""
         if context.window is not None:
             context.window.cursor_modal_restore()
             context.workspace.status_text_set(None)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Give the bone to the role."""
         if not self.bone:
             raise InputError("no bone is chosen; click on one in Pose Mode, or give its name")
         give_bone(active_character(context.scene), self.role, self.index, self.bone)
-
-
-# --- Add a bone to a chain, or take one away
 
 
 class KEYMARK_OT_add_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
@@ -200,7 +172,6 @@ class KEYMARK_OT_add_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Operat
     requirements = (armature,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Add the bone that continues the last one; an empty field where none does."""
         character = active_character(context.scene)
         shown = role_named(character.character_map, chain_role(self.role))
         taken = {entry.bone for role in character.character_map.roles for entry in role.bones}
@@ -217,7 +188,6 @@ class KEYMARK_OT_remove_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Ope
     requirements = (armature,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove it; a chain without bones keeps an empty field."""
         shown = role_named(active_character(context.scene).character_map, chain_role(self.role))
         if self.index >= len(shown.bones):
             raise InputError(
@@ -258,7 +228,6 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
     side: bpy.props.EnumProperty(name="Direction", description="Which side is copied", items=SIDES)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Find the partner of every bone of the side."""
         from ...core.retarget.maps.mirroring import mirrored_map
         from ..bridge.character.read_character import read_character
 
@@ -280,10 +249,5 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_pick_bone,
-        KEYMARK_OT_add_chain_bone,
-        KEYMARK_OT_remove_chain_bone,
-        KEYMARK_OT_mirror_roles,
-    )
+    (KEYMARK_OT_pick_bone, KEYMARK_OT_add_chain_bone, KEYMARK_OT_remove_chain_bone, KEYMARK_OT_mirror_roles)
 )

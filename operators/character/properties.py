@@ -55,14 +55,6 @@ def _armature_chosen(character: bpy.types.PropertyGroup, context: bpy.types.Cont
     armature_chosen(character)
 
 
-def _is_actor(_character: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
-    return is_actor(candidate)
-
-
-def _moves_an_actor(_character: bpy.types.PropertyGroup, action: bpy.types.Action) -> bool:
-    return moves_an_actor(action)
-
-
 class KEYMARK_PG_result_line(bpy.types.PropertyGroup):
     """A sentence on a result."""
 
@@ -172,13 +164,13 @@ class KEYMARK_PG_character(bpy.types.PropertyGroup):
         name="Action",
         description="The Action of a Keymark actor that the character performs",
         type=bpy.types.Action,
-        poll=_moves_an_actor,
+        poll=lambda _character, action: moves_an_actor(action),
     )
     source_actor: bpy.props.PointerProperty(
         name="Of Actor",
         description="The actor that the Action moves; empty for the take's own",
         type=bpy.types.Object,
-        poll=_is_actor,
+        poll=lambda _character, candidate: is_actor(candidate),
     )
     options: bpy.props.PointerProperty(type=KEYMARK_PG_retarget_options)
     keep_earlier: bpy.props.BoolProperty(

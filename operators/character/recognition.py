@@ -16,7 +16,7 @@ from .characters import (
     find_character,
     full_title,
     may_be_character,
-    other_with,
+    other_with_map,
 )
 from .map_conversion import clear_map, map_of, role_named, show_map
 from .map_properties import SOURCE_WORDS, is_chain
@@ -142,7 +142,7 @@ def armature_chosen(character: bpy.types.PropertyGroup) -> None:
     if character.armature is None:
         return
     drop_results_of_others(character)
-    known = other_with(character, character.armature)
+    known = other_with_map(character)
     if known is not None:
         show_map(character.character_map, map_of(known.character_map))
         return
@@ -180,9 +180,6 @@ def _not_a_character(armature_object: bpy.types.Object | None) -> InputError:
     )
 
 
-# --- Recognize a character's bones
-
-
 class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
     """Find out which bones play which role, by their names and places; replaces what you chose before"""
 
@@ -192,15 +189,13 @@ class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
     requirements = (armature, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Recognize the bones, and show them."""
         character = active_character(context.scene)
         recognize_bones(character)
         doubts = all_doubts(character)
         for doubt in doubts:
             warn(self, doubt)
-        if doubts:
-            return
-        self.report({"INFO"}, f"Recognized the bones of '{character.armature.name}'")
+        if not doubts:
+            self.report({"INFO"}, f"Recognized the bones of '{character.armature.name}'")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_recognize_character,))

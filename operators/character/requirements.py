@@ -64,10 +64,8 @@ def recognized(context: bpy.types.Context) -> str | None:
     lost = lost_bones(chosen)
     if lost:
         bones = few([f"'{bone}'" for bone in lost])
-        return (
-            f"'{chosen.armature.name}' has no bone {bones} any more; recognize its bones again, or choose "
-            "others"
-        )
+        said = f"'{chosen.armature.name}' has no bone {bones} any more"
+        return f"{said}; recognize its bones again, or choose others"
     return None
 
 

@@ -1,12 +1,12 @@
 """Give the take's motion to a character."""
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
 from ...core.errors import InputError
 from ...core.progress import stretch
+from ...core.retarget.options import LimbKeys, Placement, RetargetOptions, RootMotion
 from ..bridge.actions import assign_action
 from ..finish.bake_motion import mark_motion_asset
 from ..shell.base_operator import BaseOperator, warn
@@ -22,32 +22,13 @@ from .characters import (
     shown_result,
     source_of,
 )
-from .figures import figures, options_of
 from .map_conversion import map_of
+from .properties import MM
 from .requirements import character, editable, recognized, result, source
 
 if TYPE_CHECKING:
     from ...core.progress import Job
-    from ..bridge.character.retarget import Retargeted
-
-
-READ = 0.1
-"""Share of the job at which the motion is read."""
-
-
-@dataclass(frozen=True, eq=False)
-class RetargetedCharacter:
-    """A motion on a character of a take, not yet written."""
-
-    take: str
-    """The take's identifier."""
-    uids: tuple[int, int, int]
-    """Session numbers of the character's armature, the source Action and its actor."""
-    kind: str
-    """The kind of source motion."""
-    title: str
-    """What a new Action is named after, beside the character."""
-    retargeted: "Retargeted"
+    from ...core.retarget.quality import Quality
 
 
 class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
@@ -58,8 +39,7 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (source, editable, recognized, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[RetargetedCharacter]":
-        """Read the motion and solve it on the character, with the options at the start of the job."""
+    def start(self, scene: bpy.types.Scene) -> "Job[tuple[Any, ...]]":
         from ..bridge.character.retarget import retarget
         from ..bridge.character.source import read_source
 
@@ -70,39 +50,64 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
         uids = armature_object.session_uid, motion.action.session_uid, motion.actor.session_uid
         character_map, options = map_of(character.character_map), options_of(character.options)
         del take, character  # Blender may move them while the job runs
-        source, frames = yield from stretch(read_source(motion.actor, motion.action), 0.0, READ)
+        source, frames = yield from stretch(read_source(motion.actor, motion.action), 0.0, 0.1)
         job = retarget(armature_object, source, frames, character_map, options)
-        retargeted = yield from stretch(job, READ, 1.0)
-        return RetargetedCharacter(identifier, uids, motion.kind, motion.title, retargeted)
+        retargeted = yield from stretch(job, 0.1, 1.0)
+        return identifier, uids, motion.kind, motion.title, retargeted
 
-    def finish(self, scene: bpy.types.Scene, result: RetargetedCharacter) -> None:
-        """Write the Action, and list it with what was measured of it."""
-        take = take_by_identifier(scene, result.take)
-        character = next((each for each in take.characters if _uid(each.armature) == result.uids[0]), None)
-        source_action = next((each for each in bpy.data.actions if _uid(each) == result.uids[1]), None)
-        actor = next((each for each in bpy.data.objects if _uid(each) == result.uids[2]), None)
+    def finish(self, scene: bpy.types.Scene, result: tuple[Any, ...]) -> None:
+        identifier, uids, kind, title, retargeted = result
+        take = take_by_identifier(scene, identifier)
+        character = next((each for each in take.characters if _uid(each.armature) == uids[0]), None)
+        source_action = next((each for each in bpy.data.actions if _uid(each) == uids[1]), None)
+        actor = next((each for each in bpy.data.objects if _uid(each) == uids[2]), None)
         if character is None or source_action is None or actor is None:
             raise InputError(
                 "the character or its motion was removed while the job ran; nothing was changed, run it again"
             )
         earlier = None
         if not character.keep_earlier:
-            earlier = result_to_replace(character, result.kind, source_action)
-        into = earlier.action if earlier is not None else f"{result.title} {character.armature.name}"
-        action = result.retargeted.write(scene, into)
-        source = SourceMotion(result.kind, source_action, actor, result.title)
-        listed = add_result(character, source, action)
-        show_lines(listed, figures(result.retargeted.quality), result.retargeted.notes)
-        for note in result.retargeted.notes:
+            earlier = result_to_replace(character, kind, source_action)
+        into = earlier.action if earlier is not None else f"{title} {character.armature.name}"
+        action = retargeted.write(scene, into)
+        listed = add_result(character, SourceMotion(kind, source_action, actor, title), action)
+        show_lines(listed, figures(retargeted.quality), retargeted.notes)
+        for note in retargeted.notes:
             warn(self, note)
         self.report({"INFO"}, f"'{character.armature.name}' performs '{action.name}'")
 
 
+def options_of(group: bpy.types.PropertyGroup) -> RetargetOptions:
+    """The options that properties hold."""
+    return RetargetOptions(
+        root_motion=RootMotion[group.root_motion],
+        placement=Placement[group.placement],
+        arms=LimbKeys[group.arms],
+        legs=LimbKeys[group.legs],
+        plant_feet=group.plant_feet,
+        reach_hands=group.reach_hands,
+        tolerance_m=group.tolerance_mm / MM if group.keys == "TOLERANCE" else None,
+    )
+
+
+def figures(quality: "Quality") -> list[str]:
+    """Lines on feet, floor, hands (or limbs, where the hands reach nothing) and keys."""
+    lines = []
+    if quality.skate_mm is not None:
+        lines.append(f"Feet slide {quality.skate_mm:.2f} mm a frame")
+    if quality.penetration_mm is not None:
+        lines.append(f"Soles at most {quality.penetration_mm:.1f} mm below floor")
+    if quality.hands_mm is not None:
+        lines.append(f"Hands {quality.hands_mm:.0f} mm from what they reach")
+    elif quality.arms_deg is not None and quality.legs_deg is not None:
+        lines.append(f"Arms {quality.arms_deg:.1f}°, legs {quality.legs_deg:.1f}° off")
+    if quality.keys is not None and quality.dense_keys is not None:
+        lines.append(f"{quality.keys} keys instead of {quality.dense_keys}")
+    return lines
+
+
 def _uid(block: bpy.types.ID | None) -> int:
     return -1 if block is None else int(block.session_uid)
-
-
-# --- Show one of a character's results on it
 
 
 class KEYMARK_OT_show_result(BaseOperator, bpy.types.Operator):
@@ -116,15 +121,11 @@ class KEYMARK_OT_show_result(BaseOperator, bpy.types.Operator):
     index: bpy.props.IntProperty(name="Index", description="Number of the result in the list, from 0", min=0)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Assign the Action, and choose the result."""
         character = active_character(context.scene)
         if self.index >= len(character.results) or character.results[self.index].action is None:
             raise InputError(f"there is no result number {self.index}; retarget the motion again")
         assign_action(character.armature, character.results[self.index].action)
         character.active_result = self.index
-
-
-# --- Remove a result from a character's list
 
 
 class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
@@ -138,7 +139,6 @@ class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
     index: bpy.props.IntProperty(name="Index", description="Number of the result in the list, from 0", min=0)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove it."""
         chosen = active_character(context.scene)
         if self.index >= len(chosen.results):
             raise InputError(
@@ -146,9 +146,6 @@ class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
             )
         chosen.results.remove(self.index)
         chosen.active_result = max(0, min(chosen.active_result, len(chosen.results) - 1))
-
-
-# --- Mark a character's result as an asset, with the details that the actor's has
 
 
 class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
@@ -160,7 +157,6 @@ class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
     requirements = (result, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Mark the Action; its picture is the performer's, who moves alike."""
         take, made = active_take(context.scene), shown_result(active_character(context.scene))
         if made is None or made.action is None:
             raise InputError("the result's Action has been deleted; retarget the motion again")
@@ -173,10 +169,5 @@ class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_retarget,
-        KEYMARK_OT_show_result,
-        KEYMARK_OT_remove_result,
-        KEYMARK_OT_mark_result_asset,
-    )
+    (KEYMARK_OT_retarget, KEYMARK_OT_show_result, KEYMARK_OT_remove_result, KEYMARK_OT_mark_result_asset)
 )

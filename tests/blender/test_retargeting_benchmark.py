@@ -28,7 +28,6 @@ def found() -> dict[str, retargeting.Row]:
 
 
 def test_copied_rotations_keep_the_difference_of_the_rest_poses(found: dict[str, retargeting.Row]) -> None:
-    """Arms that hang 60 degrees lower at rest do so in the motion, but where rest poses are aligned."""
     own, copied = (found[method] for method in retargeting.METHODS)
     assert copied["arms_deg"] == pytest.approx(60.0, abs=5.0)
     assert own["arms_deg"] < 2.0
@@ -36,7 +35,6 @@ def test_copied_rotations_keep_the_difference_of_the_rest_poses(found: dict[str,
 
 
 def test_a_row_has_means_and_the_worst_where_it_counts(found: dict[str, retargeting.Row]) -> None:
-    """Penetration is the worst take's, directions are means."""
     own = found[retargeting.METHODS[0]]
     worse = own | {"penetration_mm": 9.0, "legs_deg": own["legs_deg"] + 1.0}
     row = retargeting.summary([own, worse])

@@ -10,8 +10,6 @@ from ...arrays import Array
 from .control_plan import ControlKind, PlannedControl
 from .control_spaces import NOTHING, ControlSpace, unscaled
 
-NEEDED = 0.005
-"""Distance [shares of the character's size] from which a bone that usually only turns is moved as well."""
 ALWAYS_MOVED = (ControlKind.HIPS, ControlKind.GOAL, ControlKind.POLE, ControlKind.ROOT)
 """Kinds of controls that are placed wherever they can be."""
 
@@ -21,14 +19,10 @@ class Control:
     """A bone that is keyed, and how its channels act."""
 
     plan: PlannedControl
-    mode: str
-    """Its rotation mode."""
-    space: ControlSpace
-    """Its space; turner and carrier are indices among all controls."""
-    turns: bool
-    """Whether its rotation is keyed."""
-    displaced: bool = False
-    """Whether it has a location already, which a motion must replace."""
+    mode: str  # its rotation mode
+    space: ControlSpace  # its space; turner and carrier are indices among all controls
+    turns: bool  # whether its rotation is keyed
+    displaced: bool = False  # whether it has a location already, which a motion must replace
 
     @property
     def name(self) -> str:
@@ -42,12 +36,9 @@ class ControlChannels:
 
     rotation: Array | None
     """(F, 3, 3) its rotation channels as a turn from rest; None where they are not keyed."""
-    location: Array | None
-    """(F, 3) its location channels; None where they are not keyed."""
-    turn: Array
-    """(F, 3, 3) its axes in the armature's space, as the channels give them."""
-    place: Array
-    """(F, 3) its head in the armature's space, as the channels give it."""
+    location: Array | None  # (F, 3) its location channels; None where they are not keyed
+    turn: Array  # (F, 3, 3) its axes in the armature's space, as the channels give them
+    place: Array  # (F, 3) its head in the armature's space, as the channels give it
 
     def on(self, carrier: "ControlChannels") -> "ControlChannels":
         """The same where turn and place are those in the axes of what carries it."""
@@ -92,13 +83,10 @@ def control_channels(
     size: float,
     known: Mapping[int, ControlChannels] = MappingProxyType({}),
 ) -> tuple[ControlChannels, ...]:
-    """The channels that give controls the poses they are to have, or the nearest that they can.
+    """The channels that give controls the poses (F, 4, 4) they are to have, or the nearest that they can.
 
-    Args:
-        controls: The controls, those that turn or carry others before them.
-        wanted: (F, 4, 4) by name the pose of each in the armature's space; of a pole only the place counts.
-        size: The character's, in the armature's units.
-        known: Controls by index whose channels are known already.
+    Controls that turn or carry others come before them; channels in `known`, by index, stay. Poses are in the
+    armature's space, the character's size in its units; of a pole only the place counts.
     """
     frames = len(next(iter(wanted.values()), np.zeros((1, 4, 4))))
     still, origin = np.broadcast_to(np.eye(3), (frames, 3, 3)), np.zeros((frames, 3))
@@ -132,4 +120,5 @@ def control_channels(
 def _is_moved(control: Control, apart: Array, size: float) -> bool:
     if control.plan.kind in ALWAYS_MOVED or control.displaced:
         return True
-    return bool(np.linalg.norm(apart, axis=-1).max() > NEEDED * size)
+    # Distance [shares of the character's size] from which a bone that usually only turns is moved as well.
+    return bool(np.linalg.norm(apart, axis=-1).max() > 0.005 * size)

@@ -6,14 +6,11 @@ from dataclasses import dataclass
 from ...arrays import Array
 from ...finish.hermite import Spline
 from .control_channels import Control, ControlChannels
-from .control_plan import ControlKind
+from .control_plan import IN_FK, ControlKind
 from .point_tolerances import HeldPoint
 
 ChannelValues = Callable[[Array, str], Array]
 """From turns (F, 3, 3) and a rotation mode to the values (F, C) of its channels, without jumps."""
-
-FOLLOWED = (ControlKind.FK, ControlKind.HIPS, ControlKind.GOAL, ControlKind.TOE)
-"""Kinds of controls that a bone follows rigidly."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,67 +20,57 @@ class KeyedControl:
     control: Control
     rotation: Array | Spline | None
     """(F, C) values of its rotation channels on every frame, or few keys; None where they are not keyed."""
-    location: Array | Spline | None
-    """(F, 3) those of its location."""
+    location: Array | Spline | None  # (F, 3) those of its location
 
     @property
     def channel_count(self) -> int:
         """Number of its channels."""
-        return sum(_values(held).shape[1] for held in (self.rotation, self.location) if held is not None)
+        return sum(values_of(held).shape[1] for held in (self.rotation, self.location) if held is not None)
 
     @property
     def key_count(self) -> int:
         """Number of keys on all its channels."""
-        return sum(_values(held).size for held in (self.rotation, self.location) if held is not None)
+        return sum(values_of(held).size for held in (self.rotation, self.location) if held is not None)
+
+
+def values_of(held: Array | Spline) -> Array:
+    """(K, C) values of keys, or of every frame."""
+    return held.values if isinstance(held, Spline) else held
 
 
 @dataclass(frozen=True, eq=False)
 class LimbPaths:
     """A limb of three joints."""
 
-    bones: tuple[str, str, str]
-    """The bones that begin at them."""
+    bones: tuple[str, str, str]  # the bones that begin at them
     joints: tuple[Array, Array, Array]
     """(F, 3) its root, its elbow or knee and its end, in the armature's space and units."""
-    root_control: int
-    """Index of the control that carries its root; NOTHING for none."""
-    root_place: Array
-    """(3,) the root in that control's axes, in the armature's units."""
-    bend: Array
-    """(F, 3) unit vector from the line between root and end toward elbow or knee."""
-    in_fk: bool
-    """Whether it is keyed in FK."""
-    in_ik: bool
-    """Whether it is keyed in IK, and shows it."""
-    pole_distance: float
-    """Distance of its pole from elbow or knee, in the armature's units."""
+    root_control: int  # index of the control that carries its root; NOTHING for none
+    root_place: Array  # (3,) the root in that control's axes, in the armature's units
+    bend: Array  # (F, 3) unit vector from the line between root and end toward elbow or knee
+    in_fk: bool  # whether it is keyed in FK
+    in_ik: bool  # whether it is keyed in IK, and shows it
+    pole_distance: float  # distance of its pole from elbow or knee, in the armature's units
 
 
 @dataclass(frozen=True, eq=False)
 class ControlMotion:
     """A motion on a character's controls, by channels for every frame."""
 
-    controls: tuple[Control, ...]
-    """Those that turn or carry others first."""
+    controls: tuple[Control, ...]  # those that turn or carry others first
     channels: tuple[ControlChannels, ...]
-    wanted: Mapping[str, Array]
-    """(F, 4, 4) by control the pose that it is to have, in the armature's space."""
-    offsets: Mapping[str, Array]
-    """(4, 4) by control the pose of its bone in its own axes."""
+    wanted: Mapping[str, Array]  # (F, 4, 4) by control the pose that it is to have, in the armature's space
+    offsets: Mapping[str, Array]  # (4, 4) by control the pose of its bone in its own axes
     points: tuple[HeldPoint, ...]
-    bones: Mapping[str, Array]
-    """(F, 4, 4) poses of the bones with roles, in the armature's space."""
-    limbs: Mapping[str, LimbPaths]
-    """The limbs whose three joints are moved."""
-    size: float
-    """The character's, in the armature's units."""
-    scale: float
-    """Meters a unit of the armature's space."""
+    bones: Mapping[str, Array]  # (F, 4, 4) poses of the bones with roles, in the armature's space
+    limbs: Mapping[str, LimbPaths]  # the limbs whose three joints are moved
+    size: float  # the character's, in the armature's units
+    scale: float  # meters a unit of the armature's space
 
     def points_of(self, index: int) -> list[tuple[HeldPoint, Array]]:
         """The points that a control moves rigidly, with their places (3,) in its axes [m]."""
         control = self.controls[index]
-        if control.plan.kind not in FOLLOWED:
+        if control.plan.kind not in (*IN_FK, ControlKind.GOAL, ControlKind.TOE):
             return []
         offset = self.offsets[control.name]
         return [
@@ -103,13 +90,8 @@ class ControlMotion:
 
     def fk_control(self, bone: str) -> int | None:
         """Index of the control that moves a bone in FK."""
-        kinds = (ControlKind.FK, ControlKind.HIPS)
-        found = (
-            index
-            for index, control in enumerate(self.controls)
-            if control.plan.bone == bone and control.plan.kind in kinds
-        )
-        return next(found, None)
+        plans = enumerate(control.plan for control in self.controls)
+        return next((index for index, plan in plans if plan.bone == bone and plan.kind in IN_FK), None)
 
 
 def dense_controls(motion: ControlMotion, of: ChannelValues) -> tuple[KeyedControl, ...]:
@@ -120,7 +102,3 @@ def dense_controls(motion: ControlMotion, of: ChannelValues) -> tuple[KeyedContr
         )
         for control, keyed in zip(motion.controls, motion.channels, strict=True)
     )
-
-
-def _values(held: Array | Spline) -> Array:
-    return held.values if isinstance(held, Spline) else held

@@ -4,26 +4,23 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-from ..character import LIMBS, ROLES
-from ..maps.character_map import CharacterMap, IkControls
+from ..character import LIMBS, ROLES, joint_roles
+from ..maps.character_map import CharacterMap
 from ..options import LimbKeys, RetargetOptions, RootMotion
 
 
 class ControlKind(Enum):
     """What a control does."""
 
-    FK = "fk"
-    """It turns a bone, and places it where it can and must."""
-    HIPS = "hips"
-    """It turns and places the hips."""
-    GOAL = "goal"
-    """Hand or foot follow it by inverse kinematics."""
-    TOE = "toe"
-    """It turns the toes while the leg is in IK."""
-    POLE = "pole"
-    """Elbow or knee point to it."""
-    ROOT = "root"
-    """It carries the whole character."""
+    FK = "fk"  # it turns a bone, and places it where it can and must
+    HIPS = "hips"  # it turns and places the hips
+    GOAL = "goal"  # hand or foot follow it by inverse kinematics
+    TOE = "toe"  # it turns the toes while the leg is in IK
+    POLE = "pole"  # elbow or knee point to it
+    ROOT = "root"  # it carries the whole character
+
+
+IN_FK = (ControlKind.FK, ControlKind.HIPS)
 
 
 @dataclass(frozen=True)
@@ -32,10 +29,8 @@ class PlannedControl:
 
     name: str
     kind: ControlKind
-    bone: str
-    """The bone with a role that it moves; for a pole the one that begins at elbow or knee."""
-    limb: str | None = None
-    """The limb of `roles.LIMBS` whose inverse kinematics it belongs to."""
+    bone: str  # the bone with a role that it moves; for a pole the one that begins at elbow or knee
+    limb: str | None = None  # the limb of `roles.LIMBS` whose inverse kinematics it belongs to
 
 
 def planned_controls(character_map: CharacterMap, options: RetargetOptions) -> tuple[PlannedControl, ...]:
@@ -59,11 +54,6 @@ def limb_keys(character_map: CharacterMap, options: RetargetOptions, limb: str) 
     return options.arms if limb.startswith("arm") else options.legs
 
 
-def joint_roles(limb: str) -> tuple[str, ...]:
-    """The roles that begin at a limb's three joints: upper arm, forearm and hand, or thigh, shin and foot."""
-    return LIMBS[limb][1:] if limb.startswith("arm") else LIMBS[limb][:3]
-
-
 def limb_bones(character_map: CharacterMap, limb: str) -> tuple[str, str, str]:
     """The bones that begin at a limb's three joints."""
     first, second, third = (str(character_map.bone(role)) for role in joint_roles(limb))
@@ -76,7 +66,8 @@ def _ik_controls(character_map: CharacterMap, options: RetargetOptions) -> Itera
             continue
         _, middle, end = limb_bones(character_map, limb)
         yield PlannedControl(ik.goal, ControlKind.GOAL, end, limb)
-        toe = _toe(character_map, limb)
+        last = LIMBS[limb][-1]
+        toe = None if last in character_map.left_alone else character_map.bone(last)
         if ik.toe is not None and toe is not None:
             yield PlannedControl(ik.toe, ControlKind.TOE, toe, limb)
         if ik.pole is not None:
@@ -84,12 +75,10 @@ def _ik_controls(character_map: CharacterMap, options: RetargetOptions) -> Itera
 
 
 def _fk_controls(character_map: CharacterMap, options: RetargetOptions) -> Iterator[PlannedControl]:
-    in_ik = {
-        role
-        for limb, ik in character_map.ik.items()
-        if limb_keys(character_map, options, limb) is LimbKeys.IK
-        for role in _moved_by_ik(limb, ik)
-    }
+    in_ik: set[str] = set()  # not the shoulder; the toes where they have a control
+    for limb, ik in character_map.ik.items():
+        if limb_keys(character_map, options, limb) is LimbKeys.IK:
+            in_ik.update(joint_roles(limb) if ik.toe is None else (*joint_roles(limb), LIMBS[limb][-1]))
     for role in ROLES:
         if role not in character_map.roles or role in character_map.left_alone or role in in_ik:
             continue
@@ -98,14 +87,3 @@ def _fk_controls(character_map: CharacterMap, options: RetargetOptions) -> Itera
         for control, bone in pairs:
             if control is not None:
                 yield PlannedControl(control, kind, bone)
-
-
-def _moved_by_ik(limb: str, ik: IkControls) -> tuple[str, ...]:
-    """Roles that a limb's inverse kinematics moves: not the shoulder; the toes where they have a control."""
-    toe = LIMBS[limb][-1:] if limb.startswith("leg") and ik.toe is not None else ()
-    return (*joint_roles(limb), *toe)
-
-
-def _toe(character_map: CharacterMap, limb: str) -> str | None:
-    role = LIMBS[limb][-1]
-    return None if role in character_map.left_alone else character_map.bone(role)

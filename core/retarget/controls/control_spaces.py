@@ -13,37 +13,21 @@ import numpy as np
 from ...arrays import Array
 from ...body import rotations
 
-NOTHING = -1
-"""Instead of the index of a control: the armature itself."""
-RIGID = 1e-3
-"""Residual [rad, or shares of the character's size] below which a space is rigid."""
-MOVABLE = 1e-3
-"""Least length of the axes of location channels that do something."""
-LEAST_LENGTH = 1e-12
+NOTHING = -1  # instead of the index of a control: the armature itself
+RIGID = 1e-3  # residual [rad, or shares of the character's size] below which a space is rigid
 
 
 @dataclass(frozen=True, eq=False)
 class ControlSpace:
     """The space in which a control's channels act."""
 
-    turner: int
-    """Index of the control that turns it; NOTHING for none."""
-    turn: Array
-    """(3, 3) the axes of its rotation channels, in those of its turner (of the armature)."""
-    carrier: int
-    """Index of the control that carries it; NOTHING for none."""
-    origin: Array
-    """(3,) its place without location channels, in its carrier's axes from its carrier's head."""
-    axes: Array
-    """(3, 3) takes its location channels to its carrier's axes."""
-    residual_rad: float
-    """Largest turn that the space does not explain."""
-    residual: float
-    """Largest distance that it does not explain, in the armature's units."""
-
-    def is_rigid(self, size: float) -> bool:
-        """Whether the channels act as said; `size` is the character's, in the armature's units."""
-        return self.residual_rad < RIGID and self.is_placed(size)
+    turner: int  # index of the control that turns it; NOTHING for none
+    turn: Array  # (3, 3) the axes of its rotation channels, in those of its turner (of the armature)
+    carrier: int  # index of the control that carries it; NOTHING for none
+    origin: Array  # (3,) its place without location channels, in its carrier's axes from its carrier's head
+    axes: Array  # (3, 3) takes its location channels to its carrier's axes
+    residual_rad: float  # largest turn that the space does not explain
+    residual: float  # largest distance that it does not explain, in the armature's units
 
     def is_placed(self, size: float) -> bool:
         """Whether its carrier places it as said."""
@@ -56,19 +40,17 @@ class ControlSpace:
     @property
     def movable(self) -> bool:
         """Whether its location channels place it."""
-        return bool(np.linalg.svd(self.axes, compute_uv=False)[-1] > MOVABLE)
+        # Least length of the axes of location channels that do something.
+        return bool(np.linalg.svd(self.axes, compute_uv=False)[-1] > 1e-3)
 
 
 @dataclass(frozen=True, eq=False)
 class PosedControls:
     """Controls as posed at random, in S samples; the first of them without any location."""
 
-    channels: Array
-    """(S, C, 4, 4) each control's own rotation and location."""
-    poses: Array
-    """(S, C, 4, 4) its pose in the armature's space; scale is ignored."""
-    still: int
-    """Number of samples without location channels, at least two; four more have some."""
+    channels: Array  # (S, C, 4, 4) each control's own rotation and location
+    poses: Array  # (S, C, 4, 4) its pose in the armature's space; scale is ignored
+    still: int  # number of samples without location channels, at least two; four more have some
 
 
 def chosen(posed: PosedControls, indices: Sequence[int]) -> PosedControls:
@@ -104,7 +86,7 @@ def in_axes_of(turns: Array, control: int, values: Array) -> Array:
 
 def unscaled(matrices: Array) -> Array:
     """(..., 3, 3) with columns of length one."""
-    return np.asarray(matrices / np.maximum(np.linalg.norm(matrices, axis=-2, keepdims=True), LEAST_LENGTH))
+    return np.asarray(matrices / np.maximum(np.linalg.norm(matrices, axis=-2, keepdims=True), 1e-12))
 
 
 def constant_turn(turns: Array) -> tuple[Array, float]:
@@ -145,15 +127,9 @@ def _least(others: Array, nothing: Array) -> list[int]:
 
 
 def rigid_offset(leading: Array, following: Array) -> tuple[Array, float, float]:
-    """The pose of a bone in another one's axes, as it is on average.
+    """The mean pose (4, 4) without scale of a following bone (S, 4, 4) in the axes of the leading one.
 
-    Args:
-        leading: (S, 4, 4) poses of the bone that leads.
-        following: (S, 4, 4) poses of the bone that follows.
-
-    Returns:
-        The offset (4, 4) with `following = leading @ offset`, without scale; by how much turn [rad] and place
-        [the poses' unit] differ from it at most.
+    With it come the largest turn [rad] and the largest distance [the poses' unit] by which a sample differs.
     """
     axes = np.swapaxes(unscaled(leading[:, :3, :3]), -1, -2)
     turn, turn_rad = constant_turn(axes @ unscaled(following[:, :3, :3]))

@@ -8,70 +8,69 @@ import numpy as np
 from ...arrays import Array
 from ...body import rotations
 from ...numerics.vectors import unit
-from ..character import LIMBS, Character
+from ..character import LIMBS, Character, joint_roles
 from ..character_motion import CharacterMotion
 from ..maps.character_map import CharacterMap
 from ..solve.two_bone import STRAIGHTEST, LimbPose, reach_for
-from .control_channels import Control, ControlChannels
+from .control_channels import Control, ControlChannels, control_channels
 from .control_motion import ControlMotion, LimbPaths
-from .control_plan import ControlKind, PlannedControl, joint_roles, limb_bones
+from .control_plan import IN_FK, ControlKind, limb_bones
 from .control_spaces import NOTHING
+from .point_tolerances import held_points
 
-SHORTEST_POLE = 0.25
-"""Least distance of a pole from its joint, in lengths of the limb."""
+SHORTEST_POLE = 0.25  # least distance of a pole from its joint, in lengths of the limb
 
 
 @dataclass(frozen=True, eq=False)
 class PoleSetting:
     """Where a pole belongs."""
 
-    distance: float
-    """Its distance from elbow or knee, in the armature's units."""
-    offset_rad: float
-    """Angle from the direction of the pole to that of elbow or knee, about the line from the limb's root to
-    its end."""
+    distance: float  # its distance from elbow or knee, in the armature's units
+    offset_rad: float  # from its direction to that of elbow or knee, about the line from root to end
 
 
-def control_targets(
-    planned: Sequence[PlannedControl],
+def on_controls(
+    character: Character,
+    character_map: CharacterMap,
     motion: CharacterMotion,
+    controls: Sequence[Control],
     offsets: Mapping[str, Array],
     poles: Mapping[str, PoleSetting],
-    limbs: Mapping[str, tuple[str, str, str]],
-) -> dict[str, Array]:
-    """(F, 4, 4) by name the pose that each control is to have in the armature's space.
+    size: float,
+) -> ControlMotion:
+    """A motion on a character's controls, by channels for every frame.
 
-    Args:
-        planned: The controls.
-        motion: The poses of the bones with roles.
-        offsets: (4, 4) by control the pose of its bone in its own axes.
-        poles: The poles by name.
-        limbs: The bones at the three joints of each limb.
+    `offsets` are the poses (4, 4) of bones in their controls' axes; `size` is in the armature's units.
     """
-    targets = {}
-    for control in planned:
-        if control.kind is ControlKind.ROOT:
+    wanted = {}
+    for plan in (control.plan for control in controls):
+        if plan.kind is ControlKind.ROOT:
             if motion.root is not None:
-                targets[control.name] = motion.root
-        elif control.kind is ControlKind.POLE:
-            limb = str(control.limb)
-            places = [motion.poses[bone][:, :3, 3] for bone in limbs[limb]]
-            targets[control.name] = pole_poses(places, motion.bends[limb], poles[control.name])
+                wanted[plan.name] = motion.root
+        elif plan.kind is ControlKind.POLE:
+            limb = str(plan.limb)
+            joints = [motion.poses[bone][:, :3, 3] for bone in limb_bones(character_map, limb)]
+            wanted[plan.name] = pole_poses(joints, motion.bends[limb], poles[plan.name])
         else:
-            targets[control.name] = motion.poses[control.bone] @ np.linalg.inv(offsets[control.name])
-    return targets
+            wanted[plan.name] = motion.poses[plan.bone] @ np.linalg.inv(offsets[plan.name])
+    return ControlMotion(
+        controls=tuple(controls),
+        channels=control_channels(controls, wanted, size),
+        wanted=wanted,
+        offsets=offsets,
+        points=held_points(character, character_map, motion.soles),
+        bones=motion.poses,
+        limbs=_limb_paths(character, character_map, motion, controls, offsets, poles),
+        size=size,
+        scale=character.scale,
+    )
 
 
 def pole_poses(joints: Sequence[Array], bend: Array, setting: PoleSetting) -> Array:
-    """(F, 4, 4) places of a pole, as matrices.
+    """(F, 4, 4) places of a pole, as matrices, from the joints (F, 3) of its limb and the way it bends.
 
     A pole without an offset lies beyond elbow or knee; others are as far from the line between the limb's
     root and its end.
-
-    Args:
-        joints: (F, 3) the limb's root, its elbow or knee, and its end.
-        bend: (F, 3) unit vector from the line between root and end toward elbow or knee.
-        setting: The pole.
     """
     root, middle, end = joints
     axis = unit(end - root)
@@ -84,26 +83,13 @@ def pole_poses(joints: Sequence[Array], bend: Array, setting: PoleSetting) -> Ar
 
 
 def pole_offset(root: Array, middle: Array, end: Array, pole: Array) -> float:
-    """Angle [rad] from a pole's direction to that of the joint that it guides, about the limb's line.
-
-    Args:
-        root: (3,) the limb's root.
-        middle: (3,) elbow or knee.
-        end: (3,) the limb's end.
-        pole: (3,).
-    """
+    """Angle [rad] from a pole's direction to that of the elbow or knee it guides, about the limb's line."""
     axis = unit(end - root)
     toward = [point - root - ((point - root) @ axis) * axis for point in (pole, middle)]
     return float(np.arctan2(np.cross(toward[0], toward[1]) @ axis, toward[0] @ toward[1]))
 
 
-# --- The limbs of a character with the paths of their joints
-
-
-IN_FK = (ControlKind.FK, ControlKind.HIPS)
-
-
-def limb_paths(
+def _limb_paths(
     character: Character,
     character_map: CharacterMap,
     motion: CharacterMotion,
@@ -111,24 +97,12 @@ def limb_paths(
     offsets: Mapping[str, Array],
     poles: Mapping[str, PoleSetting],
 ) -> dict[str, LimbPaths]:
-    """The limbs whose three joints are moved, by name.
-
-    Args:
-        character: The character.
-        character_map: Its map.
-        motion: Its motion.
-        controls: Its controls.
-        offsets: (4, 4) by control the pose of its bone in its own axes.
-        poles: Where its poles belong.
-    """
     found = {}
     in_ik = {control.plan.limb for control in controls if control.plan.kind is ControlKind.GOAL}
     in_fk = {control.plan.bone for control in controls if control.plan.kind in IN_FK}
     for limb in LIMBS:
-        if not set(joint_roles(limb)) <= set(character_map.roles):
-            continue
         bones = limb_bones(character_map, limb)
-        if not set(bones) <= set(motion.poses):
+        if not set(joint_roles(limb)) <= set(character_map.roles) or not set(bones) <= set(motion.poses):
             continue
         root, middle, end = (motion.poses[bone][:, :3, 3] for bone in bones)
         pole = character_map.ik[limb].pole if limb in in_ik else None
@@ -165,22 +139,16 @@ def _carrier(
     return NOTHING, np.zeros(3)
 
 
-# --- A leg in FK on a body that few keys have moved a little
-
-
 def leg_on_body(motion: ControlMotion, leg: str, carrier: ControlChannels) -> dict[str, Array]:
-    """(F, 4, 4) poses of the bones at a leg's three joints, in the armature's space."""
+    """(F, 4, 4) poses of the bones at a leg's joints on a body that few keys have moved a little."""
     limb = motion.limbs[leg]
-    first, second, third = limb.bones
     upper, lower, end = (motion.bones[bone].copy() for bone in limb.bones)
     start, middle, goal = limb.joints
-    line = unit(goal - start)
-    before = LimbPose(
-        upper[:, :3, :3], lower[:, :3, :3], start, middle, goal, rotations.cross(limb.bend, line)
-    )
+    hinge = rotations.cross(limb.bend, unit(goal - start))
+    before = LimbPose(upper[:, :3, :3], lower[:, :3, :3], start, middle, goal, hinge)
     root = carrier.place + (carrier.turn @ limb.root_place)
     after = reach_for(before, root, goal, STRAIGHTEST)
     upper[:, :3, :3], upper[:, :3, 3] = after.upper_turn, root
     lower[:, :3, :3], lower[:, :3, 3] = after.lower_turn, after.middle
     end[:, :3, 3] = after.end
-    return {first: upper, second: lower, third: end}
+    return dict(zip(limb.bones, (upper, lower, end), strict=True))

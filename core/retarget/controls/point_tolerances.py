@@ -12,24 +12,16 @@ from ..character import LIMBS, MIDDLE, Character
 from ..character_motion import CharacterMotion
 from ..maps.character_map import CharacterMap
 
-LEVER = 0.3
-"""Distance of a point that shows a bone's turn about its own length, in lengths of the bone."""
-END = 0.5
-"""Length of a limb's last part, in lengths of the part before it."""
-TRUNK = 0.15
-"""Distance of the points that show how a bone of the trunk turns, in lengths from hips to head."""
-LEAST_LENGTH = 1e-9
+LEVER = 0.3  # distance of a point that shows a bone's turn about its own length, in lengths of the bone
+END = 0.5  # length of a limb's last part, in lengths of the part before it
 
 
 class PointKind(Enum):
     """What a point is held for."""
 
-    BODY = "body"
-    """The look of the motion."""
-    END = "end"
-    """Wrist or ankle: the same in IK and FK."""
-    SOLE = "sole"
-    """It must neither slide nor pass the floor."""
+    BODY = "body"  # the look of the motion
+    END = "end"  # wrist or ankle: the same in IK and FK
+    SOLE = "sole"  # it must neither slide nor pass the floor
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,8 +29,7 @@ class HeldPoint:
     """A point fixed to a bone with a role."""
 
     bone: str
-    place: Array
-    """(3,) in the bone's axes from its head, in the armature's units."""
+    place: Array  # (3,) in the bone's axes from its head, in the armature's units
     kind: PointKind
     limb: str | None
 
@@ -46,19 +37,14 @@ class HeldPoint:
 def held_points(
     character: Character, character_map: CharacterMap, soles: Mapping[str, Array]
 ) -> tuple[HeldPoint, ...]:
-    """The points that show how each bone with a role is placed and turned.
-
-    Args:
-        character: The character.
-        character_map: Its map.
-        soles: (N, 3) by role points of the soles at rest, in the armature's space.
-    """
+    """The points that show how each bone with a role is placed and turned; soles (N, 3) are at rest."""
     return (*_trunk_points(character, character_map), *_limb_points(character, character_map, soles))
 
 
 def _trunk_points(character: Character, character_map: CharacterMap) -> list[HeldPoint]:
     bones = [character.bone(name) for role in MIDDLE for name in character_map.bones(role)]
-    size = TRUNK * float(np.ptp([bone.head for bone in bones], axis=0).max()) if bones else 0.0
+    # Distance of the points that show how a bone of the trunk turns, in lengths from hips to head.
+    size = 0.15 * float(np.ptp([bone.head for bone in bones], axis=0).max()) if bones else 0.0
     return [
         HeldPoint(bone.name, place, PointKind.BODY, None)
         for bone in bones
@@ -78,7 +64,7 @@ def _limb_points(
             last = number + 1 == len(bones)
             along = (bone.tail if last else bones[number + 1].head) - bone.head
             own = float(np.linalg.norm(along))
-            if last and own > LEAST_LENGTH:  # tails may lie anywhere: their direction is as good as any
+            if last and own > 1e-9:  # tails may lie anywhere: their direction is as good as any
                 along = along * (END * length / own)
             length = float(np.linalg.norm(along))
             end = bone.head + along
@@ -97,22 +83,14 @@ def _local(rest: Array, place: Array) -> Array:
 # --- How far key reduction may move a character's points
 
 
-NEAR_FLOOR_M = 0.03
-"""A sole this near to its lowest place nearby must not pass the floor."""
-NEIGHBORHOOD_S = 1.0
-FLOOR_M = 0.0015
-"""Largest error of a sole near the floor [m]."""
-SHOWN_REST_M = 0.00008
-"""Largest error of a resting foot that is shown [m]: it must not slide."""
-SWITCH_M = 0.0008
-"""Largest distance of wrists and ankles between IK and FK [m]."""
-CARRIED_SHARE = 0.5
-"""Share of the tolerance for a limb's root, and as much for elbow or knee on it."""
+FLOOR_M = 0.0015  # largest error of a sole near the floor [m]
+SHOWN_REST_M = 0.00008  # largest error of a resting foot that is shown [m]: it must not slide
+SWITCH_M = 0.0008  # largest distance of wrists and ankles between IK and FK [m]
+CARRIED_SHARE = 0.5  # share of the tolerance for a limb's root, and as much for elbow or knee on it
 LEAST_M = 0.0002
 """Tolerance of a limb's ends where it is all but straight [m]: less would bring keys and no likeness."""
 
-POLE_RAD = 0.04
-"""Turn of a limb about its own line that a pole's error may make [rad]."""
+POLE_RAD = 0.04  # turn of a limb about its own line that a pole's error may make [rad]
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,21 +98,15 @@ class ToleranceRules:
     """What tolerances follow from."""
 
     motion: CharacterMotion
-    time_s: Array
-    """(F,) time of each frame [s]."""
-    up: Array
-    """(3,) away from the floor, in the armature's axes."""
-    general_m: float
-    """Tolerance of the body [m]."""
+    time_s: Array  # (F,) time of each frame [s]
+    up: Array  # (3,) away from the floor, in the armature's axes
+    general_m: float  # tolerance of the body [m]
 
     def of(self, point: HeldPoint, path: Array, shown: bool, ends_m: float) -> Array:
-        """(F,) tolerance of a point [m].
+        """(F,) tolerance of a point on a path (F, 3) in the armature's axes [m].
 
-        Args:
-            point: The point.
-            path: (F, 3) its places in the armature's axes [m].
-            shown: Whether the point is what the character shows; otherwise it is what a switch would show.
-            ends_m: Tolerance of wrists and ankles [m].
+        A point that is not `shown` is what a switch between IK and FK would show; `ends_m` is for wrists and
+        ankles.
         """
         allowed = np.full(len(path), self.general_m)
         if point.kind is PointKind.END:
@@ -157,17 +129,13 @@ class ToleranceRules:
 
     def _near_floor(self, path: Array) -> BoolArray:
         height = path @ self.up
-        low = [height[np.abs(self.time_s - now) <= NEIGHBORHOOD_S].min() for now in self.time_s]
-        return np.asarray(height - low < NEAR_FLOOR_M)
+        low = [height[np.abs(self.time_s - now) <= 1.0].min() for now in self.time_s]
+        # A sole this near to its lowest place nearby must not pass the floor.
+        return np.asarray(height - low < 0.03)
 
 
 def reach_tolerance_m(joints: tuple[Array, Array, Array], general_m: float) -> Array:
-    """(F,) error of a limb's length between root and end that moves elbow or knee by the tolerance [m].
-
-    Args:
-        joints: (F, 3) the limb's root, elbow or knee, and end [m].
-        general_m: The tolerance [m].
-    """
+    """(F,) error of a limb's length between root and end that moves elbow or knee by the tolerance [m]."""
     root, middle, end = joints
     line = end - root
     length = np.linalg.norm(line, axis=-1)
@@ -182,10 +150,7 @@ def reach_tolerance_m(joints: tuple[Array, Array, Array], general_m: float) -> A
 def pole_tolerance_m(joints: tuple[Array, Array, Array], distance_m: float, general_m: float) -> Array:
     """(F,) error of a pole that moves elbow or knee by the tolerance, or turns the limb by `POLE_RAD` [m].
 
-    Args:
-        joints: (F, 3) the limb's root, elbow or knee, and end [m].
-        distance_m: Distance of the pole from elbow or knee [m].
-        general_m: The tolerance [m].
+    `distance_m` is that of the pole from elbow or knee.
     """
     root, middle, end = joints
     line = unit(end - root)

@@ -4,7 +4,7 @@
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from math import hypot
 from pathlib import Path
@@ -155,6 +155,16 @@ class IkControls(Record):
     """The control that turns the toes while the leg is in IK."""
     switch: Switch | None = None
     """The custom property that chooses between IK and FK."""
+
+    def renamed(self, name_of: Callable[[str], str | None]) -> "IkControls | None":
+        """The controls of other names, without those that have none; None without a goal."""
+        goal, switch = name_of(self.goal), self.switch
+        if goal is None:
+            return None
+        holder = name_of(switch.bone) if switch is not None else None
+        switch = replace(switch, bone=holder) if switch is not None and holder is not None else None
+        pole, toe = (None if name is None else name_of(name) for name in (self.pole, self.toe))
+        return IkControls(goal, pole, toe, switch)
 
 
 @dataclass(frozen=True)

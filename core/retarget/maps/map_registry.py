@@ -17,8 +17,7 @@ from ..recognition.recognize import recognize
 from ..retarget_record import GIVEN, RECOGNIZED, SAVED
 from .character_map import CharacterMap, map_digest, read_character_map
 
-MOST_NAMED = 5
-"""Missing bones that are named in a sentence."""
+MOST_NAMED = 5  # missing bones that are named in a sentence
 
 
 def missing_bones(character_map: CharacterMap, character: Character) -> tuple[str, ...]:
@@ -29,13 +28,9 @@ def missing_bones(character_map: CharacterMap, character: Character) -> tuple[st
 def check_map(character_map: CharacterMap, character: Character, where: str = "") -> None:
     """Refuse a map for another character, or one without the roles that every character has.
 
-    Args:
-        character_map: The map.
-        character: The character that it is to be used for.
-        where: The map's file for the sentence; by default it is named by its title.
-
     Raises:
-        InputError: A bone or a role is missing.
+        InputError: A bone or a role is missing; the sentence begins with `where`, by default the map's
+            title.
     """
     name = where or f"character map {shown(character_map.title)}"
     missing = missing_bones(character_map, character)
@@ -60,10 +55,8 @@ class RegisteredMap:
     """A character map file in a registered folder."""
 
     path: Path
-    character_map: CharacterMap | None
-    """The map; None if the file is invalid."""
-    problem: str = ""
-    """The sentence of the error that makes it invalid."""
+    character_map: CharacterMap | None  # the map; None if the file is invalid
+    problem: str = ""  # the sentence of the error that makes it invalid
 
     @property
     def title(self) -> str:
@@ -119,11 +112,7 @@ def find_map(name_or_path: str | Path, folders: Sequence[Path]) -> RegisteredMap
 
 
 def map_for(character: Character, folders: Sequence[Path]) -> RegisteredMap | None:
-    """The registered map all of whose bones a character has; of several the one that names the most bones.
-
-    Returns:
-        The map; None where there is none.
-    """
+    """The registered map all of whose bones a character has; of several the one that names the most bones."""
     fitting = [
         (len(entry.character_map.named_bones), entry)
         for entry in registered_maps(folders)
@@ -163,22 +152,15 @@ class ChosenMap:
     """A character's map, and where it comes from."""
 
     character_map: CharacterMap
-    origin: str
-    """One of `retarget_record.ORIGINS`."""
-    path: Path | None = None
-    """Its file; None where it was recognized."""
-    doubts: tuple[str, ...] = ()
-    """What was recognized without being sure, one sentence each."""
+    origin: str  # one of `retarget_record.ORIGINS`
+    path: Path | None = None  # its file; None where it was recognized
+    doubts: tuple[str, ...] = ()  # what was recognized without being sure, one sentence each
 
 
 def choose_map(character: Character, wanted: str, folders: Sequence[Path]) -> ChosenMap:
-    """The map of a character.
+    """The map of a character: the one with the wanted title or path, or the one found.
 
-    Args:
-        character: The character.
-        wanted: A map's title or path; `auto` for a saved one that knows the character's bones, else
-            recognition; `none` for recognition alone.
-        folders: Where saved maps are found.
+    `auto` takes a saved one that knows the character's bones, else recognition; `none` recognition alone.
 
     Raises:
         InputError: There is no such map, it is for another character, or the bones are no character's.

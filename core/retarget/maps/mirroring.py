@@ -5,15 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..character import LIMBS, ROLES, Character
+from ..character import LIMBS, ROLES, Character, other_side
 from ..recognition.bones import anatomy
 from ..recognition.symmetry import find_planes, mirrored
-from .character_map import CharacterMap, IkControls, RoleBones
+from .character_map import CharacterMap, RoleBones
 
 WORDS = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"), ("L", "R"), ("l", "r"), ("左", "右"))
 """How names tell the sides."""
-NEAR = 0.03
-"""Share of the character's extent by which a mirrored bone may lie off."""
 Partner = Callable[[str | None], str | None]
 """The bone of the other side that mirrors a bone; None where there is none."""
 
@@ -23,8 +21,7 @@ def mirrored_map(
 ) -> tuple[CharacterMap, tuple[str, ...]]:
     """Copy one side of a map to the other, with its controls.
 
-    Returns:
-        The map, and the roles of the other side for which no bone was found, which stay as they were.
+    With the map come the roles of the other side for which no bone was found, which stay as they were.
     """
     given = {
         role: bones.bones for role, bones in character_map.roles.items() if role.endswith(f".{from_side}")
@@ -37,24 +34,19 @@ def mirrored_map(
             continue
         partners = tuple(name for name in map(partner, given[role]) if name is not None)
         if len(partners) < len(given[role]):
-            missing.append(_other(role))
+            missing.append(other_side(role))
             continue
-        roles[_other(role)] = RoleBones(partners, shares=character_map.roles[role].shares)
-        fk.pop(_other(role), None)
+        roles[other_side(role)] = RoleBones(partners, shares=character_map.roles[role].shares)
+        fk.pop(other_side(role), None)
         keyed = character_map.fk.get(role, ())
-        controls = tuple(map(partner, keyed))
-        if keyed and [name is None for name in controls] == [name is None for name in keyed]:
-            fk[_other(role)] = controls
+        turning = tuple(map(partner, keyed))
+        if keyed and [name is None for name in turning] == [name is None for name in keyed]:
+            fk[other_side(role)] = turning
     for limb in LIMBS:
-        goal = partner(ik[limb].goal) if limb in ik and limb.endswith(from_side) else None
-        if goal is not None:
-            ik[_other(limb)] = _mirrored_controls(ik[limb], goal, partner)
+        controls = ik[limb].renamed(partner) if limb in ik and limb.endswith(from_side) else None
+        if controls is not None:
+            ik[other_side(limb)] = controls
     return replace(character_map, roles=roles, fk=fk, ik=ik), tuple(missing)
-
-
-def _other(role: str) -> str:
-    """The same role or limb of the other side."""
-    return role[:-1] + {"L": "R", "R": "L"}[role[-1]]
 
 
 def _partners(character: Character, used: set[str]) -> Partner:
@@ -76,16 +68,10 @@ def _partners(character: Character, used: set[str]) -> Partner:
                 off = float(np.linalg.norm(other.head - mirrored(own.head, *plane[:2])))
                 ends = float(np.linalg.norm(other.tail - mirrored(own.tail, *plane[:2])))
             far = other.name not in named
-            if (
-                other.name == name
-                or other.name in used
-                or (far and (plane is None or off > NEAR * bones.size))
-            ):
-                continue
-            ranks[other.name] = (
-                far,
-                off + ends,
-            )  # bones at one joint, as twist bones are, differ in their tails
+            # Share of the character's extent by which a mirrored bone may lie off.
+            lost = far and (plane is None or off > 0.03 * bones.size)
+            if other.name != name and other.name not in used and not lost:
+                ranks[other.name] = (far, off + ends)  # bones at one joint, as twist bones, differ in tails
         return min(ranks, key=lambda other: ranks[other], default=None)
 
     return partner
@@ -101,11 +87,3 @@ def _other_names(name: str) -> set[str]:
                 found.add(name[:start] + new + name[start + len(old) :])
                 start = name.find(old, start + 1)
     return found
-
-
-def _mirrored_controls(controls: IkControls, goal: str, partner: Partner) -> IkControls:
-    """The other limb's controls."""
-    switch = controls.switch
-    holder = partner(switch.bone) if switch is not None else None
-    kept = replace(switch, bone=holder) if switch is not None and holder is not None else None
-    return IkControls(goal, partner(controls.pole), partner(controls.toe), kept)

@@ -11,7 +11,7 @@ from ...files.json_file import json_files, read_json
 from ...files.kinds import Never
 from ...files.records import declared
 from ..character import Character
-from .character_map import Bones, CharacterMap, IkControls, RoleBones
+from .character_map import Bones, CharacterMap, RoleBones
 
 SHIPPED = Path(__file__).resolve().parents[3] / "presets" / "characters"
 """The presets that come with Keymark."""
@@ -58,15 +58,10 @@ def read_preset(path: Path) -> Preset:
 
 
 def preset_from_json(value: Any, where: str, identifier: str) -> Preset:
-    """Read a preset from JSON that is not trusted.
-
-    Args:
-        value: The JSON: a character map's fields, and `requires` and `lacks`.
-        where: Location of the JSON, with which sentences begin.
-        identifier: The preset's identifier.
+    """Read a preset from JSON that is not trusted: a character map's fields, and `requires` and `lacks`.
 
     Raises:
-        InputError: The JSON is no valid preset.
+        InputError: The JSON is no valid preset; the sentence begins with `where`.
     """
     read = _PresetFields.from_json(value, where)
     given = {name: getattr(read, name) for name in declared(CharacterMap)}
@@ -84,11 +79,8 @@ def shipped_presets() -> tuple[Preset, ...]:
 def find_preset(character: Character, presets: tuple[Preset, ...] | None = None) -> CharacterMap | None:
     """The map of the convention that a character's bones follow, with the character's own names.
 
-    Of several the one that requires most bones; what the character lacks is left out of the map.
-
-    Args:
-        character: The character.
-        presets: The presets to choose from; by default the shipped ones.
+    Of several (by default the shipped ones) the one that requires most bones; what the character lacks is
+    left out.
     """
     found: list[tuple[int, int, CharacterMap]] = []
     for preset in shipped_presets() if presets is None else presets:
@@ -100,7 +92,9 @@ def find_preset(character: Character, presets: tuple[Preset, ...] | None = None)
 
 def _fitted(preset: Preset, character: Character) -> CharacterMap | None:
     """The preset's map with the character's names; None where a required bone is missing."""
-    names = _by_key(bone.name for bone in character.bones)
+    names: dict[str, str] = {}
+    for bone in character.bones:  # of several names with one key the first
+        names.setdefault(_key(bone.name), bone.name)
     first = _key(preset.requires[0])
     prefixes = [key[: -len(first)] for key in names if key.endswith(first)]
     for prefix in sorted(filter(_PREFIX.fullmatch, prefixes), key=len):
@@ -111,14 +105,6 @@ def _fitted(preset: Preset, character: Character) -> CharacterMap | None:
     return None
 
 
-def _by_key(names: Any) -> dict[str, str]:
-    """Names by their keys; of several with one key the first."""
-    found: dict[str, str] = {}
-    for name in names:
-        found.setdefault(_key(name), name)
-    return found
-
-
 @lru_cache(maxsize=4096)
 def _key(name: str) -> str:
     """Equal for names that exporters turn into each other: by case and separators."""
@@ -126,37 +112,25 @@ def _key(name: str) -> str:
 
 
 def _renamed(character_map: CharacterMap, name_of: Callable[[str], str | None]) -> CharacterMap:
-    """The map with other names, without what has none."""
-
-    def other(name: str | None) -> str | None:
-        return None if name is None else name_of(name)
-
     roles: dict[str, RoleBones] = {}
     for role, given in character_map.roles.items():
         bones = tuple(name for bone in given.bones if (name := name_of(bone)) is not None)
         if bones:
             whole = len(bones) == len(given.bones)
             roles[role] = replace(given, bones=bones, shares=given.shares if whole else ())
-    fk = {role: tuple(map(other, keyed)) for role, keyed in character_map.fk.items()}
-    fk = {
-        role: controls
-        for role, controls in fk.items()
-        if role in roles
-        and len(controls) == len(roles[role].bones)
-        and [name is None for name in controls] == [name is None for name in character_map.fk[role]]
+    fk: dict[str, tuple[str | None, ...]] = {}
+    for role, keyed in character_map.fk.items():
+        controls = tuple(None if name is None else name_of(name) for name in keyed)
+        same = [name is None for name in controls] == [name is None for name in keyed]
+        if same and role in roles and len(controls) == len(roles[role].bones):
+            fk[role] = controls
+    ik = {
+        limb: other for limb, own in character_map.ik.items() if (other := own.renamed(name_of)) is not None
     }
-    ik: dict[str, IkControls] = {}
-    for limb, given_ik in character_map.ik.items():
-        goal, switch = name_of(given_ik.goal), given_ik.switch
-        if goal is not None:
-            holder = name_of(switch.bone) if switch is not None else None
-            kept = replace(switch, bone=holder) if switch is not None and holder is not None else None
-            ik[limb] = IkControls(goal, other(given_ik.pole), other(given_ik.toe), kept)
     settings = tuple(
         replace(setting, bone=bone)
         for setting in character_map.settings
         if (bone := name_of(setting.bone)) is not None
     )
-    return replace(
-        character_map, roles=roles, fk=fk, ik=ik, settings=settings, root=other(character_map.root)
-    )
+    root = None if character_map.root is None else name_of(character_map.root)
+    return replace(character_map, roles=roles, fk=fk, ik=ik, settings=settings, root=root)

@@ -12,14 +12,6 @@ from .names import NameReading, read_name
 
 SAME_PLACE, NEAR_PLACE = 0.003, 0.03
 """Points closer than this share of the figure's size are one; and are meant to be one."""
-LARGEST_END = 0.2
-"""A foot or a hand with all below it reaches no farther than this, in sizes."""
-MEETING_TAILS = 0.5
-"""Least share of bones whose tail meets a child's head where tails say something."""
-ONWARD = 0.6
-"""Least cosine between a limb's last bone and the way to a bone that continues it."""
-UNEVEN = 3.0
-"""Neighboring bones of a limb differ in length by no more than this factor."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,14 +19,10 @@ class Bones:
     """N candidate bones in their tree of anatomy, parents before children."""
 
     names: tuple[str, ...]
-    head: Array
-    """(N, 3) in the armature's space."""
-    tail: Array
-    """(N, 3); NaN where tails say nothing."""
-    parent: IndexArray
-    """(N,) its parent in the tree of anatomy, by place in this table; -1 for none."""
-    size: float
-    """Largest extent of the heads."""
+    head: Array  # (N, 3) in the armature's space
+    tail: Array  # (N, 3); NaN where tails say nothing
+    parent: IndexArray  # (N,) its parent in the tree of anatomy, by place in this table; -1 for none
+    size: float  # largest extent of the heads
 
     @cached_property
     def readings(self) -> tuple[NameReading, ...]:
@@ -104,7 +92,8 @@ def _tails_tell(character: Character, size: float) -> bool:
         for bone, children in zip(character.bones, character.children, strict=True)
         if children
     ]
-    return bool(met and sum(met) >= MEETING_TAILS * len(met))
+    # Least share of bones whose tail meets a child's head where tails say something.
+    return bool(met and sum(met) >= 0.5 * len(met))
 
 
 def _nearest_parents(
@@ -159,7 +148,8 @@ def _joined(
             reach = np.linalg.norm(head[own] - head[bone], axis=1).max()
             ends = np.linalg.norm(np.stack([head[above], tail[above]]) - head[bone], axis=1)
             hub = parent[above] < 0 or 2 * _below(parent, above).sum() >= len(parent)
-            if reach > LARGEST_END * size or not hub or (ends < NEAR_PLACE * size).any():
+            # A foot or a hand with all below it reaches no farther than this, in sizes.
+            if reach > 0.2 * size or not hub or (ends < NEAR_PLACE * size).any():
                 continue
         parent[bone] = _limb_before(bone, own, head, tail, parent, readings, size)
     return parent
@@ -199,7 +189,9 @@ def _limb_before(
     for end in np.flatnonzero(limb & hangs & leaf & ~other & (parent >= 0)):
         came, goes = head[end] - head[parent[end]], head[bone] - head[end]
         lengths = sorted((float(np.linalg.norm(came)), float(np.linalg.norm(goes))))
-        if lengths[0] * UNEVEN > lengths[1] and came @ goes > ONWARD * lengths[0] * lengths[1]:
+        # Least cosine between a limb's last bone and the way to a bone that continues it.
+        # Neighboring bones of a limb differ in length by no more than this factor.
+        if lengths[0] * 3.0 > lengths[1] and came @ goes > 0.6 * lengths[0] * lengths[1]:
             onward.append(int(end))
     return min(onward, key=lambda end: way[end], default=above)
 

@@ -18,13 +18,10 @@ NAMES_WEIGHT, FEET_WEIGHT, KNEES_WEIGHT, ELBOWS_WEIGHT = 3.0, 2.5, 1.0, 0.8
 class Facing:
     """Which way a figure faces."""
 
-    ahead: float
-    """1 where it faces along the second axis of `Frame.place`, -1 where it faces the other way."""
+    ahead: float  # 1 where it faces along the second axis of `Frame.place`, -1 where it faces the other way
     confidence: float
-    by_names: float
-    """Vote of the names, positive for `ahead`; 0 where they name no sides."""
-    by_shape: float
-    """Vote of feet, knees and elbows, positive for `ahead`."""
+    by_names: float  # vote of the names, positive for `ahead`; 0 where they name no sides
+    by_shape: float  # vote of feet, knees and elbows, positive for `ahead`
 
 
 def find_facing(figure: Figure) -> Facing:
@@ -61,24 +58,16 @@ def _bulge(first: Array, middle: Array, last: Array) -> float:
     return float(off[1]) / float(np.sqrt(reach))
 
 
-# --- The bone that carries the whole character, and bones that lie at hands and feet without hanging on
-# them
+# --- The bone that carries the whole character
 
 
-ON_GROUND = 0.15
-"""A root's head is no higher above the feet than this share of the hips' height."""
 ROOT_WORDS = frozenset({"root", "master", "traj", "origin", "reference", "全ての親", "world", "motion"})
-SAME_JOINT = 0.02
-"""A bone this near to a hand's or foot's head, in heights of the hips, lies at its joint."""
 
 
 def find_root(character: Character, character_map: CharacterMap, up: Array) -> str | None:
     """The lowest bone above all that is keyed that lies near the ground, or is named after what it does.
 
-    Args:
-        character: The character.
-        character_map: Its map; the bones with roles are keyed where it gives no controls.
-        up: (3,) in the armature's axes.
+    Bones with roles are keyed where the map gives no controls; up (3,) is in the armature's axes.
     """
     hips = character_map.bone("hips")
     if hips is None:
@@ -92,37 +81,12 @@ def find_root(character: Character, character_map: CharacterMap, up: Array) -> s
     moving = next((name for name in character_map.keyed_bones("hips") if name is not None), hips)
     for bone in _ancestors(character, character.index[moving]):
         carries = all(bone in each for each in above)
-        low = float(character.bones[bone].head @ up) - ground < ON_GROUND * height
+        # A root's head is no higher above the feet than this share of the hips' height.
+        low = float(character.bones[bone].head @ up) - ground < 0.15 * height
         named = not ROOT_WORDS.isdisjoint(read_name(character.bones[bone].name).words)
         if carries and (low or named):
             return character.bones[bone].name
     return None
-
-
-def extra_ends(character: Character, character_map: CharacterMap) -> dict[str, tuple[str, ...]]:
-    """By role of hand and foot the bones at its joint that hang neither on it nor on its limb."""
-    hips = character_map.bone("hips")
-    ankle = character_map.bone("foot.L")
-    if hips is None or ankle is None:
-        return {}
-    heads = np.array([bone.head for bone in character.bones])
-    near = SAME_JOINT * float(np.linalg.norm(character.bone(hips).head - character.bone(ankle).head))
-    found = {}
-    for part, upper in (("hand", "upper_arm"), ("foot", "thigh")):
-        for side in "LR":
-            role, own = character_map.bone(f"{part}.{side}"), character_map.bone(f"{upper}.{side}")
-            if role is None or own is None:
-                continue
-            limb = {character.index[role], character.index[own]}
-            at_joint = np.flatnonzero(np.linalg.norm(heads - heads[character.index[role]], axis=1) < near)
-            extras = tuple(
-                character.bones[bone].name
-                for bone in map(int, at_joint)
-                if limb.isdisjoint((bone, *_ancestors(character, bone)))
-            )
-            if extras:
-                found[f"{part}.{side}"] = extras
-    return found
 
 
 def _ancestors(character: Character, bone: int) -> list[int]:

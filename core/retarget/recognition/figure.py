@@ -13,20 +13,14 @@ from ..character import ARM, LEG, MIDDLE
 from .names import CLEAR
 from .symmetry import Frame
 
-NAMES_WEIGHT = 1.3
-"""Names are trusted so much more than a measure of place."""
-LONGEST_CHAIN = 16
-"""Bones upward from a limb's end among which its other bones are sought."""
+NAMES_WEIGHT = 1.3  # names are trusted so much more than a measure of place
 SHORTEST_LIMB, SHORT_LEG = 0.08, 0.4
 """Shortest limb; shortest leg whose foot is taken to be smaller with it: in sizes."""
 MANY, FEW = 150, 40
 """Best limbs of a kind that are looked at closely, and that are weighed against those of the other kind."""
-CLOSE = 12.0
-"""Frames whose limbs fit worse than the best frame's by more than this are passed over."""
 NO_END, NO_PART, NO_HEAD = -3.0, -4.0, -5.0
 """Scores of an arm without a hand, a limb without toe or shoulder though bones are there, and no head."""
-SAME_JOINT = 0.02
-"""A bone this near to its parent, in heights of the trunk, begins where that does."""
+SAME_JOINT = 0.02  # A bone this near to its parent, in heights of the trunk, begins where that does
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,13 +30,10 @@ class Figure:
     frame: Frame
     limbs: Mapping[str, int]
     """By part of `roles.ARM` and `LEG`, of the side that is `frame.one_side`; some may be missing."""
-    middle: Mapping[str, tuple[int, ...]]
-    """By part of `roles.MIDDLE`, from the hips upward."""
-    fit: float
-    """What the places alone add up to."""
+    middle: Mapping[str, tuple[int, ...]]  # by part of `roles.MIDDLE`, from the hips upward
+    fit: float  # what the places alone add up to
     score: float
-    upright: float
-    """Cosine between the trunk and up."""
+    upright: float  # cosine between the trunk and up
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +42,7 @@ class _Chains:
 
     bones: IndexArray
     """(C, 3) upper, middle and end bone; the end is -1 where the middle is a limb's last bone."""
-    attached: IndexArray
-    """(C,) bone of the middle on which each hangs; -1 for none."""
+    attached: IndexArray  # (C,) bone of the middle on which each hangs; -1 for none
 
 
 def near(value: Array | float, mean: float, deviation: float, most: float = 6.0) -> Array:
@@ -70,7 +60,8 @@ def best_figure(frames: list[Frame]) -> Figure | None:
         + (_arm_fits(frame, chains) + _names_of(frame, chains, ARM[1:])).max()
         for frame in frames
     ]
-    close = [frame for frame, fit in zip(frames, quick, strict=True) if fit > max(quick) - CLOSE]
+    # Frames whose limbs fit worse than the best frame's by more than this are passed over.
+    close = [frame for frame, fit in zip(frames, quick, strict=True) if fit > max(quick) - 12.0]
     figures = [figure for frame in close if (figure := _figure(frame, chains)) is not None]
     return max(figures, key=lambda figure: figure.score, default=None)
 
@@ -86,7 +77,8 @@ def _find_chains(frame: Frame) -> _Chains:
             if frame.middle[bone]:
                 attached = bone
                 break
-            if frame.partner[bone] < 0 or len(above) == LONGEST_CHAIN:
+            # Bones upward from a limb's end among which its other bones are sought.
+            if frame.partner[bone] < 0 or len(above) == 16:
                 break
             above.append(bone)
         for second, middle in enumerate(above):
@@ -146,7 +138,6 @@ def _names(frame: Frame, part: str) -> Array:
 
 
 def _names_of(frame: Frame, chains: _Chains, parts: tuple[str, ...]) -> Array:
-    """(C,) what the names of chains say of parts."""
     found = np.zeros(len(chains.bones))
     for bones, part in zip(chains.bones.T, parts, strict=True):
         found += np.where(bones >= 0, _names(frame, part)[bones], 0.0)
@@ -166,7 +157,6 @@ def _best_limbs(frame: Frame, chains: _Chains, fits: Array, parts: tuple[str, ..
 
 
 def _leg_fits(frame: Frame, chains: _Chains) -> Array:
-    """(C,) how well chains fit a leg by the places of their bones."""
     hip, knee, ankle = (frame.place[bones] for bones in chains.bones.T)
     upper, lower = _length(knee - hip), _length(ankle - knee)
     length = np.maximum(upper + lower, 1e-9)
@@ -182,7 +172,6 @@ def _leg_fits(frame: Frame, chains: _Chains) -> Array:
 
 
 def _arm_fits(frame: Frame, chains: _Chains) -> Array:
-    """(C,) how well chains fit an arm by the places of their bones."""
     shoulder, elbow, wrist = (frame.place[bones] for bones in chains.bones.T)
     ends = frame.ends[chains.bones[:, 1]]
     has_hand = chains.bones[:, 2:] >= 0
@@ -302,7 +291,6 @@ def _toes(frame: Frame, foot: int, thigh: int) -> dict[int, float]:
 
 
 def _shoulders(frame: Frame, upper_arm: int) -> dict[int, float]:
-    """Bones above an upper arm that may be its collar bone, and their scores."""
     place, names = frame.place, _names(frame, "shoulder")
     length = _reach(frame, upper_arm)
     above = [bone for bone in frame.bones.ancestors(upper_arm) if frame.one_side[bone]]
@@ -318,7 +306,6 @@ def _shoulders(frame: Frame, upper_arm: int) -> dict[int, float]:
 def _trunk(
     frame: Frame, hip: Array, shoulder: Array, arms_on: int, fork: int
 ) -> tuple[dict[str, tuple[int, ...]], float]:
-    """Hips, spine, neck and head between given joints, and how well their places fit."""
     bones, place = frame.bones, frame.place
     names = {part: _names(frame, part) for part in MIDDLE}
     height = max(float(shoulder[2] - hip[2]), 1e-6)

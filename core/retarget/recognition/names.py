@@ -16,8 +16,7 @@ SIDE_WORDS: Mapping[str, str] = {
     **dict.fromkeys(("r", "right", "rgt", "rt", "右", "droite", "rechts", "der", "destra", "dx"), "R"),
 }
 
-Entries = Mapping[tuple[str, ...], Mapping[str, float]]
-"""By words that stand together the scores of parts."""
+Entries = Mapping[tuple[str, ...], Mapping[str, float]]  # by words that stand together the scores of parts
 
 
 def _entries(alone: Mapping[str, Mapping[float, str]], shared: Mapping[str, Mapping[str, float]]) -> Entries:
@@ -119,16 +118,11 @@ FILLER_WORDS = frozenset(
 # --- Names of bones read as tokens
 
 
-OTHER_PART = -2.0
-"""Score of a part where the name speaks for another."""
-NO_PART = -4.0
-"""Score of every part where the name speaks for something that plays no role."""
-CLEAR = 1.0
-"""Score from which a name speaks for a part."""
-UNKNOWN = 3
-"""As many words as this a letter counts that is no word."""
-LONGEST_NAME = 120
-"""Characters of a name that are read; Blender's own names hold 63 bytes."""
+OTHER_PART = -2.0  # score of a part where the name speaks for another
+NO_PART = -4.0  # score of every part where the name speaks for something that plays no role
+CLEAR = 1.0  # score from which a name speaks for a part
+UNKNOWN = 3  # as many words as this a letter counts that is no word
+LONGEST_NAME = 120  # characters of a name that are read; Blender's own names hold 63 bytes
 
 _NAMESPACE = re.compile(r"^.*[:|]")
 _PIECES = re.compile(r"[A-Z]+(?![a-z])|[A-Z][a-z]+|[a-z]+|[^\W\d_]+", re.UNICODE)
@@ -148,18 +142,12 @@ _LONGEST_WORD = max(len(word) for word in _VOCABULARY)
 class NameReading:
     """What a bone's name says."""
 
-    words: tuple[str, ...]
-    """Its words in lower case, without numbers and namespace."""
-    side: str | None
-    """`L`, `R`, or None."""
-    scores: Mapping[str, float]
-    """By part of `roles.MIDDLE`, `ARM` and `LEG`; 0 where the name says nothing."""
-    mechanism: bool
-    """Whether it names a control or helper."""
-    other: bool
-    """Whether it names something that plays no role: a finger, cloth, an end."""
-    unsided: str
-    """The name with the side's word replaced, equal for a pair's two names."""
+    words: tuple[str, ...]  # its words in lower case, without numbers and namespace
+    side: str | None  # `L`, `R`, or None
+    scores: Mapping[str, float]  # by part of `roles.MIDDLE`, `ARM` and `LEG`; 0 where the name says nothing
+    mechanism: bool  # whether it names a control or helper
+    other: bool  # whether it names something that plays no role: a finger, cloth, an end
+    unsided: str  # the name with the side's word replaced, equal for a pair's two names
 
     @cached_property
     def clear_part(self) -> str | None:
@@ -192,7 +180,6 @@ def read_name(name: str) -> NameReading:
 
 
 def _words(name: str) -> tuple[str, ...]:
-    """The name's words in lower case; compounds such as `lforearm` are taken apart."""
     text = _NAMESPACE.sub("", unicodedata.normalize("NFKC", name[:LONGEST_NAME])) or name[:LONGEST_NAME]
     found: list[str] = []
     for piece in _PIECES.findall(text):

@@ -1,8 +1,7 @@
 """Recognition of a character: roles from preset, names, hierarchy and symmetry, or a refusal."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from types import MappingProxyType
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,12 +9,12 @@ from ...arrays import Array
 from ...body.human import HUMAN
 from ...errors import InputError
 from ...files.json_file import shown
-from ..character import ARM, CHAINS, LEG, REQUIRED, ROLES, Character
+from ..character import ARM, CHAINS, LEG, REQUIRED, ROLES, Character, other_side
 from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap, RoleBones
 from ..maps.presets import Preset, find_preset
 from .bones import candidate_bones
-from .facing import Facing, extra_ends, find_facing, find_root
+from .facing import Facing, find_facing, find_root
 from .figure import Figure, best_figure
 from .names import CLEAR
 from .symmetry import Frame, find_frames
@@ -23,18 +22,11 @@ from .symmetry import Frame, find_frames
 AGREED, NAMED, UNSEEN, PLACED, AGAINST = 0.99, 0.95, 0.9, 0.7, 0.6
 """Confidence of a role: of a preset and confirmed by its place, of a name, of a preset alone, of a place, and
 where something speaks against it."""
-SURE_SIDES = 0.9
-"""Confidence from which left and right are not doubted."""
-SAME_JOINT = 0.03
-"""Heads this near to each other, in sizes, are one joint."""
-LEAST_UPRIGHT, LEAST_LEG_DOWN = 0.6, 0.7
-"""Least cosine between the trunk and up, and between a leg and down."""
-HANDS_ABOVE = 0.1
-"""Hands are at least so many lengths of a leg above the ankles."""
+SAME_JOINT = 0.03  # heads this near to each other, in sizes, are one joint
+LEAST_UPRIGHT, LEAST_LEG_DOWN = 0.6, 0.7  # least cosine between the trunk and up, and between a leg and down
+HANDS_ABOVE = 0.1  # hands are at least so many lengths of a leg above the ankles
 LEAST_FIT, LEAST_FIT_NAMED = -12.0, -26.0
 """Least fit of a figure's places, and where names speak for its arms and legs."""
-CLEAR_FIT = -6.0
-"""Fit from which no other plane of symmetry is tried."""
 LIMB_WORDS = {"upper_arm": "arm", "forearm": "forearm", "thigh": "leg", "shin": "shin", "foot": "foot"}
 """Parts of limbs that a character must have, in words."""
 VALID = "a character stands on two legs and has two arms"
@@ -46,25 +38,15 @@ class Recognition:
 
     character_map: CharacterMap
     """Roles with confidence and source; of a preset also its controls and settings."""
-    doubts: tuple[str, ...] = ()
-    """What a person should look at, in sentences without a full stop."""
-    preset: str | None = None
-    """Identifier of the preset whose names the bones have."""
-    extras: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: MappingProxyType({}))
-    """By role of hand and foot: bones that lie at its joint and do not hang on it, such as goals of inverse
-    kinematics; the motion leaves them behind."""
+    doubts: tuple[str, ...] = ()  # what a person should look at, in sentences without a full stop
 
 
 def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -> Recognition:
-    """Recognize a character's bones.
-
-    Args:
-        character: Its bones at rest.
-        presets: Conventions of names to look for; by default the shipped ones.
+    """Recognize a character's bones, by the shipped conventions of names or other ones, and by their places.
 
     Raises:
-        InputError: It is no character: too few bones, an animal, a prop, an actor of Keymark, a half-built
-            rig, or numbers that cannot be used.
+        InputError: It is no character: too few bones, an animal, a prop, an actor of Keymark, a
+            half-built rig, or numbers that cannot be used.
     """
     _check_character(character)
     preset = find_preset(character, presets)
@@ -96,8 +78,7 @@ def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -
     if character_map.root is None:
         up = find_stance(character, character_map)[2]
         character_map = replace(character_map, root=find_root(character, character_map, up))
-    extras = extra_ends(character, character_map)
-    return Recognition(character_map, tuple(doubts), character_map.preset, extras)
+    return Recognition(character_map, tuple(doubts))
 
 
 def _best_figure(character: Character) -> tuple[Figure | None, Frame | None, str]:
@@ -112,7 +93,8 @@ def _best_figure(character: Character) -> tuple[Figure | None, Frame | None, str
             reason = reason or why
             if figure is not None and not why and (best is None or figure.score > best.score):
                 best = figure
-            if best is not None and best.fit > CLEAR_FIT:
+            # Fit from which no other plane of symmetry is tried.
+            if best is not None and best.fit > -6.0:
                 break
         if best is not None:
             return best, first, ""
@@ -120,7 +102,6 @@ def _best_figure(character: Character) -> tuple[Figure | None, Frame | None, str
 
 
 def _roles_of(figure: Figure, facing: Facing) -> dict[str, RoleBones]:
-    """Bones, confidence and source of each role that is there."""
     bones = figure.frame.bones
 
     def role_bones(part: str, those: tuple[int, ...], share: float = 1.0) -> RoleBones:
@@ -129,15 +110,19 @@ def _roles_of(figure: Figure, facing: Facing) -> dict[str, RoleBones]:
         return RoleBones(names, (NAMED if named else PLACED) * share, "names" if named else "shape")
 
     found = {part: role_bones(part, those) for part, those in figure.middle.items() if those}
-    near_side, far_side = ("L", "R") if facing.ahead > 0 else ("R", "L")
+    partner = figure.frame.partner
+
+    def both(part: str) -> tuple[tuple[str, int], tuple[str, int]]:
+        bone = figure.limbs[part]
+        one, other = ("L", "R") if facing.ahead > 0 else ("R", "L")
+        return (one, bone), (other, int(partner[bone]))
+
     for part in (*ARM, *LEG):
         if part in figure.limbs:
-            bone = figure.limbs[part]
-            for side, own in ((near_side, bone), (far_side, int(figure.frame.partner[bone]))):
-                found[f"{part}.{side}"] = role_bones(part, (own,), facing.confidence)
+            for side, bone in both(part):
+                found[f"{part}.{side}"] = role_bones(part, (bone,), facing.confidence)
     if "hand" not in figure.limbs:
-        for side, forearm in ((near_side, figure.limbs["forearm"]), (far_side, -1)):
-            forearm = forearm if forearm >= 0 else int(figure.frame.partner[figure.limbs["forearm"]])
+        for side, forearm in both("forearm"):
             hand = _lone_hand(figure, forearm)
             if hand is not None:
                 found[f"hand.{side}"] = role_bones("hand", (hand,), facing.confidence)
@@ -158,30 +143,20 @@ def _lone_hand(figure: Figure, forearm: int) -> int | None:
 
 
 def _side_doubts(facing: Facing) -> list[str]:
-    """What is doubtful about left and right."""
-    if facing.by_names * facing.by_shape < 0.0 and abs(facing.by_shape) > 1.0:
-        if facing.by_names < 0.0:
-            return [
-                (
-                    "left and right are taken from the shape, against the names of the bones: feet and "
-                    "knees point the other way"
-                )
-            ]
-        return [
-            ("left and right are taken from the names of the bones, although the feet point the other way")
-        ]
-    if facing.confidence < SURE_SIDES:
-        return [
-            (
-                "left and right may be swapped for all roles of a side: names, feet, knees and elbows "
-                "hardly tell where the character faces"
-            )
-        ]
+    against = facing.by_names * facing.by_shape < 0.0 and abs(facing.by_shape) > 1.0
+    if against and facing.by_names < 0.0:
+        doubt = "left and right are taken from the shape, against the names of the bones: feet and knees "
+        return [doubt + "point the other way"]
+    if against:
+        return ["left and right are taken from the names of the bones, although the feet point the other way"]
+    # Confidence from which left and right are not doubted.
+    if facing.confidence < 0.9:
+        doubt = "left and right may be swapped for all roles of a side: names, feet, knees and elbows hardly "
+        return [doubt + "tell where the character faces"]
     return []
 
 
 def _place_doubts(figure: Figure, roles: Mapping[str, RoleBones]) -> list[str]:
-    """Roles that bones play by their places: another may have the name, or no name tells."""
     named: dict[str, str] = {}
     for name, reading in zip(figure.frame.bones.names, figure.frame.bones.readings, strict=True):
         if reading.clear_part in (*ARM, *LEG) and reading.side:
@@ -251,19 +226,12 @@ def _neck_carries_arms(character: Character, character_map: CharacterMap) -> boo
 
 
 def _swapped(character_map: CharacterMap) -> CharacterMap:
-    """The map with left and right exchanged."""
-
-    def other(role: str) -> str:
-        part, dot, side = role.partition(".")
-        return part + dot + {"L": "R", "R": "L"}.get(side, "")
-
+    given = character_map.roles
     return replace(
         character_map,
-        roles={
-            role: character_map.roles[other(role)] for role in ROLES if other(role) in character_map.roles
-        },
-        fk={other(role): bones for role, bones in character_map.fk.items()},
-        ik={other(limb): controls for limb, controls in character_map.ik.items()},
+        roles={role: given[other_side(role)] for role in ROLES if other_side(role) in given},
+        fk={other_side(role): bones for role, bones in character_map.fk.items()},
+        ik={other_side(limb): controls for limb, controls in character_map.ik.items()},
     )
 
 
@@ -283,7 +251,6 @@ def _stands_upright(character: Character, character_map: CharacterMap) -> bool:
 
 
 def _check_character(character: Character) -> None:
-    """Refuse what is no character before its bones are looked at."""
     name = f"armature {shown(character.name)}"
     if not character.bones:
         raise InputError(f"{name} has no bones; {VALID}")

@@ -12,14 +12,7 @@ from .bones import Bones
 
 SAME = 0.02
 """A mirrored head lies this near to its counterpart, a head beside the plane this far from it, in sizes."""
-LOOSE = 0.12
-"""Two branches may mirror each other although they are this far, in sizes, from doing so."""
-MOST_PLANES, MOST_SYMMETRIES = 60, 3
-"""Planes that are tried, and that are yielded."""
-ALIKE = 0.98
-"""Cosine between normals of planes from which they are taken for one."""
-LEVEL = 0.2
-"""Largest cosine between an axis that may point up and the way from side to side."""
+MOST_PLANES, MOST_SYMMETRIES = 60, 3  # planes that are tried, and that are yielded
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,13 +20,11 @@ class Frame:
     """Bones with their plane of symmetry, n·p = offset, and the direction that is taken for up."""
 
     bones: Bones
-    normal: Array
-    """(3,) unit vector from one side to the other."""
+    normal: Array  # (3,) unit vector from one side to the other
     offset: float
     partner: IndexArray
     """(N,) counterpart of each bone on the other side; itself in the middle; -1 where there is none."""
-    up: Array
-    """(3,) unit vector at right angles to the normal."""
+    up: Array  # (3,) unit vector at right angles to the normal
 
     @cached_property
     def place(self) -> Array:
@@ -84,7 +75,8 @@ def find_frames(bones: Bones) -> Iterator[list[Frame]]:
     for normal, offset, partner in find_planes(bones):
         found = []
         for axis in np.eye(3)[[2, 1, 0]]:
-            if abs(float(axis @ normal)) < LEVEL:
+            # Largest cosine between an axis that may point up and the way from side to side.
+            if abs(float(axis @ normal)) < 0.2:
                 up = axis - normal * float(axis @ normal)
                 up /= np.linalg.norm(up)
                 found += [Frame(bones, normal, offset, partner, sign * up) for sign in (1.0, -1.0)]
@@ -99,7 +91,8 @@ def find_planes(bones: Bones) -> Iterator[tuple[Array, float, IndexArray]]:
     planes.sort(key=lambda plane: -_score(bones, tree, *plane))
     taken: list[Array] = []
     for normal, offset in planes:
-        if any(abs(float(normal @ other)) > ALIKE for other in taken):
+        # Cosine between normals of planes from which they are taken for one.
+        if any(abs(float(normal @ other)) > 0.98 for other in taken):
             continue
         taken.append(normal)
         for _ in range(2):
@@ -218,7 +211,8 @@ def _match(those: list[int], others: list[int] | None, cost: Array, partner: Ind
     part = cost[np.ix_(rows, columns)]
     for flat in np.argsort(part, axis=None, kind="stable"):
         a, b = (int(each) for each in np.unravel_index(flat, part.shape))
-        if not part[a, b] < LOOSE:
+        # Two branches may mirror each other although they are this far, in sizes, from doing so.
+        if not part[a, b] < 0.12:
             return
         if partner[rows[a]] < 0 and partner[columns[b]] < 0:
             partner[rows[a]], partner[columns[b]] = columns[b], rows[a]

@@ -25,8 +25,6 @@ from .two_bone import smallest_rotation
 
 CLEAR_BEND_RAD = (np.radians(12.0), np.radians(30.0))
 """Bend of a resting elbow or knee from which its plane begins to count, and counts in full."""
-LARGEST_TWIST_RAD = np.radians(75.0)
-"""A resting bend farther than that from the hinge's own direction says nothing of it."""
 
 
 def rest_alignment(body: RestBody) -> Mapping[str, Array]:
@@ -39,18 +37,15 @@ def rest_alignment(body: RestBody) -> Mapping[str, Array]:
         _align(body, turns, arm, np.array([out, 0.0, 0.0]), np.array([0.0, 0.0, -out]))
         _align(body, turns, leg, np.array([0.0, 0.0, -1.0]), np.array([1.0, 0.0, 0.0]))
         if f"hand.{side}" in turns:
-            own = turns[f"hand.{side}"]
-            turns[f"hand.{side}"] = turns[f"forearm.{side}"] @ own
+            turns[f"hand.{side}"] = turns[f"forearm.{side}"] @ turns[f"hand.{side}"]
     return turns
 
 
 def _correction(body: RestBody, role: str) -> Array:
-    """The map's correction of a role's rest, in canonical axes."""
     given = body.character_map.rest_corrections.get(role)
     if given is None:
         return np.eye(3)
-    w, x, y, z = given
-    turn = Rotation.from_quat([x, y, z, w]).as_matrix()
+    turn = Rotation.from_quat(np.roll(given, -1)).as_matrix()
     return np.asarray(body.stance @ turn @ body.stance.T)
 
 
@@ -75,56 +70,37 @@ def _with_hinge(first: Array, second: Array, along: Array, hinge: Array) -> Arra
     bend = float(np.arctan2(np.linalg.norm(axis), first @ second))
     axis = unit(axis)
     twist = float(np.arctan2(rotations.cross(axis, hinge) @ along, axis @ hinge))
-    clear = float(ease(np.array(bend), *CLEAR_BEND_RAD)) * float(abs(twist) < LARGEST_TWIST_RAD)
+    # A resting bend farther than that from the hinge's own direction says nothing of it.
+    clear = float(ease(np.array(bend), *CLEAR_BEND_RAD)) * float(abs(twist) < np.radians(75.0))
     return rotations.hinge(along, np.array(clear * twist))
 
 
 # --- Turns of bones that follow from the performer's segments alone, and where they put the joints
 
 
-SEGMENTS = {
-    "hips": "pelvis",
-    "head": "head",
-    "shoulder": "girdle",
-    "upper_arm": "upper_arm",
-    "forearm": "forearm",
-    "hand": "hand",
-    "thigh": "thigh",
-    "shin": "shin",
-    "foot": "foot",
-    "toe": "foot",
-}
-"""The performer's segment that a role follows; spine and neck lie between two of them."""
-
-
 def segment_of(role: str) -> str:
-    """The performer's segment that a role of one bone follows."""
+    """The performer's segment that a role of one bone follows; spine and neck lie between two of them."""
     part, dot, side = role.partition(".")
-    return f"{SEGMENTS[part]}{dot}{side}"
+    return {"hips": "pelvis", "shoulder": "girdle", "toe": "foot"}.get(part, part) + dot + side
 
 
 def bone_turns(body: RestBody, turn: Mapping[str, Array], alignment: Mapping[str, Array]) -> list[Array]:
     """(F, 3, 3) a bone: its turn from the character's rest, in canonical axes.
 
-    Args:
-        body: The character at rest.
-        turn: (F, 3, 3) by segment of the performer, on the character's stage.
-        alignment: (3, 3) by role.
+    The performer's segments are turned (F, 3, 3) on the character's stage; the alignment is (3, 3) by role.
     """
     found: list[Array] = []
     chest = turn["chest" if body.is_moved("spine") else "pelvis"]
     for bone in body.bones:
         if not body.is_moved(bone.role):
-            found.append(
-                found[bone.carrier] if bone.carrier >= 0 else np.broadcast_to(np.eye(3), chest.shape)
-            )
+            still = np.broadcast_to(np.eye(3), chest.shape)
+            found.append(found[bone.carrier] if bone.carrier >= 0 else still)
             continue
         if bone.role in ("spine", "neck"):
             lower, upper = (turn["pelvis"], turn["chest"]) if bone.role == "spine" else (chest, turn["head"])
             share = body.character_map.shares(bone.role)[bone.number]
-            wanted = lower @ rotations.exponential(
-                share * rotations.logarithm(np.swapaxes(lower, -1, -2) @ upper)
-            )
+            turn_up = rotations.logarithm(np.swapaxes(lower, -1, -2) @ upper)
+            wanted = lower @ rotations.exponential(share * turn_up)
         else:
             wanted = turn[segment_of(bone.role)]
         found.append(np.asarray(wanted @ alignment[bone.role]))
@@ -147,73 +123,57 @@ def joint_places(body: RestBody, turns: list[Array]) -> list[Array]:
 # --- Places on a body that carry over to another
 
 
-HEAD_HEIGHT = 0.10
-"""From the head's joint to the crown, as a share of stature."""
-HEAD_CENTER = 0.5
-"""Place of the head's center between its joint and the crown."""
-LEG_SHARE = 0.491
-"""The legs' share of stature (Drillis & Contini 1966)."""
-PROPORTION_RANGE = (0.5, 2.5)
-"""Range of a width over what the character's size alone would give."""
+HEAD_HEIGHT = 0.10  # from the head's joint to the crown, as a share of stature
+LEG_SHARE = 0.491  # the legs' share of stature (Drillis & Contini 1966)
 
 
 @dataclass(frozen=True, eq=False)
 class PartShape:
     """A part of the character as a place for hands."""
 
-    segment: str
-    """The performer's segment."""
-    bone: int
-    """Index of the character's bone that it is fixed to."""
-    origin: Array
-    """(3,) its origin from that bone's joint at rest, canonical [m]."""
-    scale: Array
-    """(3,) the character's width, depth and length over the performer's, in the segment's axes."""
+    segment: str  # the performer's segment
+    bone: int  # index of the character's bone that it is fixed to
+    origin: Array  # (3,) its origin from that bone's joint at rest, canonical [m]
+    scale: Array  # (3,) the character's width, depth and length over the performer's, in the segment's axes
 
 
 def part_shapes(body: RestBody, source: SegmentMotion, size: float) -> tuple[PartShape, ...]:
     """The parts of a character that hands may be near: head, chest, pelvis and legs."""
     lengths = source.body.actor.segments_m
+    parts: list[PartShape] = []
+
+    def add(segment: str, bone: int, origin: Array, *scale: float) -> None:
+        parts.append(PartShape(segment, bone, origin - body.bones[bone].head, np.array(scale)))
+
+    def width(part: str, own_m: float) -> float:
+        ratio = np.linalg.norm(body.joint(f"{part}.L") - body.joint(f"{part}.R")) / own_m
+        # Range of a width over what the character's size alone would give.
+        return float(np.clip(ratio, *np.multiply((0.5, 2.5), size)))
+
     trunk = float(np.linalg.norm(body.shoulder_joints - body.hip_joints)) / lengths["trunk"]
-    shoulders = _width_m(body, "upper_arm") / lengths["shoulder_width"]
-    hips = _width_m(body, "thigh") / lengths["hip_width"]
-    shoulders, hips = (
-        float(np.clip(ratio, *np.multiply(PROPORTION_RANGE, size))) for ratio in (shoulders, hips)
-    )
+    shoulders, hips = width("upper_arm", lengths["shoulder_width"]), width("thigh", lengths["hip_width"])
+    add("pelvis", 0, body.hip_joints, hips, np.sqrt(hips * size), trunk)
     chest = body.last.get("spine", 0)
-    parts = [
-        _part(body, "pelvis", 0, body.hip_joints, (hips, np.sqrt(hips * size), trunk)),
-        _part(body, "chest", chest, body.shoulder_joints, (shoulders, np.sqrt(shoulders * trunk), trunk)),
-    ]
+    add("chest", chest, body.shoulder_joints, shoulders, np.sqrt(shoulders * trunk), trunk)
     if "head" in body.first:
         joint, tip = body.joint("head"), body.tip("head")
         height = HEAD_HEIGHT * body.leg_m / LEG_SHARE
         if tip is not None and tip[2] - joint[2] > 0.5 * height:
             height = float(tip[2] - joint[2])
         ratio = height / (HEAD_HEIGHT * source.body.actor.stature_m)
-        center = joint + [0.0, 0.0, HEAD_CENTER * height]
-        parts.append(_part(body, "head", body.first["head"], center, (ratio, ratio, ratio)))
+        add("head", body.first["head"], joint + [0.0, 0.0, 0.5 * height], ratio, ratio, ratio)
     for side in SIDES:
         for name, below in (("thigh", "shin"), ("shin", "foot")):
             role = f"{name}.{side}"
             ratio = body.length_m(role, f"{below}.{side}") / lengths[role]
-            parts.append(_part(body, role, body.first[role], body.joint(role), (size, size, ratio)))
+            add(role, body.first[role], body.joint(role), size, size, ratio)
     return tuple(parts)
-
-
-def source_origin(source: SegmentMotion, segment: str) -> Array:
-    """(F, 3) the origin of a performer's part in the world [m]."""
-    if segment == "head":
-        return source.end["head"]
-    if segment == "chest":
-        return source.end["chest"]
-    return source.start[segment]
 
 
 def in_segment(source: SegmentMotion, segment: str, points: Array) -> Array:
     """(F, 3) points of the world in the axes of a performer's segment, from its origin [m]."""
-    local = points - source_origin(source, segment)
-    return np.asarray((np.swapaxes(source.turn[segment], -1, -2) @ local[..., None])[..., 0])
+    origin = source.end[segment] if segment in ("head", "chest") else source.start[segment]
+    return np.asarray((np.swapaxes(source.turn[segment], -1, -2) @ (points - origin)[..., None])[..., 0])
 
 
 def places_by_part(
@@ -225,16 +185,10 @@ def places_by_part(
     alignment: Mapping[int, Array],
     points: Array,
 ) -> Array:
-    """(K, F, 3) where points near the performer belong on the character, by each of K parts, canonical [m].
+    """(K, F, 3) where world points (F, 3) near the performer belong on the character, by each of K parts [m].
 
-    Args:
-        parts: The parts.
-        source: The performer's motion.
-        stage: Where the character performs.
-        places: (F, 3) the joint of each of the character's bones [m].
-        turns: (F, 3, 3) turn of each bone from its rest.
-        alignment: (3, 3) by bone: the turn from the character's rest to the performer's.
-        points: (F, 3) in the world [m].
+    Canonical are joints (F, 3) and turns from rest (F, 3, 3) of the character's bones; the alignment (3, 3)
+    by bone turns its rest to the performer's.
     """
     found = []
     for part in parts:
@@ -247,36 +201,18 @@ def places_by_part(
 
 def distances_m(source: SegmentMotion, segment: str, points: Array) -> Array:
     """(F,) distance of points (F, 3) from the surface of one of the performer's segments; 0 inside [m]."""
-    piece = segment_piece(source.body, segment)
-    start, axis = _piece_axis(source, segment)
+    piece, turn = segment_piece(source.body, segment), source.turn[segment]
+    own = next(each for each in source.body.skeleton.segments if each.name == segment)
+    start = source.start[segment] + turn @ (piece.start - source.body.local(own.start))
+    axis = turn @ (piece.end - piece.start)
     way = points - start
     length = np.linalg.norm(axis, axis=-1)
     along = np.sum(way * axis, axis=-1) / length
     share = np.clip(along / length, 0.0, 1.0)
     overhang = along - share * length
-    turn = source.turn[segment]
     sideways = [np.sum(way * (turn @ direction), axis=-1) for direction in (piece.lateral, piece.sagittal)]
     widths = piece.half_widths[0] + share[:, None] * (piece.half_widths[1] - piece.half_widths[0])
     radius = np.hypot(sideways[0], sideways[1])
     relative = np.hypot(sideways[0] / widths[:, 0], sideways[1] / widths[:, 1])
     outside = radius * np.maximum(1.0 - 1.0 / np.maximum(relative, 1e-9), 0.0)
     return np.hypot(outside, overhang)
-
-
-def _piece_axis(source: SegmentMotion, segment: str) -> tuple[Array, Array]:
-    """Start and axis (F, 3) of a segment's volume in the world [m]."""
-    piece = segment_piece(source.body, segment)
-    own = next(each for each in source.body.skeleton.segments if each.name == segment)
-    turn = source.turn[segment]
-    start = source.start[segment] + turn @ (piece.start - source.body.local(own.start))
-    return start, turn @ (piece.end - piece.start)
-
-
-def _part(
-    body: RestBody, segment: str, bone: int, origin: Array, scale: tuple[float, float, float]
-) -> PartShape:
-    return PartShape(segment, bone, origin - body.bones[bone].head, np.array(scale))
-
-
-def _width_m(body: RestBody, part: str) -> float:
-    return float(np.linalg.norm(body.joint(f"{part}.L") - body.joint(f"{part}.R")))

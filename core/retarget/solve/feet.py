@@ -34,10 +34,7 @@ SLIDING_M_S = (0.4, 1.2)
 LARGEST_ROLL_RAD = np.radians(20.0)
 """Largest change of a foot's pitch for a front that is nearer to the ankle than the performer's; a heel that
 rises higher than that front allows leaves the ground with it."""
-LARGEST_CHANGE_RAD = np.radians(45.0)
-"""Largest change of a foot's pitch for a foot of another shape."""
-BALL_AHEAD = 0.62
-"""Place of the ball between ankle and tip of the performer's foot."""
+LARGEST_CHANGE_RAD = np.radians(45.0)  # largest change of a foot's pitch for a foot of another shape
 LONGEST_ROLL_S = 0.5
 MOST_TOE_BEND_RAD = np.radians(75.0)
 
@@ -46,16 +43,11 @@ MOST_TOE_BEND_RAD = np.radians(75.0)
 class FootPath:
     """A foot over F frames."""
 
-    turn: Array
-    """(F, 3, 3) turn of the foot from its rest, canonical."""
-    ankle: Array
-    """(F, 3) where the ankle shall be [m]."""
-    planted: BoolArray
-    """(F,) whether the ankle must get there: the foot stands on the ground."""
-    over_m: Array
-    """(F,) how much higher that is than with the sole on the ground [m]."""
-    ground_m: Array
-    """(F,) height of the ground under it [m]."""
+    turn: Array  # (F, 3, 3) turn of the foot from its rest, canonical
+    ankle: Array  # (F, 3) where the ankle shall be [m]
+    planted: BoolArray  # (F,) whether the ankle must get there: the foot stands on the ground
+    over_m: Array  # (F,) how much higher that is than with the sole on the ground [m]
+    ground_m: Array  # (F,) height of the ground under it [m]
 
 
 def foot_turns(source: SegmentMotion, stage: Stage, ground: Ground, side: str) -> Array:
@@ -76,16 +68,7 @@ def leveled(turn: Array, share: Array) -> Array:
 def plan_foot(
     source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, leg: LimbPose
 ) -> FootPath:
-    """Plan a foot.
-
-    Args:
-        source: The performer's motion.
-        stage: Where the character performs.
-        ground: The performer's ground.
-        shape: The character's foot.
-        side: `L` or `R`.
-        leg: The leg by the performer's directions, canonical [m].
-    """
+    """The path of a foot, from the leg by the performer's directions."""
     point, time_s, ankle = SIDES.index(side), source.time_s, leg.end
     ground_m = stage.heights(ground.height_m[:, point])
     turn = _rolled(source, stage, ground, shape, side, ankle[:, 2] - ground_m)
@@ -124,13 +107,7 @@ def sole_depth_m(turn: Array, shape: FootShape) -> Array:
 
 
 def toe_bends(turn: Array, shape: FootShape, height_m: Array) -> Array:
-    """(F, 3, 3) turns of the toes, bent up against the foot just as far as the ground demands.
-
-    Args:
-        turn: (F, 3, 3) of the foot.
-        shape: The foot, with a toe.
-        height_m: (F,) height of the ankle over the ground [m].
-    """
+    """(F, 3, 3) turns of the toes, bent up against the foot just as far as the ankle's height demands."""
     if shape.toe_joint is None or not len(shape.toe):
         return turn
     joint_m = height_m + turn[:, 2] @ shape.toe_joint
@@ -208,7 +185,8 @@ def _still(source: SegmentMotion, ground: Ground, side: str) -> tuple[BoolArray,
     """(F,) whether the heel stands still on the ground with the toes up, and the front with the heel up."""
     turn, ankle = source.turn[f"foot.{side}"], source.start[f"foot.{side}"]
     heel, tip = (ankle + turn @ offset for offset in sole_offsets(source.body)[SIDES.index(side)])
-    ball = ankle + BALL_AHEAD * (tip - ankle)
+    # Place of the ball between ankle and tip of the performer's foot.
+    ball = ankle + 0.62 * (tip - ankle)
     ground_m = ground.height_m[:, SIDES.index(side)]
     pitch = turn[:, 2, 1]
     slow = [speeds(path, source.time_s) < RELEASE_SPEED_M_S for path in (heel, tip, ball)]

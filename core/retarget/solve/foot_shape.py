@@ -16,35 +16,23 @@ from .rest_body import RestBody
 TOE_ROOM = 0.05
 """Largest height of the lowest joint or toe over the armature's origin, as a share of the leg, at which the
 origin is the ground that the character stands on."""
-ANKLE_ROOM = 0.12
-"""The same where nothing is known of the foot but its ankle."""
-TOE_THICKNESS = 0.02
-"""Height of joints at the toes over the sole, as a share of the leg."""
+ANKLE_ROOM = 0.12  # the same where nothing is known of the foot but its ankle
+TOE_THICKNESS = 0.02  # height of joints at the toes over the sole, as a share of the leg
 ANKLE_HEIGHT = 0.08
 """Height of the ankle over the sole, as a share of the leg: 0.039 of a stature of which the leg is 0.49
 (Winter 2009, *Biomechanics and Motor Control of Human Movement*)."""
-FOOT_AHEAD = 0.21
-"""Length from ankle to toe tip along the ground, as a share of the leg, where no bone tells."""
-TOE_BEYOND = 0.4
-"""Length of the toes, as a share of that from ankle to ball, where no bone tells."""
-HALF_WIDTH = 0.2
-"""Half-width of a sole, as a share of the length from ankle to tip."""
 
 
 @dataclass(frozen=True, eq=False)
 class FootShape:
     """A foot at rest, in canonical axes."""
 
-    foot: Array
-    """(N, 3) points of the sole fixed to the foot, from the ankle [m]."""
-    toe: Array
-    """(M, 3) points fixed to the toe bone, from its joint [m]; none without one."""
-    toe_joint: Array | None
-    """(3,) the toe's joint from the ankle [m]; None without one."""
+    foot: Array  # (N, 3) points of the sole fixed to the foot, from the ankle [m]
+    toe: Array  # (M, 3) points fixed to the toe bone, from its joint [m]; none without one
+    toe_joint: Array | None  # (3,) the toe's joint from the ankle [m]; None without one
     front: Array
     """(3,) where it rolls when the heel rises, from the ankle [m]: the ball; the tip without a toe."""
-    heel: Array
-    """(3,) where it rolls when the toes rise, from the ankle [m]."""
+    heel: Array  # (3,) where it rolls when the toes rise, from the ankle [m]
 
     @property
     def ankle_m(self) -> float:
@@ -67,19 +55,14 @@ def rest_floor_m(body: RestBody) -> float:
 
 
 def foot_shape(body: RestBody, side: str, floor_m: float) -> FootShape:
-    """The foot of a side, from the map's soles or from the bones.
-
-    Args:
-        body: The character at rest.
-        side: `L` or `R`.
-        floor_m: Height of the ground it stands on at rest [m].
-    """
+    """The foot of a side at rest on ground of some height [m], from the map's soles or from the bones."""
     ankle = body.joint(f"foot.{side}")
     toe = body.joint(f"toe.{side}") if body.is_moved(f"toe.{side}") else None
+    soles = body.character_map.soles
     given = {
-        part: _given_sole(body, f"{part}.{side}")
+        part: np.asarray(body.character.scale * np.array(soles[f"{part}.{side}"]) @ body.stance.T)
         for part in ("foot", "toe")
-        if f"{part}.{side}" in body.character_map.soles
+        if f"{part}.{side}" in soles
     }
     if "foot" not in given:
         given = _sole_of_bones(body, side, ankle, toe, floor_m)
@@ -87,16 +70,12 @@ def foot_shape(body: RestBody, side: str, floor_m: float) -> FootShape:
     ahead = _ahead(foot - ankle if toe is None else (toe - ankle)[None])
     front = foot[np.argmax((foot - ankle) @ ahead)] if toe is None else toe
     heel = foot[np.argmin((foot - ankle) @ ahead)]
-    level = np.array([1.0, 1.0, 0.0])
-    ground = np.array([0.0, 0.0, float(foot[:, 2].min())])
-    middle = ankle + ((heel - ankle) @ ahead) * ahead
-    return FootShape(
-        foot - ankle,
-        np.empty((0, 3)) if toe is None else given.get("toe", np.empty((0, 3))) - toe,
-        None if toe is None else toe - ankle,
-        front * level + ground - ankle,
-        middle * level + ground - ankle,
-    )
+    middle, low = ankle + ((heel - ankle) @ ahead) * ahead, float(foot[:, 2].min())
+    front, heel = (np.array([place[0], place[1], low]) - ankle for place in (front, middle))
+    none = np.empty((0, 3))
+    if toe is None:
+        return FootShape(foot - ankle, none, None, front, heel)
+    return FootShape(foot - ankle, given.get("toe", none) - toe, toe - ankle, front, heel)
 
 
 def sole_points(body: RestBody, shapes: Mapping[str, FootShape]) -> dict[str, Array]:
@@ -110,10 +89,6 @@ def sole_points(body: RestBody, shapes: Mapping[str, FootShape]) -> dict[str, Ar
     return {role: points @ body.stance / body.character.scale for role, points in found.items()}
 
 
-def _given_sole(body: RestBody, role: str) -> Array:
-    return np.asarray(body.character.scale * np.array(body.character_map.soles[role]) @ body.stance.T)
-
-
 def _sole_of_bones(
     body: RestBody, side: str, ankle: Array, toe: Array | None, floor_m: float
 ) -> dict[str, Array]:
@@ -122,26 +97,27 @@ def _sole_of_bones(
     along = (tip - ankle) * [1.0, 1.0, 0.0]
     length = float(np.linalg.norm(along))
     ahead = along / length
-    across = HALF_WIDTH * length * np.array([-ahead[1], ahead[0], 0.0])
+    # Half-width of a sole, as a share of the length from ankle to tip.
+    across = 0.2 * length * np.array([-ahead[1], ahead[0], 0.0])
     heel = ankle - HEEL_BEHIND * length * ahead
     ball = ankle + 0.6 * length * ahead if toe is None else toe
     parts = {"foot": [heel + 0.7 * across, heel - 0.7 * across, ball + across, ball - across], "toe": [tip]}
-    ground = np.array([1.0, 1.0, 0.0]), np.array([0.0, 0.0, floor_m])
-    return {part: np.stack(points) * ground[0] + ground[1] for part, points in parts.items()}
+    return {part: np.stack(points) * [1.0, 1.0, 0.0] + [0.0, 0.0, floor_m] for part, points in parts.items()}
 
 
 def _tip(body: RestBody, side: str, ankle: Array, toe: Array | None) -> Array:
-    """(3,) the tip of the toes at rest [m]."""
     if toe is not None:
         ball = (toe - ankle) * [1.0, 1.0, 0.0]
         tip = body.tip(f"toe.{side}")
         if tip is not None and (tip - toe) @ ball > 0.0:
             return tip
-        return np.asarray(toe + TOE_BEYOND * ball)
+        # Length of the toes, as a share of that from ankle to ball, where no bone tells.
+        return np.asarray(toe + 0.4 * ball)
     beyond = [point for point in _beyond_ankle(body, side) if point[1] < ankle[1]]
     if beyond:
         return min(beyond, key=lambda point: float(point[1]))
-    return np.asarray(ankle + FOOT_AHEAD * body.leg_m * np.array([0.0, -1.0, 0.0]))
+    # Length from ankle to toe tip along the ground, as a share of the leg, where no bone tells.
+    return np.asarray(ankle + 0.21 * body.leg_m * np.array([0.0, -1.0, 0.0]))
 
 
 def _beyond_ankle(body: RestBody, side: str) -> list[Array]:
@@ -173,29 +149,25 @@ def _ahead(ways: Array) -> Array:
 
 
 SAME_LEVEL_M = 0.03
-"""Rests whose heights follow each other within this are on one level: the noise of an estimate ..."""
-LEVEL_RANGE_M = 0.05
-"""... if all of them lie within this; a slope is no level."""
+"""Rests whose heights follow each other within this are on one level: the noise of an estimate."""
 SCENE_GROUND_M = 0.025
 """A level that near to the scene's ground, z = 0, is it: no ankle's height over its sole is known better."""
 CHANGE_S = 0.15
 """Time in which the ground under a moving foot changes its height, after a rest and before the next one."""
-LOW_SHARE = 5.0
-"""Percentile of the ankles' heights that stands for rest where no foot rests."""
 
 
 @dataclass(frozen=True, eq=False)
 class Ground:
     """The ground under a performer's feet."""
 
-    rests: tuple[Contact, ...]
-    """Rests of the ankles; points are counted left, right."""
-    levels_m: tuple[float, ...]
-    """Height of the ground at each of them [m]."""
-    height_m: Array
-    """(F, 2) height of the ground under the left and the right foot [m]."""
-    ankle_m: float
-    """Height of a resting ankle over the ground [m]."""
+    rests: tuple[Contact, ...]  # rests of the ankles; points are counted left, right
+    height_m: Array  # (F, 2) height of the ground under the left and the right foot [m]
+    ankle_m: float  # height of a resting ankle over the ground [m]
+
+    @property
+    def lowest_m(self) -> Array:
+        """(F,) the lower of both heights [m]."""
+        return np.asarray(self.height_m.min(axis=1))
 
 
 def find_ground(source: SegmentMotion) -> Ground:
@@ -205,9 +177,10 @@ def find_ground(source: SegmentMotion) -> Ground:
     depth = np.stack([_depth_m(source, side) for side in SIDES], axis=1)
     flat = float(-sole_offsets(source.body)[..., 2].min(axis=1).mean())
     if not rests:
-        low = float(np.percentile(ankles[..., 2].min(axis=1), LOW_SHARE))
+        # Percentile of the ankles' heights that stands for rest where no foot rests.
+        low = float(np.percentile(ankles[..., 2].min(axis=1), 5.0))
         level = _level_m(low - flat)
-        return Ground((), (), np.full(ankles.shape[:2], level), max(low - level, 0.5 * flat))
+        return Ground((), np.full(ankles.shape[:2], level), max(low - level, 0.5 * flat))
     heights = np.array(
         [np.median((ankles[..., 2] - depth)[rest.first : rest.last + 1, rest.point]) for rest in rests]
     )
@@ -224,7 +197,7 @@ def find_ground(source: SegmentMotion) -> Ground:
         lowest = -smooth_above(depth[:, number] - ankles[:, number, 2], source.time_s, CHANGE_S)
         lowered = np.minimum(under[:, number], lowest + SAME_LEVEL_M)
         under[:, number] = np.where(under[:, number] > 0.0, np.maximum(lowered, 0.0), under[:, number])
-    return Ground(rests, tuple(levels), under, float(np.median(standing)) if standing else flat)
+    return Ground(rests, under, float(np.median(standing)) if standing else flat)
 
 
 def is_rigid(source: SegmentMotion, side: str) -> bool:
@@ -246,7 +219,8 @@ def _leveled(heights: Array) -> list[float]:
     groups = np.split(order, np.flatnonzero(np.diff(heights[order]) > SAME_LEVEL_M) + 1)
     levels = np.array(heights)
     for group in groups:
-        if np.ptp(heights[group]) <= LEVEL_RANGE_M:
+        # A slope is no level.
+        if np.ptp(heights[group]) <= 0.05:
             levels[group] = heights[group].mean()
     return [_level_m(float(level)) for level in levels]
 

@@ -6,7 +6,6 @@ as much as it is near; everywhere else the directions hold.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
 from ...numerics.vectors import unit
+from ..character import LONG_BONES
 from ..character_motion import HandGoal
 from .body_frames import distances_m, in_segment, part_shapes, places_by_part
 from .foot_shape import Ground
@@ -27,49 +27,17 @@ from .two_bone import LimbPose, reach_for, smallest_rotation, stretched_m
 NEAR_M = (0.03, 0.065)
 """Distance of a hand from the own body up to which its place there counts in full, and from which not at all;
 like the others for a performer of `OF_STATURE_M`."""
-TOGETHER_M = (0.15, 0.40)
-"""The same for the distance of the wrists from each other."""
-FLOOR_M = (0.12, 0.35)
-"""The same for the height of a wrist over the floor."""
+TOGETHER_M = (0.15, 0.40)  # the same for the distance of the wrists from each other
+FLOOR_M = (0.12, 0.35)  # the same for the height of a wrist over the floor
 PASSING_M_S = (0.25, 0.75)
 """Speed of a hand along a part of the body up to which it touches it, and from which it only swings past."""
 LINGER_S = 0.25
 """Standard deviation in time of the smoothing of that speed: a hand that turns round in its swing swings."""
 OF_STATURE_M = 1.75
-CHANGE_S = 0.1
-"""Standard deviation in time of the smoothing of what counts how much."""
-ARM_SOFT = 0.97
-"""Share of its length from which an arm resists being stretched."""
+CHANGE_S = 0.1  # standard deviation in time of the smoothing of what counts how much
+ARM_SOFT = 0.97  # share of its length from which an arm resists being stretched
 FULL_SHARE = 0.2
 """Share of a goal from which the arm is solved for it; below, it is between that and its directions."""
-LEAST_HEADING = 0.02
-"""Part of the back of the hand in the heading of fingers."""
-ROUNDS = 4
-"""Rounds in which two hands find a place that both reach."""
-
-
-@dataclass(frozen=True, eq=False)
-class Nearness:
-    """What the performer's hands are near, by how much (0 to 1)."""
-
-    parts: Mapping[str, Array]
-    """(K, F) by side: the parts of the body."""
-    floor: Mapping[str, Array]
-    """(F,) by side."""
-    together: Array
-    """(F,) the hands themselves."""
-
-
-def find_nearness(source: SegmentMotion, ground: Ground, segments: Sequence[str]) -> Nearness:
-    """Find what the performer's hands are near."""
-    parts = {}
-    for side in SIDES:
-        wrist, end = source.start[f"hand.{side}"], source.end[f"hand.{side}"]
-        along = [wrist, 0.5 * (wrist + end), end]
-        parts[side] = np.stack([_near_part(source, name, along) for name in segments])
-    floor = {side: near_floor(source, ground, side) for side in SIDES}
-    apart_m = np.linalg.norm(source.start["hand.R"] - source.start["hand.L"], axis=-1)
-    return Nearness(parts, floor, _near(source, apart_m, TOGETHER_M))
 
 
 def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Array:
@@ -83,8 +51,7 @@ def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Ar
 
 def near_floor(source: SegmentMotion, ground: Ground, side: str) -> Array:
     """(F,) how near the performer's hand is to the floor, 0 to 1."""
-    height_m = source.start[f"hand.{side}"][:, 2] - ground.height_m.min(axis=1)
-    return _near(source, height_m, FLOOR_M)
+    return _near(source, source.start[f"hand.{side}"][:, 2] - ground.lowest_m, FLOOR_M)
 
 
 def _near(source: SegmentMotion, distance_m: Array, bounds: tuple[float, float]) -> Array:
@@ -105,43 +72,35 @@ def hand_goals(
 ) -> dict[str, HandGoal]:
     """Where the wrists belong by the body, the floor and the other hand, by side.
 
-    Args:
-        body: The character at rest.
-        source: The performer's motion.
-        stage: Where the character performs.
-        ground: The performer's ground.
-        places: (F, 3) the joint of each of the character's bones, trunk and legs solved [m].
-        turns: (F, 3, 3) turn of each bone from its rest.
-        alignment: (3, 3) by role.
-        arms: By side, by their directions.
+    Places (F, 3) [m] and turns from rest (F, 3, 3) are of the character's bones, trunk and legs solved, arms
+    by directions; the alignment (3, 3) is by role.
     """
     shapes = part_shapes(body, source, stage.size)
-    nearness = find_nearness(source, ground, [shape.segment for shape in shapes])
     aligned = {
         index: alignment[bone.role] if body.is_moved(bone.role) else np.eye(3)
         for index, bone in enumerate(body.bones)
     }
-    floor_m = stage.heights(ground.height_m.min(axis=1))
-    goals, shares = {}, {}
+    goals, shares, floors = {}, {}, {}
     for side in arms:
         wrist, own = source.start[f"hand.{side}"], arms[side].end
         by_part = places_by_part(shapes, source, stage, places, turns, aligned, wrist)
-        weight = nearness.parts[side]
-        mean = (weight[..., None] * (by_part - own)).sum(axis=0) / np.maximum(weight.sum(axis=0), 1e-9)[
-            :, None
-        ]
+        end, floors[side] = source.end[f"hand.{side}"], near_floor(source, ground, side)
+        along = [wrist, 0.5 * (wrist + end), end]
+        weight = np.stack([_near_part(source, shape.segment, along) for shape in shapes])
+        total = np.maximum(weight.sum(axis=0), 1e-9)[:, None]
+        mean = (weight[..., None] * (by_part - own)).sum(axis=0) / total
         share = 1.0 - np.prod(1.0 - weight, axis=0)
         goal = own + share[:, None] * mean
-        height = floor_m + stage.size * (wrist[:, 2] - ground.height_m.min(axis=1))
-        goal[:, 2] += nearness.floor[side] * (height - goal[:, 2])
-        goals[side], shares[side] = goal, 1.0 - (1.0 - share) * (1.0 - nearness.floor[side])
+        goal[:, 2] += floors[side] * (stage.heights(wrist[:, 2]) - goal[:, 2])
+        goals[side], shares[side] = goal, 1.0 - (1.0 - share) * (1.0 - floors[side])
     if len(arms) == len(SIDES):
         between = source.start["hand.R"] - source.start["hand.L"]
+        together = _near(source, np.linalg.norm(between, axis=-1), TOGETHER_M)
         apart = _arm_ratio(body, source) * between @ stage.turn.T
-        goals = _brought_together(goals, arms, apart, nearness.together)
-        shares = {side: 1.0 - (1.0 - share) * (1.0 - nearness.together) for side, share in shares.items()}
+        goals = _brought_together(goals, arms, apart, together)
+        shares = {side: 1.0 - (1.0 - share) * (1.0 - together) for side, share in shares.items()}
     return {
-        side: HandGoal(goals[side], shares[side], nearness.floor[side], _in_reach(arms[side], goals[side]))
+        side: HandGoal(goals[side], shares[side], floors[side], _in_reach(arms[side], goals[side]))
         for side in arms
     }
 
@@ -150,9 +109,8 @@ def floor_goals(
     source: SegmentMotion, stage: Stage, ground: Ground, arm: LimbPose, side: str
 ) -> tuple[Array, Array]:
     """The wrist's goal (F, 3) by the floor alone [m], and how much it counts (F,)."""
-    low = ground.height_m.min(axis=1)
     goal = arm.end.copy()
-    goal[:, 2] = stage.heights(low) + stage.size * (source.start[f"hand.{side}"][:, 2] - low)
+    goal[:, 2] = stage.heights(source.start[f"hand.{side}"][:, 2])
     return goal, near_floor(source, ground, side)
 
 
@@ -173,16 +131,15 @@ def reach(arm: LimbPose, goal: Array, share: Array) -> LimbPose:
 def above_floor(turn: Array, wrist_m: Array, along: Array) -> Array:
     """(F, 3, 3) turns of a hand, bent back at the wrist where it would be in the floor.
 
-    Args:
-        turn: (F, 3, 3) of the hand, canonical.
-        wrist_m: (F,) height of the wrist over the floor [m].
-        along: (3,) from wrist to fingertips at rest, palm down, canonical [m].
+    `wrist_m` is the wrist's height over the floor, `along` (3,) goes from wrist to fingertips at rest, palm
+    down [m].
     """
     length_m = float(np.linalg.norm(along))
     fingers = turn @ (along / length_m)
     least = np.clip(-wrist_m / length_m, -1.0, 0.0)
     # Fingers that point straight down have no heading of their own: they bend toward the back of the hand.
-    level = (fingers + LEAST_HEADING * turn[..., 2]) * [1.0, 1.0, 0.0]
+    # Part of the back of the hand in the heading of fingers.
+    level = (fingers + 0.02 * turn[..., 2]) * [1.0, 1.0, 0.0]
     level = unit(level) * np.sqrt(1.0 - least**2)[:, None] + least[:, None] * UP
     bent = smallest_rotation(fingers, unit(level)) @ turn
     return np.where((fingers[:, 2] < least)[:, None, None], bent, turn)
@@ -193,7 +150,8 @@ def _brought_together(
 ) -> dict[str, Array]:
     """Goals of two hands at their distance from each other, about a point that both reach."""
     found = dict(goals)
-    for _ in range(ROUNDS):
+    # Rounds in which two hands find a place that both reach.
+    for _ in range(4):
         reached = {side: _reachable(arms[side], found[side]) for side in SIDES}
         middle = 0.5 * (reached["L"] + reached["R"])
         for side, sign in (("L", -0.5), ("R", 0.5)):
@@ -215,11 +173,6 @@ def _in_reach(arm: LimbPose, goal: Array) -> BoolArray:
 
 
 def _arm_ratio(body: RestBody, source: SegmentMotion) -> float:
-    """Length of the character's arms over the performer's."""
     lengths = source.body.actor.segments_m
-    own, other = 0.0, 0.0
-    for side in SIDES:
-        own += body.length_m(f"upper_arm.{side}", f"forearm.{side}")
-        own += body.length_m(f"forearm.{side}", f"hand.{side}")
-        other += lengths[f"upper_arm.{side}"] + lengths[f"forearm.{side}"]
-    return own / other
+    bones = (*LONG_BONES["arm.L"], *LONG_BONES["arm.R"])
+    return sum(body.length_m(*ends) for ends in bones) / sum(lengths[start] for start, _ in bones)

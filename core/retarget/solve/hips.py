@@ -1,4 +1,4 @@
-"""Holds: stretches of frames in which a path is replaced, and its fading correction on either side."""
+"""Corrections that fade, signals over time, and what moves the hips and the way over the ground."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,18 +12,15 @@ from ...finish.foot_ground import smooth_step
 from ...numerics.vectors import columns_at, gaussian
 from .two_bone import STRAIGHTEST, LimbPose
 
-FADE_S = 0.2
-"""Time in which a correction fades on either side of a hold."""
+FADE_S = 0.2  # time in which a correction fades on either side of a hold
 
 
 @dataclass(frozen=True, eq=False)
 class Hold:
     """A stretch of frames with a correction."""
 
-    first: int
-    """Its first frame, from 0."""
-    offset: Array
-    """(N, 3) the correction in each of its N frames."""
+    first: int  # its first frame, from 0
+    offset: Array  # (N, 3) the correction in each of its N frames
 
     @property
     def last(self) -> int:
@@ -31,15 +28,10 @@ class Hold:
         return self.first + len(self.offset) - 1
 
 
-def faded(holds: Sequence[Hold], time_s: Array, fade_s: float = FADE_S) -> Array:
+def faded(holds: Sequence[Hold], time_s: Array) -> Array:
     """(F, 3) the corrections of holds, fading on either side without a jump in place or speed.
 
-    Two holds that follow each other closely are joined by one cubic.
-
-    Args:
-        holds: In order, none overlapping another.
-        time_s: (F,) time of each frame [s].
-        fade_s: Time in which a correction fades [s].
+    Holds are in order and do not overlap; two that follow each other closely are joined by one cubic.
     """
     offset = np.zeros((len(time_s), 3))
     for hold in holds:
@@ -49,36 +41,26 @@ def faded(holds: Sequence[Hold], time_s: Array, fade_s: float = FADE_S) -> Array
         right = len(time_s) if after is None else after.first
         if right - left < 2:
             continue
-        near = before is not None and after is not None and time_s[right] - time_s[left] <= 2.0 * fade_s
+        near = before is not None and after is not None and time_s[right] - time_s[left] <= 2.0 * FADE_S
+        between = slice(left + 1, right)
         if before is not None:
-            end = time_s[right] if near else time_s[left] + fade_s
-            share, span = _share(time_s[left + 1 : right], time_s[left], end)
-            offset[left + 1 : right] += _cubic(share, before.offset[-1], span * _slope(before, time_s, -1))
+            end = time_s[right] if near else time_s[left] + FADE_S
+            offset[between] += _fading(before, -1, time_s, between, end)
         if after is not None:
-            start = time_s[left] if near else time_s[right] - fade_s
-            share, span = _share(time_s[left + 1 : right], time_s[right], start)
-            offset[left + 1 : right] += _cubic(share, after.offset[0], span * _slope(after, time_s, 0))
+            start = time_s[left] if near else time_s[right] - FADE_S
+            offset[between] += _fading(after, 0, time_s, between, start)
     return offset
 
 
-def _share(times: Array, edge: float, end: float) -> tuple[Array, float]:
-    """Share of the fade at some times, up to 1, and its signed length [s]."""
-    return np.clip((times - edge) / (end - edge), 0.0, 1.0), end - edge
-
-
-def _cubic(share: Array, value: Array, slope: Array) -> Array:
-    """From a value with a slope to zero without one; `slope` is that over the whole fade."""
-    s = share[:, None]
-    return np.asarray((1.0 - s) ** 2 * ((1.0 + 2.0 * s) * value + s * slope))
-
-
-def _slope(hold: Hold, time_s: Array, edge: int) -> Array:
-    """(3,) rate of the correction at the hold's first (0) or last (-1) frame."""
-    if len(hold.offset) < 2:
-        return np.zeros(3)
-    first, second = (0, 1) if edge == 0 else (-2, -1)
-    times = time_s[hold.first : hold.last + 1]
-    return np.asarray((hold.offset[second] - hold.offset[first]) / (times[second] - times[first]))
+def _fading(hold: Hold, edge: int, time_s: Array, frames: slice, end: float) -> Array:
+    """A cubic from a hold's first (0) or last (-1) correction and its rate to zero at a time `end`."""
+    times, rate = time_s[hold.first : hold.last + 1], np.zeros(3)
+    if len(times) > 1:
+        one, other = (0, 1) if edge == 0 else (-2, -1)
+        rate = (hold.offset[other] - hold.offset[one]) / (times[other] - times[one])
+    span = end - times[edge]
+    s = np.clip((time_s[frames] - times[edge]) / span, 0.0, 1.0)[:, None]
+    return np.asarray((1.0 - s) ** 2 * ((1.0 + 2.0 * s) * hold.offset[edge] + s * span * rate))
 
 
 # --- Signals over time
@@ -99,16 +81,13 @@ def speeds(path: Array, time_s: Array) -> Array:
 def smoothed(values: Array, time_s: Array, deviation_s: float, ends_kept: bool = True) -> Array:
     """Values (F, ...) smoothed by a Gaussian in time.
 
-    Args:
-        values: (F, ...).
-        time_s: (F,) time of each frame [s].
-        deviation_s: Standard deviation of the Gaussian [s].
-        ends_kept: Whether the first and last values stay and slopes go on beyond them, as a way's do; else
-            they are as smooth as all others.
+    With `ends_kept` the first and last values stay and slopes go on beyond them, as a way's do; else they are
+    as smooth as all others.
     """
     if len(values) < 3:
         return np.array(values)
-    even, step = _evenly(time_s)
+    even = np.linspace(time_s[0], time_s[-1], len(time_s))
+    step = max(float(even[1] - even[0]), 1e-6)
     columns = values.reshape(len(values), -1)
     sampled = columns_at(even, time_s, columns)
     reach = min(len(even) - 1, int(np.ceil(4.0 * deviation_s / step)))
@@ -118,18 +97,11 @@ def smoothed(values: Array, time_s: Array, deviation_s: float, ends_kept: bool =
         before, after = 2.0 * sampled[0] - before, 2.0 * sampled[-1] - after
     extended = np.concatenate([before, sampled, after])
     filtered = gaussian(extended, deviation_s / step)[reach : reach + len(even)]
-    back = columns_at(time_s, even, filtered)
-    return back.reshape(values.shape)
+    return columns_at(time_s, even, filtered).reshape(values.shape)
 
 
 def smooth_above(needed: Array, time_s: Array, reach_s: float) -> Array:
-    """A smooth signal (F,) that is nowhere below the needed one: its running maximum, smoothed.
-
-    Args:
-        needed: (F,).
-        time_s: (F,) time of each frame [s].
-        reach_s: Time over which it rises and falls to either side [s].
-    """
+    """A smooth signal (F,) nowhere below the needed one: its running maximum over the reach, smoothed."""
     if len(needed) < 3 or not needed.any():
         return np.array(needed)
     step = float(np.median(np.diff(time_s)))
@@ -139,43 +111,18 @@ def smooth_above(needed: Array, time_s: Array, reach_s: float) -> Array:
     return np.asarray(convolve1d(highest, window / window.sum(), mode="nearest"))
 
 
-def _evenly(time_s: Array) -> tuple[Array, float]:
-    """As many even times as there are frames, and the step between them [s]."""
-    even = np.linspace(time_s[0], time_s[-1], len(time_s))
-    return even, max(float(even[1] - even[0]), 1e-6)
-
-
 # --- Hips
 
 
-LEG_SOFT = 0.988
-"""Share of its length from which a leg resists being stretched."""
-SINK_S = 0.12
-"""Time over which the hips go down and up again."""
-CARRY_S = 0.08
-"""Standard deviation in time of the smoothing of what they are moved by with the feet."""
-MOMENT_S = 0.07
-"""Standard deviation in time of the smoothing of how far a limb may be stretched."""
-DEEPEST_SHARE = 0.08
-"""Farthest that they go down or up, as a share of the legs' length."""
-STANDING_SHARE = 0.04
-"""Height of an ankle over its height on the ground, as a share of the leg, from which it does not stand."""
-STRAIGHT = 0.01
-"""What a leg is longer than the way between its ends, as a share, when it counts as nearly straight."""
-LEAST_WEIGHT = 1.0
-"""What standing legs are weighed against: a bent leg that stands has about 20, a straight one 100."""
+LEG_SOFT = 0.988  # share of its length from which a leg resists being stretched
+SINK_S = 0.12  # time over which the hips go down and up again
+CARRY_S = 0.08  # standard deviation in time of the smoothing of what they are moved by with the feet
+MOMENT_S = 0.07  # standard deviation in time of the smoothing of how far a limb may be stretched
+DEEPEST_SHARE = 0.08  # farthest that they go down or up, as a share of the legs' length
 
 
 def needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float, time_s: Array) -> Array:
-    """(F,) how much lower a limb must begin to reach its goal [m].
-
-    Args:
-        limb: The limb by the performer's directions.
-        goal: (F, 3) ankle or wrist [m].
-        needed: (F,) whether the goal must be reached.
-        soft: Share of its length from which the limb resists.
-        time_s: (F,) time of each frame [s].
-    """
+    """(F,) how much lower a limb must begin to reach its goal (F, 3) where that is needed (F,) [m]."""
     own = np.minimum(limb.extension_m / limb.length_m, 1.0)
     # A knee that is straight for a moment only is not stretched to the limit for it: it would snap.
     allowed = np.maximum(soft, np.minimum(own, smoothed(own, time_s, MOMENT_S, ends_kept=False)))
@@ -187,7 +134,8 @@ def needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float, t
 
 def straightness(limb: LimbPose) -> Array:
     """(F,) how much a limb bends for a little way: a weight, large where it is nearly straight."""
-    return np.asarray(1.0 / (STRAIGHT + np.maximum(1.0 - limb.extension_m / limb.length_m, 0.0)))
+    # What a leg is longer than the way between its ends, as a share, when it counts as nearly straight.
+    return np.asarray(1.0 / (0.01 + np.maximum(1.0 - limb.extension_m / limb.length_m, 0.0)))
 
 
 def raised_m(
@@ -195,16 +143,14 @@ def raised_m(
 ) -> Array:
     """(F,) how much higher the hips go, or lower, for the legs that stand to keep their bend [m].
 
-    Args:
-        legs: The legs by the performer's directions.
-        ankles: (F, 3) where their ankles shall be [m].
-        over_m: (F,) how much higher that is than an ankle on the ground [m].
-        time_s: (F,) time of each frame [s].
-        leg_m: Length of the legs [m].
+    `over_m` (F,) is how much higher the ankles (F, 3) shall be than ankles on the ground.
     """
-    total, weights = np.zeros(len(time_s)), np.full(len(time_s), LEAST_WEIGHT)
+    # What standing legs are weighed against: a bent leg that stands has about 20, a straight one 100.
+    total, weights = np.zeros(len(time_s)), np.full(len(time_s), 1.0)
     for leg, ankle, over in zip(legs, ankles, over_m, strict=True):
-        weight = straightness(leg) * (1.0 - ease(over, 0.0, STANDING_SHARE * leg_m))
+        # Height of an ankle over its height on the ground, as a share of the leg, from which it does not
+        # stand.
+        weight = straightness(leg) * (1.0 - ease(over, 0.0, 0.04 * leg_m))
         total += weight * (ankle - leg.end)[:, 2]
         weights += weight
     limit = DEEPEST_SHARE * leg_m
@@ -220,8 +166,7 @@ def lowered_m(needed: list[Array], time_s: Array, leg_m: float) -> Array:
 # --- The way over the ground
 
 
-WAY_S = 0.4
-"""Standard deviation in time of what counts as the way and heading; faster changes are sway."""
+WAY_S = 0.4  # standard deviation in time of what counts as the way and heading; faster changes are sway
 
 
 def smooth_way(hips: Array, time_s: Array) -> Array:
@@ -236,14 +181,7 @@ def smooth_headings_rad(headings_rad: Array, time_s: Array) -> Array:
 
 
 def root_poses(rest: Array, stand: Array, way: Array, heading_rad: Array) -> Array:
-    """(F, 4, 4) poses of a root bone that goes along a way and turns, canonical [m].
-
-    Args:
-        rest: (4, 4) the bone at rest, canonical [m].
-        stand: (3,) the point that goes along the way, at rest [m].
-        way: (F, 3) [m].
-        heading_rad: (F,).
-    """
+    """(F, 4, 4) poses of a root bone that goes along a way (F, 3) from where it stands, and turns [m]."""
     turn = yaw_rotation(heading_rad)
     poses = np.broadcast_to(np.eye(4), (len(way), 4, 4)).copy()
     poses[:, :3, :3] = turn @ rest[:3, :3]

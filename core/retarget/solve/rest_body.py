@@ -8,6 +8,7 @@ forearm, hand ...), whatever the armature's hierarchy: feet that hang on a root 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -15,15 +16,12 @@ from ...arrays import Array
 from ...body.skeleton import SIDES
 from ...errors import InputError
 from ...files.json_file import shown
-from ..character import LIMBS, MIDDLE, Character
+from ..character import LIMBS, LONG_BONES, MIDDLE, Character, joint_roles
 from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap
 from ..maps.map_registry import check_map
 
-SHORTEST_SHARE = 0.005
-"""Least length of a long bone, as a share of the body's extent."""
-MEETING_SHARE = 0.02
-"""Distance from a tail to a child's head that still counts as met, as a share of the bone's length."""
+SHORTEST_SHARE = 0.005  # least length of a long bone, as a share of the body's extent
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,12 +30,9 @@ class RestBone:
 
     name: str
     role: str
-    number: int
-    """Its place in the role's chain, from 0."""
-    carrier: int
-    """Index of the bone that carries its joint; -1 for the hips."""
-    head: Array
-    """(3,) its joint, canonical [m]."""
+    number: int  # its place in the role's chain, from 0
+    carrier: int  # index of the bone that carries its joint; -1 for the hips
+    head: Array  # (3,) its joint, canonical [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,10 +41,8 @@ class RestBody:
 
     character: Character
     character_map: CharacterMap
-    stance: Array
-    """(3, 3) from the armature's axes to canonical ones."""
-    bones: tuple[RestBone, ...]
-    """Carriers before what they carry; the hips first."""
+    stance: Array  # (3, 3) from the armature's axes to canonical ones
+    bones: tuple[RestBone, ...]  # carriers before what they carry; the hips first
 
     @classmethod
     def of(cls, character: Character, character_map: CharacterMap) -> "RestBody":
@@ -96,10 +89,7 @@ class RestBody:
     @cached_property
     def leg_m(self) -> float:
         """Mean length of the legs, hip to ankle along the bones [m]."""
-        lengths = [
-            self.length_m(f"thigh.{s}", f"shin.{s}") + self.length_m(f"shin.{s}", f"foot.{s}") for s in SIDES
-        ]
-        return float(np.mean(lengths))
+        return 0.5 * sum(self.length_m(*ends) for side in SIDES for ends in LONG_BONES[f"leg.{side}"])
 
     @cached_property
     def hip_joints(self) -> Array:
@@ -115,9 +105,10 @@ class RestBody:
     def tails_are_meant(self) -> bool:
         """Whether most bones end at a child's head, so that the tails of the others mean something too."""
         character = self.character
+        # Distance from a tail to a child's head that still counts as met, as a share of the bone's length.
         met = [
             min(float(np.linalg.norm(bone.tail - character.bones[child].head)) for child in children)
-            <= MEETING_SHARE * float(np.linalg.norm(bone.tail - bone.head))
+            <= 0.02 * float(np.linalg.norm(bone.tail - bone.head))
             for bone, children in zip(character.bones, character.children, strict=True)
             if children
         ]
@@ -149,10 +140,9 @@ class RestBody:
             InputError: Two joints of a limb lie in one place.
         """
         extent = float(np.ptp([bone.head for bone in self.bones], axis=0).max())
-        for limb, roles in LIMBS.items():
-            long_bones = roles[1:] if limb.startswith("arm") else roles[:3]
-            there = [role for role in long_bones if role in self.first]
-            for role, below in zip(there, there[1:], strict=False):
+        for limb in LIMBS:
+            there = [role for role in joint_roles(limb) if role in self.first]
+            for role, below in pairwise(there):
                 if not self.length_m(role, below) > SHORTEST_SHARE * extent:
                     raise InputError(
                         f"{self.character.name}: {self.bones[self.first[role]].name} ({role}) and "
@@ -183,44 +173,28 @@ def _carrier(character: Character, bones: list[RestBone], role: str, name: str) 
     Along a limb it is the one before. Where a limb or the neck begins, it is the bone of the trunk that the
     armature hangs it on, else the upper end of what is there below it.
     """
-    if not bones:
-        return -1
-    part, _, side = role.partition(".")
-    same_limb = [index for index, bone in enumerate(bones) if side and bone.role.endswith(f".{side}")]
-    limb = next((roles for roles in LIMBS.values() if role in roles), ())
-    inner = [index for index in same_limb if bones[index].role in limb]
+    if not bones or role in ("spine", "neck", "head"):
+        return len(bones) - 1
+    limb = next(roles for roles in LIMBS.values() if role in roles)
+    inner = [index for index, bone in enumerate(bones) if bone.role in limb]
     if inner:
         return inner[-1]
     trunk = {bone.name: index for index, bone in enumerate(bones) if bone.role in MIDDLE}
-    if part in ("spine", "neck", "head"):
-        return len(bones) - 1
     above = character.bone(name).parent
     while above >= 0:
         if character.bones[above].name in trunk:
             return trunk[character.bones[above].name]
         above = character.bones[above].parent
-    if part == "thigh":
+    if role.startswith("thigh"):
         return 0
-    spine = [index for index in trunk.values() if bones[index].role in ("hips", "spine")]
-    return spine[-1]
-
-
-# --- What a rest pose says against its map
-
-
-CLEARLY = 0.05
-"""Share of the leg's length by which toes lie clearly behind their ankle."""
+    return [index for index in trunk.values() if bones[index].role in ("hips", "spine")][-1]
 
 
 def rest_notes(body: RestBody) -> tuple[str, ...]:
     """Sentences without a full stop on a rest pose that the map cannot mean."""
     roles = [(f"foot.{side}", f"toe.{side}") for side in SIDES]
     behind = [float(body.joint(toe)[1] - body.joint(foot)[1]) for foot, toe in roles if toe in body.first]
-    if behind and min(behind) > CLEARLY * body.leg_m:
-        return (
-            (
-                f"The toes of '{body.character.name}' point backward by its character map; left and "
-                "right may be mistaken for each other there"
-            ),
-        )
-    return ()
+    if not behind or min(behind) <= 0.05 * body.leg_m:
+        return ()
+    doubt = f"The toes of '{body.character.name}' point backward by its character map; left and right may "
+    return (doubt + "be mistaken for each other there",)

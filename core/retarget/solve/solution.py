@@ -9,7 +9,7 @@ from ...arrays import Array
 from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
-from ..character import LIMBS
+from ..character import LIMBS, joint_roles
 from ..character_motion import FootRest, HandGoal
 from .body_frames import bone_turns, joint_places
 from .feet import FootPath, foot_turns, plan_foot, toe_bends
@@ -38,10 +38,8 @@ class Solution:
     source: SegmentMotion
     stage: Stage
     ground: Ground
-    hips: Array
-    """(F, 3) the midpoint of the hip joints, canonical [m]."""
-    turns: list[Array]
-    """(F, 3, 3) a bone: its turn from rest, canonical."""
+    hips: Array  # (F, 3) the midpoint of the hip joints, canonical [m]
+    turns: list[Array]  # (F, 3, 3) a bone: its turn from rest, canonical
 
     @classmethod
     def by_directions(
@@ -53,7 +51,7 @@ class Solution:
         ground: Ground,
     ) -> "Solution":
         """The motion by the performer's directions alone."""
-        turn = stage.turned(source.turn)
+        turn = {name: stage.turn @ own for name, own in source.turn.items()}
         for side in SIDES:
             turn[f"foot.{side}"] = foot_turns(source, stage, ground, side)
         middle = stage.joints(0.5 * (source.start["thigh.L"] + source.start["thigh.R"]))
@@ -67,7 +65,7 @@ class Solution:
 
     def limb(self, limb: str) -> LimbPose | None:
         """A limb as it is; None where its end is not there or one of its bones is left alone."""
-        roles = LIMBS[limb][1:] if limb.startswith("arm") else LIMBS[limb][:3]
+        roles = joint_roles(limb)
         if not all(self.body.is_moved(role) for role in roles):
             return None
         places = self.places()
@@ -142,7 +140,7 @@ class Solution:
 
     def _keep_above_floor(self, side: str, wrist: Array) -> None:
         role = f"hand.{side}"
-        tip, floor_m = self.body.tip(role), self.stage.heights(self.ground.height_m.min(axis=1))
+        tip, floor_m = self.body.tip(role), self.stage.heights(self.ground.lowest_m)
         if tip is not None:
             aligned = self.alignment[role]
             turn = self.turns[self.body.first[role]] @ aligned.T
@@ -177,9 +175,8 @@ class Solution:
 
     def rests(self, feet: Mapping[str, FootPath]) -> tuple[FootRest, ...]:
         """Rests of the planted feet."""
-        levels = self.stage.heights(np.array(self.ground.levels_m))
         return tuple(
-            FootRest(f"leg.{SIDES[rest.point]}", rest.first, rest.last, float(level))
-            for rest, level in zip(self.ground.rests, levels, strict=True)
+            FootRest(f"leg.{SIDES[rest.point]}", rest.first, rest.last)
+            for rest in self.ground.rests
             if SIDES[rest.point] in feet
         )

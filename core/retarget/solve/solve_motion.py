@@ -26,17 +26,7 @@ def solve_motion(
     options: RetargetOptions,
     object_space: Similarity,
 ) -> Job[CharacterMotion]:
-    """Solve a motion for a character.
-
-    Args:
-        character: The character at rest.
-        character_map: Which of its bones play which role.
-        source: The performer's motion, F frames.
-        options: What a person chose.
-        object_space: Where the armature object stands now; it stays there with `Placement.CHARACTER`.
-
-    Returns:
-        The poses of the role bones.
+    """Solve a performer's motion for a character; `object_space` stays with `Placement.CHARACTER`.
 
     Raises:
         InputError: The map does not fit the character.
@@ -85,23 +75,15 @@ def _root_motion(solution: Solution, options: RetargetOptions) -> tuple[Array, A
     """What is taken off the way (F, 3) [m], the root bone's poses in the armature's space, and notes."""
     body, time_s = solution.body, solution.source.time_s
     none = np.zeros_like(solution.hips)
+    if options.root_motion is RootMotion.AS_FILMED:
+        return none, None, ()
     way = smooth_way(solution.hips, time_s)
     if options.root_motion is RootMotion.IN_PLACE:
         return way, None, ()
-    if options.root_motion is RootMotion.AS_FILMED:
-        return none, None, ()
     name, character = body.character_map.root, body.character
     if name is None or name not in character.index or name in {bone.name for bone in body.bones}:
-        return (
-            none,
-            None,
-            (
-                (
-                    f"'{character.name}' has no root bone apart from its hips, which keep the way over "
-                    "the ground"
-                ),
-            ),
-        )
+        note = f"'{character.name}' has no root bone apart from its hips, which keep the way over the ground"
+        return none, None, (note,)
     heading = smooth_headings_rad(turn_headings_rad(solution.source.turn["pelvis"]), time_s)
     rest = np.eye(4)
     rest[:3, :3] = body.stance @ character.bone(name).rest[:3, :3]

@@ -1,6 +1,5 @@
 """The performer on the character's stage: turned to face canonically, moved to where the character stands."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,14 +15,10 @@ from .foot_shape import Ground
 class Stage:
     """From the performer's world to the character's canonical space [m]."""
 
-    heading_rad: float
-    """Where the performer faces at the first frame."""
-    under: Array
-    """(3,) the point of the performer's floor under the hips at the first frame [m]."""
-    stand: Array
-    """(3,) the point of the floor under the resting character's hips, canonical [m]."""
-    size: float
-    """The character's size: its legs' length over the performer's."""
+    heading_rad: float  # where the performer faces at the first frame
+    under: Array  # (3,) the point of the performer's floor under the hips at the first frame [m]
+    stand: Array  # (3,) the point of the floor under the resting character's hips, canonical [m]
+    size: float  # the character's size: its legs' length over the performer's
     lift_m: float
     """What the character's ankles are higher over their soles than those of a performer of its size [m]."""
 
@@ -32,21 +27,14 @@ class Stage:
         """(3, 3) from the world's axes to canonical ones."""
         return yaw_rotation(-self.heading_rad)
 
-    def floor(self, points: Array) -> Array:
-        """Canonical places (..., 3) of world points at the floor [m]."""
-        return np.asarray(self.stand + self.size * (points - self.under) @ self.turn.T)
-
     def joints(self, points: Array) -> Array:
         """Canonical places (..., 3) of the performer's joints [m]: ankles over soles, not through them."""
-        return self.floor(points) + [0.0, 0.0, self.lift_m]
+        at_floor = self.stand + self.size * (points - self.under) @ self.turn.T
+        return np.asarray(at_floor + [0.0, 0.0, self.lift_m])
 
     def heights(self, heights_m: Array) -> Array:
         """Canonical heights (...) of world heights of the ground [m]."""
         return np.asarray(self.stand[2] + self.size * (heights_m - self.under[2]))
-
-    def turned(self, turns: Mapping[str, Array]) -> dict[str, Array]:
-        """Turns of segments (F, 3, 3) in canonical axes."""
-        return {name: self.turn @ turn for name, turn in turns.items()}
 
     def to_world(self, stance: Array, scale: float) -> Similarity:
         """Where the armature stands so that the character performs where the performer did."""
@@ -55,23 +43,14 @@ class Stage:
 
 
 def find_stage(source: SegmentMotion, ground: Ground, stand: Array, leg_m: float, ankle_m: float) -> Stage:
-    """The stage for a character.
+    """The stage for a character whose hips rest over a point (3,) of the floor, canonical [m].
 
-    Args:
-        source: The performer's motion.
-        ground: The ground under the performer.
-        stand: (3,) point of the floor under the resting character's hips, canonical [m].
-        leg_m: Length of the character's legs [m].
-        ankle_m: Height of the character's ankles over its soles [m].
+    `ankle_m` is the height of its ankles over its soles.
     """
-    size = leg_m / source_leg_m(source)
+    lengths = source.body.actor.segments_m
+    own_m = 0.5 * sum(lengths[f"{part}.{side}"] for part in ("thigh", "shin") for side in "LR")
+    size = leg_m / own_m
     hips = 0.5 * (source.start["thigh.L"][0] + source.start["thigh.R"][0])
     under = np.array([hips[0], hips[1], ground.height_m[0].min()])
     heading = float(turn_headings_rad(source.turn["pelvis"][:1])[0])
     return Stage(heading, under, stand, size, ankle_m - size * ground.ankle_m)
-
-
-def source_leg_m(source: SegmentMotion) -> float:
-    """Mean length of the performer's legs [m]."""
-    lengths = source.body.actor.segments_m
-    return 0.5 * sum(lengths[f"{part}.{side}"] for part in ("thigh", "shin") for side in "LR")

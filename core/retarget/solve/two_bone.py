@@ -12,8 +12,7 @@ from ...arrays import Array
 from ...body import rotations
 from ...numerics.vectors import unit
 
-SOFT = 0.97
-"""Share of its length from which a limb resists being stretched further by a goal."""
+SOFT = 0.97  # share of its length from which a limb resists being stretched further by a goal
 STRAIGHTEST = 0.9999
 """Largest extension as a share of a limb's length; beyond it the bend would have no direction left."""
 LEAST_M = 1e-6
@@ -23,18 +22,12 @@ LEAST_M = 1e-6
 class LimbPose:
     """The two long bones of a limb over F frames."""
 
-    upper_turn: Array
-    """(F, 3, 3) turn of the upper bone from its aligned rest."""
-    lower_turn: Array
-    """(F, 3, 3)."""
-    start: Array
-    """(F, 3) hip or shoulder joint [m]."""
-    middle: Array
-    """(F, 3) knee or elbow [m]."""
-    end: Array
-    """(F, 3) ankle or wrist [m]."""
-    hinge: Array
-    """(F, 3) unit axis about which it bends."""
+    upper_turn: Array  # (F, 3, 3) turn of the upper bone from its aligned rest
+    lower_turn: Array  # (F, 3, 3)
+    start: Array  # (F, 3) hip or shoulder joint [m]
+    middle: Array  # (F, 3) knee or elbow [m]
+    end: Array  # (F, 3) ankle or wrist [m]
+    hinge: Array  # (F, 3) unit axis about which it bends
 
     @property
     def extension_m(self) -> Array:
@@ -67,11 +60,7 @@ class LimbPose:
 def stretched_m(wanted_m: Array, own_m: Array, length_m: float, soft: float = SOFT) -> Array:
     """(F,) extension that a limb takes on for a goal, smooth where the goal goes out of reach [m].
 
-    Args:
-        wanted_m: (F,) distance of the goal.
-        own_m: (F,) extension of the limb without a goal: as far as that it follows without resistance.
-        length_m: Length of the limb.
-        soft: Share of its length from which it resists.
+    From the share `soft` of its length it resists; its own extension (F,) without a goal is always allowed.
     """
     limit = STRAIGHTEST * length_m
     free = soft * limit
@@ -82,13 +71,9 @@ def stretched_m(wanted_m: Array, own_m: Array, length_m: float, soft: float = SO
 
 
 def reach_for(limb: LimbPose, start: Array, goal: Array, soft: float = SOFT) -> LimbPose:
-    """The limb with its end at a goal, or as near to it as it stretches.
+    """The limb from where its hip or shoulder is now (F, 3), its end at a goal or as near as it stretches.
 
-    Args:
-        limb: The limb as the performer's directions give it.
-        start: (F, 3) where its hip or shoulder is now [m].
-        goal: (F, 3) of ankle or wrist [m].
-        soft: Share of its length from which it resists being stretched.
+    It resists from the share `soft` of its length.
     """
     upper_m, lower_m = limb.upper_m, limb.lower_m
     way = goal - start

@@ -26,8 +26,7 @@ def property_path(bone: str, name: str) -> str:
 # --- Pose a character for a moment, and leave no trace
 
 
-Property = tuple[str, str]
-"""Name of a pose bone, and of one of its custom properties."""
+Property = tuple[str, str]  # name of a pose bone, and of one of its custom properties
 Value = float | int | bool
 OBJECT_CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 
@@ -38,13 +37,7 @@ def posing(
     properties: Sequence[Property] = (),
     action: bpy.types.Action | None = None,
 ) -> Iterator[None]:
-    """Let a pose be changed, or an Action be shown; afterwards all is as it was, to the last bit.
-
-    Args:
-        armature_object: The character.
-        properties: Custom properties that may be changed as well.
-        action: The Action to show meanwhile; none by default.
-    """
+    """Let a pose and properties be changed, or an Action be shown; afterwards all is as before."""
     had_data, data = armature_object.animation_data is not None, armature_object.animation_data_create()
     with_strips, bones = data.use_nla, armature_object.pose.bones
     values = {(bone, name): bones[bone][name] for bone, name in properties}

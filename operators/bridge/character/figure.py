@@ -1,7 +1,5 @@
 """A character's shape in the current frame, for pictures: its meshes, or its bones where it has none."""
 
-from collections.abc import Iterable
-
 import bpy
 import numpy as np
 
@@ -12,7 +10,7 @@ from ....core.report.character_sheet import character_sheet
 from ....core.report.mannequin import SKIN, CharacterFigure
 from ....core.report.overlay_sheet import evenly_spaced_frames
 from ....core.report.pictures import footage_frames
-from ....core.retarget.figure_lines import FigureLine, figure_lines
+from ....core.retarget.character import LIMBS, MIDDLE
 from ....core.retarget.maps.character_map import CharacterMap
 from ..camera_placement import read_camera
 from ..footage import Footage
@@ -20,17 +18,12 @@ from ..object_space import evaluated
 from ..scene_frames import at_scene_frame
 from .import_character import skins
 
-MOST_TRIANGLES = 200_000
-"""With more, bones are drawn: a picture need not take half a minute."""
-WAIST, THICKNESS = 0.15, 0.09
-"""An octahedral bone's widest place and its half-width there, in bone lengths."""
-LEAST_M = 1e-6
-NEW_GRAY, GAMMA = 0.8, 2.2
-"""Color of a new material, which nobody has chosen; and the display's exponent."""
-CORNERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
+MOST_TRIANGLES = 200_000  # with more, bones are drawn: a picture need not take half a minute
+WAIST, THICKNESS = 0.15, 0.09  # an octahedral bone's widest place and its half-width there, in bone lengths
+NEW_GRAY, GAMMA = 0.8, 2.2  # color of a new material, which nobody has chosen; and the display's exponent
 
 
-def character_figure(armature_object: bpy.types.Object, lines: Iterable[FigureLine]) -> CharacterFigure:
+def character_figure(armature_object: bpy.types.Object, character_map: CharacterMap) -> CharacterFigure:
     """The character as its scene shows it now."""
     meshes = [_mesh(one) for one in skins(armature_object)]
     if meshes and sum(len(mesh.triangles) for mesh in meshes) <= MOST_TRIANGLES:
@@ -40,11 +33,10 @@ def character_figure(armature_object: bpy.types.Object, lines: Iterable[FigureLi
             np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts[:-1], strict=True)]),
             np.concatenate([mesh.colors for mesh in meshes]),
         )
-    return _bones(armature_object, lines)
+    return _bones(armature_object, character_map)
 
 
 def _mesh(mesh_object: bpy.types.Object) -> CharacterFigure:
-    """An evaluated mesh in the colors that its materials have in the viewport."""
     shown = evaluated(mesh_object)
     mesh = shown.to_mesh()
     try:
@@ -76,31 +68,36 @@ def _color(material: bpy.types.Material | None) -> Color:
     return blue, green, red
 
 
-def _bones(armature_object: bpy.types.Object, lines: Iterable[FigureLine]) -> CharacterFigure:
-    """Octahedra along the lines."""
+def _bones(armature_object: bpy.types.Object, character_map: CharacterMap) -> CharacterFigure:
     shown = evaluated(armature_object)
     world = np.array(shown.matrix_world, dtype=np.float64)
     poses = {bone.name: world @ np.array(bone.matrix, dtype=np.float64) for bone in shown.pose.bones}
     points: list[Array] = []
     triangles: list[tuple[int, int, int]] = []
     colors: list[tuple[int, int, int]] = []
-    for line in lines:
-        if line.start not in poses:
-            continue
-        matrix = poses[line.start]
-        start = matrix[:3, 3]
-        end = start + matrix[:3, 1] * shown.pose.bones[line.start].bone.length
-        if line.end is not None and line.end in poses:
-            end = poses[line.end][:3, 3]
-        ring = _ring(start, end)
-        if ring is None:
-            continue
-        first = 6 * len(points)
-        points.append(np.array([start, end, *ring]))
-        for corner in range(4):
-            a, b = first + 2 + corner, first + 2 + (corner + 1) % 4
-            triangles += [(first, b, a), (first + 1, a, b)]
-        colors += [{"L": LEFT, "R": RIGHT}.get(line.side, SKIN)] * 8
+    chains = [(SKIN, [bone for role in MIDDLE for bone in character_map.bones(role)])]
+    for limb, roles in LIMBS.items():
+        bones = [bone for bone in map(character_map.bone, roles) if bone is not None]
+        chains.append((LEFT if limb.endswith("L") else RIGHT, bones))
+    for color, chain in chains:
+        for bone, onward in zip(chain, [*chain[1:], None], strict=True):
+            if bone not in poses:
+                continue
+            start, end = poses[bone][:3, 3], poses[bone] @ [0.0, shown.pose.bones[bone].bone.length, 0.0, 1.0]
+            end = poses[onward][:3, 3] if onward in poses else end[:3]
+            size = float(np.linalg.norm(end - start))
+            if size < 1e-6:
+                continue
+            aside = across(end - start)
+            other = np.cross((end - start) / size, aside)
+            waist = start + WAIST * (end - start)
+            out = THICKNESS * size * np.array([aside, other, -aside, -other])
+            first = 6 * len(points)
+            points.append(np.array([start, end, *(waist + out)]))
+            for corner in range(4):
+                a, b = first + 2 + corner, first + 2 + (corner + 1) % 4
+                triangles += [(first, b, a), (first + 1, a, b)]
+            colors += [color] * 8
     return CharacterFigure(
         np.concatenate(points) if points else np.zeros((0, 3)),
         np.array(triangles, dtype=np.intp).reshape(-1, 3),
@@ -108,21 +105,7 @@ def _bones(armature_object: bpy.types.Object, lines: Iterable[FigureLine]) -> Ch
     )
 
 
-def _ring(start: Array, end: Array) -> list[Array] | None:
-    """The four corners of an octahedron's waist; None where it has no length."""
-    along = end - start
-    size = float(np.linalg.norm(along))
-    if size < LEAST_M:
-        return None
-    aside = across(along)
-    other = np.cross(along / size, aside)
-    return [start + WAIST * along + THICKNESS * size * (a * aside + b * other) for a, b in CORNERS]
-
-
 # --- The picture of a character's motion
-
-
-MOST_FRAMES = 6
 
 
 def character_picture(
@@ -134,12 +117,8 @@ def character_picture(
 ) -> Image | None:
     """Draw a character that shows its motion in a scene with the footage; None where there is no footage.
 
-    Args:
-        scene: A scene with the footage's clip and camera; its current frame is as before afterwards.
-        armature_object: The character, with the Action.
-        character_map: Its map, for a character without a mesh.
-        frames: (F,) scene frames of the motion, the clip's frames in order.
-        floor_m: Height of the floor under the character in the world [m].
+    `frames` are the scene frames of the motion, the clip's frames in order; `floor_m` is the floor's height
+    under the character in the world. The scene's frame is as before afterwards.
 
     Raises:
         InputError: The clip cannot be read.
@@ -148,13 +127,12 @@ def character_picture(
         return None
     footage = Footage(scene, scene.active_clip, scene.camera)
     camera = read_camera(footage, frames)
-    shown = evenly_spaced_frames(len(frames), MOST_FRAMES)
-    lines = figure_lines(character_map)
+    shown = evenly_spaced_frames(len(frames), 6)
     figures = {}
     with at_scene_frame(scene) as go_to:
         for index in shown:
             go_to(float(frames[index]))
-            figures[index] = character_figure(armature_object, lines)
+            figures[index] = character_figure(armature_object, character_map)
     images = footage_frames(footage.open(), shown)
     first = round(float(frames[0]))
     return character_sheet(armature_object.name, figures, camera, images, first, floor_m)

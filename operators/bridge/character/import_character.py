@@ -18,8 +18,7 @@ from ..actions import curve_digest
 from ..blend_files import check_blend, one_line, showing_scene, write_blend
 from ..export_formats import FORMATS, export_motion
 
-MOST_NAMED = 5
-"""Armatures named in a sentence."""
+MOST_NAMED = 5  # armatures named in a sentence
 BLEND, VRM = ".blend", ".vrm"
 NOT_ALONG = ("ARMATURE", "CAMERA", "LIGHT", "SPEAKER", "LIGHT_PROBE")
 """Kinds of objects that do not belong to a character because a constraint ties them to it."""
@@ -31,12 +30,10 @@ class ImportedCharacter:
 
     file: CharacterFile
     armature: bpy.types.Object
-    objects: tuple[bpy.types.Object, ...]
-    """All that is in the scene, the armature among them."""
+    objects: tuple[bpy.types.Object, ...]  # all that is in the scene, the armature among them
     texts: tuple[bpy.types.Text, ...] = ()
     """Scripts of its file that Blender registers when a person opens it, as Rigify's panel; not run here."""
-    notes: tuple[str, ...] = ()
-    """What a person should know, in sentences without a full stop."""
+    notes: tuple[str, ...] = ()  # what a person should know, in sentences without a full stop
 
 
 def import_character(file: CharacterFile, scene: bpy.types.Scene) -> ImportedCharacter:
@@ -65,7 +62,6 @@ def import_character(file: CharacterFile, scene: bpy.types.Scene) -> ImportedCha
 
 
 def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[bpy.types.Text, ...]]:
-    """All objects of a .blend by their names there, and its scripts."""
     check_blend(file.path, "a character")
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == file.path.resolve():
         raise InputError(
@@ -84,24 +80,19 @@ def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[b
 
 
 def _imported(file: CharacterFile, scene: bpy.types.Scene) -> dict[str, bpy.types.Object]:
-    """The objects that an importer makes of a file, by their names there."""
     before = {one.name for one in bpy.data.objects}
     with showing_scene(scene), tempfile.TemporaryDirectory() as folder:
         path = real_path(file.path)
         if path.suffix.lower() == VRM:  # a GLB under another name
             path = Path(shutil.copyfile(path, Path(folder) / f"{path.stem}.glb"))
         try:
-            _run_importer(path)
+            if path.suffix.lower() == ".fbx":
+                bpy.ops.wm.fbx_import(filepath=str(path), use_anim=False)
+            else:
+                bpy.ops.import_scene.gltf(filepath=str(path))
         except (RuntimeError, AttributeError, OSError) as error:
             raise _unreadable(file.path, error) from error
     return {_name_in_file(one.name, before): one for one in scene.objects}
-
-
-def _run_importer(path: Path) -> None:
-    if path.suffix.lower() == ".fbx":
-        bpy.ops.wm.fbx_import(filepath=str(path), use_anim=False)
-    else:
-        bpy.ops.import_scene.gltf(filepath=str(path))
 
 
 def _name_in_file(name: str, taken: Iterable[str]) -> str:
@@ -119,7 +110,6 @@ def _unreadable(path: Path, error: Exception) -> InputError:
 
 
 def _chosen(file: CharacterFile, found: dict[str, bpy.types.Object]) -> bpy.types.Object:
-    """The named armature, else the only one."""
     armatures = {name: one for name, one in found.items() if one.type == "ARMATURE"}
     names = listed(map(shown, sorted(armatures)), MOST_NAMED)
     if not armatures:
@@ -163,7 +153,6 @@ def _is_moved_by(one: bpy.types.Object, armature: bpy.types.Object) -> bool:
 
 
 def _mute_tracks(armature: bpy.types.Object) -> tuple[str, ...]:
-    """Mute what would play below the new motion; the note says so."""
     tracks = armature.animation_data.nla_tracks if armature.animation_data is not None else ()
     playing = [track for track in tracks if not track.mute]
     for track in playing:
@@ -174,7 +163,6 @@ def _mute_tracks(armature: bpy.types.Object) -> tuple[str, ...]:
 
 
 def _clear_motions(armature: bpy.types.Object, members: Iterable[bpy.types.Object]) -> tuple[str, ...]:
-    """Take away the motions of an exchange file, and the pose that they leave."""
     for one in members:
         one.animation_data_clear()
         keys = getattr(one.data, "shape_keys", None)
@@ -186,7 +174,6 @@ def _clear_motions(armature: bpy.types.Object, members: Iterable[bpy.types.Objec
 
 
 def _into_collection(scene: bpy.types.Scene, name: str, members: Sequence[bpy.types.Object]) -> None:
-    """Link the members, and nothing else, to a new collection of the scene."""
     collection = bpy.data.collections.new(name)
     scene.collection.children.link(collection)
     for one in list(scene.objects):
@@ -233,19 +220,10 @@ def write_character_files(
     blend: Path,
     exports: Mapping[str, Path],
 ) -> str:
-    """Write a character with its Action.
+    """Write a character with its Action into a .blend, and into files by name of `export_formats.FORMATS`.
 
-    A failure may leave half a file at these paths: the caller passes a staging folder.
-
-    Args:
-        scene: The scene with the character, its camera and range.
-        imported: The character, which the Action animates.
-        action: The motion.
-        blend: Path of the .blend; its folder exists.
-        exports: Paths by name of a format of `export_formats.FORMATS`.
-
-    Returns:
-        SHA-256 of the Action's curves: files of one motion differ, their curves do not.
+    A failure may leave half a file at these paths: the caller passes a staging folder. Returned is the
+    SHA-256 of the Action's curves: files of one motion differ, their curves do not.
 
     Raises:
         ConversionError: Blender could not write a file.

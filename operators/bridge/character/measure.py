@@ -10,9 +10,8 @@ import numpy as np
 from ....core.arrays import Array
 from ....core.body.kinematics import SegmentMotion
 from ....core.progress import Part, scaled
-from ....core.retarget.character import LIMBS, Character
+from ....core.retarget.character import LIMBS, Character, joint_roles
 from ....core.retarget.character_motion import CharacterMotion
-from ....core.retarget.controls.control_plan import joint_roles
 from ....core.retarget.controls.control_spaces import unscaled
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.quality import Quality, farthest_mm, measured
@@ -20,36 +19,8 @@ from ..actions import existing_channelbag
 from ..object_space import evaluated, object_space
 from ..scene_frames import at_scene_frame
 from .controls import Property, Value, posing, property_path
-from .write_retargeted import RetargetedKeys, write_keys
 
-TEMPORARY = "Keymark Measuring"
-"""Name of the Action that is there while a motion is measured."""
-FRAMES_A_YIELD = 10
-"""Frames shown between two reports of progress; in between the scene is as it was."""
-SHOWN_SHARE = 0.5
-"""Share of the work that the motion as it is shown takes; the rest is that of the other switch settings."""
-
-
-def measure_keys(
-    armature_object: bpy.types.Object,
-    keys: RetargetedKeys,
-    source: SegmentMotion,
-    motion: CharacterMotion,
-    character: Character,
-    character_map: CharacterMap,
-    in_fk: Mapping[Property, Value],
-) -> Part[Quality]:
-    """Measure keys that are not written yet: as `measure`, by an Action that is removed again."""
-    action = bpy.data.actions.new(TEMPORARY)
-    try:
-        write_keys(keys, armature_object, action)
-        return (
-            yield from measure(
-                armature_object, action, keys.frames, source, motion, character, character_map, in_fk
-            )
-        )
-    finally:
-        bpy.data.actions.remove(action)
+FRAMES_A_YIELD = 10  # frames shown between two reports of progress; in between the scene is as it was
 
 
 def measure(
@@ -62,26 +33,15 @@ def measure(
     character_map: CharacterMap,
     in_fk: Mapping[Property, Value],
 ) -> Part[Quality]:
-    """Measure the motion that an Action gives a character.
+    """Measure the motion that an Action, assigned or not, gives a character in scene frames (F,).
 
-    Args:
-        armature_object: The character.
-        action: The Action, assigned or not.
-        frames: (F,) its scene frames.
-        source: The performer's motion.
-        motion: What was solved.
-        character: The character at rest.
-        character_map: Its map.
-        in_fk: The switches' values with which its limbs show FK; none where nothing can be switched.
-
-    Returns:
-        The figures, without those of keys.
+    `in_fk` are the switches' values with which its limbs show FK; none where nothing can be switched.
     """
     bones = {role: str(character_map.bone(role)) for role in character_map.roles}
     settings = [(setting.bone, setting.property) for setting in character_map.settings]
     properties = [*settings, *(key for key in in_fk if key not in settings)]
     showing = _show(armature_object, action, frames, bones, properties, {})
-    poses = yield from scaled(showing, 0.0, SHOWN_SHARE if in_fk else 1.0)
+    poses = yield from scaled(showing, 0.0, 0.5 if in_fk else 1.0)
     shown = {role: poses[role][:, :3, 3] for role in bones}
     soles = {
         role: _sole(character, bones[role], points, poses[role]) for role, points in motion.soles.items()
@@ -90,7 +50,7 @@ def measure(
     if not in_fk:
         return quality
     showing = _show(armature_object, action, frames, bones, properties, in_fk)
-    switched = yield from scaled(showing, SHOWN_SHARE, 1.0)
+    switched = yield from scaled(showing, 0.5, 1.0)
     ends = [joint_roles(limb)[2] for limb in LIMBS if limb in character_map.ik]
     other = {role: switched[role][:, :3, 3] for role in bones}
     return replace(quality, ik_fk_mm=farthest_mm(shown, other, ends))
@@ -106,7 +66,7 @@ def _show(
 ) -> Part[dict[str, Array]]:
     """(F, 4, 4) by role the pose of its first bone in the world [m], as Blender shows it."""
     scene = next(iter(armature_object.users_scene), bpy.context.scene)
-    found: list[list[Array]] = []
+    found: list[Array] = []
     for first in range(0, len(frames), FRAMES_A_YIELD):
         with (
             at_scene_frame(scene) as go_to,
@@ -115,21 +75,14 @@ def _show(
         ):
             for frame in frames[first : first + FRAMES_A_YIELD]:
                 go_to(frame)
-                found.append(_poses(armature_object, bones))
+                space, shown = object_space(armature_object), evaluated(armature_object).pose.bones
+                matrices = np.array([shown[name].matrix for name in bones.values()], dtype=np.float64)
+                matrices[:, :3, :3] = space.rotation @ unscaled(matrices[:, :3, :3])
+                matrices[:, :3, 3] = space.to_world(matrices[:, :3, 3])
+                found.append(matrices)
         yield min(first + FRAMES_A_YIELD, len(frames)) / len(frames)
     paths = np.array(found)  # (F, roles, 4, 4)
     return {role: paths[:, number] for number, role in enumerate(bones)}
-
-
-def _poses(armature_object: bpy.types.Object, bones: Mapping[str, str]) -> list[Array]:
-    space, shown = object_space(armature_object), evaluated(armature_object).pose.bones
-    found = []
-    for name in bones.values():
-        matrix = np.array(shown[name].matrix, dtype=np.float64)
-        matrix[:3, :3] = space.rotation @ unscaled(matrix[:3, :3])
-        matrix[:3, 3] = space.to_world(matrix[:3, 3])
-        found.append(matrix)
-    return found
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from ....core.arrays import Array
 from ....core.retarget.controls.control_channels import ALWAYS_MOVED, Control, ordered_controls
-from ....core.retarget.controls.control_plan import ControlKind, PlannedControl, limb_bones
+from ....core.retarget.controls.control_plan import IN_FK, ControlKind, PlannedControl, limb_bones
 from ....core.retarget.controls.control_spaces import (
     NOTHING,
     ControlSpace,
@@ -32,15 +32,7 @@ from .controls import (
 )
 from .write_retargeted import ONE, scaled_bones
 
-SEED = 4
-STILL, MOVED = 3, 4
-"""Poses at random, without and with locations."""
-TURN_RAD = 0.4
-"""Standard deviation of random turns about each axis."""
-MOVE_SHARE = 0.1
-"""Standard deviation of random locations, in sizes of the character."""
-DISPLACED = 1e-5
-"""Location of a control that counts as one, in sizes of the character."""
+STILL, MOVED = 3, 4  # poses at random, without and with locations
 FOLLOWS_RAD, FOLLOWS = 0.02, 0.01
 """Turn, and distance in sizes, up to which a bone follows its control as it was seen to; else as at rest."""
 STRAIGHT = 0.005
@@ -53,32 +45,23 @@ NOTICEABLE_RAD, NOTICEABLE = 0.3, 0.05
 class ProbedControls:
     """A character's controls, and how the bones with roles follow them."""
 
-    controls: tuple[Control, ...]
-    """Those that turn or carry others first."""
-    offsets: Mapping[str, Array]
-    """(4, 4) by control the pose of its bone in its own axes."""
-    poles: Mapping[str, PoleSetting]
-    """By pole where it belongs."""
-    size: float
-    """The character's, in the armature's units."""
+    controls: tuple[Control, ...]  # those that turn or carry others first
+    offsets: Mapping[str, Array]  # (4, 4) by control the pose of its bone in its own axes
+    poles: Mapping[str, PoleSetting]  # by pole where it belongs
+    size: float  # the character's, in the armature's units
     notes: tuple[str, ...]
 
 
 def probe_controls(
     armature_object: bpy.types.Object, character_map: CharacterMap, planned: Sequence[PlannedControl]
 ) -> ProbedControls:
-    """How the planned controls act; afterwards everything is as it was.
-
-    Args:
-        armature_object: A character that `require_character` accepts.
-        character_map: Its map; settings and switches are set as the motion will have them.
-        planned: The controls.
-    """
+    """How the planned controls act, settings and switches as the motion has them; nothing stays changed."""
     size = character_size(armature_object, character_map)
     notes: list[str] = []
     in_fk = fk_shown(character_map)
     bones = armature_object.pose.bones
-    displaced = {plan.name for plan in planned if bones[plan.name].location.length > DISPLACED * size}
+    # Location of a control that counts as one, in sizes of the character.
+    displaced = {plan.name for plan in planned if bones[plan.name].location.length > 1e-5 * size}
     with posing(armature_object, list(in_fk)):
         set_properties(armature_object, in_fk)
         for name in scaled_bones(armature_object, [plan.name for plan in planned]):
@@ -121,16 +104,18 @@ def _posed_at_random(
     armature_object: bpy.types.Object, planned: Sequence[PlannedControl], size: float
 ) -> tuple[PosedControls, Array]:
     """The controls as posed at random, the same in every run, and poses (S, C, 4, 4) of their bones."""
-    rng = np.random.default_rng(SEED)
+    rng = np.random.default_rng(4)
     names, count = [plan.name for plan in planned], len(planned)
     channels, shown = [], []
     for sample in range(STILL + MOVED):
         matrices = np.tile(np.eye(4), (count, 1, 1))
-        turns = rng.normal(0.0, TURN_RAD, (count, 3))
+        # Standard deviation of random turns about each axis.
+        turns = rng.normal(0.0, 0.4, (count, 3))
         if count:
             matrices[:, :3, :3] = Rotation.from_rotvec(turns).as_matrix()
         if sample >= STILL:
-            matrices[:, :3, 3] = rng.normal(0.0, MOVE_SHARE * size, (count, 3))
+            # Standard deviation of random locations, in sizes of the character.
+            matrices[:, :3, 3] = rng.normal(0.0, 0.1 * size, (count, 3))
         set_channels(armature_object, dict(zip(names, matrices, strict=True)))
         own, poses = read_poses(armature_object, [*names, *(plan.bone for plan in planned)])
         channels.append(own[:count])
@@ -158,7 +143,7 @@ def _offsets(
     for index, plan in enumerate(planned):
         control, bone = _rests(armature_object, [plan.name, plan.bone])
         offsets[plan.name] = np.linalg.inv(control) @ bone
-        if plan.kind not in (ControlKind.FK, ControlKind.HIPS):
+        if plan.kind not in IN_FK:
             continue
         # Locations of other controls may stretch what lies between: only the first poses count.
         offset, turn_rad, distance = rigid_offset(

@@ -7,8 +7,6 @@ from ....core.errors import InputError
 from ....core.retarget.character import Character, CharacterBone
 from ..object_space import object_space
 
-SMALLEST_SCALE = 1e-9
-
 
 def read_character(armature_object: bpy.types.Object | None) -> Character:
     """The rest pose of an armature object.
@@ -43,8 +41,23 @@ def require_character(armature_object: bpy.types.Object | None) -> bpy.types.Obj
         raise InputError(
             f"armature '{name}' shows its rest position; choose Pose Position in its data properties"
         )
-    _require_even_scale(armature_object)
-    _require_evaluated(armature_object)
+    matrix = np.array(armature_object.matrix_world, dtype=np.float64)
+    if not np.isfinite(matrix).all():
+        raise InputError(
+            f"armature '{name}' has a transform that is not a number; clear its location, rotation and scale"
+        )
+    if np.linalg.norm(matrix[:3, :3], axis=0).min() < 1e-9:
+        raise InputError(f"armature '{name}' has a scale of zero; give it one positive scale")
+    object_space(armature_object)  # which refuses what is no similarity
+    scenes = armature_object.users_scene
+    if not scenes:
+        raise InputError(f"armature '{name}' is in no scene; link it to one")
+    layer = bpy.context.view_layer if bpy.context.scene in scenes else scenes[0].view_layers[0]
+    if not armature_object.visible_get(view_layer=layer):
+        raise InputError(
+            f"armature '{name}' is hidden in view layer '{layer.name}', where Blender evaluates no "
+            "pose; show it while the motion is made"
+        )
     data = armature_object.animation_data
     if data is not None and data.use_tweak_mode:
         raise InputError(
@@ -92,34 +105,7 @@ def _library_name(armature_object: bpy.types.Object) -> str:
     return f"'{bpy.path.basename(reference.library.filepath)}'" if reference.library else "another file"
 
 
-def _require_even_scale(armature_object: bpy.types.Object) -> None:
-    """Raise InputError where the object's transform is not a similarity."""
-    matrix = np.array(armature_object.matrix_world, dtype=np.float64)
-    if not np.isfinite(matrix).all():
-        raise InputError(
-            f"armature '{armature_object.name}' has a transform that is not a number; clear its "
-            "location, rotation and scale"
-        )
-    if np.linalg.norm(matrix[:3, :3], axis=0).min() < SMALLEST_SCALE:
-        raise InputError(f"armature '{armature_object.name}' has a scale of zero; give it one positive scale")
-    object_space(armature_object)
-
-
-def _require_evaluated(armature_object: bpy.types.Object) -> None:
-    """Raise InputError where Blender does not evaluate the object's pose."""
-    name, scenes = armature_object.name, armature_object.users_scene
-    if not scenes:
-        raise InputError(f"armature '{name}' is in no scene; link it to one")
-    layer = bpy.context.view_layer if bpy.context.scene in scenes else scenes[0].view_layers[0]
-    if not armature_object.visible_get(view_layer=layer):
-        raise InputError(
-            f"armature '{name}' is hidden in view layer '{layer.name}', where Blender evaluates no "
-            "pose; show it while the motion is made"
-        )
-
-
 def _bones(armature: bpy.types.Armature) -> tuple[CharacterBone, ...]:
-    """All bones, parents before their children."""
     ordered: list[bpy.types.Bone] = []
     waiting = [bone for bone in armature.bones if bone.parent is None]
     while waiting:

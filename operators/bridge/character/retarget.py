@@ -1,6 +1,5 @@
-"""A character map made ready for its character: soles of the mesh, controls found, properties checked."""
+"""Retarget a motion to a character: its map is completed, the motion solved, keyed and measured."""
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import bpy
@@ -11,13 +10,12 @@ from ....core.errors import InputError
 from ....core.progress import Job, Progress, stretch, within
 from ....core.retarget.character import Character
 from ....core.retarget.character_motion import CharacterMotion, Similarity, find_stance
-from ....core.retarget.controls.control_channels import control_channels
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
-from ....core.retarget.controls.control_plan import ControlKind, limb_bones, planned_controls
-from ....core.retarget.controls.control_targets import control_targets, limb_paths
-from ....core.retarget.controls.point_tolerances import ToleranceRules, held_points
-from ....core.retarget.controls.stages import reduce_controls
-from ....core.retarget.maps.character_map import CharacterMap, IkControls, Switch
+from ....core.retarget.controls.control_plan import ControlKind, planned_controls
+from ....core.retarget.controls.control_targets import on_controls
+from ....core.retarget.controls.point_tolerances import ToleranceRules
+from ....core.retarget.controls.reduction import reduce_controls
+from ....core.retarget.maps.character_map import CharacterMap, Setting, Switch
 from ....core.retarget.maps.map_registry import check_map
 from ....core.retarget.options import Placement, RetargetOptions
 from ....core.retarget.quality import Quality
@@ -28,9 +26,9 @@ from ..object_space import object_space
 from ..rotation_modes import rotation_values
 from .channel_notes import channel_notes
 from .controls import fk_properties, shown_properties
-from .measure import measure_keys
+from .measure import measure
 from .mesh_soles import mesh_soles
-from .probe_controls import ProbedControls, probe_controls
+from .probe_controls import probe_controls
 from .read_character import read_character
 from .write_retargeted import RetargetedKeys, placement_keys, require_placeable, scaled_bones, write_keys
 
@@ -38,8 +36,28 @@ from .write_retargeted import RetargetedKeys, placement_keys, require_placeable,
 def complete_map(
     armature_object: bpy.types.Object, character: Character, character_map: CharacterMap
 ) -> tuple[CharacterMap, tuple[str, ...]]:
-    """Add to a map what only Blender knows; what it says stays. Notes say what of it the rig lacks."""
-    completed, notes = _with_properties(armature_object, character_map)
+    """Add to a map what only Blender knows, and leave out properties that the rig lacks, which notes name."""
+    bones = armature_object.pose.bones
+
+    def there(one: Setting | Switch) -> bool:
+        return isinstance(bones[one.bone].get(one.property), int | float)
+
+    used: list[Setting | Switch] = [*character_map.settings]
+    used += [own.switch for own in character_map.ik.values() if own.switch is not None]
+    notes = tuple(
+        f"Bone '{one.bone}' has no property '{one.property}' that could be keyed; the rig may be of another "
+        f"version than the map '{character_map.title}'"
+        for one in used
+        if not there(one)
+    )
+    completed = replace(
+        character_map,
+        settings=tuple(filter(there, character_map.settings)),
+        ik={
+            limb: own if own.switch is None or there(own.switch) else replace(own, switch=None)
+            for limb, own in character_map.ik.items()
+        },
+    )
     if completed.root is None:
         up = find_stance(character, completed)[2]
         completed = replace(completed, root=find_root(character, completed, up))
@@ -48,66 +66,25 @@ def complete_map(
     return completed, notes
 
 
-def _switched(controls: IkControls, there: Callable[[str, str], bool]) -> IkControls:
-    """Controls of a limb without a switch that is not there."""
-    switch = controls.switch
-    return (
-        controls if switch is None or there(switch.bone, switch.property) else replace(controls, switch=None)
-    )
-
-
-def _lost_switches(before: Mapping[str, IkControls], after: Mapping[str, IkControls]) -> list[Switch]:
-    switches = ((before[limb].switch, after[limb].switch) for limb in before)
-    return [first for first, second in switches if first is not None and second is None]
-
-
-def _with_properties(
-    armature_object: bpy.types.Object, character_map: CharacterMap
-) -> tuple[CharacterMap, tuple[str, ...]]:
-    """The map without settings and switches that the armature lacks, and sentences on them."""
-    bones = armature_object.pose.bones
-
-    def there(bone: str, name: str) -> bool:
-        return isinstance(bones[bone].get(name), int | float)
-
-    settings = tuple(one for one in character_map.settings if there(one.bone, one.property))
-    ik = {limb: _switched(controls, there) for limb, controls in character_map.ik.items()}
-    lost = [(one.bone, one.property) for one in character_map.settings if one not in settings]
-    lost += [(one.bone, one.property) for one in _lost_switches(character_map.ik, ik)]
-    notes = tuple(
-        (
-            f"Bone '{bone}' has no property '{name}' that could be keyed; the rig may be of another "
-            f"version than the map '{character_map.title}'"
-        )
-        for bone, name in lost
-    )
-    return replace(character_map, settings=settings, ik=ik), notes
-
-
 # --- Retarget a motion to a character
 
 
 SOLVED, PROBED, REDUCED = 0.25, 0.3, 0.8
 """Shares of the job at which the motion is solved, the controls are known, and the keys are found."""
-FEWEST_FRAMES = 2
 
 
 @dataclass(frozen=True, eq=False)
 class Retargeted:
     """A character's motion, not yet written."""
 
-    session_uid: int
-    """Blender's number of the armature object in this session."""
+    session_uid: int  # Blender's number of the armature object in this session
     character: Character
-    character_map: CharacterMap
-    """The map, completed."""
+    character_map: CharacterMap  # the map, completed
     options: RetargetOptions
     motion: CharacterMotion
     keys: RetargetedKeys
-    quality: Quality
-    """What was measured of the character as Blender shows it."""
-    notes: tuple[str, ...]
-    """What a person should know, in sentences without a full stop."""
+    quality: Quality  # what was measured of the character as Blender shows it
+    notes: tuple[str, ...]  # what a person should know, in sentences without a full stop
 
     @property
     def size(self) -> float:
@@ -140,23 +117,16 @@ def retarget(
     character_map: CharacterMap,
     options: RetargetOptions,
 ) -> Job[Retargeted]:
-    """Retarget a motion to a character.
+    """Retarget a motion of F frames to a character, at rising scene frames (F,).
 
-    Args:
-        armature_object: The character's armature.
-        source: The performer's motion, F frames.
-        scene_frames: (F,) the scene frames that show it, rising.
-        character_map: Which bones and controls play which role.
-        options: What a person chose.
-
-    Yields:
-        Progress; nothing in Blender stays changed.
+    Nothing in Blender stays changed.
 
     Raises:
-        InputError: The armature cannot be retargeted, the map does not fit it, or the motion has one frame.
+        InputError: The armature cannot be retargeted, the map does not fit it, or the motion has one
+            frame.
     """
     yield Progress("Reading the character", 0.0)
-    if len(scene_frames) < FEWEST_FRAMES:
+    if len(scene_frames) < 2:
         raise InputError("the motion has a single frame; choose one of two frames or more")
     character = read_character(armature_object)
     check_map(character_map, character)
@@ -180,7 +150,9 @@ def retarget(
         ),
     )
     yield Progress("Bringing the motion onto the controls", PROBED)
-    controls = _on_controls(character, character_map, motion, probed)
+    controls = on_controls(
+        character, character_map, motion, probed.controls, probed.offsets, probed.poles, probed.size
+    )
     yield Progress("Finding the keys", PROBED)
     keyed = yield from _keyed(controls, motion, source, scene_frames, options)
     keys = RetargetedKeys(
@@ -192,8 +164,15 @@ def retarget(
     )
     yield Progress("Measuring the character", REDUCED)
     in_fk = fk_properties(character_map, options)
-    measuring = measure_keys(armature_object, keys, source, motion, character, character_map, in_fk)
-    quality = yield from within("Measuring the character", measuring, REDUCED, 1.0)
+    action = bpy.data.actions.new("Keymark Measuring")
+    try:
+        write_keys(keys, armature_object, action)
+        measuring = measure(
+            armature_object, action, scene_frames, source, motion, character, character_map, in_fk
+        )
+        quality = yield from within("Measuring the character", measuring, REDUCED, 1.0)
+    finally:
+        bpy.data.actions.remove(action)
     return Retargeted(
         armature_object.session_uid,
         character,
@@ -218,29 +197,8 @@ def _keyed(
     scene_frames: Array,
     options: RetargetOptions,
 ) -> Job[tuple[KeyedControl, ...]]:
-    """What is keyed on each control."""
     if options.tolerance_m is None:
         return dense_controls(controls, rotation_values)
     rules = ToleranceRules(motion, source.time_s, motion.stance[2], options.tolerance_m)
     reducing = reduce_controls(controls, scene_frames, rules, rotation_values)
     return (yield from within("Finding the keys", reducing, PROBED, REDUCED))
-
-
-def _on_controls(
-    character: Character, character_map: CharacterMap, motion: CharacterMotion, probed: ProbedControls
-) -> ControlMotion:
-    """The motion on the controls, by channels for every frame."""
-    planned = [control.plan for control in probed.controls]
-    limbs = {limb: limb_bones(character_map, limb) for limb in {plan.limb for plan in planned} if limb}
-    wanted = control_targets(planned, motion, probed.offsets, probed.poles, limbs)
-    return ControlMotion(
-        controls=probed.controls,
-        channels=control_channels(probed.controls, wanted, probed.size),
-        wanted=wanted,
-        offsets=probed.offsets,
-        points=held_points(character, character_map, motion.soles),
-        bones=motion.poses,
-        limbs=limb_paths(character, character_map, motion, probed.controls, probed.offsets, probed.poles),
-        size=probed.size,
-        scale=character.scale,
-    )

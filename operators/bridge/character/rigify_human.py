@@ -28,7 +28,6 @@ TRUNK = {
     "spine.004": 0.06,
     "spine.006": 0.09,
 }
-OTHERS = 0.05
 COLORS = {"L": (0.0, 0.17, 0.45, 1.0), "R": (0.66, 0.11, 0.0, 1.0), "": (0.5, 0.47, 0.45, 1.0)}
 SEGMENTS = 16
 
@@ -52,10 +51,8 @@ def enable_rigify() -> None:
 def add_rigify_human(stature_m: float | None = None) -> bpy.types.Object:
     """Add the basic human at the world's origin and generate its rig, which becomes the active object.
 
-    The meta-rig is removed again. Blender must be in Object Mode, with Rigify enabled.
-
-    Args:
-        stature_m: Height from the floor to the top of the head; by default Rigify's own.
+    The meta-rig is removed again. Blender must be in Object Mode, with Rigify enabled; the stature is
+    Rigify's own by default.
 
     Raises:
         RuntimeError: Rigify could not; what it had made is gone again.
@@ -97,7 +94,7 @@ def _add_body(rig: bpy.types.Object, size: float) -> None:
     for bone in (bone for bone in rig.data.bones if bone.use_deform):
         group = body.vertex_groups.new(name=bone.name)
         part, _, side = bone.name.removeprefix("DEF-").partition(".")
-        width = size * (TRUNK.get(bone.name.removeprefix("DEF-")) or WIDTHS.get(part, OTHERS))
+        width = size * (TRUNK.get(bone.name.removeprefix("DEF-")) or WIDTHS.get(part, 0.05))
         along = bone.tail_local - bone.head_local
         axes = bone.matrix_local.to_3x3()
         turn = Matrix.LocRotScale(

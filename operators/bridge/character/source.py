@@ -23,22 +23,15 @@ from ..rig import motion_frames, read_rig, read_values, shown_postures
 from ..rotation_modes import ALL_PATHS, bone_path
 from ..scene_frames import scene_frames
 
-READ, SEEN = 0.7, 0.8
-"""Shares of the job at which the curves are read, and their postures known."""
+READ, SEEN = 0.7, 0.8  # shares of the job at which the curves are read, and their postures known
 
 
 def read_source(
     armature_object: bpy.types.Object, action: bpy.types.Action
 ) -> Job[tuple[SegmentMotion, Array]]:
-    """The motion that an Action holds for an actor, in the time of the actor's scene.
+    """The motion that an Action holds for an actor, and its scene frames (F,); nothing in Blender is changed.
 
     Hands and feet are as keyed; those without keys as the motion alone would turn them.
-
-    Yields:
-        Progress; nothing in Blender is changed.
-
-    Returns:
-        The motion of F frames, and their scene frames (F,).
 
     Raises:
         InputError: The armature is not an actor's, or the Action holds no motion of it.
@@ -61,7 +54,6 @@ def read_source(
 
 
 def _keyed_extremities(armature_object: bpy.types.Object, action: bpy.types.Action) -> tuple[str, ...]:
-    """Names of the hands and feet that an Action turns."""
     channelbag = existing_channelbag(action, armature_object)
     curves = channelbag.fcurves if channelbag is not None else ()
     keyed = {curve.data_path for curve in curves if not curve.mute and not curve.is_empty}
@@ -86,15 +78,9 @@ USUAL_SIZE = (1920, 1080)
 
 
 def show_result(scene: bpy.types.Scene, blend: Path | None, motion: Motion) -> Array:
-    """Show a result's footage behind its camera, with rate, range and look.
+    """Show a result's footage behind its camera, with rate, range and look; returns the scene frames (F,).
 
-    Args:
-        scene: The scene to change.
-        blend: The result's motion.blend; None where there is none, and the scene gets rate and range alone.
-        motion: Its motion, F frames.
-
-    Returns:
-        (F,) scene frames of the motion.
+    Without a .blend the scene gets rate and range alone.
 
     Raises:
         InputError: Blender cannot read the .blend.
@@ -111,7 +97,6 @@ def show_result(scene: bpy.types.Scene, blend: Path | None, motion: Motion) -> A
 
 
 def _copy_footage(scene: bpy.types.Scene, blend: Path) -> None:
-    """Take camera, clip, size and rate from the first scene of a .blend that shows a clip."""
     check_blend(blend, "a result")
     try:
         with bpy.data.libraries.load(str(real_path(blend)), link=False) as (inside, wanted):

@@ -1,4 +1,4 @@
-"""Bones that a pose scales: a motion that is solved for the rest's lengths keys them at one."""
+"""A retargeted motion as keys of an Action: controls, properties, scales, and where the object stands."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from mathutils import Quaternion
 
 from ....core.arrays import Array
 from ....core.errors import InputError
 from ....core.finish.hermite import Spline
 from ....core.retarget.character_motion import Similarity
-from ....core.retarget.controls.control_motion import KeyedControl
+from ....core.retarget.controls.control_motion import KeyedControl, values_of
 from ..actions import channelbag_for
 from ..keys import ensure_fcurve, write_linear_keys, write_smooth_keys
 from ..object_space import evaluated
@@ -20,7 +21,6 @@ from .channel_notes import driven_channels, keyed_paths
 from .controls import Property, Value, property_path
 
 ONE = (1.0, 1.0, 1.0)
-NOTICEABLE = 1e-3
 
 
 def scaled_bones(armature_object: bpy.types.Object, names: Iterable[str]) -> tuple[str, ...]:
@@ -29,7 +29,7 @@ def scaled_bones(armature_object: bpy.types.Object, names: Iterable[str]) -> tup
     for name in names:
         bone = armature_object.pose.bones[name]
         for one in (bone, *bone.parent_recursive):
-            if max(abs(value - 1.0) for value in one.scale) > NOTICEABLE:
+            if max(abs(value - 1.0) for value in one.scale) > 1e-3:
                 found[one.name] = None
     return tuple(found)
 
@@ -37,43 +37,27 @@ def scaled_bones(armature_object: bpy.types.Object, names: Iterable[str]) -> tup
 # --- Where an armature object stands, as channels that an Action may hold
 
 
-PlacementKeys = tuple[tuple[str, Array], ...]
-"""Data paths of the object's channels with their values."""
-CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler")
+PlacementKeys = tuple[tuple[str, Array], ...]  # data paths of the object's channels with their values
 
 
 def placement_keys(armature_object: bpy.types.Object, to_world: Similarity) -> PlacementKeys:
-    """The object's location and rotation, in its own rotation mode, with which it stands somewhere.
-
-    Args:
-        armature_object: The object, with any parent; its scale stays.
-        to_world: From its own space to the world.
-    """
-    world = np.eye(4)
+    """The object's location and rotation, in its rotation mode and under any parent, to stand somewhere."""
+    world, mode = np.eye(4), armature_object.rotation_mode
     world[:3, :3], world[:3, 3] = to_world.rotation, to_world.location
-    basis = np.linalg.inv(_around(armature_object)) @ world
-    turn = basis[:3, :3] / np.linalg.norm(basis[:3, :3], axis=0)
-    mode = armature_object.rotation_mode
-    delta = _delta_rotation(armature_object)
-    location = basis[:3, 3] - np.array(armature_object.delta_location)
-    return (("location", location), (rotation_path(mode), rotation_values((delta.T @ turn)[None], mode)[0]))
-
-
-def _around(armature_object: bpy.types.Object) -> Array:
-    """(4, 4) what the object's own transform is multiplied with: parents."""
     shown = evaluated(armature_object)
-    world = np.array(shown.matrix_world, dtype=np.float64)
-    return world @ np.linalg.inv(np.array(shown.matrix_basis, dtype=np.float64))
+    above = np.array(shown.matrix_world) @ np.linalg.inv(np.array(shown.matrix_basis, dtype=np.float64))
+    basis = np.linalg.inv(above) @ world
+    turn = basis[:3, :3] / np.linalg.norm(basis[:3, :3], axis=0)
+    if mode == "QUATERNION":
+        turn = _matrix(armature_object.delta_rotation_quaternion).T @ turn
+    elif mode != "AXIS_ANGLE":  # whose own delta nobody can set
+        turn = _matrix(armature_object.delta_rotation_euler.to_quaternion()).T @ turn
+    location = basis[:3, 3] - np.array(armature_object.delta_location)
+    return (("location", location), (rotation_path(mode), rotation_values(turn[None], mode)[0]))
 
 
-def _delta_rotation(armature_object: bpy.types.Object) -> Array:
-    if armature_object.rotation_mode == "AXIS_ANGLE":  # has a delta of its own, which nobody can set
-        return np.eye(3)
-    if armature_object.rotation_mode == "QUATERNION":
-        delta = armature_object.delta_rotation_quaternion
-    else:
-        delta = armature_object.delta_rotation_euler.to_quaternion()
-    return np.array(delta.normalized().to_matrix(), dtype=np.float64)
+def _matrix(turn: Quaternion) -> Array:
+    return np.array(turn.normalized().to_matrix(), dtype=np.float64)
 
 
 def require_placeable(armature_object: bpy.types.Object) -> None:
@@ -86,12 +70,11 @@ def require_placeable(armature_object: bpy.types.Object) -> None:
             "motion begin where the character stands"
         )
     data = armature_object.animation_data
-    driven = (
-        [] if data is None else [one for one in data.drivers if one.data_path in CHANNELS and not one.mute]
-    )
+    drivers = () if data is None else [one.data_path for one in data.drivers if not one.mute]
+    driven = [path for path in drivers if path in ("location", *ALL_PATHS)]
     if driven:
         raise InputError(
-            f"armature '{name}' has a driver on '{driven[0].data_path}', which wins over keys; mute it, "
+            f"armature '{name}' has a driver on '{driven[0]}', which wins over keys; mute it, "
             "or let the motion begin where the character stands"
         )
 
@@ -101,21 +84,17 @@ def require_placeable(armature_object: bpy.types.Object) -> None:
 
 MADE_BY_KEYMARK = "keymark_retargeted"
 """Custom property of an Action: which curves of which slot retargeting made, as JSON."""
-OBJECT_GROUP = "Object Transforms"
-"""Blender's own name for the group of an object's channels."""
+OBJECT_GROUP = "Object Transforms"  # Blender's own name for the group of an object's channels
 
 
 @dataclass(frozen=True, eq=False)
 class RetargetedKeys:
     """All that is keyed of a character's motion."""
 
-    frames: Array
-    """(F,) scene frames."""
+    frames: Array  # (F,) scene frames
     controls: tuple[KeyedControl, ...]
-    properties: Mapping[Property, Value]
-    """Custom properties that are keyed at the first frame."""
-    placement: PlacementKeys
-    """The object's channels that are keyed at the first frame."""
+    properties: Mapping[Property, Value]  # custom properties that are keyed at the first frame
+    placement: PlacementKeys  # the object's channels that are keyed at the first frame
     scaled: tuple[str, ...] = ()
     """Bones whose scale is keyed at one, but where curves or drivers give them a scale."""
 
@@ -133,13 +112,18 @@ class RetargetedKeys:
 def write_keys(keys: RetargetedKeys, armature_object: bpy.types.Object, action: bpy.types.Action) -> None:
     """Write the keys into an Action, which is not assigned."""
     channelbag = channelbag_for(action, armature_object)
-    _remove_made(action, channelbag)
-    _remove_channels(channelbag, [keyed.control.name for keyed in keys.controls])
+    before = _made(action)
+    names = [keyed.control.name for keyed in keys.controls]
+    paths = {bone_path(name, channel) for name in names for channel in (*ALL_PATHS, "location")}
+    gone = before.get(channelbag.slot.identifier, [])  # and what a bone has in another rotation mode
+    curves = [(curve, (curve.data_path, curve.array_index)) for curve in channelbag.fcurves]
+    for fcurve in [curve for curve, own in curves if own[0] in paths or own in gone]:
+        channelbag.fcurves.remove(fcurve)
     driven, frames = driven_channels(armature_object), keys.frames
     made: list[tuple[str, int]] = []
     for keyed in keys.controls:
         for path, held in keyed_paths(keyed):
-            values = held.values if isinstance(held, Spline) else held
+            values = values_of(held)
             for index in range(values.shape[1]):
                 if (path, index) in driven:
                     continue
@@ -160,7 +144,7 @@ def write_keys(keys: RetargetedKeys, armature_object: bpy.types.Object, action: 
     for path, values in keys.placement:
         for index, value in enumerate(values):
             made.append(_write_first(channelbag, path, index, OBJECT_GROUP, frames, float(value)))
-    _remember_made(action, channelbag, made)
+    action[MADE_BY_KEYMARK] = json.dumps(before | {channelbag.slot.identifier: made})
     action.use_frame_range = True
     action.frame_start, action.frame_end = float(frames[0]), float(frames[-1])
 
@@ -172,27 +156,6 @@ def _write_first(
     fcurve = ensure_fcurve(channelbag, path, index, group)
     write_linear_keys(fcurve, frames[:1], np.array([value]))
     return path, index
-
-
-def _remove_made(action: bpy.types.Action, channelbag: bpy.types.ActionChannelbag) -> None:
-    """Remove the curves that an earlier retargeting made in a slot."""
-    for path, index in _made(action).get(channelbag.slot.identifier, []):
-        fcurve = channelbag.fcurves.find(path, index=index)
-        if fcurve is not None:
-            channelbag.fcurves.remove(fcurve)
-
-
-def _remove_channels(channelbag: bpy.types.ActionChannelbag, bones: Iterable[str]) -> None:
-    """Remove curves, of whatever rotation mode, of the bones that are to be keyed."""
-    paths = {bone_path(bone, channel) for bone in bones for channel in (*ALL_PATHS, "location")}
-    for fcurve in [curve for curve in channelbag.fcurves if curve.data_path in paths]:
-        channelbag.fcurves.remove(fcurve)
-
-
-def _remember_made(
-    action: bpy.types.Action, channelbag: bpy.types.ActionChannelbag, made: list[tuple[str, int]]
-) -> None:
-    action[MADE_BY_KEYMARK] = json.dumps(_made(action) | {channelbag.slot.identifier: made})
 
 
 def _made(action: bpy.types.Action) -> dict[str, list[tuple[str, int]]]:

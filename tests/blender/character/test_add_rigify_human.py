@@ -7,6 +7,7 @@ import _add_rigify_human
 import bpy
 import pytest
 from _rigify import run_script
+from bpy.types import Object, PropertyGroup
 from keymark.operators.bridge.character import rigify_human
 from keymark.operators.character import add_character as add_rigify_human
 from keymark.operators.character.requirements import recognized
@@ -23,13 +24,12 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def height_m(rig: bpy.types.Object) -> float:
+def height_m(rig: Object) -> float:
     """Height of the top of the head above the floor."""
     return max((rig.matrix_world @ bone.tail_local).z for bone in rig.data.bones if bone.use_deform)
 
 
 def test_the_rigs_are_the_performers_size_and_recognized(file: Path) -> None:
-    """The first fills the entry that waited for an armature, the second is added and chosen."""
     bpy.ops.wm.open_mainfile(filepath=str(file), use_scripts=False)
     take = active_take(bpy.context.scene)
     assert [each.armature.name for each in take.characters] == ["Human", "Human.001"]
@@ -47,7 +47,6 @@ def test_the_rigs_are_the_performers_size_and_recognized(file: Path) -> None:
 
 
 def test_each_rig_has_its_own_body_and_no_metarig_is_left(file: Path) -> None:
-    """A mesh that follows the rig's bones, as wide and as tall as the rig is."""
     bpy.ops.wm.open_mainfile(filepath=str(file), use_scripts=False)
     take = active_take(bpy.context.scene)
     rigs = [each.armature for each in take.characters]
@@ -60,25 +59,17 @@ def test_each_rig_has_its_own_body_and_no_metarig_is_left(file: Path) -> None:
 
 
 def test_without_a_take_there_is_nothing_to_add_it_to() -> None:
-    """The tooltip says what comes first."""
     with pytest.raises(RuntimeError, match="Load the footage or open a take first"):
         bpy.ops.keymark.add_rigify_human()
 
 
-def test_a_blender_without_rigify_says_so(
-    take: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Some systems' own Blender lacks it."""
+def test_a_blender_without_rigify_says_so(take: PropertyGroup, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(add_rigify_human, "has_rigify", lambda: False)
     with pytest.raises(RuntimeError, match="comes without the add-on Rigify"):
         bpy.ops.keymark.add_rigify_human()
 
 
-def test_where_rigify_fails_nothing_is_left(
-    take: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Its own sentence is passed on, with what to do instead, and what it had made is removed."""
-
+def test_where_rigify_fails_nothing_is_left(take: PropertyGroup, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail() -> None:
         bpy.ops.object.armature_add()
         raise RuntimeError("Error: Unknown rig type")

@@ -23,12 +23,10 @@ ENDS = np.array([[[0.0, 0.0], [100.0, 0.0]], [[0.0, 50.0], [100.0, 50.0]], [[50.
 def test_the_nearest_bone_is_found(
     point: tuple[float, float], depths: tuple[float, ...], found: int | None
 ) -> None:
-    """Beside a bone, past its end, and where two lie over each other."""
     assert nearest_segment(np.array(point), ENDS, np.array(depths), 25.0) == found
 
 
 def test_hidden_bones_are_not_picked(registered: None, rig: bpy.types.Object) -> None:
-    """Hidden themselves, or in collections of which none is shown."""
     bones, posed = rig.data.bones, rig.pose.bones
     assert is_visible(posed["head"])
     hidden, shown = (rig.data.collections.new(name) for name in ("Hidden", "Shown"))

@@ -6,6 +6,7 @@ import bpy
 import pytest
 from _armatures import build_character
 from _characters import plain_character
+from bpy.types import Object, PropertyGroup
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.retarget.character import Character
@@ -16,7 +17,7 @@ from keymark.operators.shell.takes import active_take, add_take
 pytestmark = pytest.mark.usefixtures("registered")
 
 
-def accepts(owner: bpy.types.PropertyGroup, name: str, candidate: bpy.types.Object) -> bool:
+def accepts(owner: PropertyGroup, name: str, candidate: Object) -> bool:
     """Whether the field of a pointer lists an object."""
     annotation = type(owner).__annotations__[name]
     return bool(annotation.keywords["poll"](owner, candidate))
@@ -27,10 +28,7 @@ def named(name: str) -> Character:
     return Character(name, plain_character().bones)
 
 
-def test_the_selected_armature_is_added_and_recognized(
-    take: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
-    """Of two, the selected one; nothing was asked."""
+def test_the_selected_armature_is_added_and_recognized(take: PropertyGroup, rig: Object) -> None:
     other = build_character(named("Other"))
     for each, selected in ((rig, True), (other, False)):
         each.select_set(selected)
@@ -44,10 +42,7 @@ def test_the_selected_armature_is_added_and_recognized(
     assert candidates(bpy.context.scene, bpy.context.view_layer) == [other]
 
 
-def test_the_only_armature_is_added_without_being_selected(
-    take: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
-    """The actor, which is selected, is none."""
+def test_the_only_armature_is_added_without_being_selected(take: PropertyGroup, rig: Object) -> None:
     rig.select_set(False)
     bpy.context.view_layer.objects.active = take.armature
     take.armature.select_set(True)
@@ -55,8 +50,7 @@ def test_the_only_armature_is_added_without_being_selected(
     assert take.characters[0].armature == rig
 
 
-def test_without_a_choice_the_field_is_left_to_the_person(take: bpy.types.PropertyGroup) -> None:
-    """Two armatures, none selected: an entry without one, and Retarget says what is missing."""
+def test_without_a_choice_the_field_is_left_to_the_person(take: PropertyGroup) -> None:
     for name in ("One", "Two"):
         build_character(named(name)).select_set(False)
     bpy.context.view_layer.objects.active = None
@@ -66,10 +60,7 @@ def test_without_a_choice_the_field_is_left_to_the_person(take: bpy.types.Proper
         bpy.ops.keymark.retarget()
 
 
-def test_an_actor_is_no_character_and_a_character_no_actor(
-    take: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
-    """Neither field lists what belongs into the other, a mesh, or an actor that has lost a hand."""
+def test_an_actor_is_no_character_and_a_character_no_actor(take: PropertyGroup, rig: Object) -> None:
     bpy.ops.keymark.add_character(armature=rig.name)
     character, mesh = take.characters[0], bpy.data.objects.new("Cube", bpy.data.meshes.new("Cube"))
     other = build_armature(bpy.context.scene, Body(Actor.from_stature(1.5)))
@@ -84,10 +75,7 @@ def test_an_actor_is_no_character_and_a_character_no_actor(
         bpy.ops.keymark.add_character(armature=take.armature.name)
 
 
-def test_a_script_that_gives_a_take_another_armature_is_told(
-    take: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
-    """One sentence from every step that needs the actor, with what to do."""
+def test_a_script_that_gives_a_take_another_armature_is_told(take: PropertyGroup, rig: Object) -> None:
     take.armature = rig
     for operator in (bpy.ops.keymark.bake_motion, bpy.ops.keymark.show_action):
         with pytest.raises(
@@ -96,8 +84,7 @@ def test_a_script_that_gives_a_take_another_armature_is_told(
             operator()
 
 
-def test_what_is_no_character_is_said_and_stays_chosen(take: bpy.types.PropertyGroup) -> None:
-    """A field has no report: the sentence is drawn beside it, and Recognize gives it again."""
+def test_what_is_no_character_is_said_and_stays_chosen(take: PropertyGroup) -> None:
     bones = plain_character().bones[:2]
     post = build_character(Character("Post", bones))
     character = take.characters.add()
@@ -109,10 +96,7 @@ def test_what_is_no_character_is_said_and_stays_chosen(take: bpy.types.PropertyG
         bpy.ops.keymark.retarget()
 
 
-def test_several_characters_are_added_and_removed(
-    take: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
-    """Each with a map of its own; the armatures stay when entries go."""
+def test_several_characters_are_added_and_removed(take: PropertyGroup, rig: Object) -> None:
     second = build_character(named("Second"))
     for each in (rig, second):
         bpy.ops.keymark.add_character(armature=each.name)
@@ -127,10 +111,7 @@ def test_several_characters_are_added_and_removed(
         bpy.ops.keymark.remove_character()
 
 
-def test_another_take_knows_what_was_corrected(
-    character: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
-    """The same armature in a second take begins with the map of the first."""
+def test_another_take_knows_what_was_corrected(character: PropertyGroup, rig: Object) -> None:
     character.character_map.roles["hand.L"].bones[0].bone = "finger.L"
     other = add_take(bpy.context.scene, "Jump")
     other.characters.add().armature = rig
@@ -139,13 +120,11 @@ def test_another_take_knows_what_was_corrected(
 
 
 def test_a_character_without_a_take_asks_for_one() -> None:
-    """The step belongs to a take."""
     with pytest.raises(RuntimeError, match="Load the footage or open a take first"):
         bpy.ops.keymark.add_character()
 
 
-def test_removed_and_renamed_things_are_said(character: bpy.types.PropertyGroup, tmp_path: Path) -> None:
-    """A bone that got another name, a required role without a bone, an armature that was deleted."""
+def test_removed_and_renamed_things_are_said(character: PropertyGroup, tmp_path: Path) -> None:
     armature = character.armature
     armature.data.bones["shin.L"].name = "Unterschenkel"
     with pytest.raises(RuntimeError, match=r"has no bone 'shin\.L' any more"):

@@ -45,7 +45,6 @@ def link_instance(file: Path) -> bpy.types.Object:
 def test_a_linked_character_is_overridden_and_performs(
     rig_file: Path, take: bpy.types.PropertyGroup, tmp_path: Path, link: object
 ) -> None:
-    """It says so first; after Make Override it is recognized, and its motion is there after reopening."""
     before = rig_file.read_bytes()
     linked = link(rig_file)  # type: ignore[operator]
     bpy.context.view_layer.update()

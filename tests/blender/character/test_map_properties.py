@@ -9,8 +9,8 @@ from keymark.core.retarget.character import LIMBS, ROLES
 from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones, read_character_map
 from keymark.core.retarget.maps.presets import SHIPPED, read_preset
 from keymark.core.retarget.options import RetargetOptions
-from keymark.operators.character.figures import options_of
 from keymark.operators.character.map_conversion import map_of, show_map
+from keymark.operators.character.retarget import options_of
 from keymark.operators.shell.takes import active_take
 
 RIGIFY = read_preset(SHIPPED / "rigify.json").character_map
@@ -27,7 +27,6 @@ def role(character: bpy.types.PropertyGroup, name: str) -> bpy.types.PropertyGro
 def test_a_map_goes_into_properties_and_comes_back(
     character: bpy.types.PropertyGroup, character_map: CharacterMap
 ) -> None:
-    """Shares, controls, switches, settings of every kind, soles, corrections: all of it."""
     for _ in range(2):
         show_map(character.character_map, character_map)
         assert map_of(character.character_map) == character_map
@@ -36,7 +35,6 @@ def test_a_map_goes_into_properties_and_comes_back(
 
 
 def test_the_map_is_in_the_file(character: bpy.types.PropertyGroup, tmp_path: Path) -> None:
-    """Saved and opened again, and appended with its scene to another file."""
     show_map(character.character_map, full_map())
     blend = tmp_path / "map.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
@@ -51,7 +49,6 @@ def test_the_map_is_in_the_file(character: bpy.types.PropertyGroup, tmp_path: Pa
 
 
 def test_the_defaults_are_cores(character: bpy.types.PropertyGroup) -> None:
-    """What the panel begins with is what a script begins with."""
     shown, wanted = options_of(character.options), RetargetOptions()
     assert shown.tolerance_m == pytest.approx(wanted.tolerance_m)
     for name in ("root_motion", "placement", "arms", "legs", "plant_feet", "reach_hands"):
@@ -62,7 +59,6 @@ def test_the_defaults_are_cores(character: bpy.types.PropertyGroup) -> None:
 
 
 def test_a_corrected_role_is_the_persons(character: bpy.types.PropertyGroup) -> None:
-    """Its doubt is gone, and so is the control that was found for another bone; other roles keep theirs."""
     show_map(character.character_map, RIGIFY, {"hand.L": "hand.L is doubtful: look at it"})
     before = map_of(character.character_map)
     shown = role(character, "hand.L")
@@ -77,7 +73,6 @@ def test_a_corrected_role_is_the_persons(character: bpy.types.PropertyGroup) -> 
 
 
 def test_an_emptied_field_is_a_missing_role(character: bpy.types.PropertyGroup) -> None:
-    """The cross in a field takes the bone away; a chain goes on without it."""
     role(character, "toe.L").bones[0].bone = ""
     role(character, "spine").bones[0].bone = ""
     found = map_of(character.character_map)
@@ -85,7 +80,6 @@ def test_an_emptied_field_is_a_missing_role(character: bpy.types.PropertyGroup) 
 
 
 def test_a_bone_is_picked(character: bpy.types.PropertyGroup) -> None:
-    """By its name, as scripts do; what is wrong is said."""
     assert bpy.ops.keymark.pick_bone(role="hand.L", bone="finger.L") == {"FINISHED"}
     assert (role(character, "hand.L").bones[0].bone, role(character, "hand.L").source) == ("finger.L", "you")
     for words, said in (
@@ -103,7 +97,6 @@ def test_a_bone_is_picked(character: bpy.types.PropertyGroup) -> None:
 
 
 def test_a_chain_grows_upward_and_shrinks(character: bpy.types.PropertyGroup) -> None:
-    """The bone that goes on from the last one is offered, unless it plays a role already."""
     spine = role(character, "spine")
     spine.bones[1].bone = ""
     bpy.ops.keymark.remove_chain_bone(role="spine", index=1)
@@ -121,7 +114,6 @@ def test_a_chain_grows_upward_and_shrinks(character: bpy.types.PropertyGroup) ->
 
 
 def test_left_is_mirrored_to_right(character: bpy.types.PropertyGroup) -> None:
-    """What was corrected on the left; a side without partners is said and changes nothing."""
     role(character, "hand.L").bones[0].bone = "finger.L"
     assert bpy.ops.keymark.mirror_roles() == {"FINISHED"}
     assert role(character, "hand.R").bones[0].bone == "finger.R"
@@ -134,7 +126,6 @@ def test_left_is_mirrored_to_right(character: bpy.types.PropertyGroup) -> None:
 
 
 def test_a_map_is_saved_and_loaded(character: bpy.types.PropertyGroup, tmp_path: Path) -> None:
-    """The file has the map of the panel; loading it gives that again."""
     role(character, "hand.L").bones[0].bone = "finger.L"
     saved = map_of(character.character_map)
     assert bpy.ops.keymark.save_map(filepath=str(tmp_path / "mine")) == {"FINISHED"}
@@ -147,7 +138,6 @@ def test_a_map_is_saved_and_loaded(character: bpy.types.PropertyGroup, tmp_path:
 def test_a_map_for_other_bones_is_refused_and_changes_nothing(
     character: bpy.types.PropertyGroup, tmp_path: Path
 ) -> None:
-    """The sentence names file and bones."""
     before = map_of(character.character_map)
     bpy.ops.keymark.save_map(filepath=str(tmp_path / "plain.json"))
     for bone in character.armature.data.bones:
@@ -165,7 +155,6 @@ def test_a_map_for_other_bones_is_refused_and_changes_nothing(
 def test_a_map_in_the_library_folder_is_suggested(
     character: bpy.types.PropertyGroup, rig: bpy.types.Object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where its bones are those of the armature; one click then uses it."""
     monkeypatch.setattr("keymark.operators.library.registry.own_folder", lambda: tmp_path)
     role(character, "hand.L").bones[0].bone = "finger.L"
     character.character_map.title = "My Hero"

@@ -9,6 +9,7 @@ import pytest
 from _armatures import build_character
 from _characters import plain_character
 from _scene_state import differences, scene_state
+from bpy.types import Action, Object, PropertyGroup, Scene
 from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character
@@ -16,21 +17,18 @@ from keymark.core.retarget.quality import Quality
 from keymark.operators.bridge.actions import assign_action, curve_digest, existing_channelbag
 from keymark.operators.bridge.actor_bones import moves_an_actor
 from keymark.operators.character.characters import source_of
-from keymark.operators.character.figures import figures
+from keymark.operators.character.retarget import figures
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 
 
-def shown(character: bpy.types.PropertyGroup) -> bpy.types.Action:
+def shown(character: PropertyGroup) -> Action:
     """The Action that animates a character."""
     return character.armature.animation_data.action
 
 
-def test_the_motion_becomes_an_action_of_the_character(
-    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
-) -> None:
-    """New, with its slot, named after motion and character; the motion and the frame stay."""
+def test_the_motion_becomes_an_action_of_the_character(character: PropertyGroup, take: PropertyGroup) -> None:
     bpy.context.scene.frame_set(7)
     before = curve_digest(take.armature)
     assert bpy.ops.keymark.retarget() == {"FINISHED"}
@@ -46,10 +44,7 @@ def test_the_motion_becomes_an_action_of_the_character(
     assert np.abs(np.array(bone.matrix) - rested).max() > 1e-3
 
 
-def test_again_replaces_only_what_it_made(
-    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
-) -> None:
-    """The same Action, the same number of Actions; with Keep Earlier another, and both can be shown."""
+def test_again_replaces_only_what_it_made(character: PropertyGroup, take: PropertyGroup) -> None:
     bpy.ops.keymark.retarget()
     first, count = shown(character), len(bpy.data.actions)
     bpy.ops.keymark.retarget()
@@ -69,8 +64,7 @@ def test_again_replaces_only_what_it_made(
     assert [each.action for each in character.results] == [second] and first in list(bpy.data.actions)
 
 
-def test_a_result_that_was_deleted_is_made_anew(character: bpy.types.PropertyGroup) -> None:
-    """The entry without an Action goes."""
+def test_a_result_that_was_deleted_is_made_anew(character: PropertyGroup) -> None:
     bpy.ops.keymark.retarget()
     bpy.data.actions.remove(shown(character))
     assert character.results[0].action is None
@@ -80,8 +74,7 @@ def test_a_result_that_was_deleted_is_made_anew(character: bpy.types.PropertyGro
     assert [each.action for each in character.results] == [shown(character)]
 
 
-def test_another_armature_begins_without_results(character: bpy.types.PropertyGroup) -> None:
-    """The first one's Action is not written over, and is listed still where the same one is chosen again."""
+def test_another_armature_begins_without_results(character: PropertyGroup) -> None:
     bpy.ops.keymark.retarget()
     first, before = character.armature, shown(character)
     digest = curve_digest(first)
@@ -93,10 +86,7 @@ def test_another_armature_begins_without_results(character: bpy.types.PropertyGr
     assert shown(character).name == "Walk Second" and curve_digest(first) == digest
 
 
-def test_the_newest_motion_is_performed(
-    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
-) -> None:
-    """The final Action, unless the reconstructed one is newer; or the one that is asked for."""
+def test_the_newest_motion_is_performed(character: PropertyGroup, take: PropertyGroup) -> None:
     assert source_of(take, character).kind == "MOTION"
     bpy.ops.keymark.bake_motion()
     assert source_of(take, character).action == take.finish.action
@@ -109,8 +99,7 @@ def test_the_newest_motion_is_performed(
         bpy.ops.keymark.retarget()
 
 
-def test_a_newer_motion_marks_the_result(opened: bpy.types.Scene) -> None:
-    """Reconstructing and baking do; retargeting again takes the mark away."""
+def test_a_newer_motion_marks_the_result(opened: Scene) -> None:
     take = active_take(opened)
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()
@@ -125,10 +114,7 @@ def test_a_newer_motion_marks_the_result(opened: bpy.types.Scene) -> None:
     assert not character.results[0].outdated and len(character.results) == 1
 
 
-def test_any_action_of_an_actor_is_performed(
-    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
-) -> None:
-    """With a result of its own, which a newer motion of the take does not make outdated."""
+def test_any_action_of_an_actor_is_performed(character: PropertyGroup, take: PropertyGroup) -> None:
     bpy.ops.keymark.retarget()
     other = take.motion_action.copy()
     other.name = "Jump"
@@ -149,8 +135,7 @@ def test_any_action_of_an_actor_is_performed(
         bpy.ops.keymark.retarget()
 
 
-def test_an_action_that_is_not_the_actors_changes_nothing(character: bpy.types.PropertyGroup) -> None:
-    """A script may choose what the field does not list."""
+def test_an_action_that_is_not_the_actors_changes_nothing(character: PropertyGroup) -> None:
     before = scene_state()
     foreign = bpy.data.actions.new("Foreign")
     character.source, character.source_action = "ACTION", foreign
@@ -163,9 +148,8 @@ def test_an_action_that_is_not_the_actors_changes_nothing(character: bpy.types.P
 
 
 def test_each_of_several_characters_has_results_of_its_own(
-    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
+    character: PropertyGroup, take: PropertyGroup
 ) -> None:
-    """The chosen one is retargeted, the other's Action stays."""
     second = build_character(Character("Second", plain_character().bones))
     bpy.ops.keymark.add_character(armature=second.name)
     for number in (1, 0):
@@ -179,16 +163,14 @@ def test_each_of_several_characters_has_results_of_its_own(
     assert [each.results[0].action for each in take.characters] == actions
 
 
-def test_what_was_measured_is_said_in_few_lines(character: bpy.types.PropertyGroup) -> None:
-    """Feet, floor, hands, keys."""
+def test_what_was_measured_is_said_in_few_lines(character: PropertyGroup) -> None:
     bpy.ops.keymark.retarget()
     said = [line.text for line in character.results[0].lines if line.level == "INFO"]
     assert 3 <= len(said) <= 4
     assert any("keys" in line for line in said) and not any(line[0].islower() for line in said)
 
 
-def test_a_cancelled_job_leaves_no_trace(character: bpy.types.PropertyGroup) -> None:
-    """Closed in the middle as Esc does it, wherever that is."""
+def test_a_cancelled_job_leaves_no_trace(character: PropertyGroup) -> None:
     from keymark.operators.character.retarget import KEYMARK_OT_retarget
 
     before = scene_state()
@@ -201,10 +183,7 @@ def test_a_cancelled_job_leaves_no_trace(character: bpy.types.PropertyGroup) -> 
         assert not differences(before, scene_state()), f"after {steps} of {total} steps"
 
 
-def test_what_is_removed_while_the_job_runs_is_said(
-    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
-) -> None:
-    """The character, its armature, or the motion: one sentence, and no Action."""
+def test_what_is_removed_while_the_job_runs_is_said(character: PropertyGroup, take: PropertyGroup) -> None:
     from keymark.operators.character.retarget import KEYMARK_OT_retarget
 
     scene = bpy.context.scene
@@ -218,8 +197,7 @@ def test_what_is_removed_while_the_job_runs_is_said(
     assert list(bpy.data.actions) == [take.motion_action]
 
 
-def test_every_step_is_undone_and_redone(take: bpy.types.PropertyGroup, rig: bpy.types.Object) -> None:
-    """Adding, correcting, mirroring, retargeting, showing, removing: one undo each."""
+def test_every_step_is_undone_and_redone(take: PropertyGroup, rig: Object) -> None:
     ops = bpy.ops.keymark
     steps: list[tuple[str, Callable[[], object]]] = [
         ("add", lambda: ops.add_character(armature="Character")),
@@ -247,10 +225,7 @@ def test_every_step_is_undone_and_redone(take: bpy.types.PropertyGroup, rig: bpy
         assert not differences(after, scene_state()), f"redoing {name}"
 
 
-def test_the_result_is_an_asset_like_the_actors(
-    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
-) -> None:
-    """The same details and a picture; the actor's own Action is not marked by it."""
+def test_the_result_is_an_asset_like_the_actors(character: PropertyGroup, take: PropertyGroup) -> None:
     bpy.ops.keymark.retarget()
     take.finish.catalog, take.finish.tags, take.finish.author = "", "walk, calm", "Ann"
     assert bpy.ops.keymark.mark_result_asset() == {"FINISHED"}
@@ -260,10 +235,7 @@ def test_the_result_is_an_asset_like_the_actors(
     assert take.motion_action.asset_data is None
 
 
-def test_the_actor_is_still_animated_by_its_own(
-    character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
-) -> None:
-    """Retargeting while the actor shows its keyframes reads the motion all the same."""
+def test_the_actor_is_still_animated_by_its_own(character: PropertyGroup, take: PropertyGroup) -> None:
     keyframes = bpy.data.actions.new("Keyframes")
     assign_action(take.armature, keyframes)
     bpy.ops.keymark.retarget()
@@ -271,17 +243,13 @@ def test_the_actor_is_still_animated_by_its_own(
     assert existing_channelbag(shown(character), character.armature) is not None
 
 
-def test_removing_a_take_with_its_data_keeps_the_character(
-    character: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
-    """The Actions that Keymark made go, the armature is the animator's."""
+def test_removing_a_take_with_its_data_keeps_the_character(character: PropertyGroup, rig: Object) -> None:
     bpy.ops.keymark.retarget()
     bpy.ops.keymark.remove_take(delete_data=True)
     assert list(bpy.data.actions) == [] and rig in list(bpy.data.objects)
 
 
 def test_the_figures_of_a_motion_in_words() -> None:
-    """Of feet, floor, hands and keys, or of limbs where hands reach nothing; what is unknown is left out."""
     quality = Quality(
         arms_deg=0.04, legs_deg=2.26, skate_mm=0.021, penetration_mm=1.06, keys=12, dense_keys=90
     )

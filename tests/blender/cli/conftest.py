@@ -40,7 +40,6 @@ def cast(tmp_path_factory: pytest.TempPathFactory, result: Path) -> Path:
     _save(folder / "half.blend", lambda: build_character(half))
     _save(folder / "flat.blend", lambda: _scaled(build_character(plain), (1.0, 0.0, 1.0)))
     _save(folder / "nan.blend", lambda: _scaled(build_character(plain), (float("nan"),) * 3))
-    _save(folder / "cycle.blend", lambda: _with_cycle(build_character(plain)))
     shutil.copyfile(result / "motion.blend", folder / "motion.blend")
     (folder / "damaged.blend").write_bytes((folder / "anna.blend").read_bytes()[:3000])
     (folder / "damaged.glb").write_bytes(b"no model")
@@ -76,14 +75,6 @@ def _named(armature: bpy.types.Object, name: str) -> bpy.types.Object:
 
 def _scaled(armature: bpy.types.Object, scale: tuple[float, ...]) -> bpy.types.Object:
     armature.scale = scale
-    return armature
-
-
-def _with_cycle(armature: bpy.types.Object) -> bpy.types.Object:
-    """Two bones that each copy the other's turn."""
-    for one, other in (("thigh.L", "thigh.R"), ("thigh.R", "thigh.L")):
-        constraint = armature.pose.bones[one].constraints.new("COPY_ROTATION")
-        constraint.target, constraint.subtarget = armature, other
     return armature
 
 

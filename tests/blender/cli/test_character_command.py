@@ -74,7 +74,6 @@ BAD = {
     "motion.blend": "is an actor of Keymark",
     "flat.blend": "scale",
     "nan.blend": "scale",
-    "cycle.blend": "cycle",
     "damaged.blend": "Blender cannot read it as a character",
     "damaged.glb": "Blender cannot read it as a character",
     "missing.blend": "no such file; it must be a character file",

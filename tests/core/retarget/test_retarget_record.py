@@ -8,15 +8,10 @@ from typing import Any
 import pytest
 from _character_maps import full_record
 from keymark.core.errors import InputError
-from keymark.core.retarget.retarget_record import (
-    RECORD_FILE,
-    read_retarget_record,
-    write_retarget_record,
-)
+from keymark.core.retarget.retarget_record import RECORD_FILE, read_retarget_record, write_retarget_record
 
 
 def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
-    """Every field; the same record gives the same bytes."""
     write_retarget_record(tmp_path, full_record())
     assert read_retarget_record(tmp_path) == full_record()
     first = (tmp_path / RECORD_FILE).read_bytes()
@@ -25,7 +20,6 @@ def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
 
 
 def test_figures_have_five_digits(tmp_path: Path) -> None:
-    """More would differ between machines, and mean nothing."""
     write_retarget_record(
         tmp_path, replace(full_record(), quality={"a_mm": 1.23456789, "b": None, "keys": 1234567})
     )
@@ -51,7 +45,6 @@ def test_figures_have_five_digits(tmp_path: Path) -> None:
     ],
 )
 def test_every_mistake_is_named(tmp_path: Path, way: tuple[Any, ...], value: Any, said: str) -> None:
-    """The sentence begins with the file."""
     whole = json.loads(json.dumps(full_record().to_json()))
     holder = whole
     for key in way[:-1]:

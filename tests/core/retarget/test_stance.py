@@ -15,7 +15,6 @@ from keymark.core.retarget.maps.character_map import CharacterMap
 @pytest.mark.parametrize("yaw_deg", [0.0, 90.0, 180.0, 35.0, -120.0])
 @pytest.mark.parametrize("y_up", [False, True])
 def test_the_stance_undoes_how_the_armature_lies(yaw_deg: float, y_up: bool) -> None:
-    """Exactly on clean skeletons, whatever their arms do."""
     turn = yaw_rotation(np.radians(yaw_deg))
     if y_up:
         turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]) @ turn
@@ -27,13 +26,11 @@ def test_the_stance_undoes_how_the_armature_lies(yaw_deg: float, y_up: bool) -> 
 
 
 def test_a_lean_is_no_tilt_of_the_armature() -> None:
-    """A body that leans ahead by five degrees stands upright."""
     character = plain_character(turn=exponential(np.radians([5.0, 0.0, 0.0])))
     assert np.array_equal(find_stance(character, plain_map(character)), np.eye(3))
 
 
 def test_a_tilted_armature_is_found() -> None:
-    """One that lies at forty degrees does not: the stance is its own, to the body's lean."""
     turn = exponential(np.radians([40.0, 0.0, 0.0]))
     character = plain_character(turn=turn)
     stance = find_stance(character, plain_map(character))
@@ -41,13 +38,11 @@ def test_a_tilted_armature_is_found() -> None:
 
 
 def test_a_map_without_limbs_leaves_the_axes() -> None:
-    """There is nothing to tell by."""
     assert np.array_equal(find_stance(plain_character(), CharacterMap("X", {})), np.eye(3))
 
 
 @pytest.mark.parametrize("y_up", [False, True])
 def test_a_body_that_sits_at_rest_is_upright(y_up: bool) -> None:
-    """Legs ahead of the trunk do not tilt the armature."""
     turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]) if y_up else np.eye(3)
     character = plain_character()
     knee_m = character.bone("thigh.L").head[2] - character.bone("shin.L").head[2]

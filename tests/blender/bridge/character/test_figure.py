@@ -7,7 +7,6 @@ from _armatures import build_character
 from _characters import plain_character, plain_map
 from keymark.core.report.canvas import LEFT, RIGHT
 from keymark.core.report.mannequin import SKIN
-from keymark.core.retarget.figure_lines import figure_lines
 from keymark.operators.bridge.character.figure import character_figure, character_picture
 
 RED = (0.8, 0.05, 0.05, 1.0)
@@ -40,8 +39,7 @@ def add_box(armature: bpy.types.Object, color: tuple[float, float, float, float]
 
 
 def test_bones_are_drawn_from_joint_to_joint_in_the_world(armature: bpy.types.Object) -> None:
-    """Without a mesh the figure is as tall as the character, left and right in their colors."""
-    figure = character_figure(armature, figure_lines(plain_map(plain_character())))
+    figure = character_figure(armature, plain_map(plain_character()))
     low, high = figure.points.min(axis=0), figure.points.max(axis=0)
     assert high[2] == pytest.approx(1.72, abs=0.02) and low[2] == pytest.approx(0.0, abs=0.03)
     assert 0.5 * (low + high)[0] == pytest.approx(1.0, abs=0.02)
@@ -53,8 +51,7 @@ def test_bones_are_drawn_from_joint_to_joint_in_the_world(armature: bpy.types.Ob
 
 
 def test_triangles_face_outwards(armature: bpy.types.Object) -> None:
-    """Every triangle of an octahedron looks away from its middle."""
-    figure = character_figure(armature, figure_lines(plain_map(plain_character())))
+    figure = character_figure(armature, plain_map(plain_character()))
     for first in range(0, len(figure.triangles), 8):
         corners = figure.points[figure.triangles[first : first + 8]]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -66,9 +63,8 @@ def test_triangles_face_outwards(armature: bpy.types.Object) -> None:
 def test_a_mesh_is_drawn_instead_in_the_color_it_has(
     armature: bpy.types.Object, color: tuple[float, float, float, float] | None, redder: bool
 ) -> None:
-    """The box's twelve triangles, in meters; a mesh without materials has the color of skin."""
     add_box(armature, color)
-    figure = character_figure(armature, figure_lines(plain_map(plain_character())))
+    figure = character_figure(armature, plain_map(plain_character()))
     assert len(figure.triangles) == 12
     np.testing.assert_allclose(np.ptp(figure.points, axis=0), 0.2, atol=1e-6)
     assert (figure.colors[:, 2] > 3.0 * figure.colors[:, 0]).all() == redder
@@ -76,7 +72,6 @@ def test_a_mesh_is_drawn_instead_in_the_color_it_has(
 
 
 def test_without_footage_there_is_no_picture(armature: bpy.types.Object) -> None:
-    """A scene without a clip has nothing to be beside."""
     shown = character_picture(
         bpy.context.scene, armature, plain_map(plain_character()), np.arange(1.0, 5.0), 0.0
     )

@@ -106,7 +106,6 @@ def names(character: ImportedCharacter) -> set[str]:
 
 
 def test_a_blend_gives_the_character_with_all_it_needs(imported: Import) -> None:
-    """Skin, helper and sword come along, not the table and the widget; the script is not run."""
     character = imported("anna.blend")
     assert names(character) == {"Anna", "Anna body", "Anna helper", "Anna sword"}
     assert character.armature.pose.bones["hips"].custom_shape.name == "Anna widget"
@@ -116,7 +115,6 @@ def test_a_blend_gives_the_character_with_all_it_needs(imported: Import) -> None
 
 @pytest.mark.parametrize("file", ["anna.glb", "anna.gltf", "anna.fbx", "anna.vrm"])
 def test_exchange_files_give_the_same_bones(imported: Import, file: str) -> None:
-    """With their skin, at rest, without their motion and the importer's helpers."""
     character = imported(file)
     assert len(names(character)) == 2 and "Anna" in names(character)
     assert set(plain_character(root="root").index) <= {bone.name for bone in character.armature.data.bones}
@@ -127,13 +125,11 @@ def test_exchange_files_give_the_same_bones(imported: Import, file: str) -> None
 
 @pytest.mark.parametrize("name", ["Anna", "Ben"])
 def test_one_of_two_is_named(imported: Import, name: str) -> None:
-    """And what belongs to the other stays away, though it has the same bones."""
     character = imported(f"two.blend:{name}")
     assert names(character) == {name, *(f"{name} {what}" for what in ("body", "helper", "sword"))}
 
 
 def test_tracks_that_would_play_below_are_muted(imported: Import, folder: Path) -> None:
-    """In the copy, and a note says so."""
     armature = add_character("Carl")
     action = bpy.data.actions.new("Idle")
     armature.animation_data_create().nla_tracks.new().strips.new("Idle", 1, action)
@@ -161,7 +157,6 @@ def test_tracks_that_would_play_below_are_muted(imported: Import, folder: Path) 
     ],
 )
 def test_what_is_no_character_is_one_sentence(imported: Import, text: str, said: str) -> None:
-    """It names the file, and what would be valid."""
     with pytest.raises(InputError, match=said) as caught:
         imported(text)
     sentence = str(caught.value)
@@ -169,7 +164,6 @@ def test_what_is_no_character_is_one_sentence(imported: Import, text: str, said:
 
 
 def test_a_file_of_another_program_is_read(imported: Import, folder: Path) -> None:
-    """Joints without length, and no bone's tail where its child begins."""
     write_glb(plain_character(scale=0.01), folder / "plain.glb")
     character = imported("plain.glb")
     armature = character.armature

@@ -42,7 +42,6 @@ def bone_of(point: np.ndarray) -> str:
 
 @pytest.mark.parametrize("scale", [1.0, 0.01])
 def test_soles_lie_under_the_feet(scale: float) -> None:
-    """Of foot and toe, in the armature's units, wherever the mesh object stands."""
     plain = plain_character(scale=scale)
     character = build_character(plain)
     points = np.concatenate([shoe("L"), shoe("R")])
@@ -59,7 +58,6 @@ def test_soles_lie_under_the_feet(scale: float) -> None:
 
 
 def test_bones_that_copy_a_foot_count_as_it() -> None:
-    """As deform bones do that follow the bones with roles by constraints."""
     plain = plain_character()
     bones = [*plain.bones]
     for side in "LR":
@@ -79,7 +77,6 @@ def test_bones_that_copy_a_foot_count_as_it() -> None:
 
 @pytest.mark.parametrize("case", ["skirt", "stump", "none"])
 def test_what_is_no_foot_gives_no_sole(case: str) -> None:
-    """A skirt that moves with the hips, feet without heels, or no mesh at all."""
     plain = plain_character()
     character = build_character(plain)
     points = np.concatenate([shoe("L"), shoe("R")])

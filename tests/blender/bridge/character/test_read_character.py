@@ -25,7 +25,6 @@ def character() -> bpy.types.Object:
 
 
 def test_bones_are_read_as_they_were_built(character: bpy.types.Object) -> None:
-    """Rest matrices, tails, parents and scale, parents before their children."""
     built, read = plain_character(scale=0.01, roll_rad=0.7), read_character(character)
     assert read.scale == pytest.approx(0.01)
     assert set(read.index) == set(built.index)
@@ -97,13 +96,11 @@ def tweaked(made: bpy.types.Object) -> None:
     ],
 )
 def test_what_cannot_be_retargeted_is_refused(make: Callable[[], bpy.types.Object], words: str) -> None:
-    """One sentence says what is wrong, and what to do."""
     with pytest.raises(InputError, match=words):
         read_character(make())
 
 
 def test_a_linked_character_is_refused_until_it_is_overridden(rigify_blend: Path) -> None:
-    """Keys on a linked armature are lost; on its override they stay."""
     linked = add_rig(rigify_blend, link=True)
     assert needs_override(linked)
     with pytest.raises(InputError, match="library override"):

@@ -139,7 +139,6 @@ def with_flags() -> tuple[bpy.types.Object, CharacterMap]:
 def test_blender_shows_what_was_solved(
     make: Callable[[], tuple[bpy.types.Object, CharacterMap]], source: SegmentMotion
 ) -> None:
-    """Whatever carries the bones, and whatever rotation modes they have, which stay."""
     character, known = make()
     modes = [bone.rotation_mode for bone in character.pose.bones]
     made = retargeted(character, known, source, DENSE)
@@ -155,7 +154,6 @@ def test_blender_shows_what_was_solved(
 
 
 def test_bones_scaled_in_the_pose_are_keyed_at_one(source: SegmentMotion) -> None:
-    """Bones of the motion and what carries them, the same when it is written again; others stay."""
     character, known = plain(root="root")
     for name, scale in (("root", 1.2), ("hips", 0.8), ("head", 1.3), ("finger.L", 2.0)):
         character.pose.bones[name].scale = (scale,) * 3
@@ -175,7 +173,6 @@ def test_bones_scaled_in_the_pose_are_keyed_at_one(source: SegmentMotion) -> Non
 
 
 def test_the_character_stands_where_the_performer_does(source: SegmentMotion) -> None:
-    """The object is placed by keys; in its own place it stays where it is."""
     character, known = turned_object()
     made = retargeted(character, known, source, DENSE)
     bpy.context.scene.frame_set(11)
@@ -193,7 +190,6 @@ def test_the_character_stands_where_the_performer_does(source: SegmentMotion) ->
 
 
 def test_the_way_goes_onto_the_root_bone(source: SegmentMotion) -> None:
-    """The root bone is keyed, and the feet are where they were."""
     character, known = plain(root="root")
     options = replace(DENSE, root_motion=RootMotion.ROOT_BONE)
     made = retargeted(character, known, source, options)
@@ -204,7 +200,6 @@ def test_the_way_goes_onto_the_root_bone(source: SegmentMotion) -> None:
 
 
 def test_connected_bones_cannot_be_moved_and_it_is_said(source: SegmentMotion) -> None:
-    """A foot that is connected to the shin follows it, wherever it belongs."""
     made = plain_character()
     bones = [
         replace(bone, connected=True) if bone.name.startswith(("shin", "foot")) else bone
@@ -218,7 +213,6 @@ def test_connected_bones_cannot_be_moved_and_it_is_said(source: SegmentMotion) -
 
 
 def test_what_keeps_bones_from_their_poses_is_said(source: SegmentMotion) -> None:
-    """Drivers win over keys, so that there are none; locks do not, and constraints may."""
     character, known = plain()
     bones = character.pose.bones
     bones["shin.L"].lock_rotation = (False, True, True)
@@ -243,7 +237,6 @@ def known(rigify: bpy.types.Object) -> CharacterMap:
 def test_a_control_rig_performs_in_ik_and_in_fk(
     rigify: bpy.types.Object, known: CharacterMap, source: SegmentMotion
 ) -> None:
-    """Switching limbs moves neither ankles nor wrists; the rig's settings are keyed and not set."""
     before = {key: rigify.pose.bones["thigh_parent.L"][key] for key in ("IK_FK", "IK_Stretch", "pole_vector")}
     made = retargeted(rigify, known, source, RetargetOptions())
     quality = made.quality
@@ -266,7 +259,6 @@ def test_a_control_rig_performs_in_ik_and_in_fk(
 def test_limbs_are_keyed_in_one_way_alone(
     rigify: bpy.types.Object, known: CharacterMap, source: SegmentMotion, keys: LimbKeys
 ) -> None:
-    """Only the controls of that way have keys, and it is what shows."""
     made = retargeted(rigify, known, source, RetargetOptions(arms=keys, legs=keys))
     names = {one.control.name for one in made.keys.controls}
     assert ("thigh_fk.L" in names) == (keys is LimbKeys.FK)
@@ -285,7 +277,6 @@ def test_retargeting_leaves_no_trace_until_it_is_written(
     source: SegmentMotion,
     state: Callable[[bpy.types.Object], object],
 ) -> None:
-    """Pose, properties, Action, frame and objects are as they were, also where the job is given up."""
     action = bpy.data.actions.new("Own")
     slot = action.slots.new(id_type="OBJECT", name="Other")
     data = rigify.animation_data_create()
@@ -310,7 +301,6 @@ def test_retargeting_leaves_no_trace_until_it_is_written(
 
 
 def test_written_again_only_what_retargeting_made_is_replaced(source: SegmentMotion) -> None:
-    """Curves of the animator stay, and those of another rotation mode do not."""
     character, known = plain()
     made = retargeted(character, known, source, RetargetOptions())
     action = character.animation_data.action
@@ -331,7 +321,6 @@ def test_written_again_only_what_retargeting_made_is_replaced(source: SegmentMot
 
 
 def test_few_keys_are_splines_of_rotation_and_location_apart(source: SegmentMotion) -> None:
-    """The hips' place and turn have keys of their own."""
     character, known = plain()
     made = retargeted(character, known, source, RetargetOptions())
     hips = next(one for one in made.keys.controls if one.control.name == "hips")
@@ -340,7 +329,6 @@ def test_few_keys_are_splines_of_rotation_and_location_apart(source: SegmentMoti
 
 
 def test_bad_input_is_refused(source: SegmentMotion) -> None:
-    """A map for other bones, a single frame, an object that a constraint places, a deleted character."""
     character, known = plain()
     frames = 1.0 + np.arange(FRAMES)
     other = replace(known, root="Wurzel")

@@ -25,7 +25,6 @@ def actor(body: Body, wave_motion: Motion) -> bpy.types.Object:
 
 
 def test_segments_are_where_the_actors_bones_are(actor: bpy.types.Object, wave_motion: Motion) -> None:
-    """Every segment begins and ends as Blender shows its bone, in the scene's time."""
     source, frames = run(read_source(actor, actor.animation_data.action))
     assert frames == pytest.approx(wave_motion.scene_frames)
     assert source.time_s == pytest.approx(wave_motion.time_s)
@@ -41,7 +40,6 @@ def test_segments_are_where_the_actors_bones_are(actor: bpy.types.Object, wave_m
 
 
 def test_a_hand_that_the_animator_keyed_is_as_keyed(actor: bpy.types.Object) -> None:
-    """Its turn is the animator's, whatever the motion alone would do."""
     action = actor.animation_data.action
     before, frames = run(read_source(actor, action))
     bone = actor.pose.bones["hand.L"]
@@ -60,7 +58,6 @@ def test_a_hand_that_the_animator_keyed_is_as_keyed(actor: bpy.types.Object) -> 
 
 
 def test_what_is_no_actors_motion_is_refused(actor: bpy.types.Object) -> None:
-    """An armature that is no actor, and an Action without a motion of it."""
     action = actor.animation_data.action
     with pytest.raises(InputError, match="lacks the bones"):
         run(read_source(build_character(plain_character()), action))

@@ -26,7 +26,7 @@ from keymark.core.retarget.controls.point_tolerances import (
     pole_tolerance_m,
     reach_tolerance_m,
 )
-from keymark.core.retarget.controls.stages import FollowingControls, control_stages
+from keymark.core.retarget.controls.reduction import FollowingControls, control_stages
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.options import LimbKeys, RetargetOptions, RootMotion
 
@@ -45,7 +45,6 @@ def names(known: CharacterMap, **options: object) -> set[str]:
 
 
 def test_limbs_are_keyed_as_chosen(known: CharacterMap) -> None:
-    """In FK, in IK or in both; shoulders and toes in any case, the root where it carries the way."""
     both = names(known)
     assert {"hips", "chest", "thigh.L", "foot.R", "toe.L", "ik_foot.L", "pole_arm.R"} <= both
     fk = names(known, arms=LimbKeys.FK, legs=LimbKeys.FK)
@@ -59,7 +58,6 @@ def test_limbs_are_keyed_as_chosen(known: CharacterMap) -> None:
 
 
 def test_roles_that_are_left_alone_are_not_keyed(known: CharacterMap) -> None:
-    """And a limb that lacks one of its joints is keyed in FK."""
     left = replace(known, left_alone=("hand.L", "neck"))
     assert not {"hand.L", "neck", "ik_hand.L", "pole_arm.L"} & names(left)
     assert {"forearm.L", "ik_hand.R"} <= names(left)
@@ -67,7 +65,6 @@ def test_roles_that_are_left_alone_are_not_keyed(known: CharacterMap) -> None:
 
 
 def test_a_limb_without_fk_controls_is_keyed_in_ik(known: CharacterMap) -> None:
-    """Nothing else would show."""
     bare = replace(known, fk={"thigh.L": (None,), "shin.L": (None,), "foot.L": ("ik_foot.L",)})
     assert limb_keys(bare, RetargetOptions(legs=LimbKeys.FK), "leg.L") is LimbKeys.IK
     assert limb_keys(bare, RetargetOptions(legs=LimbKeys.FK), "leg.R") is LimbKeys.FK
@@ -80,7 +77,6 @@ def control(name: str, kind: ControlKind, turner: int, carrier: int) -> Control:
 
 
 def test_legs_follow_the_body_and_goals_follow_the_legs() -> None:
-    """What hangs together is found together; what two things carry is found with the body."""
     fk, goal = ControlKind.FK, ControlKind.GOAL
     controls = [
         control("hips", ControlKind.HIPS, NOTHING, NOTHING),
@@ -92,15 +88,15 @@ def test_legs_follow_the_body_and_goals_follow_the_legs() -> None:
         control("odd", goal, NOTHING, 0),
         control("chest", fk, 0, 0),
     ]
-    stages = control_stages(controls, {"leg.L": (0, [1, 2])})
-    assert stages.body == (0, 6, 7)
-    assert stages.following == (
+    body, following = control_stages(controls, {"leg.L": (0, [1, 2])})
+    assert body == (0, 6, 7)
+    assert following == (
         FollowingControls((1, 2), 0, "leg.L"),
         FollowingControls((3, 4), NOTHING),
         FollowingControls((5,), 0),
     )
     on_leg = [*controls[:3], control("knife", fk, 2, 2)]
-    assert control_stages(on_leg, {"leg.L": (0, [1, 2])}).body == (0, 1, 2, 3)
+    assert control_stages(on_leg, {"leg.L": (0, [1, 2])})[0] == (0, 1, 2, 3)
 
 
 def still_motion(rests: tuple[FootRest, ...]) -> CharacterMotion:
@@ -109,8 +105,7 @@ def still_motion(rests: tuple[FootRest, ...]) -> CharacterMotion:
 
 
 def test_resting_and_low_feet_are_held_more_tightly() -> None:
-    """Ankles within what a switch may show, resting ones all but still."""
-    motion = still_motion((FootRest("leg.L", 5, 9, 0.0),))
+    motion = still_motion((FootRest("leg.L", 5, 9),))
     rules = ToleranceRules(motion, np.arange(FRAMES) / 30.0, np.array([0.0, 0.0, 1.0]), 0.005)
     path = np.zeros((FRAMES, 3))
     path[20:, 2] = 0.2
@@ -127,7 +122,6 @@ def test_resting_and_low_feet_are_held_more_tightly() -> None:
 
 
 def test_straight_limbs_are_held_by_what_their_knees_do() -> None:
-    """An error along a limb moves a straight knee far, and one of the pole hardly."""
     root, end = np.zeros((2, 3)), np.array([[0.0, 0.0, -0.8], [0.0, 0.0, -0.6]])
     middle = np.array([[0.0, -0.01, -0.4], [0.0, -0.26, -0.3]])
     reach = reach_tolerance_m((root, middle, end), 0.005)
@@ -139,7 +133,6 @@ def test_straight_limbs_are_held_by_what_their_knees_do() -> None:
 
 @pytest.mark.parametrize("offset_rad", [0.0, 0.7, np.pi])
 def test_poles_lie_where_their_joints_point(offset_rad: float) -> None:
-    """At the same angle about the limb's line as was seen, as far from it whatever the side."""
     rng = np.random.default_rng(5)
     root, middle, end = rng.normal(size=(3, 4, 3))
     axis = (end - root) / np.linalg.norm(end - root, axis=-1, keepdims=True)
@@ -155,7 +148,6 @@ def test_poles_lie_where_their_joints_point(offset_rad: float) -> None:
 
 
 def test_every_bone_has_points_that_show_its_place_and_turn() -> None:
-    """Three that are not in line, in its own axes, whatever its size."""
     character = plain_character(scale=0.01, roll_rad=0.4)
     known = plain_map(character)
     soles = {"foot.L": np.array([[10.0, 5.0, 0.0]])}

@@ -23,7 +23,7 @@ from keymark.core.retarget.controls.control_motion import ControlMotion, KeyedCo
 from keymark.core.retarget.controls.control_plan import ControlKind, PlannedControl
 from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
 from keymark.core.retarget.controls.point_tolerances import ToleranceRules
-from keymark.core.retarget.controls.stages import reduce_controls
+from keymark.core.retarget.controls.reduction import reduce_controls
 from keymark.core.retarget.options import LimbKeys, RetargetOptions
 from keymark.core.retarget.solve.solve_motion import solve_motion
 
@@ -93,7 +93,6 @@ def off_m(motion: ControlMotion, poses: dict[str, ControlChannels], name: str) -
 
 @pytest.mark.parametrize("keys", list(LimbKeys))
 def test_every_joint_stays_within_the_tolerance(keys: LimbKeys) -> None:
-    """In FK, in IK, and in both, with less than a third of the keys."""
     motion = on_controls(keys)
     keyed = reduced(motion)
     poses = shown(motion, keyed)
@@ -105,14 +104,12 @@ def test_every_joint_stays_within_the_tolerance(keys: LimbKeys) -> None:
 
 
 def test_dense_keys_are_the_motion_itself() -> None:
-    """A key on every frame shows it to the last digit."""
     motion = on_controls(LimbKeys.BOTH)
     poses = shown(motion, dense_controls(motion, quaternion_values))
     assert max(off_m(motion, poses, control.name).max() for control in motion.controls) < 1e-9
 
 
 def test_resting_feet_do_not_slide() -> None:
-    """Neither in FK on a body that few keys have moved, nor in IK."""
     rests = [rest for rest in solved().rests if rest.last - rest.first > 5]
     assert rests
     for keys, foot in ((LimbKeys.FK, "foot"), (LimbKeys.BOTH, "ik_foot")):
@@ -125,7 +122,6 @@ def test_resting_feet_do_not_slide() -> None:
 
 
 def test_switching_between_ik_and_fk_moves_nothing() -> None:
-    """Goals are where the FK keys lead to, within a millimeter."""
     motion = on_controls(LimbKeys.BOTH)
     poses = shown(motion, reduced(motion))
     for side in "LR":
@@ -135,15 +131,12 @@ def test_switching_between_ik_and_fk_moves_nothing() -> None:
 
 
 def test_a_tighter_tolerance_takes_more_keys() -> None:
-    """And a looser one fewer."""
     motion = on_controls(LimbKeys.FK)
     counts = [sum(one.key_count for one in reduced(motion, mm / 1000.0)) for mm in (2, 5, 15)]
     assert counts[0] > counts[1] > counts[2]
 
 
 def test_feet_on_a_root_are_placed_and_turned() -> None:
-    """What hangs elsewhere is moved; what hangs on its parent only turns."""
-
     def free(plan: PlannedControl, space: ControlSpace) -> ControlSpace:
         if not plan.name.startswith("foot"):
             return space
@@ -165,7 +158,6 @@ def test_feet_on_a_root_are_placed_and_turned() -> None:
 
 
 def test_a_control_that_cannot_move_only_turns() -> None:
-    """Its place is where its carrier has it, and its children follow."""
     plan = PlannedControl("b", ControlKind.HIPS, "b")
     fixed = ControlSpace(NOTHING, np.eye(3), NOTHING, np.array([1.0, 0.0, 0.0]), np.zeros((3, 3)), 0.0, 0.0)
     child = ControlSpace(0, np.eye(3), 0, np.array([0.0, 1.0, 0.0]), np.eye(3), 0.0, 0.0)
@@ -187,8 +179,6 @@ def test_a_control_that_cannot_move_only_turns() -> None:
 
 
 def test_controls_are_ordered_by_what_carries_them() -> None:
-    """In any order, and without an end where they carry each other."""
-
     def control(name: str, turner: int, carrier: int) -> Control:
         space = ControlSpace(turner, np.eye(3), carrier, np.zeros(3), np.eye(3), 0.0, 0.0)
         return Control(PlannedControl(name, ControlKind.FK, name), "XYZ", space, turns=True)
@@ -202,7 +192,6 @@ def test_controls_are_ordered_by_what_carries_them() -> None:
 
 
 def test_a_control_of_unknown_place_tears_nothing_off() -> None:
-    """It is taken to be where it belongs: what hangs on it is not moved to make up for a wrong guess."""
     plans = [PlannedControl(name, ControlKind.FK, name) for name in "bc"]
     adrift = ControlSpace(NOTHING, np.eye(3), NOTHING, np.zeros(3), np.zeros((3, 3)), 0.0, np.inf)
     child = ControlSpace(0, np.eye(3), 0, np.array([0.0, 1.0, 0.0]), np.eye(3), 0.0, 0.0)

@@ -28,7 +28,6 @@ TEXT = json.dumps(VALID, ensure_ascii=False)
 
 
 def test_a_map_comes_back_as_it_was(tmp_path: Path) -> None:
-    """Every field; and a second writing gives the same bytes."""
     path = tmp_path / "anna.json"
     write_character_map(path, MAP)
     again = read_character_map(path)
@@ -41,7 +40,6 @@ def test_a_map_comes_back_as_it_was(tmp_path: Path) -> None:
 
 
 def test_what_is_left_out_has_a_default() -> None:
-    """Roles alone are a map; who says nothing of a role has said it himself."""
     value = {
         "schema": "keymark-character",
         "schema_version": 1,
@@ -54,7 +52,6 @@ def test_what_is_left_out_has_a_default() -> None:
 
 
 def test_a_turn_that_is_nearly_one_is_made_one() -> None:
-    """Rounded by hand to four digits, which an exact file is not."""
     value = VALID | {"rest_corrections": {"hips": [0.7071, 0.7071, 0, 0]}}
     turn = CharacterMap.from_json(value, "here").rest_corrections["hips"]
     assert abs(np.linalg.norm(turn) - 1.0) < 1e-12
@@ -64,7 +61,6 @@ def test_a_turn_that_is_nearly_one_is_made_one() -> None:
 @settings(max_examples=100 * FUZZ, suppress_health_check=list(HealthCheck))
 @given(changed(VALID))
 def test_a_changed_map_is_one_or_says_why_not(value: Any) -> None:
-    """Whatever fields hold: no other error, no second line, nothing that could not be written again."""
     try:
         found = CharacterMap.from_json(value, "here")
     except InputError as error:
@@ -90,7 +86,6 @@ BOMBS = {
 
 @pytest.mark.parametrize("kind", BOMBS)
 def test_what_is_meant_to_hurt_is_refused(tmp_path: Path, kind: str) -> None:
-    """Long and many: one short sentence."""
     path = tmp_path / "bomb.json"
     path.write_text(json.dumps(BOMBS[kind]))
     with pytest.raises(InputError, match=r"bomb\.json") as caught:
@@ -99,7 +94,6 @@ def test_what_is_meant_to_hurt_is_refused(tmp_path: Path, kind: str) -> None:
 
 
 def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
-    """A film named by mistake takes no memory."""
     (tmp_path / "map.json").write_bytes(b" " * (LARGEST_BYTES + 1))
     with pytest.raises(InputError, match="at most 1 are read"):
         read_character_map(tmp_path / "map.json")
@@ -143,7 +137,6 @@ def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
     ],
 )
 def test_every_mistake_is_named(way: tuple[Any, ...], value: Any, said: str) -> None:
-    """The sentence says which value is wrong, and what would be right."""
     whole = json.loads(TEXT)
     holder = whole
     for key in way[:-1]:
@@ -155,21 +148,18 @@ def test_every_mistake_is_named(way: tuple[Any, ...], value: Any, said: str) -> 
 
 
 def test_a_control_needs_its_role() -> None:
-    """A bone to key for nothing would be lost in silence."""
     roles = {name: value for name, value in VALID["roles"].items() if name != "hips"}
     with pytest.raises(InputError, match="fk: hips is keyed, but roles says no bone for it"):
         CharacterMap.from_json(VALID | {"roles": roles}, "anna.json")
 
 
 def test_what_could_not_be_read_is_not_written(tmp_path: Path) -> None:
-    """A map built with a mistake in it leaves no file."""
     with pytest.raises(InputError, match="confidence"):
         write_character_map(tmp_path / "x.json", replace(MAP, roles={"hips": RoleBones(("a",), 2.0)}))
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_map_for_other_bones_names_map_character_and_bones() -> None:
-    """Its own bones are found; of another character the first few that are missing are named."""
     character = plain_character()
     mine = plain_map(character)
     check_map(mine, character)
@@ -186,7 +176,6 @@ def test_a_map_for_other_bones_names_map_character_and_bones() -> None:
 
 
 def test_a_map_without_a_thigh_is_not_enough() -> None:
-    """A half-finished map can be kept in a file, but not used."""
     character = plain_character()
     mine = plain_map(character)
     half = replace(mine, roles={role: bones for role, bones in mine.roles.items() if role != "thigh.R"})

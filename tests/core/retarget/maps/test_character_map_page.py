@@ -18,7 +18,6 @@ def page(repository: Path) -> str:
 
 
 def test_the_example_is_a_map_and_laid_out_as_one(page: str, tmp_path: Path) -> None:
-    """Byte for byte what would be written."""
     (example,) = re.findall(r"```json\n(.*?)```", page, flags=re.DOTALL)
     (tmp_path / "given.json").write_text(example, encoding="utf-8")
     anna = read_character_map(tmp_path / "given.json")
@@ -28,7 +27,6 @@ def test_the_example_is_a_map_and_laid_out_as_one(page: str, tmp_path: Path) -> 
 
 
 def test_every_field_and_role_is_named(page: str) -> None:
-    """No field of the header, no role, limb or source is left out."""
     header = page.split("## The map")[1].split("## Roles")[0]
     assert [name for name in CharacterMap.ORDER if f"`{name}`" not in header] == []
     parts = {role.partition(".")[0] for role in ROLES}
@@ -47,5 +45,4 @@ def test_every_field_and_role_is_named(page: str) -> None:
     ],
 )
 def test_limits_are_those_of_the_reader(page: str, words: str) -> None:
-    """A limit that changes here changes there."""
     assert words in page

@@ -29,7 +29,6 @@ def folders(tmp_path: Path) -> list[Path]:
 
 
 def test_maps_and_libraries_share_folders(folders: list[Path]) -> None:
-    """Each registry lists its own files, in order of title; the earliest folder counts."""
     maps = registered_maps(folders)
     assert [(entry.title, entry.path.name) for entry in maps] == [
         ("Anna, größer", "anna.json"),
@@ -39,7 +38,6 @@ def test_maps_and_libraries_share_folders(folders: list[Path]) -> None:
 
 
 def test_a_broken_file_says_what_is_wrong_and_hides_nothing(folders: list[Path]) -> None:
-    """It is registered with its sentence under its file's name."""
     (folders[0] / "broken.json").write_text('{"schema": "keymark-character", ')
     broken = next(entry for entry in registered_maps(folders) if entry.character_map is None)
     assert broken.title == "broken.json" and "no valid JSON" in broken.problem
@@ -49,7 +47,6 @@ def test_a_broken_file_says_what_is_wrong_and_hides_nothing(folders: list[Path])
 
 
 def test_maps_are_found_by_title_file_and_path(folders: list[Path]) -> None:
-    """In any case of letters; a path need not lie in a registered folder."""
     for name in ("anna, GRÖSSER", "anna", folders[2] / "anna.json", str(folders[2] / "anna.json")):
         found = find_map(name, folders).character_map
         assert found == full_map()
@@ -62,7 +59,6 @@ def test_maps_are_found_by_title_file_and_path(folders: list[Path]) -> None:
 
 
 def test_a_character_finds_the_map_of_its_bones(folders: list[Path]) -> None:
-    """Only a map all of whose bones it has; of several the one that knows most of it."""
     found = map_for(plain_character(), folders)
     assert found is not None and found.path == folders[0] / "mine.json"
     assert map_for(plain_character(names=UPPER), folders) is None
@@ -74,7 +70,6 @@ def test_a_character_finds_the_map_of_its_bones(folders: list[Path]) -> None:
 
 
 def test_a_map_is_saved_over_itself_and_over_nothing_else(folders: list[Path]) -> None:
-    """The file that has the title, whatever its name; else a new name inside the folder."""
     own = folders[0]
     assert map_path(own, "PLAIN") == own / "mine.json"
     assert map_path(own, "Small Steps") == own / "small_steps_2.json"

@@ -39,7 +39,6 @@ def about_z(angle_deg: float) -> Array:
 @pytest.mark.parametrize("arms_down_deg", [0.0, 45.0])
 @pytest.mark.parametrize("turn_deg", [0.0, 90.0, 180.0, 57.0])
 def test_the_right_side_is_found_by_places_alone(arms_down_deg: float, turn_deg: float) -> None:
-    """Bones without telling names, in a T or an A pose, whichever way the character faces."""
     named = plain_character(arms_down_deg=arms_down_deg, turn=about_z(turn_deg), scale=0.01)
     whole = by_place(named, plain_map(named))
     mirrored, missing = mirrored_map(renamed(named), only_left(whole), "L")
@@ -58,7 +57,6 @@ def test_the_right_side_is_found_by_places_alone(arms_down_deg: float, turn_deg:
     ],
 )
 def test_names_count_before_places(left: str, right: str) -> None:
-    """The right bones lie elsewhere at rest, as on a character that was posed before it was rigged."""
     names = {role: (left if role in LEFT else right).format(role[:-2].title()) for role in (*LEFT, *RIGHT)}
     names |= {f"finger.{side}": (left, right)["LR".index(side)].format("Finger") for side in "LR"}
     character = plain_character(names=names)
@@ -78,7 +76,6 @@ def test_names_count_before_places(left: str, right: str) -> None:
 
 
 def test_a_bone_without_a_partner_is_named_and_its_role_stays() -> None:
-    """The character has lost its right toe."""
     whole = plain_character()
     kept = tuple(bone for bone in whole.bones if bone.name != "toe.R")
     index = {bone.name: number for number, bone in enumerate(kept)}
@@ -94,7 +91,6 @@ def test_a_bone_without_a_partner_is_named_and_its_role_stays() -> None:
 
 
 def test_from_right_to_left_and_a_twist_bone_is_not_taken() -> None:
-    """A twist bone begins at the same joint as the upper arm, and ends before its end."""
     plain = plain_character()
     names = renamed(plain)
     arm = names.bones[plain.index["upper_arm.L"]]
@@ -108,7 +104,6 @@ def test_from_right_to_left_and_a_twist_bone_is_not_taken() -> None:
 
 
 def test_controls_are_mirrored_with_their_bones() -> None:
-    """FK controls, goal, pole, and the switch's holder; what has no partner is left out."""
     character = plain_character()
     given = only_left(plain_map(character))
     given = replace(
@@ -123,7 +118,6 @@ def test_controls_are_mirrored_with_their_bones() -> None:
 
 
 def test_a_map_without_bones_stays_as_it_is() -> None:
-    """There is nothing to mirror."""
     character = plain_character()
     empty = CharacterMap("Empty", {})
     assert mirrored_map(character, empty, "L") == (empty, ())

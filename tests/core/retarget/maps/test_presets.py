@@ -35,7 +35,6 @@ def named(*names: str) -> Character:
 
 @pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset.identifier)
 def test_a_shipped_preset_is_found_by_its_own_bones(preset: Any) -> None:
-    """And by those alone that it requires; beside them it gives all roles that a character must have."""
     whole = find_preset(named(*preset.character_map.named_bones, *preset.requires))
     assert whole is not None and whole.preset == preset.identifier
     assert whole.roles.keys() == preset.character_map.roles.keys() and whole.ik == preset.character_map.ik
@@ -48,7 +47,6 @@ def test_a_shipped_preset_is_found_by_its_own_bones(preset: Any) -> None:
 
 @pytest.mark.parametrize("path", sorted(SHIPPED.glob("*.json")), ids=lambda path: path.stem)
 def test_a_shipped_preset_is_a_character_map_with_two_more_fields(path: Path, repository: Path) -> None:
-    """By the schema of character maps."""
     schema = json.loads((repository / "presets/schemas/character.schema.json").read_text(encoding="utf-8"))
     value = json.loads(path.read_text(encoding="utf-8"))
     assert value.pop("requires") and value.pop("lacks", True)
@@ -58,7 +56,6 @@ def test_a_shipped_preset_is_a_character_map_with_two_more_fields(path: Path, re
 
 @pytest.mark.parametrize("prefix", ["", "rig:", "mixamorig3:", "Character1_", "a.b_"])
 def test_any_namespace_may_stand_before_the_names(prefix: str) -> None:
-    """And separators and case may differ, as exporters change them."""
     found = find_preset(named(*(f"{prefix}{name}" for name in PRESETS_MIXAMO)))
     assert found is not None and found.preset == "mixamo"
     assert found.bone("upper_arm.L") == f"{prefix}LeftArm"
@@ -71,12 +68,10 @@ UNREAL = tuple(sorted(set(convention_names("Unreal").values())))
 
 
 def test_a_prefix_of_letters_is_no_namespace() -> None:
-    """`subHips` is another bone."""
     assert find_preset(named(*(f"sub{name}" for name in PRESETS_MIXAMO))) is None
 
 
 def test_bones_that_must_lack_exclude_a_preset() -> None:
-    """So that a rig which is built otherwise is not taken for it."""
     preset = preset_from_json(VALID, "here", "plain")
     assert find_preset(named("pelvis", "arm.L"), (preset,)) is not None
     assert find_preset(named("pelvis", "arm.L", "tail"), (preset,)) is None
@@ -84,7 +79,6 @@ def test_bones_that_must_lack_exclude_a_preset() -> None:
 
 
 def test_what_a_character_lacks_is_left_out() -> None:
-    """Controls without their goal, settings of missing bones, the root."""
     preset = preset_from_json(VALID, "here", "plain")
     bare = find_preset(named("pelvis", "arm.L"), (preset,))
     assert bare is not None and not bare.ik and not bare.settings and bare.root is None
@@ -108,7 +102,6 @@ def test_what_a_character_lacks_is_left_out() -> None:
     ],
 )
 def test_an_invalid_preset_is_refused_in_a_sentence(changes: dict[str, Any], words: str) -> None:
-    """With its place and what would be valid."""
     with pytest.raises(InputError) as error:
         preset_from_json(VALID | changes, "here", "plain")
     assert words in str(error.value) and "here" in str(error.value)

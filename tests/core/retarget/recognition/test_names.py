@@ -27,7 +27,6 @@ from keymark.core.retarget.recognition.names import CLEAR, read_name
     ],
 )
 def test_side_and_part_are_read(name: str, side: str | None, part: str) -> None:
-    """Whatever the convention writes between the words."""
     reading = read_name(name)
     assert reading.side == side and reading.clear_part == part
     assert not reading.mechanism
@@ -41,12 +40,10 @@ def test_side_and_part_are_read(name: str, side: str | None, part: str) -> None:
     ],
 )
 def test_controls_fingers_and_cloth_speak_for_no_part(name: str) -> None:
-    """Though they name one."""
     assert read_name(name).clear_part is None
 
 
 def test_a_side_makes_a_hip_a_thigh() -> None:
-    """And a pelvis with a side is neither hips nor thigh."""
     assert read_name("hip").scores["hips"] >= CLEAR
     assert read_name("LeftHip").clear_part == "thigh"
     assert read_name("pelvis.L").clear_part is None
@@ -54,7 +51,6 @@ def test_a_side_makes_a_hip_a_thigh() -> None:
 
 @pytest.mark.parametrize("name", ["bone_012", "Bone.003", "x", "", "кость", "_", "lip" * 60, "l" * 5000])
 def test_names_that_say_nothing_say_nothing(name: str) -> None:
-    """However strange or long they are."""
     assert read_name(name).clear_part is None
 
 
@@ -69,6 +65,5 @@ def test_names_that_say_nothing_say_nothing(name: str) -> None:
     ],
 )
 def test_a_pairs_names_are_equal_without_their_sides(left: str, right: str) -> None:
-    """By which bones find their counterparts."""
     assert read_name(left).unsided == read_name(right).unsided
     assert read_name(left).side == "L" and read_name(right).side == "R"

@@ -11,14 +11,12 @@ from keymark.core.retarget.solve.rest_body import RestBody
 
 
 def test_a_character_on_its_origin_stands_on_it() -> None:
-    """Joints of the toes lie a little over the sole: the origin is the ground."""
     character = plain_character()
     assert rest_floor_m(RestBody.of(character, plain_map(character))) == 0.0
 
 
 @pytest.mark.parametrize("height", [-0.82, 3.0])
 def test_a_character_off_its_origin_stands_under_its_toes(height: float) -> None:
-    """The ground is a little below the lowest joint."""
     character, character_map = shaped(lambda _, place: place + [0.0, 0.0, height])
     floor_m = rest_floor_m(RestBody.of(character, character_map))
     assert height - 0.02 < floor_m < height + 0.015
@@ -26,7 +24,6 @@ def test_a_character_off_its_origin_stands_under_its_toes(height: float) -> None
 
 @pytest.mark.parametrize("without", [(), ("toe",)])
 def test_a_foot_of_bones_lies_flat_from_heel_to_tip(without: tuple[str, ...]) -> None:
-    """All points of the sole are on the ground, behind and ahead of the ankle, inside and outside."""
     character = plain_character(without=without, scale=0.01)
     body = RestBody.of(character, plain_map(character))
     shape = foot_shape(body, "L", 0.0)
@@ -44,7 +41,6 @@ def test_a_foot_of_bones_lies_flat_from_heel_to_tip(without: tuple[str, ...]) ->
 
 
 def test_the_maps_soles_are_the_soles() -> None:
-    """They come back as they were given, and the ground is under them."""
     character = plain_character()
     sole = ((0.1, 0.09, -0.03), (0.07, -0.1, -0.03), (0.14, -0.1, -0.03))
     tip = ((0.1, -0.2, -0.03),)
@@ -61,7 +57,6 @@ def test_the_maps_soles_are_the_soles() -> None:
 
 
 def test_tails_are_believed_where_they_meet_heads() -> None:
-    """In a character whose tails lie anywhere, toes end where the foot says."""
     character, character_map = shaped(lambda _, place: place)
     astray = replace(
         character, bones=tuple(replace(b, tail=b.head + [28.0, 0.0, 0.0]) for b in character.bones)
@@ -77,7 +72,6 @@ def test_tails_are_believed_where_they_meet_heads() -> None:
 
 @pytest.mark.parametrize("points", [((0.1, -0.05, 0.0),), ((0.1, 0.09, 0.0),)], ids=["no heel", "no ball"])
 def test_a_sole_on_one_side_of_the_ankle_is_enough(points: tuple[tuple[float, float, float], ...]) -> None:
-    """As of a mesh whose heel hangs on the shin, or of a map with a single point: the motion is whole."""
     character = plain_character()
     soles = {f"foot.{side}": points for side in "LR"}
     motion = solved(character, replace(plain_map(character), soles=soles), steps())
@@ -85,7 +79,6 @@ def test_a_sole_on_one_side_of_the_ankle_is_enough(points: tuple[tuple[float, fl
 
 
 def test_toes_that_are_left_alone_are_part_of_the_foot() -> None:
-    """They do not bend, so the foot must lift them; what they stand on is the same."""
     character = plain_character()
     known = plain_map(character)
     stiff = replace(known, left_alone=("toe.L", "toe.R"))

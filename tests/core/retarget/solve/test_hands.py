@@ -29,7 +29,6 @@ def apart(paths: dict[str, Array]) -> Array:
 
 
 def test_hands_that_meet_meet_on_another_body() -> None:
-    """Narrow shoulders would cross the hands; they meet as the performer's do."""
     character, character_map = shaped(broader)
     source = with_hands(*TOGETHER)
     shown = joints(character_map, solved(character, character_map, source))
@@ -53,7 +52,6 @@ def arm_ratio(shown: dict[str, Array], source: SegmentMotion) -> float:
 
 
 def test_hands_on_the_hips_go_out_with_them() -> None:
-    """On a body whose hip joints are twice as wide apart, hands on the hips are wider apart, too."""
     source = with_hands(*ON_HIPS)
     plain = plain_character()
     slim = joints(plain_map(plain), solved(plain, plain_map(plain), source))
@@ -66,7 +64,6 @@ def test_hands_on_the_hips_go_out_with_them() -> None:
 
 
 def test_arms_that_touch_nothing_keep_their_directions() -> None:
-    """Hands far from all are where the performer's directions put them."""
     character = plain_character()
     character_map = plain_map(character)
     reaching = solved(character, character_map, steps())
@@ -79,7 +76,6 @@ def test_arms_that_touch_nothing_keep_their_directions() -> None:
 
 @pytest.mark.parametrize("reach_m", [0.6, 0.75, 0.9])
 def test_goals_out_of_reach_straighten_the_arm_smoothly(reach_m: float) -> None:
-    """An arm never snaps: from frame to frame the elbow moves little more than the wrist's goal."""
     source = with_hands(np.array([0.06, -reach_m, 1.3]), np.array([-0.06, -reach_m, 1.3]))
     character, character_map = shaped(broader)
     motion = solved(character, character_map, source)
@@ -93,7 +89,6 @@ def _steps(motion: CharacterMotion, name: str) -> Array:
 
 
 def test_hands_stay_out_of_the_floor() -> None:
-    """A hand at the floor is as high over it as the performer's, sized, and its fingers are not in it."""
     source = _squatting()
     character = plain_character()
     character_map = plain_map(character)

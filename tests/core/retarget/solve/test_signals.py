@@ -7,7 +7,6 @@ TIME_S = np.arange(120) / 30.0
 
 
 def test_a_correction_holds_and_fades_without_a_jump_in_speed() -> None:
-    """It is as given in the hold, zero away from it, and its steps change little from frame to frame."""
     inside = np.linspace([0.02, 0.0, 0.0], [0.03, 0.01, 0.0], 20)
     offset = faded([Hold(50, inside)], TIME_S)
     np.testing.assert_array_equal(offset[50:70], inside)
@@ -17,19 +16,16 @@ def test_a_correction_holds_and_fades_without_a_jump_in_speed() -> None:
 
 
 def test_corrections_that_follow_closely_are_joined() -> None:
-    """Between two equal ones nothing sags to zero."""
     holds = [Hold(10, np.full((20, 3), 0.01)), Hold(36, np.full((20, 3), 0.01))]
     np.testing.assert_allclose(faded(holds, TIME_S)[10:56], 0.01, atol=2e-3)
 
 
 def test_nothing_held_is_nothing_changed() -> None:
-    """No hold, no correction; a hold of all frames is all of it."""
     assert not faded([], TIME_S).any()
     np.testing.assert_array_equal(faded([Hold(0, np.ones((120, 3)))], TIME_S), np.ones((120, 3)))
 
 
 def test_smoothing_keeps_lines_and_ends() -> None:
-    """A straight way stays as it is, up to both ends, and noise on it is less."""
     line = np.linspace([0.0, 1.0], [2.0, -3.0], 120)
     np.testing.assert_allclose(smoothed(line, TIME_S, 0.3), line, atol=1e-9)
     noise = np.random.default_rng(5).normal(0.0, 0.1, (120, 2))
@@ -37,7 +33,6 @@ def test_smoothing_keeps_lines_and_ends() -> None:
 
 
 def test_smoothing_counts_in_seconds() -> None:
-    """Frames at uneven times give nearly what frames at even times do."""
     uneven = np.sort(np.concatenate([TIME_S, TIME_S[40:60] + 0.017]))
     wave = np.sin(2.0 * uneven)
     even = smoothed(np.sin(2.0 * TIME_S), TIME_S, 0.2)
@@ -45,7 +40,6 @@ def test_smoothing_counts_in_seconds() -> None:
 
 
 def test_a_drop_is_smooth_and_enough() -> None:
-    """It is nowhere below what is needed, and rises over the given time."""
     needed = np.zeros(120)
     needed[60:64] = 0.03
     drop = smooth_above(needed, TIME_S, 0.2)

@@ -21,7 +21,6 @@ def leg(flexion_rad: Array) -> LimbPose:
 
 
 def test_a_limb_reaches_its_goal_and_keeps_its_lengths() -> None:
-    """Goals all about, the turns carry the rest's directions to the new ones."""
     rng = np.random.default_rng(3)
     goal = rng.uniform(0.15, 0.7, (50, 1)) * unit(rng.normal(size=(50, 3)))
     solved = reach_for(leg(np.full(50, 0.5)), np.zeros((50, 3)), goal)
@@ -33,7 +32,6 @@ def test_a_limb_reaches_its_goal_and_keeps_its_lengths() -> None:
 
 
 def test_a_limb_that_is_where_it_shall_be_stays() -> None:
-    """Bent as it is, straight or not."""
     limb = leg(np.linspace(0.05, 2.4, 40))
     solved = reach_for(limb, limb.start, limb.end)
     np.testing.assert_allclose(solved.upper_turn, limb.upper_turn, atol=1e-6)
@@ -41,7 +39,6 @@ def test_a_limb_that_is_where_it_shall_be_stays() -> None:
 
 
 def test_a_straight_limb_knows_where_it_bends() -> None:
-    """A goal a little nearer than a straight leg's ankle bends the knee forward, however little."""
     limb = leg(np.zeros(3))
     goal = limb.end * (1.0 - np.array([[1e-3], [1e-2], [1e-1]]))
     solved = reach_for(limb, limb.start, goal)
@@ -50,7 +47,6 @@ def test_a_straight_limb_knows_where_it_bends() -> None:
 
 
 def test_a_goal_that_leaves_the_reach_stretches_the_limb_smoothly() -> None:
-    """The extension rises with the goal's distance, ever slower, and stays below the length."""
     wanted = np.linspace(0.5, 1.2, 500)
     extension = stretched_m(wanted, np.zeros(500), 0.75)
     assert (np.diff(extension) > 0.0).all() or extension[-1] < 0.75
@@ -61,14 +57,12 @@ def test_a_goal_that_leaves_the_reach_stretches_the_limb_smoothly() -> None:
 
 
 def test_a_limb_follows_freely_as_far_as_the_performers_is_stretched() -> None:
-    """A leg as straight as the performer's is no stretch."""
     wanted = np.array([0.74, 0.745])
     np.testing.assert_allclose(stretched_m(wanted, np.full(2, 0.748), 0.75), wanted)
 
 
 @pytest.mark.parametrize("target", [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.6, 0.0, -0.8]])
 def test_smallest_rotations(target: list[float]) -> None:
-    """They are rotations and take one direction to the other, opposite ones too."""
     source = np.array([1.0, 0.0, 0.0])
     turn = smallest_rotation(source, np.array(target))
     np.testing.assert_allclose(turn @ source, target, atol=1e-9)

@@ -30,7 +30,6 @@ def with_controls(known: CharacterMap) -> CharacterMap:
 @pytest.mark.parametrize("pole_behind", [False, True])
 @pytest.mark.parametrize("keys", [LimbKeys.BOTH, LimbKeys.FK])
 def test_a_rig_whose_map_names_its_controls_performs(pole_behind: bool, keys: LimbKeys) -> None:
-    """Elbows and knees are where they belong, on whatever side the poles lie."""
     character, known = control_rig(pole_behind)
     body, posture = stepping()
     source = performance(body, posture[:40])
@@ -52,7 +51,6 @@ def test_a_rig_whose_map_names_its_controls_performs(pole_behind: bool, keys: Li
 
 
 def test_properties_that_are_not_there_are_left_out_and_named() -> None:
-    """A rig of another version than its map is still keyed."""
     character, known = control_rig()
     ik = {"arm.L": IkControls("ik_hand.L", "pole_arm.L", None, Switch("ik_hand.L", "ik_fk", 0.0, 1.0))}
     given = replace(known, ik=ik, settings=(Setting("body", "follow", 1.0),))

@@ -42,7 +42,6 @@ CARRIERS = {
 
 
 def test_each_control_stands_in_its_space(probed: ProbedControls) -> None:
-    """With the settings of the map, goals and poles stand free, and FK chains on each other."""
     names = [control.name for control in probed.controls]
     for name, carrier in CARRIERS.items():
         space = probed.controls[names.index(name)].space
@@ -55,7 +54,6 @@ def test_each_control_stands_in_its_space(probed: ProbedControls) -> None:
 
 
 def test_hands_and_feet_follow_their_goals(rigify: bpy.types.Object, probed: ProbedControls) -> None:
-    """Bones follow their goals as they lie at rest; poles lie before knees and behind elbows."""
     for goal, bone in (("hand_ik.L", "hand.L"), ("foot_ik.R", "foot.R"), ("toe_ik.L", "toe.L")):
         rest, own = (np.array(rigify.data.bones[name].matrix_local) for name in (goal, f"ORG-{bone}"))
         assert probed.offsets[goal] == pytest.approx(np.linalg.inv(rest) @ own, abs=2e-3)
@@ -72,7 +70,6 @@ def test_hands_and_feet_follow_their_goals(rigify: bpy.types.Object, probed: Pro
 def test_nothing_is_left_behind(
     rigify: bpy.types.Object, known: CharacterMap, state: Callable[[bpy.types.Object], object]
 ) -> None:
-    """Poses, custom properties with their types, Action and NLA, where there are any and where not."""
     planned = planned_controls(known, RetargetOptions())
     rigify.pose.bones["chest"].rotation_quaternion = (0.8, 0.3, 0.1, 0.2)
     rigify.pose.bones["thigh_parent.L"]["IK_parent"] = 3
@@ -87,7 +84,6 @@ def test_nothing_is_left_behind(
 def test_what_an_animator_left_posed_is_part_of_the_space(
     rigify: bpy.types.Object, known: CharacterMap, probed: ProbedControls
 ) -> None:
-    """A control that is not keyed stays as it is posed, and what hangs on it is carried along."""
     rigify.pose.bones["root"].location = (0.5, 0.25, 0.0)
     bpy.context.view_layer.update()
     again = probe_controls(rigify, known, planned_controls(known, RetargetOptions()))
