@@ -26,7 +26,7 @@ from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.retarget.maps.character_map import CharacterMap  # noqa: E402
 from keymark.core.retarget.retarget_record import RetargetRecord  # noqa: E402
 from keymark.core.review.score import TruthFile  # noqa: E402
-from keymark.core.shoot.discovery.take_list import KNOWN_FIELDS  # noqa: E402
+from keymark.core.shoot.discovery import KNOWN_FIELDS  # noqa: E402
 from keymark.core.take.conversion_record import ConversionRecord  # noqa: E402
 from keymark.core.take.conversion_settings import (  # noqa: E402
     SettingsFields,

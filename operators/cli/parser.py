@@ -162,8 +162,12 @@ def build_parser(chosen: str | None) -> argparse.ArgumentParser:
         else:
             added.add_parser(name, help=summary)
     if chosen == WORKER:  # without `help`, by which argparse would list it
-        added.add_parser(WORKER).set_defaults(run=_declared(WORKER).run)
+        added.add_parser(WORKER).set_defaults(run=_run_worker)
     return parser
+
+
+def _run_worker(_arguments: argparse.Namespace) -> None:
+    import_module(".batch.worker", __package__).run_worker()
 
 
 def _declared(name: str) -> Any:

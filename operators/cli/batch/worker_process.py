@@ -113,7 +113,7 @@ def _line(value: Any) -> bytes:
 # --- A worker as its batch sees it
 
 
-SCRIPT = Path(__file__).with_name("start_worker.py")
+SCRIPT = Path(__file__).with_name("machine_resources.py")
 START_TIMEOUT_S = 300.0
 HEARTBEAT_TIMEOUT_S = 1800.0
 """A worker that sends no message for so long will never end: its decoder or its disk hangs."""

@@ -181,20 +181,3 @@ BATCH = Command(
     add_arguments=_add_arguments,
     run=batch_command,
 )
-
-
-# --- `keymark worker`
-
-
-def run(_arguments: argparse.Namespace) -> None:
-    """Convert the jobs of a batch."""
-    from ..batch.worker import run_worker
-
-    run_worker()
-
-
-WORKER = Command(
-    name="worker",
-    description="",
-    run=run,
-)

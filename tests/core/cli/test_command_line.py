@@ -99,7 +99,7 @@ def test_help_has_examples_and_version_is_the_manifests(
 def test_every_file_of_a_command_is_on_the_list(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A new file in `commands/` is on the list, in --help and in the sentence on a missing command."""
     files = {path.stem for path in (repository / "operators" / "cli" / "commands").glob("*.py")}
-    assert files - {"__init__"} == {*SUMMARIES, "worker"}
+    assert files - {"__init__"} == set(SUMMARIES)
     shown = list(SUMMARIES)
     for name in shown:
         module = import_module(f"keymark.operators.cli.commands.{name}")
@@ -217,7 +217,14 @@ DAMAGES: dict[str, tuple[Callable[[Path], Any], str]] = {
     "keyframes.json cut off": (cut("keyframes.json"), "keyframes.json: line"),
     "wrong type": (edit("take.json", lambda v: v.update(camera=3)), "take.json: camera is 3"),
     "NaN": (edit("take.json", lambda v: v.update(fps=float("nan"))), "take.json: NaN"),
-    "unknown segment": (edit("take.json", lambda v: v["markers"].update(tail={})), "'tail'"),
+    "unknown segment": (
+        edit("take.json", lambda v: v["markers"].update(tail={"color_srgb": [9, 8, 7]})),
+        r"take.json: markers: 'tail' is bound to the unknown segment 'tail'; known are trunk, ",
+    ),
+    "no color": (
+        edit("take.json", lambda v: v["markers"].update(tail={})),
+        r"take.json: markers.tail: color_srgb is missing; it must be three numbers from 0 to 255",
+    ),
     "keyframe outside": (edit("keyframes.json", lambda v: v["keyframes"][0].update(frame=99)), "frame is 99"),
     "one keyframe": (edit("keyframes.json", lambda v: v.update(keyframes=v["keyframes"][:1])), "at least 2"),
     "resolution": (edit("take.json", lambda v: v["camera"].update(resolution=[64, 48])), r"\[64, 48\]"),

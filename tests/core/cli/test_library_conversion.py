@@ -133,12 +133,12 @@ def test_keyframes_are_found_with_all_libraries(
         out = tmp_path / name
         assert convert(take, out, *words, "--json") == 0
         said = said_as_json(capsys)
-        assert said["library"] == "composed" and said["reason"] in said["notes"]
+        assert said["library"] == "swaying" and said["reason"] in said["notes"]
         rows = json.loads((out / "keyframes.json").read_text(encoding="utf-8"))["keyframes"]
         assert [row["frame"] for row in rows] == [one["frame"] for one in said["matches"]] != []
         assert {row["matched"]["library"] for row in rows} == {"composed"}
         record = read_record(out)
-        assert record.library == "composed" and record.matched == record.keyframes
+        assert record.library == "swaying" and record.matched == record.keyframes
         assert record.libraries == {"swaying": library_digest(read_library(few_libraries))}
         assert list(record.doubtful) == [one["frame"] for one in said["matches"] if one["doubtful"]]
         made.append((said["matches"], record.digest))
