@@ -92,15 +92,7 @@ def write_journal(commit: Commit) -> None:
 
 
 def roll_forward(commit: Commit, moves: Moves) -> None:
-    """Second phase: move a journaled set into its folder; what another process has moved already stays.
-
-    Args:
-        commit: The set.
-        moves: Receives every move (from, to), so that it can be rolled back.
-
-    Raises:
-        OSError: A file cannot be moved.
-    """
+    """Second phase: move a journaled set into its folder; what another process has moved already stays."""
     staging_folder, target = commit.staging_folder, commit.target
     staged = [name for name in commit.written if (staging_folder / name).is_file()]
     if staged == list(commit.written) and not target.exists():
@@ -151,9 +143,6 @@ def clean_up(commit: Commit) -> None:
 
 def recover(commit: Commit) -> None:
     """Finish or remove what a killed process has left of a commit to the same target.
-
-    Args:
-        commit: An empty one: its target and its hidden names.
 
     Raises:
         OSError: A file cannot be moved, or not removed.

@@ -24,9 +24,6 @@ def escape_control_characters(text: str) -> str:
     return "".join(ascii(char)[1:-1] if is_control_character(char) else char for char in text)
 
 
-# --- Absolute paths, with and without their symbolic links
-
-
 def absolute_path(path: Path) -> Path:
     """An absolute path without `..`: that of `/day1/../day2` has no parent `day1`."""
     return Path(os.path.realpath(path)) if ".." in path.parts else path.absolute()
@@ -36,9 +33,6 @@ def real_path(path: Path) -> Path:
     """An absolute path, links resolved, that begins with one slash: two have a meaning in Blender."""
     real = os.path.realpath(path)
     return Path("/" + real.lstrip("/") if real.startswith("//") else real)
-
-
-# --- Regular files, told from devices and pipes, which may have no end, or never begin
 
 
 def regular_file_size(path: Path, valid: str) -> int:

@@ -54,7 +54,6 @@ def file_fingerprint(path: Path) -> str:
 
     Raises:
         InputError: There is no such regular file.
-        OSError: The file cannot be read.
     """
     regular_file_size(path, "a file that can be read")
     state = path.stat()
@@ -69,20 +68,13 @@ def file_fingerprint(path: Path) -> str:
 
 
 def content_digest(path: Path) -> str:
-    """SHA-256 of a file's whole content.
-
-    Raises:
-        InputError: The file cannot be read.
-    """
+    """SHA-256 of a file's whole content."""
     regular_file_size(path, "a file that can be read")
     try:
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
-
-
-# --- A cache on disk of arrays that are expensive to compute
 
 
 Arrays = dict[str, NDArray[Any]]
@@ -98,12 +90,7 @@ class ArrayCache:
     """Sets of arrays in a folder, each under a key of lower-case letters, digits and hyphens."""
 
     def __init__(self, folder: Path, largest_bytes: int = LARGEST_BYTES) -> None:
-        """Use a folder, which is made with the first entry.
-
-        Args:
-            folder: The folder of the cache's files, and of nothing else.
-            largest_bytes: Size of all files together; beyond it the least recently used are removed.
-        """
+        """Use a folder, which is made with the first entry."""
         self.folder, self.largest_bytes = folder, largest_bytes
 
     def load(self, key: str) -> Arrays | None:
@@ -127,7 +114,6 @@ class ArrayCache:
 
         Raises:
             ValueError: The key has another form, or an array holds Python objects.
-            ConversionError: The folder cannot be written.
         """
         if not _KEY.fullmatch(key):
             raise ValueError(f"the key {key!r} is not of lower-case letters, digits and hyphens")

@@ -45,9 +45,6 @@ def is_other_format(value: Mapping[str, Any], schema: str) -> bool:
     return isinstance(own, str) and own.startswith(OURS) and own != schema
 
 
-# --- Flushing files and folders to the disk, so that they outlive a loss of power
-
-
 DISK_ERRORS = frozenset(
     getattr(errno, name) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EIO") if hasattr(errno, name)
 )
@@ -73,9 +70,6 @@ def fsync_path(path: Path) -> None:
             raise
 
 
-# --- JSON files, read strictly and written atomically
-
-
 LARGEST_BYTES = 64 * 2**20
 """A moving camera of an hour fits; a video given by mistake does not."""
 DEEPEST = 50
@@ -99,13 +93,6 @@ _SHORT.maxlist = _SHORT.maxdict = _SHORT.maxtuple = 40
 def read_json(path: Path, largest_bytes: int = LARGEST_BYTES) -> dict[str, Any]:
     """Read a JSON object.
 
-    Args:
-        path: The file, UTF-8, with or without a byte order mark.
-        largest_bytes: A larger file is refused.
-
-    Returns:
-        The object's fields; every number in it is finite.
-
     Raises:
         InputError: The file is missing, too large, not UTF-8, no JSON object, names a field
             twice or holds a number that is not finite.
@@ -126,10 +113,6 @@ def read_json_value(path: Path, largest_bytes: int = LARGEST_BYTES) -> Any:
 
 def parse_json(text: str, where: str) -> dict[str, Any]:
     """The JSON object in a text, with finite numbers only.
-
-    Args:
-        text: The JSON.
-        where: Location of the text, with which sentences begin.
 
     Raises:
         InputError: It is no JSON object, is nested too deeply, names a field twice or holds a number that is
@@ -166,14 +149,8 @@ def _parse(text: str, where: str, parse_constant: Callable[[str], Any]) -> Any:
 def write_json(path: Path, value: Any, indent: int | None = None) -> None:
     """Write a value as strict JSON, atomically; the same value always gives the same bytes.
 
-    Args:
-        path: The file; an older one is replaced.
-        value: A value that `json` can write; a number that is not finite is refused.
-        indent: Spaces a level for files that people edit; None writes without spaces.
-
     Raises:
         ValueError: A number is NaN or infinite.
-        ConversionError: The file cannot be written.
     """
     separators = (",", ":") if indent is None else (",", ": ")
     text = json.dumps(value, indent=indent, separators=separators, allow_nan=False, ensure_ascii=False)
@@ -184,9 +161,6 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
     """Write a file atomically: `write` makes it in a hidden folder beside `path`, from which it is moved.
 
     Others that write the same file meanwhile wait. The remains of a killed process go with the next writing.
-
-    Raises:
-        ConversionError: The file cannot be written.
     """
     try:
         stem = path.parent / hidden_prefix(path.name)
@@ -291,9 +265,6 @@ def _int(text: str) -> int:
     return int(text)
 
 
-# --- JSON formatted for people
-
-
 WIDTH = 110
 """Characters of a line: a list or an object of plain values that fits stands in one line."""
 INDENT = 2
@@ -305,7 +276,6 @@ def write_readable_json(path: Path, value: Any) -> None:
 
     Raises:
         ValueError: A number is NaN or infinite.
-        ConversionError: The file cannot be written.
     """
     text = format_json(value) + "\n"
     write_atomically(path, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))

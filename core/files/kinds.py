@@ -26,11 +26,7 @@ class Kind:
     """Follows "it must be" in sentences."""
 
     def read(self, value: Any, where: str, name: str) -> Any:
-        """Check a value and convert it; `where` is the object's location and `name` the field's name.
-
-        Raises:
-            InputError: It is not what it must be.
-        """
+        """Check a value and convert it; `where` is the object's location and `name` the field's name."""
         raise NotImplementedError
 
     def write(self, value: Any) -> Any:
@@ -295,11 +291,7 @@ class ByName(Kind):
 
 
 def read_field(fields: Fields, name: str, kind: Kind, otherwise: Any) -> Any:
-    """The value of one field; `otherwise` where it is missing.
-
-    Raises:
-        InputError: It is not what it must be.
-    """
+    """The value of one field; `otherwise` where it is missing."""
     if not fields.has(name):
         return otherwise
     return kind.read(fields.values[name], fields.source_of(name), name)

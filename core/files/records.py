@@ -55,11 +55,7 @@ class Record:
 
     @classmethod
     def from_json(cls, value: Any, where: str) -> Self:
-        """Read a record from JSON that is not trusted; `where` begins sentences.
-
-        Raises:
-            InputError: It is not what it must be.
-        """
+        """Read a record from JSON that is not trusted; `where` begins sentences."""
         return read_record(cls, Fields.of(value, where))
 
 

@@ -22,12 +22,6 @@ INSIDE = r"^(?![\\/])(?![A-Za-z]:)(?!(.*[\\/])?\.\.([\\/]|$)).*\S"
 def safe_path(fields: Fields, name: str, folder: Path, valid: str) -> Path:
     """The path in a field, relative to a folder that it must not leave.
 
-    Args:
-        fields: The object with the field.
-        name: The field's name.
-        folder: The folder that the path is relative to.
-        valid: What it must be, for the sentence.
-
     Raises:
         InputError: It is no text, absolute, too long, or climbs out of the folder.
     """
@@ -49,10 +43,6 @@ def relative_path(valid: str) -> Text:
 def check_symlinks(paths: Iterable[Path], folders: Iterable[Path]) -> None:
     """Refuse paths that leave their folders by a symbolic link; a missing file is left to its reader.
 
-    Args:
-        paths: Files or folders.
-        folders: Each path must lie in one of these.
-
     Raises:
         InputError: A path leads out of all of them.
     """
@@ -63,20 +53,8 @@ def check_symlinks(paths: Iterable[Path], folders: Iterable[Path]) -> None:
             raise InputError(f"{path}: leads by a link to {real}; it must stay inside {roots[0]}")
 
 
-# --- Nested lists of numbers in JSON, read as arrays
-
-
 def number_array(value: Any, *, nulls: bool = False) -> Array | None:
-    """Nested lists of numbers as an array.
-
-    Args:
-        value: The value of a JSON field.
-        nulls: Whether null may stand for a number, and becomes NaN; else all are finite.
-
-    Returns:
-        The array; None where lists of one level differ in length, or text, true, false or an object is among
-        the numbers.
-    """
+    """Nested lists of numbers as an array."""
     try:
         items = np.asarray(value, dtype=object)  # as float64, numpy would convert text and truth values
     except ValueError:  # lists of several lengths

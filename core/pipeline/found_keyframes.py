@@ -24,18 +24,12 @@ def take_to_pose(
 
     Keyframes that an earlier run has found are left out, since they are found anew. `settings` say which
     keypoints are read and which evidence is used, by default the take's own.
-
-    Raises:
-        InputError: The take or the keyframe file is unusable.
     """
     fewest = 0 if keyframes is None else 1
     take = read_described(
         description, keyframes, keyframes_required=False, fewest_keyframes=fewest, settings=settings
     )
     return replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None))
-
-
-# --- Reconstruction of a take whose keyframes are posed, found in the footage, or both
 
 
 READ, POSED = 0.2, 0.7
@@ -68,12 +62,6 @@ def find_and_reconstruct(
     take: Take, libraries: Sequence[Library] | None, method: str, floor_m: float | None = None
 ) -> Job[FoundReconstruction]:
     """Reconstruct a motion, after finding keyframes where that is asked for; the footage is read once.
-
-    Args:
-        take: The take, with posed keyframes or, where they are found, without.
-        libraries: What is known of postures where keyframes are found; None where all are posed.
-        method: As for `reconstruct`.
-        floor_m: Height of the floor where it is known [m].
 
     Raises:
         InputError: The clip cannot be used, or there is no library with a posture.

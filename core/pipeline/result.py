@@ -52,16 +52,7 @@ def conversion_record(
     names: Sequence[str],
     stable_digests: Mapping[str, str],
 ) -> ConversionRecord:
-    """The record of a conversion.
-
-    Args:
-        conversion: The result.
-        version: Keymark's.
-        digest: Digest of the input.
-        folder: Folder of the result's files.
-        names: The files, as paths in the folder.
-        stable_digests: Digests of what stays the same in files whose bytes differ from run to run.
-    """
+    """The record of a conversion."""
     take, motion = conversion.take, conversion.reconstruction.motion
     frames = np.arange(len(motion.time_s), dtype=np.float64) + motion.frame_start
     reviewed = run(review(take, conversion.reconstruction, frames))

@@ -118,11 +118,7 @@ class Canvas:
 
 
 def write_png(path: str, image: Image) -> None:
-    """Write a picture as PNG; unlike OpenCV's own writer to any path on any system.
-
-    Raises:
-        OSError: The file cannot be written.
-    """
+    """Write a picture as PNG; unlike OpenCV's own writer to any path on any system."""
     done, data = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 4])
     if not done:
         raise OSError(f"{path}: the picture cannot be encoded")
@@ -141,9 +137,6 @@ def _width(thickness: float) -> int:
     return max(1, round(thickness * SCALE))
 
 
-# --- Captions from texts that people wrote
-
-
 ELLIPSIS = "..."
 
 
@@ -159,9 +152,6 @@ def truncated(text: str, width: float, size: float) -> str:
     while text and Canvas.text_width(text + ELLIPSIS, size) > width:
         text = text[:-1]
     return text.rstrip() + ELLIPSIS
-
-
-# --- The view from the side, which follows the camera, and its grid
 
 
 UP = np.array([0.0, 0.0, 1.0])

@@ -39,9 +39,6 @@ def character_sheet(
         images: Frames of the clip by the same index, reduced or whole; those that are missing are left out.
         frame_start: Scene frame of index 0.
         floor_m: Height of the floor under the character [m].
-
-    Returns:
-        (height, width, 3) picture.
     """
     rows = ROWS if images else ROWS[1:]
     frames = list(figures)

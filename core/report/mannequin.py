@@ -55,9 +55,6 @@ def draw_character(canvas: Canvas, figure: CharacterFigure, project: Projection)
         canvas.polygon(corners[shown[row]], (blue, green, red))
 
 
-# --- A posture as a shaded body in parallel projection, with a shadow on the floor
-
-
 SIDES_OF_RING, BANDS_OF_CAP, BANDS_OF_SHAFT = 16, 4, 5
 TRUNK = (186, 182, 180)
 BAND = (235, 232, 230)
@@ -145,9 +142,6 @@ def _pieces(body: Body) -> tuple[Piece, ...]:
     )
 
 
-# --- A small square picture of a posture for an asset browser
-
-
 SIZE = 256
 EDGE = 8
 TURN_RAD = np.radians(-35.0)
@@ -161,11 +155,7 @@ BEHIND_M = 0.45
 
 
 def posture_picture(body: Body, posture: Posture) -> Image:
-    """Draw a single posture; the floor is z = 0.
-
-    Returns:
-        (256, 256, 3) blue, green, red.
-    """
+    """Draw a single posture; the floor is z = 0."""
     figure = mannequin(body, posture)
     turn = facing_rad(-posture.rotations[0, :, 1]) + TURN_RAD
     seen = View(turn, TILT_RAD, 1.0, (0.0, 0.0)).project(figure.points)[0]
@@ -179,23 +169,13 @@ def posture_picture(body: Body, posture: Posture) -> Image:
 
 
 def backdrop(height: int, width: int, floor: float, scale: float) -> Image:
-    """A floor before a wall.
-
-    Args:
-        height: Height of the picture.
-        width: Width of the picture.
-        floor: Picture row of the floor under the figure.
-        scale: Pixels a meter.
-    """
+    """A floor before a wall."""
     rows = np.arange(height) + 0.5 - (floor - scale * BEHIND_M * np.sin(TILT_RAD))
     share = np.clip(rows + 0.5, 0.0, 1.0)  # of each row, that is floor
     fade = np.clip(rows / (3.0 * scale * BEHIND_M * np.sin(TILT_RAD)), 0.0, 1.0)
     ground = FLOOR + fade[:, None] * 0.6 * (WALL - FLOOR)
     colors = WALL + share[:, None] * (ground - WALL)
     return np.asarray(np.repeat(np.round(colors)[:, None], width, axis=1), dtype=np.uint8)
-
-
-# --- All postures of a library on one sheet, each with its name
 
 
 COLUMNS, CELL, CAPTION = 10, 128, 18

@@ -32,15 +32,7 @@ def performer_contours(reconstruction: Reconstruction) -> ContourModel:
 def draw_outlines(
     canvas: Canvas, model: ContourModel, pose: Pose, frame: int, to_canvas: Callable[[Array], Array]
 ) -> None:
-    """Draw the contour lines that the motion predicts in one frame, those of nearer parts over others.
-
-    Args:
-        canvas: The canvas.
-        model: The contours of the performer's parts.
-        pose: Forward kinematics of the clip's postures.
-        frame: Frame index in the clip.
-        to_canvas: From pixels of the clip (N, 2) to points of the canvas.
-    """
+    """Draw the contour lines that the motion predicts in one frame, those of nearer parts over others."""
     index = slice(frame, frame + 1)
     predicted = model.evaluate(pose[index], np.array([frame]))
     pixels = to_canvas(predicted.pixel[0]).reshape(-1, len(SHARES), len(SIDES), 2)
@@ -50,9 +42,6 @@ def draw_outlines(
             line = pixels[part, :, side]
             canvas.line(line, WHITE, 2.4)
             canvas.line(line, OUTLINE, 1.2)
-
-
-# --- Keypoints over the footage
 
 
 SOURCE_COLORS: tuple[Color, ...] = ((167, 121, 204), (66, 228, 240), (233, 180, 86), (0, 159, 230))
@@ -77,14 +66,7 @@ def source_color(keypoints: ComparedKeypoints, source: str) -> Color:
 def draw_keypoints(
     canvas: Canvas, keypoints: ComparedKeypoints, frame: int, to_canvas: Callable[[Array], Array]
 ) -> None:
-    """Draw the keypoints of one frame, the marks of a small figure smaller.
-
-    Args:
-        canvas: The canvas.
-        keypoints: The keypoints.
-        frame: Frame index in the clip.
-        to_canvas: From pixels of the clip (N, 2) to points of the canvas.
-    """
+    """Draw the keypoints of one frame, the marks of a small figure smaller."""
     seen, predicted = to_canvas(keypoints.seen[frame]), to_canvas(keypoints.predicted[frame])
     colors = [source_color(keypoints, source) for source in keypoints.sources]
     thrown_out, swapped = keypoints.thrown_out[frame], keypoints.swapped[frame]
@@ -138,9 +120,6 @@ def _cross(canvas: Canvas, place: Array, color: Color, size: float, thrown_out: 
         if swapped:
             corners = place + 1.2 * size * ARM * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
             canvas.line(corners, ink, width, closed=True)
-
-
-# --- Layout of a contact sheet
 
 
 MARGIN = 16
@@ -204,9 +183,6 @@ def frame_label(canvas: Canvas, cell: Cell, scene_frame: int, keyframe: bool) ->
         canvas.polygon([[x - 4.5, y], [x, y - 4.5], [x + 4.5, y], [x, y + 4.5]], WHITE)
 
 
-# --- Contact sheet of the footage with the estimate over it
-
-
 CELL_WIDTH = 400
 COLUMNS = 4
 LIMB_WIDTH = 3.5
@@ -220,19 +196,7 @@ def overlay_sheet(
     keypoints: ComparedKeypoints | None = None,
     contours: ContourModel | None = None,
 ) -> Image:
-    """Draw frames of the clip with the skeleton and what was seen of the performer over them.
-
-    Args:
-        take: The take.
-        motion: Its motion.
-        tracks: The markers' regions.
-        images: Frames of the clip by frame index, in the order to show them.
-        keypoints: The performer's keypoints, if any.
-        contours: The body's contours, drawn where there are no markers.
-
-    Returns:
-        (height, width, 3) picture.
-    """
+    """Draw frames of the clip with the skeleton and what was seen of the performer over them."""
     width, height = take.camera.resolution
     cell_height = round(CELL_WIDTH * height / width)
     title = f"Estimate over the footage ({motion.method}, {len(motion.time_s)} frames)"

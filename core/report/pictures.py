@@ -21,11 +21,7 @@ from .stick_figure import draw_figure, legend, stick_figure
 
 
 def footage_frames(clip: Clip, frames: Sequence[int]) -> dict[int, Image]:
-    """Frames of a clip by their index, rising; those that cannot be read are left out.
-
-    Raises:
-        InputError: The clip can no longer be read.
-    """
+    """Frames of a clip by their index, rising; those that cannot be read are left out."""
     return {frame: _reduced(image) for frame, image in clip.source.at(list(frames))}
 
 
@@ -39,9 +35,6 @@ def _reduced(image: Image) -> Image:
     return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
 
 
-# --- Contact sheet of the motion from the side, where its depth shows
-
-
 PAPER = (250, 249, 248)
 COLUMNS = 6
 CELL_WIDTH_SIDE_SHEET, CELL_HEIGHT = 220, 240
@@ -52,16 +45,7 @@ FLOOR_WITHIN_M = 0.5
 
 
 def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
-    """Draw stick figures of some frames about their hips, in parallel projection.
-
-    Args:
-        motion: The motion.
-        camera: The camera, from whose right the side is seen.
-        frames: Frame indices in the clip.
-
-    Returns:
-        (height, width, 3) picture.
-    """
+    """Draw stick figures of some frames about their hips, in parallel projection."""
     axes, figure, floor = side_directions(camera), stick_figure(motion), _floor_height(motion)
     hips = motion.points[:, [motion.body.skeleton.point_names.index(f"hip.{side}") for side in ("L", "R")]]
     origin = hips.mean(axis=1) * [1.0, 1.0, 0.0]  # (F, 3): the ground under the hips
@@ -99,9 +83,6 @@ def _floor_height(motion: Motion) -> float:
     return 0.0 if abs(lowest) < FLOOR_WITHIN_M else lowest
 
 
-# --- The pictures of a result, written to a folder
-
-
 OVERLAY, SIDE = "overlay.png", "side.png"
 PICTURES = (OVERLAY, SIDE)
 EARLIER_PICTURES = ("speed.png", "front.png", "top.png", "matches.png", "strip.jpg")
@@ -116,23 +97,7 @@ def write_pictures(
     keypoints: ComparedKeypoints | None = None,
     contours: ContourModel | None = None,
 ) -> tuple[Path, ...]:
-    """Write the pictures; the frames that they show are decoded in one more pass over the clip.
-
-    Args:
-        folder: Made if missing.
-        take: The take.
-        motion: Its motion, F frames.
-        tracks: The markers' regions.
-        keypoints: The performer's keypoints, if any.
-        contours: The body's contours, drawn where there are no markers.
-
-    Returns:
-        Paths of the files, in the order of `PICTURES`.
-
-    Raises:
-        OSError: A picture cannot be written.
-        InputError: The clip can no longer be read.
-    """
+    """Write the pictures; the frames that they show are decoded in one more pass over the clip."""
     folder.mkdir(parents=True, exist_ok=True)
     frames = evenly_spaced_frames(len(motion.time_s))
     shown = footage_frames(Clip.open(take.clip, fps=take.fps), frames)

@@ -63,16 +63,7 @@ def stick_figure(motion: Motion) -> StickFigure:
 def draw_figure(
     canvas: Canvas, figure: StickFigure, frame: int, project: Projection, width: float, *, outlined: bool
 ) -> None:
-    """Draw the figure of one frame.
-
-    Args:
-        canvas: The canvas to draw on.
-        figure: The figure.
-        frame: Frame index in the clip.
-        project: Projection of world points to the canvas.
-        width: Thickness of a limb [px].
-        outlined: Whether a white edge sets it off from the picture below.
-    """
+    """Draw the figure of one frame."""
     parts: list[tuple[float, Limb | None]] = []
     for limb in figure.limbs:
         _, depth = project(limb.points[frame])
@@ -126,9 +117,6 @@ def legend(canvas: Canvas, right: float, y: float) -> None:
         right -= 26.0 + 18.0
 
 
-# --- Squares cut from frames around a figure, so that a small one in a wide shot is still seen
-
-
 PAPER = (226, 222, 219)
 """Color where the square is larger than the picture, or there is none."""
 PADDING = 1.35
@@ -177,9 +165,6 @@ def square_of(image: Image, corner: Array, side: float, resolution: tuple[int, i
     return np.asarray(filled, dtype=np.uint8)
 
 
-# --- A small square picture of a motion for an asset browser
-
-
 SIZE = 256
 PAPER_THUMBNAIL = (250, 249, 248)
 POSES = 3
@@ -190,14 +175,7 @@ LIMB_WIDTH = 5.0
 
 
 def thumbnail(motion: Motion) -> Image:
-    """Draw three poses of a motion, the earliest at the left, in parallel projection.
-
-    Args:
-        motion: The motion, F frames.
-
-    Returns:
-        (256, 256, 3) blue, green, red.
-    """
+    """Draw three poses of a motion, the earliest at the left, in parallel projection."""
     frames = np.round(np.linspace(0, len(motion.time_s) - 1, 2 * POSES + 1)[1::2]).astype(np.intp)
     figure = stick_figure(motion)
     axes = _axes(motion)

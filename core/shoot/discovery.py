@@ -45,11 +45,7 @@ class ShootTake:
     """Location of these fields, for sentences."""
 
     def describe(self) -> Description:
-        """Merge all files that describe the take.
-
-        Raises:
-            InputError: A file is unusable.
-        """
+        """Merge all files that describe the take."""
         return describe(self.path, self.overrides, self.overrides_location)
 
     def settings(
@@ -77,9 +73,6 @@ class Shoot:
 def part_of(takes: Collection[ShootTake], part: int, parts: int) -> list[ShootTake]:
     """The share of one of several machines: every `parts`-th take, beginning with the `part`-th, from 1."""
     return [take for index, take in enumerate(takes) if index % parts == part - 1]
-
-
-# --- Discovery of takes
 
 
 RESERVED = (".keymark", "summary.html", "summary.jsonl")
@@ -157,9 +150,6 @@ KNOWN_FIELDS = (TAKE_FIELD, "clip", "frame_count", "keyframes", *SHARED_FIELDS, 
 
 def read_take_list(path: Path) -> Shoot:
     """Read a list of takes; the values of their fields are checked where each take uses them.
-
-    Args:
-        path: The list, UTF-8. Takes are relative to its folder, paths in a take's own fields to the take's.
 
     Raises:
         InputError: The list cannot be read, is too large or holds no take; or a line is no object, or has an

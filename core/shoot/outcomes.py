@@ -40,11 +40,7 @@ class Failure(Record):
 
 
 def write_failure(output: Path, failure: Failure) -> None:
-    """Write a failure.
-
-    Raises:
-        ConversionError: The file cannot be written.
-    """
+    """Write a failure."""
     write_json(_file(output, failure.take), failure.to_json(), indent=1)
 
 

@@ -86,11 +86,7 @@ class ClipSurvey:
 
 
 def survey_clips(shoot: Shoot) -> Generator[float, None, ClipSurvey]:
-    """Open every clip of a shoot, and sample the colors of some.
-
-    Yields:
-        The fraction done, from 0 to 1.
-    """
+    """Open every clip of a shoot, and sample the colors of some."""
     seen: list[SurveyedClip] = []
     described: list[str] = []
     unreadable: list[str] = []

@@ -37,11 +37,7 @@ def open_clip(take: Take) -> Clip:
 
 
 def open_footage(path: Path, fps: float | None) -> Clip:
-    """Open a clip without its take; `fps` is the rate of an image sequence.
-
-    Raises:
-        InputError: It is missing or unreadable.
-    """
+    """Open a clip without its take; `fps` is the rate of an image sequence."""
     try:
         return Clip.open(path, fps=fps)
     except OSError as error:
@@ -49,11 +45,7 @@ def open_footage(path: Path, fps: float | None) -> Clip:
 
 
 def picture_count(path: Path, fps: float) -> int:
-    """Number of pictures of a clip without its take; of a sound file quickly, by its undecoded packets.
-
-    Raises:
-        InputError: It is missing or unreadable.
-    """
+    """Number of pictures of a clip without its take; of a sound file quickly, by its undecoded packets."""
     clip = open_footage(path, fps)
     if not isinstance(clip.source, VideoFile):
         return clip.frame_count
@@ -64,11 +56,7 @@ def picture_count(path: Path, fps: float) -> int:
 
 
 def check_size(take: Take, clip: Clip) -> None:
-    """Check the size of a clip's frames against the camera's resolution.
-
-    Raises:
-        InputError: They differ.
-    """
+    """Check the size of a clip's frames against the camera's resolution."""
     if clip.size != take.camera.resolution:
         raise InputError(
             f"{take.file}: camera.resolution is {list(take.camera.resolution)}; "
@@ -89,11 +77,6 @@ def _rotation_hint(take: Take, clip: Clip) -> str:
 
 def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
     """Check the true number of a clip's frames against the take.
-
-    Args:
-        take: The take.
-        count: Number of frames that can be decoded.
-        claimed: Number of frames that the clip's file claims.
 
     Raises:
         InputError: There are too many, `frame_count` or the number of frames with keypoints differs, or a
@@ -164,9 +147,6 @@ def check_in_front(take: Take) -> None:
             f"{take.file}: not one point of any keyframe lies in the camera's picture; the camera's pose, "
             "its lens and the keyframes, all in meters in one world, must fit each other"
         )
-
-
-# --- Notes on a take's clip for a person, one sentence each
 
 
 NOTICEABLE_RATE = 0.02

@@ -19,16 +19,10 @@ METHODS = ("map", "ekf", "interpolation")
 """The estimate over the whole clip, the default; the paper's Kalman filter; interpolated keyframes alone."""
 
 
-# --- Words for how a motion is put onto a character
-
-
 ROOT_MOTIONS = ("as-filmed", "in-place", "root-bone")
 PLACEMENTS = ("performer", "character")
 LIMB_KEYS = ("fk", "ik", "both")
 """The options of `core/retarget/options` are called the same, with underscores."""
-
-
-# --- The character that a take's motion is put onto
 
 
 CHARACTER_ENDINGS = (".blend", ".fbx", ".glb", ".gltf", ".vrm")
@@ -150,9 +144,6 @@ class CharacterFields(CharacterOptions):
         )
 
 
-# --- Settings of a conversion
-
-
 HIGHEST_FLOOR_M = 1000.0
 LONGEST_NAME_CONVERSION_SETTINGS = 200
 KEYFRAMES_VALID = (
@@ -205,11 +196,6 @@ def with_auto_as_library(
     values: Mapping[str, Any], inherited: Mapping[str, Any], location: str
 ) -> dict[str, Any]:
     """The fields of one file, where `"keyframes": "auto"` has become `"library": "auto"`, which is the same.
-
-    Args:
-        values: The fields as the file has them.
-        inherited: Those that they override.
-        location: The file, for sentences.
 
     Raises:
         InputError: The file also names a library, which is another question.
@@ -296,15 +282,7 @@ class SettingsFields(Record):
 
 
 def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSettings:
-    """The settings in a take's description.
-
-    Args:
-        description: The fields of the take, inherited ones included.
-        folders: For each source of fields, the folder that its paths are relative to.
-
-    Raises:
-        InputError: A field has no valid value, or a path leaves its folder.
-    """
+    """The settings in a take's description."""
     said = read_record(SettingsFields, description)
 
     def inside(name: str) -> Path:

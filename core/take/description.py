@@ -35,10 +35,6 @@ KNOWN_FIELDS = (*FILE_FIELDS, *SHARED_FIELDS, KEYFRAMES, *SETTING_FIELDS)
 def shoot_fields(path: Path, values: dict[str, Any]) -> dict[str, Any]:
     """The fields of one `shoot.json` that takes inherit; their values are checked where a take uses them.
 
-    Args:
-        path: The file, for sentences.
-        values: All its fields, as `find_shoot_files` gives them.
-
     Raises:
         InputError: The file is of a newer Keymark, has an unknown field, or names a keyframe file.
     """
@@ -74,9 +70,6 @@ def find_shoot_files(folder: Path) -> dict[Path, dict[str, Any]]:
             if found[file].get("root") is True:
                 break
     return dict(reversed(found.items()))
-
-
-# --- The description of one take
 
 
 TAKE_FILE = "take.json"
@@ -189,13 +182,7 @@ def describe(
 def effective_settings(
     description: Description, defaults: ConversionSettings = NO_SETTINGS
 ) -> ConversionSettings:
-    """The settings of a take's conversion; beside a library its own keyframes are used where it has some.
-
-    Args:
-        description: The take's description.
-        defaults: Settings for what the take and its shoots leave out; their keypoints are names of files of
-            every take, as `keypoints.json` is.
-    """
+    """The settings of a take's conversion; beside a library its own keyframes are used where it has some."""
     settings = description.settings.with_defaults(defaults)
     if description.settings.keypoints is None and defaults.keypoints is not None:
         settings = replace(

@@ -51,11 +51,6 @@ def with_evidence(take: Take, kinds: tuple[str, ...]) -> Take:
 def check_evidence(take: Take, kinds: tuple[str, ...] | None, source: str) -> None:
     """Check that a take has the evidence that is asked for, and any at all.
 
-    Args:
-        take: The take with everything it has.
-        kinds: The kinds that are asked for; None for whatever it has.
-        source: What asks for them, for sentences.
-
     Raises:
         InputError: It lacks one of them, or has nothing that could be followed.
     """

@@ -33,9 +33,6 @@ def in_order(kinds: tuple[str, ...] | list[str]) -> tuple[str, ...]:
     return tuple(kind for kind in EVIDENCE if kind in kinds)
 
 
-# --- Fields that records of results have in common
-
-
 LONGEST_LINE, LONGEST_NOTE = 1000, 10_000
 MOST_NOTES, MOST_FILES = 1000, 100
 MOST_FRAMES, FARTHEST_FRAME = 10**6, 10**7
@@ -49,9 +46,6 @@ FileDigests = Annotated[
 FrameCount = Annotated[int, Whole(1, MOST_FRAMES)]
 Frame = Annotated[int, Whole(-FARTHEST_FRAME, FARTHEST_FRAME)]
 FrameRate = Annotated[float, Number(1e-3, 1e4)]
-
-
-# --- Evidence that a result rests on beside its keyframes, for the record of a conversion and for people
 
 
 MOST_MARKERS, MOST_SOURCES = 64, 100

@@ -40,10 +40,6 @@ def copy_example(name: str, into: Path) -> Path:
 
     A copy that is there already and unchanged stays as it is.
 
-    Args:
-        name: The example.
-        into: The folder that gets a folder of the example's name.
-
     Raises:
         InputError: The example is missing, something else lies there, or nothing can be written.
     """

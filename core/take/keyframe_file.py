@@ -83,17 +83,6 @@ def read_keyframes(
     A keyframe holds `frame` and `posture` (every degree of freedom by name, meters and radians), or `frame`
     and `points` (thirteen points [m], world axes), to which a posture of the actor is fitted. With both, the
     posture counts. A matched keyframe names its library in `matched`.
-
-    Args:
-        path: The file.
-        body: The actor's body.
-        frame_start: Scene frame of the clip's first frame.
-        frame_count: Frames of the clip; None where it is not known yet.
-        fewest: Number of keyframes that are required.
-
-    Raises:
-        InputError: The file or a field is unusable, a frame is outside the clip or given twice, or there
-            are too few keyframes, or too many.
     """
     rows = KeyframeFile.from_json(read_json(path), str(path)).keyframes
     if len(rows) < fewest:
@@ -107,11 +96,7 @@ def read_keyframes(
 
 
 def write_keyframes(path: Path, keyframes: Sequence[Keyframe], body: Body, frame_start: int) -> None:
-    """Write keyframes with both their posture, which `read_keyframes` reads back, and their thirteen points.
-
-    Raises:
-        ConversionError: The file cannot be written.
-    """
+    """Write keyframes with both their posture, which `read_keyframes` reads back, and their thirteen points."""
     rows = []
     for keyframe in keyframes:
         points = rounded(body.points(body.pose(keyframe.posture)))

@@ -54,9 +54,6 @@ class Motion:
         return np.sqrt(np.trace(self.point_covariance, axis1=-2, axis2=-1))
 
 
-# --- `motion.json`
-
-
 LARGEST_BYTES = 2**29
 """Two hours of motion: about 2 kB a frame."""
 LARGEST_NUMBER = 1e15
@@ -147,10 +144,6 @@ def write_motion(motion: Motion, path: Path) -> None:
     Lengths are in meters and angles in radians, rounded to 1e-6; lists run over the frames of the clip.
     A method that has no covariance (all NaN) leaves `sigma_m` and `covariance_mm2` out.
 
-    Args:
-        motion: The motion, F frames.
-        path: The file.
-
     Raises:
         ConversionError: A value of the motion is not finite, or the file cannot be written.
     """
@@ -173,11 +166,7 @@ def write_motion(motion: Motion, path: Path) -> None:
 
 
 def read_motion(path: Path) -> Motion:
-    """Read a motion that `write_motion` wrote.
-
-    Raises:
-        InputError: The file or a field is unusable; the sentence names it.
-    """
+    """Read a motion that `write_motion` wrote."""
     file = MotionFile.from_json(read_json(path, LARGEST_BYTES), str(path))
     body = Body(file.actor)
     return Motion(

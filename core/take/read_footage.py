@@ -27,16 +27,6 @@ CHUNK_FRAMES = 500
 def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
     """Read a take's clip: tracks of its markers, notes, and an album where the camera stands still.
 
-    Args:
-        take: A take; markers are searched near its keyframes first, where it has some.
-        kept: An earlier reading of any clip; its parts are used as far as they still hold (see `read_clip`).
-
-    Yields:
-        Progress.
-
-    Returns:
-        The reading, the same with and without `kept`.
-
     Raises:
         InputError: The clip cannot be used, or a marker's color is not in it.
     """

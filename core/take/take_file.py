@@ -151,12 +151,6 @@ def read_take(
 ) -> Take:
     """Read a take with its inherited fields; the clip is not checked yet (see `clip_check`).
 
-    Args:
-        path: The folder that holds `take.json`, or a clip that a shoot describes (see `description`).
-        keyframes: The keyframe file; by default the take's own, usually `keyframes.json` in the folder.
-        keyframes_required: Whether a take without a keyframe file is refused.
-        whole: Whether evidence that its description leaves aside is read too, and none at all is accepted.
-
     Raises:
         InputError: A file or field is missing or unusable; the sentence names it and what would be valid.
     """
@@ -263,14 +257,8 @@ def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) 
 
     Every file is written atomically; a clip or keypoints that lie in the folder stay as they are.
 
-    Args:
-        take: The take.
-        folder: The folder, new or old.
-        evidence: The kinds of evidence that it is to be held against; None for whatever it has.
-
     Raises:
         InputError: The clip is a pattern of images outside the folder, which cannot be copied as one.
-        ConversionError: A file cannot be written.
     """
     clip = _copy_clip(take, folder)
     fields: dict[str, Any] = {"fps": take.fps, "frame_start": take.frame_start}

@@ -31,13 +31,7 @@ def terminal_columns() -> int | None:
 
 
 def wrapped(sentence: str, indent: int, columns: int | None) -> list[str]:
-    """A sentence broken into lines between words; all but the first are indented by two columns more.
-
-    Args:
-        sentence: The text to wrap.
-        indent: Columns before the first line.
-        columns: Width of the terminal; None keeps the sentence whole.
-    """
+    """A sentence broken into lines between words; all but the first are indented by two columns more."""
     begin = " " * indent
     if columns is None or indent + len(sentence) <= columns:
         return [begin + sentence]

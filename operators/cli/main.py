@@ -30,14 +30,7 @@ FIXED_IN = (5, 0)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command.
-
-    Args:
-        argv: The arguments after the program's name; by default those of the process.
-
-    Returns:
-        The exit status.
-    """
+    """Run one command."""
     status = _run(list(sys.argv[1:] if argv is None else argv))
     if argv is None:
         _end_process(status)

@@ -163,11 +163,7 @@ def add_retarget_options(parser: argparse.ArgumentParser) -> None:
 
 
 def given_settings(arguments: argparse.Namespace) -> ConversionSettings:
-    """What the command line says of a conversion; None for what it leaves out, or is empty.
-
-    Raises:
-        UsageError: A value is out of range, or options contradict each other.
-    """
+    """What the command line says of a conversion; None for what it leaves out, or is empty."""
     given = vars(arguments)
     keyframes, library, floor_m = (given.get(name) for name in ("keyframes", "library", "floor"))
     if keyframes == EVERY_LIBRARY and library not in (None, EVERY_LIBRARY):

@@ -24,9 +24,6 @@ def version() -> str:
     return str(manifest["version"])
 
 
-# --- What a command of the command line declares
-
-
 def no_arguments(_parser: argparse.ArgumentParser) -> None:
     """The arguments of a command that has none of its own."""
 
@@ -57,9 +54,6 @@ class CommandGroup:
     commands: Sequence[Command]
 
 
-# --- Mistakes on the command line and what a command lacks, each told in one line on standard error
-
-
 class UsageError(Exception):
     """The command line is unusable; the text is one sentence."""
 
@@ -79,32 +73,18 @@ def print_error(sentence: str) -> None:
 
 
 def refuse_existing(output: Path, replace: bool) -> None:
-    """Refuse to replace a file unless `--replace` is given.
-
-    Raises:
-        UsageError: Something is there.
-    """
+    """Refuse to replace a file unless `--replace` is given."""
     if output.exists() and not replace:
         raise UsageError(f"{output} is there already; name another file, or add --replace to replace it")
 
 
 def require_blender(needing: str) -> None:
-    """Refuse work that needs Blender where there is none, at once rather than after minutes.
-
-    Args:
-        needing: What the sentence begins with, as in `writing motion.blend needs`.
-
-    Raises:
-        ConversionError: The Python module `bpy` is missing.
-    """
+    """Refuse work that needs Blender where there is none, at once rather than after minutes."""
     if importlib.util.find_spec("bpy") is None:
         raise ConversionError(
             f"{needing} Blender: install its Python module (pip install 'keymark[blender]') "
             "or run blender --command keymark in a Blender that has Keymark"
         )
-
-
-# --- The parser of the command line, made of the commands in `commands/`
 
 
 DESCRIPTION = "Turns one video of a performer, in colored markers or any clothes, into an animated armature."
@@ -141,11 +121,7 @@ class OneLineParser(argparse.ArgumentParser):
 
 
 def build_parser(chosen: str | None) -> argparse.ArgumentParser:
-    """The parser; its result has `run`, which runs the command.
-
-    Args:
-        chosen: The command that the line names, the only one whose arguments are known; None for no command.
-    """
+    """The parser; its result has `run`, which runs the command."""
     program = program_name()
     parser = OneLineParser(
         prog=program,

@@ -35,9 +35,6 @@ STYLE = (FOLDER / "style.css").read_text(encoding="utf-8")
 SCRIPT = "\n" + (FOLDER / "script.js").read_text(encoding="utf-8")
 
 
-# --- The head of a batch's page
-
-
 MOST_NAMED = 3
 """Takes named in a sentence."""
 
@@ -54,12 +51,7 @@ def counts(outcomes: Sequence[Outcome]) -> str:
 
 
 def urgent_items(found: Mapping[Verdict, Sequence[Outcome]], number: Mapping[str, int]) -> str:
-    """The takes that a supervisor should turn to first, a sentence for each kind.
-
-    Args:
-        found: Takes by verdict, the most urgent verdict first.
-        number: Number of each take in its anchor.
-    """
+    """The takes that a supervisor should turn to first, a sentence for each kind."""
     sentences = []
     failed, poor, fair, waiting = (
         found.get(verdict, ()) for verdict in (Verdict.FAILED, Verdict.POOR, Verdict.FAIR, Verdict.WAITING)
@@ -110,9 +102,6 @@ def _confidence(outcome: Outcome) -> str:
     return f" ({percent(record.confidence)})"
 
 
-# --- The HTML page of a batch for its supervisor
-
-
 MOST_ROWS = 5000
 """Largest number of takes on the page; browsers are slow to lay out more."""
 HEADINGS = {
@@ -126,13 +115,7 @@ HEADINGS = {
 
 
 def summary_page(title: str, outcomes: Sequence[Outcome], output: Path) -> str:
-    """A batch as one HTML page.
-
-    Args:
-        title: Name of the shoot.
-        outcomes: The outcome of each take.
-        output: Folder of the page; links are relative to it.
-    """
+    """A batch as one HTML page."""
     named = sorted(outcomes, key=lambda outcome: outcome.take)
     number = {outcome.take: position for position, outcome in enumerate(named, 1)}
     found = sections(outcomes)

@@ -68,9 +68,6 @@ def duration(seconds: float) -> str:
     return f"{whole // 3600} h {whole % 3600 // 60} min"
 
 
-# --- Verdicts on the takes of a batch
-
-
 GOOD = WEAK_CONFIDENCE
 """Mean confidence from which a take is good: frames of this confidence need no keyframe."""
 FAIR = 0.5
@@ -123,9 +120,6 @@ def _urgency(outcome: Outcome) -> tuple[float, str]:
     return (0.0 if record is None or record.confidence is None else record.confidence, outcome.take)
 
 
-# --- The row of one take on the page of a batch
-
-
 COLUMNS = ("Take", "Footage", "Confidence", "To do and to know", "Files")
 MOST_NAMED = 12
 """Weak frames and notes shown; `conversion.json` has all."""
@@ -148,13 +142,7 @@ FILE_ORDER = (".blend", ".bvh", ".json")
 
 
 def row(outcome: Outcome, output: Path, number: int) -> str:
-    """The row of one take.
-
-    Args:
-        outcome: The take's outcome.
-        output: Folder of the page.
-        number: The take's number in the order of names, for its anchor.
-    """
+    """The row of one take."""
     path, record = relative_path(outcome.folder, output), current_record(outcome)
     if record is None:
         cells = f'<td role="cell" colspan="{len(COLUMNS) - 1}">{_no_result(outcome)}</td>'

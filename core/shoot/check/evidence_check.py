@@ -50,9 +50,6 @@ class Findings:
             self.problem(str(error))
 
 
-# --- The check of a take's keyframes
-
-
 LONGEST_GAP_S = 1.0
 """Longest gap between keyframes without a warning where none are found in it: ten in 100 frames are usual."""
 FEWEST_IN_PICTURE = 0.5
@@ -119,9 +116,6 @@ def _frames(frames: Sequence[int]) -> str:
     named = ", ".join(str(frame) for frame in frames[:MOST_NAMED])
     more = f" and {len(frames) - MOST_NAMED} more" if len(frames) > MOST_NAMED else ""
     return f"keyframe {named}" if len(frames) == 1 else f"the keyframes {named}{more}"
-
-
-# --- The check of a take's keypoints
 
 
 LARGEST_ERROR = 0.1

@@ -49,11 +49,7 @@ def count_frames(clip: Clip, findings: Findings) -> int:
 
 
 def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tuple[MarkerReadout, ...]:
-    """Check a take's clip.
-
-    Returns:
-        How well each marker is seen; empty where there is none, or no frame can be read.
-    """
+    """Check a take's clip."""
     with findings.catching():
         check_size(take, clip)
     rate = rate_note(take, clip) if clip.knows_its_rate else None

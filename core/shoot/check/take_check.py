@@ -98,15 +98,7 @@ def estimate_cost(
     library: str | None,
     evidence: Collection[str] = (MARKERS, CONTOURS),
 ) -> CostEstimate:
-    """Estimate the cost of converting a take.
-
-    Args:
-        frames: Number of frames of its clip.
-        size: Width and height of the clip [px].
-        method: One of `METHODS`.
-        library: The library that keyframes are found with; None where all are posed.
-        evidence: Kinds of evidence that it is held against.
-    """
+    """Estimate the cost of converting a take."""
     a_frame = SECONDS_A_FRAME[method] + SECONDS_A_MEGAPIXEL * size[0] * size[1] / 1e6
     if method == "map":
         a_frame += SECONDS_FOR_KEYPOINTS * (KEYPOINTS in evidence)
@@ -160,15 +152,7 @@ def check_take(
     defaults: ConversionSettings = NO_SETTINGS,
     check_character: Callable[[CharacterSettings], Sequence[str]] = lambda _settings: (),
 ) -> TakeCheck:
-    """Check one take; nothing is written.
-
-    Args:
-        found: The take.
-        find_libraries: Raises `InputError` where there is no such library.
-        defaults: Settings for what its description leaves out.
-        check_character: Raises `InputError` where a character or its map cannot be used, and returns what is
-            doubtful about it.
-    """
+    """Check one take; nothing is written."""
     findings = Findings()
     description = None
     with findings.catching():

@@ -37,9 +37,6 @@ def processor_count() -> int:
     return os.cpu_count() or 1
 
 
-# --- Script that runs a worker in plain Python
-
-
 ROOT = Path(__file__).resolve().parents[3]
 PACKAGE = "keymark"
 

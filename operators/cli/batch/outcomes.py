@@ -35,14 +35,7 @@ LINES, PAGE = "summary.jsonl", "summary.html"
 
 
 def write_summary(output: Path, shoot: Shoot, outcomes: Sequence[Outcome]) -> tuple[Path, ...]:
-    """Write `summary.jsonl` and `summary.html`, each atomically; of several writers, the last one counts.
-
-    Returns:
-        Paths of both files.
-
-    Raises:
-        ConversionError: A file cannot be written.
-    """
+    """Write `summary.jsonl` and `summary.html`, each atomically; of several writers, the last one counts."""
     ordered = sorted(outcomes, key=lambda outcome: outcome.take)
     # ASCII: no letter of a name can be taken for the end of a line, or be refused by a disk or a terminal.
     lines = "".join(f"{json.dumps(summary_line(outcome, output), allow_nan=False)}\n" for outcome in ordered)
@@ -76,9 +69,6 @@ def _write(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8", newline="\n")
 
 
-# --- Outcomes of a batch's takes while it runs
-
-
 SHORTEST_SUMMARY_INTERVAL_S = 5.0
 SUMMARY_SHARE = 0.1
 """Largest share of a batch's time that writing summaries takes, however many takes there are."""
@@ -89,14 +79,7 @@ class BatchOutcomes:
     """Receives the events of a worker pool; counts, shows and stores the outcomes of the takes."""
 
     def __init__(self, shoot: Shoot, output: Path, jobs: Sequence[Job], console: Console) -> None:
-        """Begin with the outcomes that the folder has of all takes.
-
-        Args:
-            shoot: The whole shoot, whichever part is converted here.
-            output: Folder of all results.
-            jobs: The takes that are converted here.
-            console: Shows progress and a line for every take that has ended.
-        """
+        """Begin with the outcomes that the folder has of all takes."""
         self.shoot, self.output, self.console = shoot, output, console
         self._names = [job.take.name for job in jobs]
         self._outcomes = {outcome.take: outcome for outcome in read_outcomes(shoot, output)}

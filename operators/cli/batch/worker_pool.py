@@ -57,15 +57,7 @@ class WorkerPool:
         heartbeat_timeout_s: float,
         debug: bool,
     ) -> None:
-        """Queue the jobs.
-
-        Args:
-            jobs: In the order in which they are handed out.
-            words: The command that starts a worker.
-            outcomes: Receives progress and results.
-            heartbeat_timeout_s: Longest time between two messages [s].
-            debug: Whether the workers' standard error is shown.
-        """
+        """Queue the jobs."""
         self._queue = deque(_QueuedJob(job) for job in jobs)
         self._words, self._debug = words, debug
         self._outcomes = outcomes
@@ -76,12 +68,7 @@ class WorkerPool:
         self._failed_starts, self._start_error = 0, ""
 
     def run(self, workers: int) -> None:
-        """Run all jobs, as many at a time as there are workers.
-
-        Raises:
-            KeyboardInterrupt: A signal asked the batch to end; all workers have ended.
-            ConversionError: No worker starts.
-        """
+        """Run all jobs, as many at a time as there are workers."""
         with self._interruptible():
             try:
                 while self._queue or any(self._workers.values()):

@@ -110,9 +110,6 @@ def _line(value: Any) -> bytes:
     return json.dumps(value, default=str).encode("ascii") + b"\n"
 
 
-# --- A worker as its batch sees it
-
-
 SCRIPT = Path(__file__).with_name("machine_resources.py")
 START_TIMEOUT_S = 300.0
 HEARTBEAT_TIMEOUT_S = 1800.0
@@ -138,11 +135,7 @@ class WorkerProcess:
     """A running worker; a thread of its own reads its messages."""
 
     def __init__(self, words: Sequence[str], debug: bool, events: "Events") -> None:
-        """Start a worker.
-
-        Raises:
-            OSError: There is no such program.
-        """
+        """Start a worker."""
         self.ready = self._asked_to_end = False
         self.deadline = time.monotonic() + START_TIMEOUT_S
         """When it is lost unless it sends a message before."""

@@ -33,13 +33,7 @@ MOST_NAMED = 5
 
 
 def batch_command(arguments: argparse.Namespace) -> None:
-    """Convert the takes that the command line names, and report the outcome of each.
-
-    Raises:
-        InputError: The shoot or the folder for the results is unusable; nothing was written.
-        ConversionError: A take has failed, or no worker starts.
-        KeyboardInterrupt: The batch was interrupted; the text says how many takes are converted.
-    """
+    """Convert the takes that the command line names, and report the outcome of each."""
     shoot, takes, defaults = _plan(arguments)
     require_blender("writing motion.blend needs")
     output: Path = arguments.output
@@ -84,12 +78,7 @@ def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, c
 
 
 def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], ConversionSettings]:
-    """The whole shoot, its takes to convert, and the settings of those that have none of their own.
-
-    Raises:
-        UsageError: An option is unusable.
-        InputError: The shoot is unusable, or there is no such library.
-    """
+    """The whole shoot, its takes to convert, and the settings of those that have none of their own."""
     part, parts = _parsed_part(arguments.part)
     if arguments.jobs is not None and not 1 <= arguments.jobs <= MOST_JOBS:
         raise UsageError(f"--jobs is {arguments.jobs}; a number from 1 to {MOST_JOBS} is valid")

@@ -39,20 +39,13 @@ CHARACTER = Command(
 )
 
 
-# --- `keymark character`
-
-
 UNSURE = 0.75
 """Confidence below which a role is marked."""
 SOURCE_WORDS = {"preset": "convention", "names": "names", "shape": "shape", "you": "a person"}
 
 
 def character_command(arguments: argparse.Namespace) -> None:
-    """Show which bones play which role, how surely, and what is doubtful; write the map.
-
-    Raises:
-        InputError: The character or the map cannot be used; nothing was written.
-    """
+    """Show which bones play which role, how surely, and what is doubtful; write the map."""
     require_blender("opening a character needs")
     file = CharacterFile.parse(arguments.character)
     if arguments.output is not None:

@@ -38,13 +38,7 @@ NARROWEST_NAME = 12
 
 
 def check_command(arguments: argparse.Namespace) -> None:
-    """Check the takes that the command line names, and list the problems of each.
-
-    Raises:
-        InputError: The shoot is unusable.
-        UsageError: `--jobs` is out of range, or options contradict each other.
-        ConversionError: A take would not convert.
-    """
+    """Check the takes that the command line names, and list the problems of each."""
     jobs = 1 if arguments.jobs is None else arguments.jobs
     if not 1 <= jobs <= MOST_JOBS:
         raise UsageError(f"--jobs is {jobs}; a number from 1 to {MOST_JOBS} is valid")
@@ -118,13 +112,7 @@ def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
 
 
 def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = None) -> str:
-    """The checks as text for people.
-
-    Args:
-        shoot: The shoot that was checked.
-        checks: The check of every take.
-        columns: Width of the terminal, to which sentences are wrapped; None keeps them whole.
-    """
+    """The checks as text for people."""
     shared = _shared(checks)
     lines = _table(shoot, checks, shared, columns)
     together: dict[tuple[str, ...], list[str]] = {}

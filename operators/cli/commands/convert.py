@@ -46,9 +46,6 @@ def _settings(arguments: argparse.Namespace, description: Description) -> Conver
     """The settings of the command line, and else of the take.
 
     Where keyframes are to be found by the command line's word, only posed ones that it names count beside.
-
-    Raises:
-        UsageError: The options contradict each other.
     """
     given = given_settings(arguments)
     settings = given.with_defaults(effective_settings(description))

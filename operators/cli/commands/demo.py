@@ -113,11 +113,7 @@ LONGEST_S = 300.0
 
 
 def write_demo_character(file: Path) -> None:
-    """Generate the rig with a simple body into a .blend.
-
-    Raises:
-        ConversionError: Blender could not generate it.
-    """
+    """Generate the rig with a simple body into a .blend."""
     import bpy
 
     program = bpy.app.binary_path

@@ -59,9 +59,6 @@ DETECT = Command(
 )
 
 
-# --- `keymark detect`
-
-
 MOST_NAMED = 5
 
 
@@ -102,13 +99,7 @@ class Outcome:
 
 
 def detect_command(arguments: argparse.Namespace) -> None:
-    """Detect the keypoints of what the command line names.
-
-    Raises:
-        UsageError: An option is unusable, or a file is there and `--replace` is not given.
-        InputError: What is named is unusable, or shows nobody.
-        ConversionError: Some takes of a shoot failed.
-    """
+    """Detect the keypoints of what the command line names."""
     network = PoseNetwork()
     one = _single(arguments.target)
     with arguments_console(arguments) as console:
@@ -218,11 +209,7 @@ def _is_sequence(path: Path) -> bool:
 
 
 def _footage(take: ShootTake) -> Footage:
-    """The clip of a take, as its files describe it, or as it is where none do.
-
-    Raises:
-        InputError: A file is unusable.
-    """
+    """The clip of a take, as its files describe it, or as it is where none do."""
     path = take.path
     described = (path / TAKE_FILE, sidecar_file(path, TAKE_FILE))
     if not take.overrides and not any(map(os.path.isfile, described)) and not find_shoot_files(path.parent):

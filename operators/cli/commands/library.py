@@ -19,9 +19,6 @@ from ..parser import Command, CommandGroup, UsageError, refuse_existing, require
 LIBRARY_HELP = "name or file of a library"
 
 
-# --- The contents of a keyframe library, as an object for programs and as lines for people
-
-
 def library_summary(library: Library) -> dict[str, Any]:
     """A library's contents as an object for `--json`."""
     return {
@@ -72,17 +69,11 @@ def _motion_line(motion: LibraryMotion) -> str:
     return f"{motion.name}: {len(motion.steps)} postures, {kind}{motion.duration_s:.2f} s{travel}"
 
 
-# --- The library file that `learn`, `merge`, `mirror` and `read` write, and what they say of it
-
-
 def write_new_library(console: Console, arguments: argparse.Namespace, library: Library) -> None:
     """Write a library to `--output` and finish the command with its summary."""
     write_library(arguments.output, library)
     result = {**library_summary(library), "files": [str(arguments.output)]}
     console.finish(result, "\n".join([*library_lines(library), f"Written: {arguments.output}"]))
-
-
-# --- `keymark library list`, `show` and `check`
 
 
 def list_command(arguments: argparse.Namespace) -> None:
@@ -111,11 +102,7 @@ def list_command(arguments: argparse.Namespace) -> None:
 
 
 def show_command(arguments: argparse.Namespace) -> None:
-    """Print a library's contents; draw its postures where `--sheet` is given.
-
-    Raises:
-        UsageError: The picture is no .png: a library named there by mistake must not be overwritten.
-    """
+    """Print a library's contents; draw its postures where `--sheet` is given."""
     if arguments.sheet is not None and arguments.sheet.suffix.lower() != ".png":
         raise UsageError(f"--sheet is {str(arguments.sheet)!r}; name a file that ends in .png")
     with arguments_console(arguments) as console:
@@ -135,11 +122,7 @@ def show_command(arguments: argparse.Namespace) -> None:
 
 
 def check_command(arguments: argparse.Namespace) -> None:
-    """Read library files and print what they hold.
-
-    Raises:
-        InputError: Files are invalid; one line names the problem of each.
-    """
+    """Read library files and print what they hold."""
     with arguments_console(arguments) as console:
         problems, lines, good = [], [], []
         for file in arguments.files:
@@ -153,9 +136,6 @@ def check_command(arguments: argparse.Namespace) -> None:
         if problems:
             raise InputError("; ".join(problems))
         console.finish({"libraries": good}, "\n".join(lines))
-
-
-# --- `keymark library blend` and `read`
 
 
 def blend_command(arguments: argparse.Namespace) -> None:
@@ -177,11 +157,7 @@ def blend_command(arguments: argparse.Namespace) -> None:
 
 
 def read_command(arguments: argparse.Namespace) -> None:
-    """Write the library of a .blend's pose assets as a library file.
-
-    Raises:
-        InputError: The .blend holds no library, or more than one.
-    """
+    """Write the library of a .blend's pose assets as a library file."""
     require_blender("pose assets need")
     refuse_existing(arguments.output, arguments.replace)
     with arguments_console(arguments) as console:
@@ -195,9 +171,6 @@ def read_command(arguments: argparse.Namespace) -> None:
             names = ", ".join(one.identifier for one in found)
             raise InputError(f"{arguments.file}: holds the libraries {names}; name one with --identifier")
         write_new_library(console, arguments, chosen[0])
-
-
-# --- Libraries made of a motion or of libraries
 
 
 def learn_command(arguments: argparse.Namespace) -> None:
@@ -240,11 +213,7 @@ def merge_command(arguments: argparse.Namespace) -> None:
 
 
 def _merge_versions(first: Library, second: Library, conflicts: str | None) -> Library:
-    """Merge two versions of one library.
-
-    Raises:
-        UsageError: They differ, and `--conflicts` does not say which counts.
-    """
+    """Merge two versions of one library."""
     from ....core.prior.merging import differing_names, merge_versions
 
     changed = differing_names(first, second)
@@ -255,11 +224,7 @@ def _merge_versions(first: Library, second: Library, conflicts: str | None) -> L
 
 
 def mirror_command(arguments: argparse.Namespace) -> None:
-    """Exchange left and right.
-
-    Raises:
-        InputError: `--both` is given for an actor whose left and right sides differ.
-    """
+    """Exchange left and right."""
     from ....core.prior.transfer import mirrored_library, with_mirrored
 
     refuse_existing(arguments.output, arguments.replace)
@@ -273,9 +238,6 @@ def mirror_command(arguments: argparse.Namespace) -> None:
         except ValueError as error:
             raise InputError(f"library {library.identifier!r}: {error}") from error
         write_new_library(console, arguments, both)
-
-
-# --- What the command line may say
 
 
 def _add_library(parser: argparse.ArgumentParser) -> None:

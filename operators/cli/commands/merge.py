@@ -35,12 +35,7 @@ STAGE = "Gathering the motions"
 
 
 def merge_command(arguments: argparse.Namespace) -> None:
-    """Gather all results below a folder in one .blend of Action assets.
-
-    Raises:
-        InputError: There are no results, or the .blend cannot be written where it is asked for.
-        ConversionError: Some results are damaged, or takes have failed; all others have been gathered.
-    """
+    """Gather all results below a folder in one .blend of Action assets."""
     require_blender("an asset library needs")
     with arguments_console(arguments) as console:
         console.stage("Looking for results")
@@ -77,11 +72,7 @@ class MotionGathering:
         self._found, self._shoot, self._console = found, shoot, console
 
     def assets(self) -> "Iterator[MotionAsset | CharacterAsset]":
-        """Yield the asset of every sound motion, one at a time: together they may not fit into memory.
-
-        Raises:
-            ConversionError: No motion is sound.
-        """
+        """Yield the asset of every sound motion, one at a time: together they may not fit into memory."""
         from ...bridge.assets.motions import MotionAsset
 
         names: set[str] = set()
@@ -182,11 +173,7 @@ def _short_tags(*words: str | None) -> tuple[str, ...]:
 
 
 def _motion(result: Result) -> Motion:
-    """The motion of a result, as it was when the record was written.
-
-    Raises:
-        InputError: The motion is missing, unusable, or has changed.
-    """
+    """The motion of a result, as it was when the record was written."""
     file = result.folder / MOTION
     if content_digest(file) != result.record.files.get(MOTION):
         raise InputError(f"{file}: is not the file that the conversion wrote")

@@ -16,11 +16,7 @@ from ..parser import Command, program_name
 
 
 def new_command(arguments: argparse.Namespace) -> None:
-    """Write a shoot's description from its clips, and list the fields that a person must fill in.
-
-    Raises:
-        InputError: The file exists, or no clip can be read or needs a description.
-    """
+    """Write a shoot's description from its clips, and list the fields that a person must fill in."""
     folder: Path = arguments.shoot
     output: Path = arguments.output or folder / SHOOT_FILE
     with arguments_console(arguments) as console:

@@ -64,9 +64,6 @@ RETARGET = Command(
 )
 
 
-# --- `keymark retarget`
-
-
 RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
 """Every file that the command may make."""
 FIGURES = {
@@ -185,11 +182,7 @@ def _check_formats(formats: tuple[str, ...]) -> None:
 
 
 def _source(path: Path) -> tuple[Path, Path | None]:
-    """The motion's file, and the .blend with its footage where it is a folder that has one.
-
-    Raises:
-        InputError: The folder has no motion.
-    """
+    """The motion's file, and the .blend with its footage where it is a folder that has one."""
     if not path.is_dir():
         return path, None
     motion, blend = path / MOTION, path / BLEND

@@ -69,12 +69,7 @@ class OpenedCharacter:
 def opened_character(
     file: CharacterFile, wanted_map: str, debug: bool
 ) -> Iterator[tuple["bpy.types.Scene", OpenedCharacter]]:
-    """Open a character and choose its map, in a scene that is removed again with all that is in it.
-
-    Raises:
-        InputError: The file cannot be read, holds no such armature, or one that is no character; or there is
-            no such map, or it is for another character. The sentence begins with the file or the map.
-    """
+    """Open a character and choose its map, in a scene that is removed again with all that is in it."""
     with blender_silence(debug):
         from ...bridge.blend_files import own_scene, showing_scene
         from ...bridge.character.import_character import import_character
@@ -118,10 +113,6 @@ def write_character_result(
         debug: Whether to let Blender's messages through.
         formats: Words of `EXPORTS`.
         picture: Whether to draw the character beside the footage, where the scene shows some.
-
-    Raises:
-        InputError: The character or its map cannot be used.
-        ConversionError: A file cannot be written.
     """
     staging_folder, output = folders
     console.stage("Opening the character")
@@ -214,9 +205,6 @@ def _silenced(job: Job[Result], debug: bool) -> Job[Result]:
         yield progress
 
 
-# --- The characters of a shoot, each looked at once, before takes are checked in threads without Blender
-
-
 Wanted = tuple[CharacterFile, str]
 
 
@@ -234,11 +222,7 @@ class CharacterChecks:
                     self._look_at(settings)
 
     def check(self, settings: CharacterSettings) -> Sequence[str]:
-        """What is doubtful about a character.
-
-        Raises:
-            InputError: It cannot be used, or its map is not for it.
-        """
+        """What is doubtful about a character."""
         error, doubts = self._findings[settings.file, settings.map]
         if error is not None:
             raise error

@@ -84,20 +84,13 @@ def changed_files(
 
 
 def write_made_digests(staging_folder: Path, names: Iterable[str]) -> None:
-    """Record the digests of files as they were made, by which a later conversion notices changes.
-
-    Raises:
-        ConversionError: The record cannot be written.
-    """
+    """Record the digests of files as they were made, by which a later conversion notices changes."""
     write_json(staging_folder / AS_MADE, {name: content_digest(staging_folder / name) for name in names})
 
 
 def kept_note(name: str, other: str) -> str:
     """The note on a file that is kept under another name."""
     return f"{name} was changed after Keymark had made it and is kept as {other}"
-
-
-# --- Conversion of one take into one complete folder of results
 
 
 MOTION, REPORT, KEYFRAMES = "motion.json", "report", "keyframes.json"
@@ -142,19 +135,7 @@ def convert_take(
     settings: ConversionSettings,
     debug: bool = False,
 ) -> Conversion:
-    """Convert a take.
-
-    Args:
-        description: The take's description.
-        output: Folder for the results; it changes only when all of them are complete.
-        console: Shows the progress.
-        settings: How; where keyframes are found, only posed ones that are named here count beside them.
-        debug: Whether to let Blender's messages through.
-
-    Raises:
-        InputError: The take or the output folder is unusable.
-        ConversionError: No motion could be computed or written, or there is no Blender to write with.
-    """
+    """Convert a take."""
     made = convert_if_changed(description, output, console, settings, debug, again=True)
     assert made is not None
     return made
