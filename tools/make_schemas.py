@@ -15,8 +15,8 @@ load_package()
 
 from keymark.core.body.actor import REQUIRED  # noqa: E402
 from keymark.core.files.json_file import format_json  # noqa: E402
+from keymark.core.files.kinds import relative_path  # noqa: E402
 from keymark.core.files.records import Record, declared  # noqa: E402
-from keymark.core.files.safe_path import relative_path  # noqa: E402
 from keymark.core.footage.camera_fields import (  # noqa: E402
     CameraFields,
 )

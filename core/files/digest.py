@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import BusyError, InputError
-from .control_characters import regular_file_size
 from .file_lock import HIDDEN, LOCK, file_lock
 from .json_file import WORK, write_atomically
+from .paths import regular_file_size
 
 DIGITS = 32
 """Hexadecimal digits: 128 bits."""

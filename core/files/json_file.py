@@ -13,8 +13,8 @@ from reprlib import Repr
 from typing import Any
 
 from ..errors import ConversionError, InputError
-from .control_characters import regular_file_size
 from .file_lock import LOCK, file_lock, hidden_prefix
+from .paths import regular_file_size
 
 ENDING = ".json"
 MOST_FILES = 500

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from ..errors import ConversionError, InputError, KeymarkError
 from .commit import Commit, Moves, clean_up, files_below, recover, roll_back, roll_forward, write_journal
-from .control_characters import real_path
 from .file_lock import LOCK, file_lock, hidden_prefix
 from .json_file import DISK_ERRORS
+from .paths import real_path
 
 NO_BACKUPS: Mapping[str, str] = {}
 

@@ -18,7 +18,7 @@ from ..estimate.terms.contours import SURFACE_SHARE
 from ..estimate.terms.keypoints import ObservedKeypoints
 from ..estimate.whole_clip import WholeClipResult
 from ..evidence.contours import SHARES, SIDES
-from ..take.evidence_kinds import UsedEvidence, UsedKeypoints
+from ..take.evidence import UsedEvidence, UsedKeypoints
 from .compared_keypoints import ComparedKeypoints
 from .weak_frames import FrameEvidence
 

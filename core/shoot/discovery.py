@@ -9,10 +9,10 @@ from pathlib import Path, PurePath, PurePosixPath
 from typing import Any
 
 from ..errors import InputError
-from ..files.control_characters import regular_file_size
 from ..files.fields import COMMENT_PREFIX, Fields
 from ..files.json_file import parse_json, shown
-from ..files.safe_path import check_symlinks, safe_path
+from ..files.kinds import safe_path
+from ..files.paths import check_symlinks, regular_file_size
 from ..footage.clips.image_sequence import is_image, stem_of_number
 from ..take.conversion_record import RECORD_FILE
 from ..take.conversion_settings import NO_SETTINGS, ConversionSettings

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Annotated
 
 from ..errors import InputError
-from ..files.control_characters import absolute_path
 from ..files.json_file import read_json, write_json
 from ..files.kinds import Text
+from ..files.paths import absolute_path
 from ..files.records import Record
 from ..take.conversion_record import RECORD_FILE, ConversionRecord, find_record, read_record
 from ..take.description import clip_name

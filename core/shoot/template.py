@@ -14,7 +14,7 @@ from ..footage.colors.strong_colors import StrongColor, strong_colors
 from ..prior.texts import EVERY_LIBRARY
 from ..progress import run
 from ..take.description import KEYFRAME_FILE, KEYPOINT_FILE, SCHEMA_VERSION, TAKE_FILE, sidecar_file
-from ..take.evidence_kinds import KEYPOINTS, MARKERS
+from ..take.evidence import KEYPOINTS, MARKERS
 from .discovery import Shoot, ShootTake
 
 COLORED_CLIPS = 48

@@ -14,7 +14,7 @@ from ..errors import InputError
 from ..files.json_file import read_json, write_json
 from ..files.kinds import ByName, Items, Number, Whole
 from ..files.records import Record
-from .evidence_kinds import (
+from .evidence import (
     FARTHEST_FRAME,
     MOST_FRAMES,
     FileDigests,

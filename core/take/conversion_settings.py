@@ -9,11 +9,10 @@ from typing import Annotated, Any
 from ..errors import InputError
 from ..files.fields import Fields, child_location, listed
 from ..files.json_file import ENDING, shown
-from ..files.kinds import Choice, Items, Kind, Number, Text
+from ..files.kinds import INSIDE, LONGEST_PATH, Choice, Items, Kind, Number, Text, relative_path
 from ..files.records import Record, declared, read_record
-from ..files.safe_path import INSIDE, LONGEST_PATH, relative_path
 from ..prior.texts import EVERY_LIBRARY
-from .evidence_kinds import evidence_mistake, in_order
+from .evidence import evidence_mistake, in_order
 
 METHODS = ("map", "ekf", "interpolation")
 """The estimate over the whole clip, the default; the paper's Kalman filter; interpolated keyframes alone."""

@@ -8,15 +8,15 @@ from stat import S_ISDIR, S_ISREG
 from typing import Any
 
 from ..errors import InputError
-from ..files.control_characters import absolute_path
 from ..files.fields import COMMENT_PREFIX, Fields, InheritedFields
 from ..files.json_file import read_json, shown
+from ..files.kinds import safe_path
+from ..files.paths import absolute_path, check_symlinks
 from ..files.records import check_version
-from ..files.safe_path import check_symlinks, safe_path
 from ..footage.clips.image_sequence import is_image
 from ..prior.texts import EVERY_LIBRARY
 from .conversion_settings import NO_SETTINGS, ConversionSettings, read_settings, with_auto_as_library
-from .evidence_kinds import KEYPOINTS
+from .evidence import KEYPOINTS
 
 SHOOT_FILE = "shoot.json"
 SCHEMA_VERSION = 1

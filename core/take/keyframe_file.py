@@ -17,7 +17,7 @@ from ..files.json_file import read_json, write_json
 from ..files.kinds import ByName, Items, Number
 from ..files.records import Record
 from ..prior.keyframes import Keyframe, Matched
-from .evidence_kinds import Frame
+from .evidence import Frame
 
 FEWEST_KEYFRAMES = 2
 """Fewest that can be interpolated."""
@@ -96,7 +96,7 @@ def read_keyframes(
 
 
 def write_keyframes(path: Path, keyframes: Sequence[Keyframe], body: Body, frame_start: int) -> None:
-    """Write keyframes with both their posture, which `read_keyframes` reads back, and their thirteen points."""
+    """Write keyframes with their posture, which `read_keyframes` reads back, and their thirteen points."""
     rows = []
     for keyframe in keyframes:
         points = rounded(body.points(body.pose(keyframe.posture)))

@@ -15,10 +15,9 @@ from ..body.kinematics import Body
 from ..body.posture import Posture, posture_to_json, rounded
 from ..errors import ConversionError
 from ..files.json_file import read_json, shown, write_json
-from ..files.kinds import ByName, Items, Kind, Whole, refuse
+from ..files.kinds import ByName, Items, Kind, NumberArray, Whole, number_array, refuse
 from ..files.records import Record
-from ..files.safe_path import NumberArray, number_array
-from .evidence_kinds import MOST_FRAMES, Frame, FrameCount, FrameRate, Line
+from .evidence import MOST_FRAMES, Frame, FrameCount, FrameRate, Line
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,9 +33,8 @@ from ..footage.region_tracks import MarkerStyle
 from .clip_check import open_footage, picture_count
 from .conversion_settings import ConversionSettings
 from .description import KEYPOINT_FILE, Description, describe, keypoint_files
-from .evidence import check_evidence, with_evidence
 from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
-from .take import Take
+from .take import Take, check_evidence, with_evidence
 
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 """What a marker may be bound to: a segment of the skeleton, or all between hips and shoulders."""

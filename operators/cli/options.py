@@ -12,7 +12,7 @@ from ...core.take.conversion_settings import (
     ROOT_MOTIONS,
     ConversionSettings,
 )
-from ...core.take.evidence_kinds import EVIDENCE, evidence_mistake, in_order
+from ...core.take.evidence import EVIDENCE, evidence_mistake, in_order
 from .parser import UsageError
 
 KINDS = ",".join(EVIDENCE)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from ...core.errors import ConversionError
-from ...core.files.control_characters import escape_control_characters
+from ...core.files.paths import escape_control_characters
 from .commands import SUMMARIES
 
 ROOT = Path(__file__).resolve().parent.parent.parent

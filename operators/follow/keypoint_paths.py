@@ -46,7 +46,7 @@ def keypoint_path(entry: bpy.types.PropertyGroup) -> Path:
 
 def set_keypoint_path(entry: bpy.types.PropertyGroup, path: Path) -> None:
     """Set the path of a file of keypoints, and note its state."""
-    from ...core.files.control_characters import real_path
+    from ...core.files.paths import real_path
     from ..bridge.footage_to_scene import stored_path
 
     entry.filepath = stored_path(path)

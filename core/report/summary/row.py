@@ -11,12 +11,12 @@ from pathlib import Path, PurePosixPath
 from urllib.parse import quote
 
 from ...errors import pluralize
-from ...files.control_characters import escape_control_characters
+from ...files.paths import escape_control_characters
 from ...prior.texts import COMPOSED
 from ...review.weak_frames import WEAK_CONFIDENCE
 from ...shoot.outcomes import Outcome, Status
 from ...take.conversion_record import ConversionRecord
-from ...take.evidence_kinds import UsedEvidence
+from ...take.evidence import UsedEvidence
 
 LONGEST = 1000
 """Characters shown of one text."""

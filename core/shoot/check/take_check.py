@@ -9,14 +9,13 @@ from ...estimate.reconstruct import check_method
 from ...files.fields import PLACED, Fields, child_location
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
-from ...pipeline.found_keyframes import take_to_convert
+from ...pipeline.convert import take_to_convert
 from ...posing.posing_input import check_followed
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import METHODS, NO_SETTINGS, CharacterSettings, ConversionSettings
 from ...take.description import Description
-from ...take.evidence import evidence_of
-from ...take.evidence_kinds import CONTOURS, KEYPOINTS, MARKERS
-from ...take.take import Take
+from ...take.evidence import CONTOURS, KEYPOINTS, MARKERS
+from ...take.take import Take, evidence_of
 from ...take.take_file import read_described
 from ..discovery import ShootTake
 from .evidence_check import Findings, KeypointReadout, check_keyframes, check_keypoints

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from ....core.errors import KeymarkError, pluralize
-from ....core.files.control_characters import absolute_path
 from ....core.files.json_file import write_atomically
+from ....core.files.paths import absolute_path
 from ....core.report.summary.page import summary_page
 from ....core.report.summary.row import current_record, relative_path
 from ....core.shoot.discovery import Shoot

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from ....core.errors import ConversionError, describe_unexpected, pluralize
-from ....core.files.control_characters import absolute_path
 from ....core.files.fields import listed
+from ....core.files.paths import absolute_path
 from ....core.progress import Job, Progress, run
 from ....core.shoot.check.take_check import TakeCheck, check_take, flag_outliers
 from ....core.shoot.discovery import Shoot, ShootTake, open_shoot
 from ....core.take.conversion_settings import ConversionSettings
-from ....core.take.evidence_kinds import KEYPOINTS
+from ....core.take.evidence import KEYPOINTS
 from ..console import arguments_console, terminal_columns, wrapped
 from ..conversion.character_result import CharacterChecks
 from ..library_search_path import requested_libraries

@@ -5,12 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ....core.pipeline.found_keyframes import found_summary
+from ....core.pipeline.convert import found_summary
 from ....core.pipeline.result import Conversion
 from ....core.shoot.discovery import take_path
 from ....core.take.conversion_settings import METHODS, ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
-from ....core.take.evidence_kinds import KEYPOINTS
+from ....core.take.evidence import KEYPOINTS
 from ..console import arguments_console
 from ..conversion.convert_take import convert_take
 from ..options import add_evidence, add_keypoint_files, given_settings

@@ -13,7 +13,7 @@ from ....core.progress import run
 from ....core.review.score import Score, read_truth, score_points
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings, ConversionSettings
 from ....core.take.description import describe
-from ....core.take.evidence_kinds import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
+from ....core.take.evidence import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
 from ....core.take.examples import AEROBIC, POSED_BY_HAND, example_folder
 from ....core.take.motion import Motion
 from ....core.take.take import Take

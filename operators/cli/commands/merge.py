@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ....core.errors import ConversionError, InputError, pluralize
-from ....core.files.control_characters import absolute_path
 from ....core.files.digest import content_digest
 from ....core.files.fields import listed
+from ....core.files.paths import absolute_path
 from ....core.progress import Progress
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.retarget.retarget_record import read_retarget_record

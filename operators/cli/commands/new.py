@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ....core.errors import InputError
-from ....core.files.control_characters import absolute_path
 from ....core.files.json_file import write_readable_json
+from ....core.files.paths import absolute_path
 from ....core.progress import run, within
 from ....core.shoot.discovery import find_takes
 from ....core.shoot.template import ClipSurvey, clip_lines, evidence_lines, shoot_template, survey_clips

@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 
 from ....core.errors import ConversionError, InputError
-from ....core.files.control_characters import absolute_path, real_path
 from ....core.files.fields import listed
 from ....core.files.output_folder import output_folder
+from ....core.files.paths import absolute_path, real_path
 from ....core.retarget.retarget_record import RECORD_FILE, RetargetRecord, read_retarget_record
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.conversion_settings import (

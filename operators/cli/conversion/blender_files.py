@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ....core.errors import InputError
-from ....core.files.control_characters import real_path
+from ....core.files.paths import real_path
 from ....core.take.description import Description
 from ....core.take.motion import Motion
 from ....core.take.take import Take

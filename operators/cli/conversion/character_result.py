@@ -11,8 +11,8 @@ import numpy as np
 
 from ....core.body.kinematics import SegmentMotion, segment_motion
 from ....core.errors import InputError, KeymarkError, describe_unexpected
-from ....core.files.control_characters import regular_file_size
 from ....core.files.digest import content_digest
+from ....core.files.paths import regular_file_size
 from ....core.finish.natural_extremities import natural_extremities
 from ....core.progress import Job, run
 from ....core.report.canvas import write_png

@@ -8,11 +8,11 @@ from pathlib import Path
 from ....core.errors import InputError
 from ....core.estimate.reconstruct import check_method
 from ....core.files.commit import backup_name
-from ....core.files.control_characters import real_path
 from ....core.files.digest import content_digest
 from ....core.files.json_file import read_json, write_json
 from ....core.files.output_folder import output_folder
-from ....core.pipeline.found_keyframes import find_and_reconstruct, take_to_convert
+from ....core.files.paths import real_path
+from ....core.pipeline.convert import find_and_reconstruct, take_to_convert
 from ....core.pipeline.result import Conversion, conversion_record
 from ....core.prior.library import Library, library_digest
 from ....core.progress import run

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
-from keymark.core.pipeline import found_keyframes
+from keymark.core.pipeline import convert as pipeline
 from keymark.core.posing.candidates import Candidate, MatchedFrame
 from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.prior.learning import LibraryMetadata, learn_library
@@ -179,7 +179,7 @@ def test_found_keyframes_are_said_to_be_doubtful_and_contradictions_are_named(
         against = {12: (given.markers[0].name, "wrist.L"), 23: ("wrist.L",)}
         return FoundPoses(frames, truth, 0.7, 0.0, "two frames are in doubt", against)
 
-    monkeypatch.setattr(found_keyframes, "pose_clip", pose)
+    monkeypatch.setattr(pipeline, "pose_clip", pose)
     assert convert(take, tmp_path / "out", "--keyframes", "auto", "--json", "--no-report") == 0
     said = said_as_json(capsys)
     first = json.loads((take / "take.json").read_text(encoding="utf-8"))["frame_start"]

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 from keymark.core.errors import InputError
 from keymark.core.files.fields import Fields
-from keymark.core.files.safe_path import LONGEST_NAME_BYTES, LONGEST_PATH, check_symlinks, safe_path
+from keymark.core.files.kinds import LONGEST_NAME_BYTES, LONGEST_PATH, safe_path
+from keymark.core.files.paths import check_symlinks
 
 VALID = "a path inside the folder"
 

@@ -16,7 +16,7 @@ from keymark.core.report.summary.page import STYLE, summary_page
 from keymark.core.report.summary.row import LONGEST, Verdict, duration, percent, sections, verdict, visible
 from keymark.core.shoot.outcomes import Outcome, Status
 from keymark.core.take.conversion_record import ConversionRecord
-from keymark.core.take.evidence_kinds import UsedEvidence, UsedKeypoints
+from keymark.core.take.evidence import UsedEvidence, UsedKeypoints
 
 OUTPUT = Path("results").absolute()
 LETTERS = st.characters(exclude_categories=(), exclude_characters="/")

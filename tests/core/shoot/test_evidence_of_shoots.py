@@ -13,7 +13,7 @@ from keymark.core.shoot.discovery import open_shoot
 from keymark.core.take.conversion_digest import conversion_digest
 from keymark.core.take.conversion_settings import NO_SETTINGS, ConversionSettings
 from keymark.core.take.description import Description, describe, effective_settings
-from keymark.core.take.evidence import evidence_of
+from keymark.core.take.take import evidence_of
 from keymark.core.take.take_file import read_described, read_take
 from keymark.operators.cli.batch.worker_process import Job
 

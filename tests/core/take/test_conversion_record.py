@@ -15,7 +15,7 @@ from keymark.core.take.conversion_record import (
     read_record,
     write_record,
 )
-from keymark.core.take.evidence_kinds import UsedEvidence, UsedKeypoints
+from keymark.core.take.evidence import UsedEvidence, UsedKeypoints
 
 RECORD = ConversionRecord(
     digest="ab" * 16,

@@ -11,8 +11,7 @@ from keymark.core.body.human import HUMAN
 from keymark.core.footage.camera import Camera
 from keymark.core.review.score import read_truth
 from keymark.core.take.clip_check import open_clip
-from keymark.core.take.evidence import evidence_of
-from keymark.core.take.take import Take
+from keymark.core.take.take import Take, evidence_of
 from keymark.core.take.take_file import read_take
 
 LARGEST_FOLDER_BYTES = {"aerobic": 500_000, "greeting": 400_000}

@@ -1,8 +1,9 @@
-"""Control characters: invisible ones, which names and sentences may not hold."""
+"""Paths and names that can be trusted: absolute ones, regular files, and no control characters."""
 
 import os
 import stat
 import unicodedata
+from collections.abc import Iterable
 from pathlib import Path
 
 from ..errors import InputError
@@ -56,3 +57,16 @@ def regular_file_size(path: Path, valid: str) -> int:
         kind = "a folder" if stat.S_ISDIR(state.st_mode) else "a device, a pipe or a socket"
         raise InputError(f"{path}: is {kind}, no file; it must be {valid}")
     return state.st_size
+
+
+def check_symlinks(paths: Iterable[Path], folders: Iterable[Path]) -> None:
+    """Refuse paths that leave their folders by a symbolic link; a missing file is left to its reader.
+
+    Raises:
+        InputError: A path leads out of all of them.
+    """
+    roots = [os.path.realpath(folder) for folder in folders]
+    for path in paths:
+        real = os.path.realpath(path)
+        if not any(Path(real).is_relative_to(root) for root in roots):
+            raise InputError(f"{path}: leads by a link to {real}; it must stay inside {roots[0]}")
