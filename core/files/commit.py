@@ -22,7 +22,6 @@ STAGING, ROLLBACK, JOURNAL, JOURNAL_DRAFT = "-new", "-old", ".json", ".json.new"
 """Endings of the hidden names. They and the journal's fields never change, so that a run that was interrupted
 before an update of Keymark is recovered after it."""
 LARGEST_BYTES = 2**24
-"""Of a journal."""
 
 Moves = list[tuple[Path, Path]]
 
@@ -38,7 +37,6 @@ class Commit:
     manifest: str | None = None
     """The file that lists the others: the first to be removed, the last to be written."""
     written: tuple[str, ...] = ()
-    """The files of the set, as paths in the target."""
     removed: tuple[str, ...] = ()
     """Files of earlier sets that this one lacks."""
     backups: Mapping[str, str] = field(default_factory=dict)
@@ -199,7 +197,6 @@ def backup_name(file: Path) -> Path:
 
 
 def _move_away(commit: Commit, name: str, moves: Moves) -> None:
-    """Make room in the target for a file of the set, or remove a file that the set lacks."""
     existing = commit.target / name
     if not existing.is_file() and not existing.is_symlink():
         return

@@ -1,4 +1,4 @@
-"""Digests of values and files: they tell whether a result was computed from the same input."""
+"""Digests of values and files, which tell whether a result has the same input; arrays kept by digest."""
 
 import hashlib
 import os
@@ -20,7 +20,6 @@ from .json_file import WORK, write_atomically
 from .paths import regular_file_size
 
 DIGITS = 32
-"""Hexadecimal digits: 128 bits."""
 SAMPLES = 16
 """Of a file's content, spread evenly, for its fingerprint."""
 SAMPLE_BYTES = 65536
@@ -90,7 +89,6 @@ class ArrayCache:
     """Sets of arrays in a folder, each under a key of lower-case letters, digits and hyphens."""
 
     def __init__(self, folder: Path, largest_bytes: int = LARGEST_BYTES) -> None:
-        """Use a folder, which is made with the first entry."""
         self.folder, self.largest_bytes = folder, largest_bytes
 
     def load(self, key: str) -> Arrays | None:

@@ -16,11 +16,8 @@ from pathlib import Path
 from ..errors import BusyError
 
 HIDDEN = ".keymark-"
-"""Beginning of all hidden names."""
 LOCK = ".lock"
-"""Ending of the names of lock files."""
 DIGITS = 16
-"""Hexadecimal digits of a hidden name."""
 ATTEMPTS = 200
 RETRY_DELAY_S = 0.01
 _NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP}
@@ -86,7 +83,6 @@ def _release(file: Path, descriptor: int) -> None:
 
 
 def _remove_idle(file: Path) -> None:
-    """Remove the lock's file unless another holds it."""
     with suppress(OSError):
         descriptor = os.open(file, os.O_RDWR)
         if _try_lock(descriptor, wait=False) and _is_same_file(file, descriptor):

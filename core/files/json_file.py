@@ -1,4 +1,4 @@
-"""A folder of JSON files that people share: keyframe libraries and character maps, side by side."""
+"""JSON files: read strictly, written atomically, formatted for people where they edit them."""
 
 import errno
 import json
@@ -77,7 +77,6 @@ DEEPEST = 50
 MOST_LISTS = 4 * 10**6
 """Lists and objects of a file, each of which takes many times its two characters once it is read."""
 WORK = "-work"
-"""Ending of the hidden folder in which a single file is written."""
 MOST_DIGITS = 15
 """Integers of more digits have no exact float64."""
 

@@ -1,3 +1,4 @@
+# ruff: noqa: D102
 """Kinds of values of JSON: each checks a value, converts it, and says in one sentence what it must be."""
 
 import re
@@ -56,17 +57,14 @@ class Number(Kind):
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         return f"a number from {self.low:g} to {self.high:g}{self.unit and ' ' + self.unit}"
 
     def read(self, value: Any, where: str, name: str) -> float:
-        """See `Kind`."""
         if not is_number(value) or not self.low <= value <= self.high:
             refuse(where, name, value, self.valid)
         return float(value)
 
     def write(self, value: float) -> float:
-        """See `Kind`; there is no negative zero."""
         return value if self.decimals is None else round(float(value), self.decimals) + 0.0
 
 
@@ -79,11 +77,9 @@ class Whole(Kind):
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         return f"a whole number from {self.low} to {self.high}"
 
     def read(self, value: Any, where: str, name: str) -> int:
-        """See `Kind`."""
         if not is_number(value) or value != int(value) or not self.low <= value <= self.high:
             refuse(where, name, value, self.valid)
         return int(value)
@@ -96,7 +92,6 @@ class Flag(Kind):
     valid: str = "true or false"
 
     def read(self, value: Any, where: str, name: str) -> bool:
-        """See `Kind`."""
         if not isinstance(value, bool):
             refuse(where, name, value, self.valid)
         return value
@@ -115,14 +110,11 @@ class Text(Kind):
     fault: Callable[[str], str] = lambda text: ""
     """What else is wrong with it, to follow "it"; empty for nothing."""
     empty: bool = False
-    """Whether it may be empty."""
 
     def __post_init__(self) -> None:
-        """Say the usual where nothing else is said."""
         object.__setattr__(self, "valid", self.valid or f"a text of at most {self.longest} characters")
 
     def read(self, value: Any, where: str, name: str) -> str:
-        """See `Kind`."""
         if self.empty and value == "":
             return ""
         if not isinstance(value, str) or len(value) > self.longest:
@@ -143,7 +135,6 @@ class Anything(Kind):
     valid: str
 
     def read(self, value: Any, where: str, name: str) -> Any:
-        """See `Kind`."""
         return value
 
 
@@ -155,11 +146,9 @@ class Choice(Kind):
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         return f"one of {listed(self.names)}"
 
     def read(self, value: Any, where: str, name: str) -> str:
-        """See `Kind`."""
         if not isinstance(value, str) or value not in self.names:
             refuse(where, name, value, self.valid)
         return value
@@ -173,15 +162,12 @@ class Nullable(Kind):
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         return f"{self.item.valid}, or null"
 
     def read(self, value: Any, where: str, name: str) -> Any:
-        """See `Kind`."""
         return None if value is None else self.item.read(value, where, name)
 
     def write(self, value: Any) -> Any:
-        """See `Kind`."""
         return None if value is None else self.item.write(value)
 
 
@@ -190,10 +176,8 @@ class Never(Kind):
     """A field of other records of the kind, which must be left out."""
 
     valid: str
-    """The sentence that says so."""
 
     def read(self, value: Any, where: str, name: str) -> NoReturn:
-        """See `Kind`."""
         raise InputError(f"{where}: {self.valid}")
 
 
@@ -214,12 +198,10 @@ class Items(Kind):
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         number = f"{self.least} to {self.most}" if self.least else f"at most {self.most}"
         return self.said or f"a list of {number} {self.of_what}"
 
     def read(self, value: Any, where: str, name: str) -> tuple[Any, ...]:
-        """See `Kind`."""
         if not isinstance(value, list):
             refuse(where, name, value, self.valid)
         if not self.least <= len(value) <= self.most:
@@ -239,7 +221,6 @@ class Items(Kind):
         return tuple(items)
 
     def write(self, value: Sequence[Any]) -> list[Any]:
-        """See `Kind`."""
         return [self.item.write(item) for item in value]
 
 
@@ -248,7 +229,6 @@ class ByName(Kind):
     """An object of items of one kind, by name."""
 
     of_what: str
-    """The items, in the plural."""
     most: int = 0
     """Most items; of no meaning where the names are known."""
     names: tuple[str, ...] = ()
@@ -256,23 +236,18 @@ class ByName(Kind):
     empty: str = ""
     """What an empty object lacks; "" where it may be empty."""
     needs: tuple[str, ...] = ()
-    """Names that must be there."""
     strict: bool = True
     """Whether other than the known names are refused."""
     key: Kind | None = None
-    """What a name must be."""
     item: Kind = field(default_factory=Kind)
-    """By default that of the annotated type."""
     others: Mapping[str, Kind] = field(default_factory=dict, hash=False)
     """Kinds of the names that differ."""
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         return f"an object of {self.of_what}"
 
     def read(self, value: Any, where: str, name: str) -> dict[str, Any]:
-        """See `Kind`."""
         if not isinstance(value, Mapping):
             refuse(where, name, value, self.valid)
         child = Fields(value, child_location(where, name))
@@ -296,7 +271,6 @@ class ByName(Kind):
         }
 
     def write(self, value: Mapping[str, Any]) -> dict[str, Any]:
-        """See `Kind`."""
         return {key: self.item.write(value[key]) for key in self.names or value if key in value}
 
 
@@ -358,16 +332,13 @@ class NumberArray(Kind):
     shape: tuple[int, ...]
     """Lengths of its axes; -1 for any."""
     limit: float
-    """Largest absolute value."""
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         words = " x ".join("any number" if length < 0 else str(length) for length in self.shape)
         return f"a list of numbers of shape {words}, each within {self.limit:g}"
 
     def read(self, value: Any, where: str, name: str) -> Array:
-        """See `Kind`."""
         array = number_array(value)
         if array is None or array.ndim != len(self.shape) or not np.all(np.abs(array) <= self.limit):
             refuse(where, name, value, self.valid)

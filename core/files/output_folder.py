@@ -71,7 +71,6 @@ def output_folder(
 def _stage_and_commit(
     empty: Commit, own_files: Collection[str], backups: Mapping[str, str]
 ) -> Iterator[Path]:
-    """Let the block fill the staging folder, then commit it, or roll back."""
     moves: Moves = []
     try:
         yield empty.staging_folder
@@ -93,7 +92,6 @@ def _stage_and_commit(
 
 
 def _make_folder(folder: Path) -> None:
-    """Make a folder, and remove it again where that is interrupted."""
     try:
         folder.mkdir()
     except KeyboardInterrupt:

@@ -1,3 +1,4 @@
+# ruff: noqa: D102
 """Records: JSON objects declared once, as dataclasses whose annotations say what each field may hold.
 
 A field's annotation is `bool`, a `Record`, or `Annotated[type, kind]` with one of `kinds`; the
@@ -33,7 +34,6 @@ class Record:
     SPARSE: ClassVar[bool] = True
     """Whether fields that hold nothing are not written."""
     TITLE: ClassVar[str] = ""
-    """What people call the file."""
     ORDER: ClassVar[tuple[str, ...]] = ()
     """The fields in the order of files; () for that of the class."""
     REQUIRED: ClassVar[tuple[str, ...]] = ()
@@ -74,18 +74,15 @@ class Object(Kind):
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         required = [name for name, one in declared(self.record).items() if one.required]
         return f"an object with {listed(required, 5)}" if required else "an object"
 
     def read(self, value: Any, where: str, name: str) -> Any:
-        """See `Kind`."""
         if not isinstance(value, Mapping):
             refuse(where, name, value, self.valid)
         return read_record(self.record, Fields(value, child_location(where, name)), self.makes, self.strict)
 
     def write(self, value: Record) -> dict[str, Any]:
-        """See `Kind`."""
         return value.to_json()
 
 

@@ -1,4 +1,4 @@
-"""A take as it is read where keyframes are to be found: with those that a person posed, or with none."""
+"""From a described take to its motion: keyframes that are posed or found, then the estimate."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -41,7 +41,6 @@ class FoundReconstruction:
     """A motion, and the keyframes it was reconstructed from."""
 
     take: Take
-    """With its found keyframes, if any."""
     reconstruction: Reconstruction
     found: FoundPoses | None = None
     """What was found; None where that was not asked for."""

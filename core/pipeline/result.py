@@ -31,7 +31,6 @@ class Conversion:
     found: FoundPoses | None = None
     """What was found of keyframes, if that was asked for, and how well it fits."""
     libraries: tuple[Library, ...] = ()
-    """Those that took part."""
     conversion_notes: tuple[str, ...] = ()
     """Sentences on unused keyframes and on files that are kept."""
 

@@ -20,7 +20,6 @@ PALE: Color = (226, 222, 219)
 GRAY: Color = (140, 134, 130)
 LEFT: Color = STRONG["L"][::-1]
 RIGHT: Color = STRONG["R"][::-1]
-"""The performer's left and right, as everywhere."""
 ACCENT: Color = (115, 158, 0)
 
 SCALE = 2

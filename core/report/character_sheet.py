@@ -12,9 +12,7 @@ from .overlay_sheet import FOOT, GAP, MARGIN, TITLE, Cell, frame_label
 from .stick_figure import square_of, squares_around
 
 PICTURE = "character.png"
-"""Name of the picture."""
 SIDE = 220
-"""Side of a picture [px]."""
 PAPER = (250, 249, 248)
 ROWS = ("footage", "camera", "side")
 GRID_M = 0.5

@@ -18,7 +18,6 @@ from .canvas import GRAY, INK, Canvas, Color, ascii_text, truncated
 from .stick_figure import Projection
 
 LIGHT = np.array([0.35, -0.5, 0.8])
-"""Direction to the light in the world."""
 DARKEST = 0.45
 SKIN: Color = (196, 190, 186)
 
@@ -145,13 +144,11 @@ def _pieces(body: Body) -> tuple[Piece, ...]:
 SIZE = 256
 EDGE = 8
 TURN_RAD = np.radians(-35.0)
-"""Turn of the view from the front, with the face to the right of the picture."""
 TILT_RAD = 0.16
 """Downward tilt of the view, which shows where on the floor the feet are."""
 WALL = np.array([250.0, 249.0, 248.0])
 FLOOR = np.array([229.0, 225.0, 222.0])
 BEHIND_M = 0.45
-"""Distance of the wall behind the figure."""
 
 
 def posture_picture(body: Body, posture: Posture) -> Image:

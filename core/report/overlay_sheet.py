@@ -1,4 +1,4 @@
-"""Outlines of the performer's limbs and trunk over the footage, where no marker shows how the motion fits."""
+"""Contact sheet of the footage with the estimate over it: skeleton, regions, keypoints and contours."""
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
@@ -52,9 +52,7 @@ ARM = 3.4
 RING = 2.2
 """Radius of the ring at the predicted place [px]; the same."""
 LARGE = 220.0
-"""Height of a figure whose marks are of full size [px]."""
 LONGEST_SOURCE = 150.0
-"""Width of a source's name in the legend [px]."""
 
 
 def source_color(keypoints: ComparedKeypoints, source: str) -> Color:
@@ -100,7 +98,6 @@ def draw_keypoint_legend(
 
 
 def _size(predicted: Array) -> float:
-    """Size of the marks, from the height of the figure on the canvas."""
     rows = predicted[np.isfinite(predicted).all(axis=-1), 1]
     return float(np.clip(np.ptp(rows) / LARGE, 0.5, 1.0)) if len(rows) else 1.0
 
@@ -127,7 +124,6 @@ GAP = 8
 TITLE = 34
 FOOT = 22
 LABEL = 20
-"""Height of the frame's number within its cell."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +131,6 @@ class Cell:
     """A rectangle of the sheet for one frame."""
 
     frame: int
-    """Index in the clip."""
     left: int
     top: int
     width: int
@@ -224,7 +219,6 @@ def overlay_sheet(
 
 
 def _footer(tracks: RegionTracks, outlines: ContourModel | None) -> str:
-    """What the drawings over the footage are."""
     shown = ""
     if tracks.names:
         shown = "Ellipse and cross: region found of each marker. "
@@ -234,7 +228,6 @@ def _footer(tracks: RegionTracks, outlines: ContourModel | None) -> str:
 
 
 def _draw_estimate(tile: Canvas, take: Take, figure: StickFigure, tracks: RegionTracks, cell: Cell) -> None:
-    """The skeleton and the markers' regions of one frame."""
     scale = cell.width / take.camera.resolution[0]
 
     def project(points: Array) -> tuple[Array, Array]:

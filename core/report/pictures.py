@@ -1,4 +1,4 @@
-"""Frames of the footage for pictures, no larger than a picture needs them."""
+"""The pictures of a result: the estimate over the footage, and the motion from the side, where depth shows."""
 
 from collections.abc import Sequence
 from pathlib import Path

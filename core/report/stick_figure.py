@@ -169,7 +169,6 @@ SIZE = 256
 PAPER_THUMBNAIL = (250, 249, 248)
 POSES = 3
 TURN_RAD = 0.5
-"""Turn of the view from the performer's front, from where limbs show best."""
 EDGE = 14
 LIMB_WIDTH = 5.0
 

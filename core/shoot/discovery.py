@@ -42,7 +42,6 @@ class ShootTake:
     overrides: Mapping[str, Any] | None = None
     """Fields in a line of a list, which override all files."""
     overrides_location: str = ""
-    """Location of these fields, for sentences."""
 
     def describe(self) -> Description:
         """Merge all files that describe the take."""
@@ -60,7 +59,6 @@ class Shoot:
     """Takes that are converted together."""
 
     path: Path
-    """The folder, the list, or the one clip."""
     takes: tuple[ShootTake, ...]
     """In the order of their names, each name once."""
 

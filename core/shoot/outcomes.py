@@ -18,7 +18,6 @@ from ..take.description import clip_name
 from .discovery import RESERVED, Shoot, ShootTake, take_name
 
 FOLDER = Path(RESERVED[0]) / "failures"
-"""Below the folder of the results."""
 LARGEST_BYTES = 2**16
 DIGITS = 16
 INPUT, CONVERSION, CRASH = "input", "conversion", "crash"
@@ -115,16 +114,12 @@ class Outcome:
     """The outcome of one take."""
 
     take: Words
-    """Its name in the shoot."""
     folder: Path
-    """The folder of its results, which may not exist."""
     status: Status
     record: ConversionRecord | None = None
     """Of the results in the folder, if there are any: of an earlier input where this run has failed."""
     error: str | None = None
-    """Why it failed, in a sentence."""
     seconds: float | None = None
-    """Duration of its conversion in this run."""
 
 
 def read_outcomes(shoot: Shoot, output: Path) -> list[Outcome]:

@@ -20,9 +20,7 @@ from .discovery import Shoot, ShootTake
 COLORED_CLIPS = 48
 """Clips that are sampled for colors at most: a few of every day, of all performers."""
 COLORED_FRAMES = 4
-"""Sampled frames of each."""
 LISTED_CLIPS = 6
-"""Clips whose colors are listed together."""
 GARMENT_HUES = 4
 """Strong hues that five garments show at least; plain clothes, skin and a room seldom have as many."""
 
@@ -37,11 +35,8 @@ class SurveyedClip:
     fps: float | None
     """Frames per second; None for images, which have no rate."""
     frames: int
-    """Number of frames that the file claims."""
     posed: bool
-    """Whether it has a keyframe file."""
     detected: bool = False
-    """Whether it has a file of keypoints."""
     hues: int | None = None
     """Number of hues of its strong colors; None where it was not sampled."""
 
@@ -62,7 +57,6 @@ class ClipSurvey:
     unreadable: tuple[str, ...]
     """A sentence on each clip that cannot be opened."""
     colors: tuple[StrongColor, ...] = ()
-    """Strong colors in some of the clips."""
 
     @property
     def sizes(self) -> Counter[tuple[int, int]]:
@@ -122,7 +116,6 @@ def survey_clips(shoot: Shoot) -> Generator[float, None, ClipSurvey]:
 
 
 def _spread(count: int, most: int) -> list[int]:
-    """At most so many indices, spread evenly over all."""
     return list(range(count))[:: max(-(-count // most), 1)]
 
 
@@ -131,7 +124,6 @@ def _is_described(take: ShootTake) -> bool:
 
 
 USUAL_MARKERS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
-"""The paper's five markers."""
 MOST_NAMED = 5
 NO_MARKERS = [
     "left out, for no garments in strong colors were found; where some are worn, it must say which:",
@@ -237,7 +229,6 @@ def _camera(survey: ClipSurvey) -> dict[str, Any]:
 
 
 def _evidence(survey: ClipSurvey) -> dict[str, Any]:
-    """A comment on what the motion of each clip can be held against."""
     lines = ["what a motion is held against: markers, keypoints, depth_hints, contours; all there is, unless"]
     lines.append('"evidence" says which. What the clips have:')
     return {"//evidence": [*lines, *evidence_lines(survey)]}

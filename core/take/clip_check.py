@@ -66,7 +66,6 @@ def check_size(take: Take, clip: Clip) -> None:
 
 
 def _rotation_hint(take: Take, clip: Clip) -> str:
-    """The rest of the sentence where width and height are swapped."""
     if clip.size != take.camera.resolution[::-1]:
         return ""
     return (
@@ -116,7 +115,6 @@ def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
 
 
 def _damage_hint(count: int, claimed: int) -> str:
-    """The rest of the sentence where a file claims more frames than it has."""
     if count >= claimed:
         return ""
     return f"; it claims {claimed}, so it may be cut off or damaged: copy it again from where it was recorded"

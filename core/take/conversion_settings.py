@@ -1,4 +1,4 @@
-"""Method names; imports nothing, so that `--help` stays fast."""
+"""How a take is converted: the settings, the fields that say them, and the character that gets the motion."""
 
 import re
 from collections.abc import Mapping
@@ -25,7 +25,6 @@ LIMB_KEYS = ("fk", "ik", "both")
 
 
 CHARACTER_ENDINGS = (".blend", ".fbx", ".glb", ".gltf", ".vrm")
-"""Files that a character is read from."""
 AUTO, NO_MAP = "auto", "none"
 """In place of a map: a saved one that knows the character's bones, else recognition; recognition alone."""
 LARGEST_TOLERANCE_MM = 1000.0
@@ -51,7 +50,6 @@ class CharacterFile:
     """Name of its armature; None where the file has only one."""
 
     def __str__(self) -> str:
-        """As it is typed on the command line."""
         return str(self.path) if self.object is None else f"{self.path}:{self.object}"
 
     @classmethod
@@ -169,11 +167,8 @@ class ConversionSettings:
     floor_m: float | None = None
     """Height of the floor where it is known [m]; for finding keyframes."""
     method: str | None = None
-    """`map` (the default), `ekf` or `interpolation`."""
     pictures: bool | None = None
-    """Whether to draw the report; by default it is drawn."""
     character: CharacterSettings | None = None
-    """The character that gets the motion too; None for none."""
     keypoints: tuple[Path, ...] | None = None
     """Files or folders of keypoints; by default the take's own where it has some."""
     evidence: tuple[str, ...] | None = None

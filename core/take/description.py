@@ -1,4 +1,4 @@
-"""`shoot.json`: fields that all takes below its folder inherit."""
+"""What files say of a take: its own, and every `shoot.json` above, whose fields it inherits."""
 
 import os
 from collections.abc import Mapping
@@ -22,9 +22,7 @@ SHOOT_FILE = "shoot.json"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**20
 SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "ignored_regions", "actor")
-"""Fields of `take.json` that takes may inherit."""
 SETTING_FIELDS = ("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence")
-"""Fields that say how takes are converted."""
 FILE_FIELDS = ("$schema", "schema_version", "root")
 """Fields about the file itself; editors read the first."""
 KEYFRAMES = "keyframes"
@@ -86,7 +84,6 @@ class Description:
     path: Path
     """The take: a folder, or a bare clip."""
     name: str
-    """What people call it."""
     folder: Path
     """The folder that the take's own paths are relative to."""
     file: Path
@@ -206,7 +203,6 @@ def _own_name(folder: Path, clip: Path | None, name: Path) -> Path:
 
 
 def _own_file(path: Path) -> Path:
-    """A take's own file, which may not exist."""
     try:
         kind = path.stat().st_mode
         images = S_ISDIR(kind) and not (path / TAKE_FILE).exists() and any(map(is_image, path.iterdir()))
@@ -225,7 +221,6 @@ def _own_file(path: Path) -> Path:
 
 
 def _links(folder: Path) -> list[Path]:
-    """The files of a folder, as of images, that are symbolic links."""
     try:
         with os.scandir(folder) as entries:
             return [Path(entry.path) for entry in entries if entry.is_symlink()]

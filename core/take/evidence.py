@@ -1,4 +1,4 @@
-"""Names of the kinds of evidence; imports nothing, so that `--help` stays fast."""
+"""Kinds of evidence, and the record of the evidence that a result rests on beside its keyframes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -58,6 +58,5 @@ def copy_example(name: str, into: Path) -> Path:
 
 
 def _is_copy(source: Path, target: Path) -> bool:
-    """Whether a folder holds an example's files as they come along."""
     pairs = [(source / own, target / copied) for own, copied in COPIED.items()]
     return all(copy.is_file() and filecmp.cmp(own, copy, shallow=False) for own, copy in pairs)

@@ -106,7 +106,6 @@ def write_keyframes(path: Path, keyframes: Sequence[Keyframe], body: Body, frame
 
 
 def _check_frames(path: Path, frames: Sequence[int], frame_start: int, frame_count: int | None) -> None:
-    """Refuse frames outside the clip, or given twice."""
     last = frame_start + (frame_count or 10**6) - 1
     seen: set[int] = set()
     for index, frame in enumerate(frames):

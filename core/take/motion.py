@@ -30,15 +30,12 @@ class Motion:
     time_s: Array
     """(F,) time stamp of each frame from the first [s]; uneven for variable frame rate."""
     posture: Posture
-    """A batch of F postures."""
     points: Array
     """(F, 13, 3) principal points in the world [m]."""
     point_covariance: Array
     """(F, 13, 3, 3) estimated covariance of each point [m²]."""
     keyframe_indices: tuple[int, ...]
-    """Frame indices of the keyframes."""
     method: str
-    """Method of the estimate: `map`, `ekf` or `interpolation`."""
     diagnostics: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
     """Diagnostics of the estimate by name, (F, ...) each."""
 
@@ -77,7 +74,6 @@ class Diagnostic(Kind):
 
 
 def _lists(names: tuple[str, ...], *shape: int) -> ByName:
-    """Lists of every name, with one entry a frame."""
     item = NumberArray((-1, *shape), LARGEST_NUMBER)
     return ByName("lists by name", names=names, needs=names, strict=False, item=item)
 

@@ -1,4 +1,4 @@
-"""A take: one recorded performance, validated, with notes on what looks wrong."""
+"""A take: one recorded performance, validated, and the kinds of evidence that it has."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -46,7 +46,6 @@ class Take:
     contours: bool = True
     """Whether the contours of the body are followed, where the camera stands still."""
     ignored_regions: tuple[IgnoredRegion, ...] = ()
-    """Regions of the picture that are never a marker."""
 
     @property
     def file(self) -> Path:

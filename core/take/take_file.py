@@ -41,7 +41,6 @@ MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 MOST_FRAMES = 10**6
 MOST_MARKERS = 64
 LONGEST_MARKER_NAME = 200
-"""Characters."""
 MISTYPED = 0.85
 """Likeness of an object's name from which on it is `markers` with one letter wrong."""
 
@@ -238,7 +237,6 @@ def _keypoints(
 
 
 def _counted(description: Description, fps: float) -> int:
-    """Number of pictures of the clip of a take that does not say it."""
     try:
         return picture_count(description.clip, fps)
     except InputError as error:
@@ -297,7 +295,6 @@ def _copy_clip(take: Take, folder: Path) -> str:
 
 
 def _write_keypoints(take: Take, folder: Path) -> list[str]:
-    """Write keypoints into `folder`, but for those that lie there; returns their paths within."""
     names = [_name_within(people, folder) for people in take.keypoints]
     ending, number = Path(KEYPOINT_FILE), 1
     for index, people in enumerate(take.keypoints):

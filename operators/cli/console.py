@@ -50,7 +50,6 @@ class _OpenjdBar:
 
     def __init__(self, write: Callable[[str], object]) -> None:
         self.n = 0.0
-        """Percent."""
         self._write = write
         self._text, self._percent = "", -1
 
@@ -96,7 +95,6 @@ class Console:
             self._bar = _OpenjdBar(self._write)
 
     def __enter__(self) -> "Console":
-        """Start the command."""
         return self
 
     def __exit__(
@@ -105,7 +103,6 @@ class Console:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Close the bar, also after an error."""
         self._close_bar()
 
     def progress(self, progress: Progress) -> None:

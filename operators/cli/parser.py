@@ -1,4 +1,4 @@
-"""Keymark's version and root folder."""
+"""The parser of the command line, what a command declares, and mistakes, each told in one line."""
 
 import argparse
 import importlib.util
@@ -33,12 +33,10 @@ class Command:
     """A command."""
 
     name: str
-    """What the user types."""
     description: str
     """What the command's own help begins with."""
     run: Callable[[argparse.Namespace], None]
     add_arguments: Callable[[argparse.ArgumentParser], None] = no_arguments
-    """Adds the command's own arguments to those that every command has."""
     summary: str = ""
     """Half a line for the list of a group; those of the other commands are in `commands/__init__.py`."""
 
@@ -109,7 +107,6 @@ A take is a folder with take.json, the clip and keyframes.json, or a clip below 
 many; a library takes the place of keyframes.
 Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable."""
 WORKER = "worker"
-"""A command that only a batch runs."""
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -147,7 +144,6 @@ def _run_worker(_arguments: argparse.Namespace) -> None:
 
 
 def _declared(name: str) -> Any:
-    """What the file of a command declares."""
     return getattr(import_module(f".commands.{name}", __package__), name.upper())
 
 
@@ -176,7 +172,6 @@ def _add_command(added: Any, command: Command | CommandGroup, summary: str, prog
 
 
 def _refuse_no_command(names: Sequence[str], program: str) -> Callable[[argparse.Namespace], None]:
-    """What runs where the user names none of these commands."""
     valid = f"{', '.join(names[:-1])} and {names[-1]}"
 
     def refuse(_arguments: argparse.Namespace) -> None:

@@ -1,7 +1,6 @@
-"""The style and the script of a batch's page, which is one file and holds both.
+"""The HTML page of a batch for its supervisor: one file with its style and script, complete without the script.
 
-Words never stand on any color of `style.css` but paper, card and wash. The script searches and sorts the
-rows; the page is complete without it.
+Words never stand on any color of `style.css` but paper, card and wash.
 """
 
 import base64
@@ -36,7 +35,6 @@ SCRIPT = "\n" + (FOLDER / "script.js").read_text(encoding="utf-8")
 
 
 MOST_NAMED = 3
-"""Takes named in a sentence."""
 
 
 def counts(outcomes: Sequence[Outcome]) -> str:
@@ -176,7 +174,6 @@ def _section(
 
 
 def _navigation(found: dict[Verdict, list[Outcome]]) -> str:
-    """Links to the sections, and the search that the script brings to life."""
     links = "".join(
         f'<a class="{css_class(verdict)}" href="#{css_class(verdict)}">'
         f'<span aria-hidden="true">{SIGNS[verdict]}</span> {len(those)} {verdict.value}</a>'

@@ -1,6 +1,6 @@
-"""Escaping of untrusted texts for HTML: nothing in them is markup, and invisible characters are spelt out.
+"""The row of one take on the page of a batch: verdict, evidence, confidence, notes and files.
 
-Names, sentences and paths come from the people who filmed or shared a take.
+Names, sentences and paths come from the people who filmed or shared a take: nothing in them is markup.
 """
 
 import html
@@ -19,7 +19,6 @@ from ...take.conversion_record import ConversionRecord
 from ...take.evidence import UsedEvidence
 
 LONGEST = 1000
-"""Characters shown of one text."""
 
 
 def visible(text: str) -> str:
@@ -122,9 +121,7 @@ def _urgency(outcome: Outcome) -> tuple[float, str]:
 
 COLUMNS = ("Take", "Footage", "Confidence", "To do and to know", "Files")
 MOST_NAMED = 12
-"""Weak frames and notes shown; `conversion.json` has all."""
 MOST_SOURCES = 3
-"""Sources of keypoints named."""
 SIGNS = {
     Verdict.FAILED: "✕",
     Verdict.POOR: "○",
@@ -133,12 +130,10 @@ SIGNS = {
     Verdict.UNJUDGED: "–",
     Verdict.WAITING: "…",
 }
-"""Signs of the verdicts, beside their words and colors."""
 REPORT = "report/"
 PICTURE = f"{REPORT}overlay.png"
 """The picture that stands for a take; the page shows a part, a click all of it."""
 FILE_ORDER = (".blend", ".bvh", ".json")
-"""Suffixes of the files that people open, the most common first."""
 
 
 def row(outcome: Outcome, output: Path, number: int) -> str:
@@ -198,7 +193,6 @@ def _made_from(record: ConversionRecord) -> str:
 
 
 def _evidence(evidence: UsedEvidence) -> str:
-    """What a take was held against, with the names of the sources of its keypoints."""
     sources = [isolated(said.source) for said in evidence.keypoints[:MOST_SOURCES]]
     more = len(evidence.keypoints) - len(sources)
     named = f" (keypoints: {', '.join(sources)}{f' and {more} more' if more else ''})" if sources else ""

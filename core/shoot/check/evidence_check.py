@@ -1,4 +1,4 @@
-"""Findings of a check: problems and warnings, collected so that one does not hide the next."""
+"""Findings of a check, and the checks of a take's keyframes and keypoints."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -136,17 +136,12 @@ class KeypointReadout:
     """What one file of keypoints holds."""
 
     file: str
-    """Its name."""
     source: str
-    """What saw them."""
     points: int
-    """Number of body points."""
     seen_frames: float
-    """Share of the frames in which the performer is seen."""
     seen_points: float
     """Share of the points seen in those frames."""
     people: int
-    """Largest number of people in a frame."""
     depth_hints: bool
     error_px: float | None
     """Median distance of the joints from those of posed keyframes; None without any to compare."""
@@ -162,7 +157,6 @@ def check_keypoints(take: Take, frames: int, findings: Findings) -> tuple[Keypoi
 
 
 def _readout(take: Take, people: People, findings: Findings) -> KeypointReadout:
-    """Check one file, the only one of the take."""
     name = Path(people.file).name or people.source
     prior = interpolate(take.keyframes, take.frame_count or 0) if len(take.keyframes) > 1 else None
     performer = performer_keypoints(take, prior)

@@ -69,13 +69,11 @@ SECONDS_A_TAKE = 0.9
 SECONDS_A_FRAME = {"map": 0.004, "ekf": 0.004, "interpolation": 0.002}
 """By method, without reading the frame and without what follows."""
 SECONDS_FOR_KEYPOINTS = 0.001
-"""A frame."""
 SECONDS_FOR_CONTOURS, SECONDS_FOR_WIDE_CONTOURS = 0.006, 0.009
 """A frame, with markers and without, where contours are searched far and wide."""
 SECONDS_A_MEGAPIXEL = 0.012
 """Decoding and following the markers."""
 SECONDS_TO_POSE = 0.1
-"""A frame, with all libraries."""
 BYTES_A_TAKE = 1_800_000
 BYTES_A_FRAME = 5_000
 
@@ -85,9 +83,7 @@ class CostEstimate:
     """Cost of one conversion."""
 
     seconds: float
-    """Time of one processor."""
     size_bytes: int
-    """Size of the files written."""
 
 
 def estimate_cost(
@@ -119,7 +115,6 @@ class TakeCheck:
     """The findings on one take."""
 
     name: str
-    """The take's, in its shoot."""
     problems: tuple[str, ...]
     """Reasons why it would not convert."""
     warnings: tuple[str, ...]
@@ -129,11 +124,9 @@ class TakeCheck:
     fps: float | None = None
     frames: int | None = None
     evidence: tuple[str, ...] = ()
-    """Kinds of evidence that it would be held against."""
     markers: tuple[MarkerReadout, ...] = ()
     keypoints: tuple[KeypointReadout, ...] = ()
     keyframes: int = 0
-    """Keyframes that a person posed."""
     library: str | None = None
     """Setting by which the others are found; None where all are posed."""
     cost: CostEstimate | None = None

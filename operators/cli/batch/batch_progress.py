@@ -31,7 +31,6 @@ class BatchProgress:
         return min(max((self._done_frames + mean_frames * self._done_others) / whole, 0.0), 1.0)
 
     def _count(self, index: int, times: int) -> None:
-        """Add a take to the sums, or with -1 take it out."""
         frames, done = self._frames[index], self._done[index]
         if frames is None:
             self._done_others += times * done

@@ -1,4 +1,4 @@
-"""Memory and processors of the machine, and the memory of this process, as far as the system tells."""
+"""Memory and processors of the machine; as a script, a worker of a batch in plain Python."""
 
 import importlib.util
 import os

@@ -1,4 +1,4 @@
-"""The summary of a batch: JSON Lines with one take each for programs, and an HTML page for people."""
+"""Outcomes of a batch's takes, and its summary: JSON Lines for programs, an HTML page for people."""
 
 import json
 import time
@@ -91,7 +91,6 @@ class BatchOutcomes:
         self._width = min(max(map(len, self._names), default=0), WIDEST_NAME)
         self._next_summary = time.monotonic()
         self.files: tuple[Path, ...] = ()
-        """Files of the summary."""
         self.write_errors: list[str] = []
         """Sentences on summaries and failures that could not be written."""
         remove_failures_of_deleted_takes(output, shoot)
@@ -146,7 +145,6 @@ class BatchOutcomes:
                 return
 
     def _other_outcomes(self) -> dict[str, Outcome]:
-        """Outcomes of the takes that are not converted here, as the folder has them now."""
         here = set(self._names)
         return {
             take.name: read_outcome(take, self.output) for take in self.shoot.takes if take.name not in here

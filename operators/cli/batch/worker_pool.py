@@ -57,14 +57,12 @@ class WorkerPool:
         heartbeat_timeout_s: float,
         debug: bool,
     ) -> None:
-        """Queue the jobs."""
         self._queue = deque(_QueuedJob(job) for job in jobs)
         self._words, self._debug = words, debug
         self._outcomes = outcomes
         self._heartbeat_timeout_s = heartbeat_timeout_s
         self._events: Events = Events()
         self._workers: dict[WorkerProcess, _QueuedJob | None] = {}
-        """The workers, each with the job that it runs."""
         self._failed_starts, self._start_error = 0, ""
 
     def run(self, workers: int) -> None:
@@ -99,7 +97,6 @@ class WorkerPool:
                 worker.send(queued.job)
 
     def _start_workers(self, most: int) -> None:
-        """Start as many workers as there are jobs for."""
         idle = sum(job is None for job in self._workers.values())
         for _ in range(min(most - len(self._workers), len(self._queue) - idle)):
             if self._failed_starts >= MOST_ATTEMPTS:
@@ -115,7 +112,6 @@ class WorkerPool:
         self._failed_starts, self._start_error = self._failed_starts + 1, reason
 
     def _handle_events(self) -> None:
-        """Wait for an event and handle it; give up workers that are overdue."""
         moments = [worker.deadline for worker in self._workers]
         if any(worker.ready and job is None for worker, job in self._workers.items()):
             moments += [queued.not_before for queued in self._queue]

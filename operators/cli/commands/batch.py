@@ -29,7 +29,6 @@ WORKER_BYTES = 1.5 * 2**30
 MOST_JOBS = 1000
 MOST_PARTS = 10**6
 MOST_NAMED = 5
-"""Failed takes named in the last line."""
 
 
 def batch_command(arguments: argparse.Namespace) -> None:

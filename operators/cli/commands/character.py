@@ -1,4 +1,4 @@
-"""`keymark character`: its arguments."""
+"""`keymark character`: recognize a character's bones and controls, or check its map."""
 
 import argparse
 from pathlib import Path
@@ -40,7 +40,6 @@ CHARACTER = Command(
 
 
 UNSURE = 0.75
-"""Confidence below which a role is marked."""
 SOURCE_WORDS = {"preset": "convention", "names": "names", "shape": "shape", "you": "a person"}
 
 

@@ -32,9 +32,7 @@ FEWEST_IN_COMMON = 3
 """Number of takes from which on a sentence that they share is printed once."""
 MOST_NAMED = 3
 SEPARATOR = "  "
-"""Between two columns of the table."""
 NARROWEST_NAME = 12
-"""Smallest width of the column of names."""
 
 
 def check_command(arguments: argparse.Namespace) -> None:
@@ -127,7 +125,6 @@ def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = 
 
 
 def _evidence_lines(checks: Sequence[TakeCheck]) -> list[str]:
-    """What the motions will be held against, a line for each combination of evidence."""
     takes: dict[tuple[str, ...], list[str]] = {}
     for check in checks:
         if check.evidence and check.converts:
@@ -148,7 +145,6 @@ def _words(kinds: Sequence[str]) -> str:
 def _table(
     shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str], columns: int | None
 ) -> list[str]:
-    """A row a take, and below it the sentences on this take alone."""
     names = [_name(shoot, check) for check in checks]
     markers = _common_markers(checks)
     keypoints = (KEYPOINTS,) if any(check.keypoints for check in checks) else ()
@@ -209,7 +205,6 @@ def _aligned(cells: Sequence[str], widths: Sequence[int]) -> list[str]:
 
 
 def _common_markers(checks: Sequence[TakeCheck]) -> list[str]:
-    """Names of the markers of all takes, without repetition, in order of appearance."""
     return list(dict.fromkeys(readout.name for check in checks for readout in check.markers))
 
 

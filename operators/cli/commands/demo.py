@@ -25,9 +25,7 @@ from ..parser import Command, require_blender
 from .convert import conversion_summary
 
 MARKED = (MARKERS, CONTOURS)
-"""Evidence of the paper's example."""
 UNMARKED = (KEYPOINTS, DEPTH_HINTS, CONTOURS)
-"""Evidence of the same performance in any clothes."""
 UNMARKED_FOLDER = "without_markers"
 CHARACTER_FILE = "human.blend"
 COLUMNS = {"mpjpe": "all", "rooted": "about hips", "depth": "in depth", "image": "across", "jitter": "jitter"}
@@ -109,7 +107,6 @@ def _table(scores: Mapping[str, Score]) -> list[str]:
 
 SCRIPT = Path(__file__).parent.with_name("generate_rigify_human.py")
 LONGEST_S = 300.0
-"""Generating takes a second or two; a process that takes this long hangs."""
 
 
 def write_demo_character(file: Path) -> None:

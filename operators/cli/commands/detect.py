@@ -1,4 +1,4 @@
-"""`keymark detect`: its arguments."""
+"""`keymark detect`: find points of the body in clips."""
 
 import argparse
 import os
@@ -128,13 +128,11 @@ def detect_command(arguments: argparse.Namespace) -> None:
 
 
 def _found_text(people: People) -> str:
-    """What was found, for a person."""
     who = "a person" if people.most_people == 1 else f"up to {people.most_people} people"
     return f"{who} in {people.seen_frames} of {pluralize(len(people.frames), 'frame')}"
 
 
 def _summary(people: People) -> dict[str, Any]:
-    """What was found, for `--json`."""
     return {
         "detector": people.source,
         "frames": len(people.frames),
@@ -182,7 +180,6 @@ def _outcome(
 
 
 def _detect(footage: Footage, network: PoseNetwork, console: Console, first: float, last: float) -> People:
-    """Find the keypoints of one clip and write them."""
     if not os.access(footage.output.parent, os.W_OK | os.X_OK):
         raise InputError(f"{footage.output}: cannot be written; its folder must exist and be writable")
     clip = open_footage(footage.clip, footage.fps)
@@ -201,7 +198,6 @@ def _single(path: Path) -> Footage | None:
 
 
 def _is_sequence(path: Path) -> bool:
-    """Whether a path is a folder or pattern of images, or one of them."""
     try:
         return find_images(path) is not None
     except (InputError, OSError):

@@ -213,7 +213,6 @@ def merge_command(arguments: argparse.Namespace) -> None:
 
 
 def _merge_versions(first: Library, second: Library, conflicts: str | None) -> Library:
-    """Merge two versions of one library."""
     from ....core.prior.merging import differing_names, merge_versions
 
     changed = differing_names(first, second)
@@ -245,7 +244,6 @@ def _add_library(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_output(parser: argparse.ArgumentParser, metavar: str, text: str) -> None:
-    """Add where a command writes, and whether it may replace what is there."""
     parser.add_argument("--output", "-o", metavar=metavar, type=Path, required=True, help=text)
     parser.add_argument("--replace", action="store_true", help="replace what is there already")
 

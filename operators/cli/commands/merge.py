@@ -30,7 +30,6 @@ LONGEST_NAME_BYTES = 63
 LONGEST_TAG_BYTES = 63
 LONGEST_DESCRIPTION = 1000
 MOST_NAMED = 5
-"""Takes named in the last line."""
 STAGE = "Gathering the motions"
 
 
@@ -66,9 +65,7 @@ class MotionGathering:
         """The problem of each take that the library lacks or has of an earlier input, in a sentence."""
         self.problems |= {failure.take: failure.error for failure in failures}
         self.count = 0
-        """Number of motions in the library."""
         self.character_count = 0
-        """Number of characters' Actions in the library."""
         self._found, self._shoot, self._console = found, shoot, console
 
     def assets(self) -> "Iterator[MotionAsset | CharacterAsset]":
@@ -173,7 +170,6 @@ def _short_tags(*words: str | None) -> tuple[str, ...]:
 
 
 def _motion(result: Result) -> Motion:
-    """The motion of a result, as it was when the record was written."""
     file = result.folder / MOTION
     if content_digest(file) != result.record.files.get(MOTION):
         raise InputError(f"{file}: is not the file that the conversion wrote")
@@ -206,7 +202,6 @@ def _text(counts: dict[str, int], files: Sequence[str], problems: dict[str, str]
 
 
 def _listed(problems: dict[str, str]) -> str:
-    """The first few of the problems."""
     reasons = [problems[name] for name in sorted(problems)]
     more = [f"{len(reasons) - MOST_NAMED} more"] if len(reasons) > MOST_NAMED else []
     return "; ".join([*reasons[:MOST_NAMED], *more])

@@ -18,7 +18,6 @@ from ..parser import Command
 
 UNPOSED = "no keyframe is posed yet; pose these frames, or let convert find them with --keyframes auto"
 READING_SHARE = 0.9
-"""Share of the work that reading the clip is."""
 
 
 def propose_command(arguments: argparse.Namespace) -> None:

@@ -1,4 +1,4 @@
-"""`keymark retarget`: its arguments."""
+"""`keymark retarget`: put a motion onto a character."""
 
 import argparse
 from pathlib import Path
@@ -65,7 +65,6 @@ RETARGET = Command(
 
 
 RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
-"""Every file that the command may make."""
 FIGURES = {
     "arms_deg": "arms are {:.1f} degrees from the performer's on average",
     "legs_deg": "legs are {:.1f} degrees from the performer's on average",
@@ -74,7 +73,6 @@ FIGURES = {
     "hands_mm": "hands are {:.0f} mm from what they reach on average",
     "ik_fk_mm": "FK and IK are at most {:.1f} mm apart",
 }
-"""Sentences on the figures that people ask for first."""
 
 
 def retarget_command(arguments: argparse.Namespace) -> None:
@@ -97,7 +95,6 @@ def _retarget(
     source: tuple[Path, Path | None],
     console: Console,
 ) -> tuple[RetargetRecord, list[Path], tuple[str, ...]]:
-    """Write the result; returns its record, its files, and notes on it."""
     from ...bridge.character.source import show_result
 
     motion_file, blend = source
@@ -128,7 +125,6 @@ def _retarget(
 
 
 def _made_before(output: Path) -> dict[str, str]:
-    """Digests of the files of the last result in a folder."""
     try:
         return dict(read_retarget_record(output).files)
     except InputError:
@@ -172,7 +168,6 @@ def _formats(text: str) -> tuple[str, ...]:
 
 
 def _check_formats(formats: tuple[str, ...]) -> None:
-    """Refuse formats that this Blender cannot write, before the work."""
     from ...bridge.character.import_character import missing_exporter
 
     for word in formats:

@@ -212,7 +212,6 @@ class CharacterChecks:
     """What is wrong with characters, and what is doubtful about them."""
 
     def __init__(self, shoot: Shoot, debug: bool) -> None:
-        """Look at all characters that the takes of a shoot name."""
         self._debug = debug
         self._findings: dict[Wanted, tuple[KeymarkError | None, Sequence[str]]] = {}
         for take in shoot.takes:

@@ -1,4 +1,4 @@
-"""Files of an earlier result that a person has changed since; they are kept under another name."""
+"""Conversion of one take into one complete folder of results."""
 
 import os
 from collections.abc import Collection, Iterable, Mapping
@@ -118,11 +118,8 @@ class _Prepared:
     settings: ConversionSettings
     libraries: tuple[Library, ...]
     digest: str
-    """Of all that the result depends on."""
     output: Path
-    """Folder of the result."""
     staging_folder: Path
-    """Folder in which the result is made; its files move into `output` when all are complete."""
     kept_names: dict[str, str]
     """Files in `output` that a person has changed, with the names under which they are kept; filled once the
     new files are made."""
@@ -232,7 +229,6 @@ def _convert(prepared: _Prepared, console: Console, debug: bool) -> Conversion:
 def _write_character(
     prepared: _Prepared, take: Take, motion: Motion, console: Console, debug: bool
 ) -> RetargetRecord | None:
-    """Put the motion onto the character that the take names, if any."""
     if prepared.settings.character is None:
         return None
     from ...bridge.result_files import show_take
@@ -263,7 +259,6 @@ def _refuse_own_folder(description: Description, output: Path) -> None:
 
 
 def _unused_keyframes_note(description: Description, settings: ConversionSettings) -> tuple[str, ...]:
-    """A sentence where a take has keyframes that a conversion which finds its own does not use."""
     own = description.keyframes
     if settings.library is None or settings.keyframes is not None or not os.path.exists(own):
         return ()
