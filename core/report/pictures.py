@@ -1,4 +1,4 @@
-"""The pictures of a result: the estimate over the footage, and the motion from the side, where depth shows."""
+"""The pictures of a result: the estimate over the footage, and the motion from the side."""
 
 from collections.abc import Sequence
 from pathlib import Path

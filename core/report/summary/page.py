@@ -1,4 +1,4 @@
-"""The HTML page of a batch for its supervisor: one file with its style and script, complete without the script.
+"""The HTML page of a batch for its supervisor: one file, complete without its script.
 
 Words never stand on any color of `style.css` but paper, card and wash.
 """

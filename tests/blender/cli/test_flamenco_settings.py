@@ -52,7 +52,6 @@ def group(settings: list[dict[str, Any]]) -> Iterator[Any]:
 
 
 def test_blender_takes_every_setting(group: Any, settings: list[dict[str, Any]]) -> None:
-    """The property has the setting's type, limits, choices and default."""
     for setting in settings:
         assert getattr(group, setting["key"]) == setting.get("default", "")
     group.tasks = -5
@@ -63,7 +62,6 @@ def test_blender_takes_every_setting(group: Any, settings: list[dict[str, Any]])
 
 
 def test_people_can_read_what_they_are_asked(settings: list[dict[str, Any]]) -> None:
-    """A visible setting has a label and a tooltip, without the full stop that Blender adds."""
     shown = [one for one in settings if one.get("visible") != "web"]
     assert len(shown) == 13
     assert all(one["label"] and one["description"][-1] not in ".!" for one in shown)

@@ -85,7 +85,6 @@ def workers(process: "subprocess.Popen[str]") -> list[int]:
 
 
 def test_killed_batches_lose_nothing(shoot: Path) -> None:
-    """The batch, one of its workers, or all of them are killed at random moments."""
     chance = random.Random(SEED)
     out = shoot.parent / "results"
     begun = time.monotonic()
@@ -121,7 +120,6 @@ def test_killed_batches_lose_nothing(shoot: Path) -> None:
 
 
 def test_two_batches_on_one_folder_end_well(shoot: Path) -> None:
-    """Each take is converted by one batch; the other waits for it or skips it."""
     out = shoot.parent / "alone"
     undisturbed = to_the_end(shoot, out, "--jobs", "2")
     shutil.rmtree(out)

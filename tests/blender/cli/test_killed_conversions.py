@@ -75,7 +75,6 @@ def undisturbed(take: Path) -> dict[str, Undisturbed]:
 
 
 def test_two_runs_leave_the_same(take: Path, undisturbed: dict[str, Undisturbed]) -> None:
-    """Every file is the same byte for byte; of the .blend, the curves."""
     out = take.parent / "results" / "out"
     assert to_the_end(take, out, "newer").results == undisturbed["newer"].results
     assert blend_is_of(out)
@@ -84,10 +83,6 @@ def test_two_runs_leave_the_same(take: Path, undisturbed: dict[str, Undisturbed]
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_fifty_deaths_leave_no_trace(take: Path, undisturbed: dict[str, Undisturbed], seed: int) -> None:
-    """Kills at random times and file accesses: a result is whole or not taken for one, and the last is right.
-
-    Two kinds of run follow each other in one folder, so that the results of one are replaced by the other's.
-    """
     chance = random.Random(seed)
     out = take.parent / "results" / "out"
     survived = ended = 0

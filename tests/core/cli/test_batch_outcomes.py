@@ -22,7 +22,6 @@ def shoot(tmp_path: Path) -> Shoot:
 def test_a_take_that_is_done_elsewhere_meanwhile_is_in_the_summary(
     shoot: Shoot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Also where the other machine writes its summary before this one does."""
     output = tmp_path / "out"
     written: list[dict[str, Status]] = []
 
@@ -39,7 +38,6 @@ def test_a_take_that_is_done_elsewhere_meanwhile_is_in_the_summary(
 
 
 def test_failures_of_takes_that_are_deleted_are_forgotten(shoot: Shoot, tmp_path: Path) -> None:
-    """Otherwise every library merged from then on would count as incomplete."""
     output = tmp_path / "out"
     (tmp_path / "day1").mkdir()
     (tmp_path / "day1" / "clip.mp4").touch()
@@ -51,7 +49,6 @@ def test_failures_of_takes_that_are_deleted_are_forgotten(shoot: Shoot, tmp_path
 
 
 def test_a_list_makes_nobody_forget_the_takes_it_lacks(shoot: Shoot, tmp_path: Path) -> None:
-    """A list may be part of a larger shoot, whose other failures still count."""
     output = tmp_path / "out"
     for name in ("a", "of the larger shoot"):
         write_failure(output, Failure(name, "it is cut off", "input"))

@@ -65,7 +65,6 @@ def no_markers(shoot: Path) -> None:
 def test_good_keypoints_are_said_to_be_good(
     pristine: Path, check: Callable[..., Any], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Seen everywhere, at the posed joints; the table has a column for them and a line on the evidence."""
     status, take = check(pristine)
     assert status == 0 and take["status"] == "ready" and take["warnings"] == []
     assert take["evidence"] == ["markers", "keypoints", "contours"] and len(take["markers"]) == 5
@@ -80,7 +79,6 @@ def test_good_keypoints_are_said_to_be_good(
 
 
 def test_a_take_without_markers_is_ready(shoot: Path, check: Callable[..., Any]) -> None:
-    """With keypoints; with contours alone it is one to look at, and the evidence may be chosen."""
     no_markers(shoot)
     status, take = check(shoot)
     assert status == 0 and take["status"] == "ready"
@@ -136,7 +134,6 @@ def half_the_size(value: dict[str, Any]) -> None:
 def test_keypoints_that_look_wrong_are_said(
     shoot: Path, check: Callable[..., Any], change: Callable[[dict[str, Any]], None], sentence: str
 ) -> None:
-    """The take would convert, and is one to look at."""
     if change is late:  # which is seen in fast movement only
         faster(shoot)
     rewrite(shoot, change)
@@ -171,7 +168,6 @@ def faster(shoot: Path) -> None:
 def test_keypoints_that_stop_a_take_are_said(
     shoot: Path, check: Callable[..., Any], change: Callable[[dict[str, Any]], object], sentence: str
 ) -> None:
-    """One problem; the markers are looked at all the same."""
     rewrite(shoot, change)
     status, take = check(shoot)
     assert status == 1 and len(take["problems"]) == 1 and sentence in take["problems"][0]
@@ -179,8 +175,6 @@ def test_keypoints_that_stop_a_take_are_said(
 
 
 def test_two_people_need_a_keyframe(shoot: Path, check: Callable[..., Any]) -> None:
-    """Which says who performs; without one, a library matches whoever is seen best."""
-
     def doubled(value: dict[str, Any]) -> None:
         other = [[[x / 2, y, score] for x, y, score in frame] for frame in value["frames"]]
         value["people"] = [list(pair) for pair in zip(value.pop("frames"), other, strict=True)]
@@ -198,7 +192,6 @@ def test_two_people_need_a_keyframe(shoot: Path, check: Callable[..., Any]) -> N
 def test_an_option_that_is_none_is_one_line(
     pristine: Path, capsys: pytest.CaptureFixture[str], words: tuple[str, str]
 ) -> None:
-    """Status 2, and what would be valid; an empty one counts as none, as farms pass it."""
     assert main(["check", str(pristine), *words]) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1 and words[1] in said
@@ -206,7 +199,6 @@ def test_an_option_that_is_none_is_one_line(
 
 
 def test_evidence_costs_time() -> None:
-    """Keypoints a little, contours that are searched without markers more."""
     seconds = [
         estimate_cost(1000, (320, 240), "map", None, kinds).seconds
         for kinds in (

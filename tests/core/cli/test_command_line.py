@@ -77,7 +77,6 @@ def test_an_unusable_command_line_is_one_line_and_status_two(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The line names the mistake; no file is made."""
     monkeypatch.chdir(tmp_path)
     assert main([*words, "--quiet"] if words[:1] == ["convert"] else words) == 2
     said = capsys.readouterr()
@@ -88,7 +87,6 @@ def test_an_unusable_command_line_is_one_line_and_status_two(
 def test_help_has_examples_and_version_is_the_manifests(
     capsys: pytest.CaptureFixture[str], repository: Path
 ) -> None:
-    """Both go to standard output with status 0."""
     assert main(["--help"]) == 0
     assert "convert takes/walk --output out/walk" in capsys.readouterr().out
     assert main(["--version"]) == 0
@@ -97,7 +95,6 @@ def test_help_has_examples_and_version_is_the_manifests(
 
 
 def test_every_file_of_a_command_is_on_the_list(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A new file in `commands/` is on the list, in --help and in the sentence on a missing command."""
     files = {path.stem for path in (repository / "operators" / "cli" / "commands").glob("*.py")}
     assert files - {"__init__"} == set(SUMMARIES)
     shown = list(SUMMARIES)
@@ -112,7 +109,6 @@ def test_every_file_of_a_command_is_on_the_list(repository: Path, capsys: pytest
 
 
 def test_the_methods_offered_are_the_methods_there_are() -> None:
-    """The parser, which must not load the estimators, lists exactly theirs."""
     assert set(convert_arguments.METHODS) == set(METHODS)
 
 
@@ -124,7 +120,6 @@ CHARACTER_FILES = ("character.blend", "retarget.json", "report/character.png")
 def test_a_conversion_writes_its_files_and_says_so(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 0; the files named on standard output exist, and the motion has every frame."""
     assert convert(take, out, "--method", "interpolation") == 0
     said = capsys.readouterr()
     assert said.err == ""
@@ -141,7 +136,6 @@ def test_a_conversion_writes_its_files_and_says_so(
 def test_json_is_one_object_and_quiet_is_silence(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With --json standard output is an object with files, frames, notes and seconds; with --quiet empty."""
     assert convert(take, out, *FAST, "--json") == 0
     said = json.loads(capsys.readouterr().out)
     assert said["frames"] == FRAMES and said["keyframes"][0] == 1 and said["notes"] == []
@@ -153,7 +147,6 @@ def test_json_is_one_object_and_quiet_is_silence(
 
 @pytest.mark.usefixtures("no_blender")
 def test_a_second_run_without_pictures_leaves_no_old_pictures(take: Path, out: Path) -> None:
-    """A folder holds the result of one run only; the same conversion gives the same motion."""
     assert convert(take, out, "--method", "interpolation", "--quiet") == 0
     first = (out / "motion.json").read_bytes()
     assert convert(take, out, *FAST, "--quiet") == 0
@@ -163,7 +156,6 @@ def test_a_second_run_without_pictures_leaves_no_old_pictures(take: Path, out: P
 
 @pytest.mark.usefixtures("no_blender")
 def test_another_keyframe_file_may_be_named(take: Path, tmp_path: Path) -> None:
-    """--keyframes is read in place of the take's own file."""
     value = json.loads((take / "keyframes.json").read_text(encoding="utf-8"))
     value["keyframes"] = value["keyframes"][::2]
     write_json(tmp_path / "fewer.json", value)
@@ -242,7 +234,6 @@ DAMAGES: dict[str, tuple[Callable[[Path], Any], str]] = {
 def test_a_damaged_take_is_one_line_and_status_two(
     damage: str, take: Path, out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The line names file and value, without a traceback; the output folder is byte for byte as before."""
     apply, sentence = DAMAGES[damage]
     apply(take)
     before = tree(out.parent)
@@ -273,8 +264,6 @@ def test_a_failing_conversion_is_one_line_and_leaves_nothing_behind(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Any error after the motion is written leaves the output folder as it was."""
-
     def fail(_take: object, _motion: object, staging_folder: Path, *_rest: object) -> None:
         assert (staging_folder / "motion.json").is_file()
         (staging_folder / "motion.blend").write_bytes(b"half a file")
@@ -291,8 +280,6 @@ def test_a_failing_conversion_is_one_line_and_leaves_nothing_behind(
 def test_debug_shows_where(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Only with --debug does a traceback come before the line."""
-
     def fail(*_rest: object) -> None:
         raise RuntimeError("something odd")
 
@@ -305,7 +292,6 @@ def test_debug_shows_where(
 def test_without_blender_one_sentence_says_what_to_install(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Before any work, and with the output folder as it was."""
     monkeypatch.setattr(usage.importlib.util, "find_spec", lambda name: None)
     before = tree(out.parent)
     assert convert(take, out, "--quiet") == 1
@@ -314,7 +300,6 @@ def test_without_blender_one_sentence_says_what_to_install(
 
 
 def test_odd_names_do_not_break_the_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A folder with a line break or undecodable bytes in its name still makes one line."""
     assert convert(tmp_path / "two\nlines", tmp_path / "out", "--quiet") == 2
     assert "two lines" in one_line(capsys.readouterr().err)
     assert convert(tmp_path / "odd\udcff", tmp_path / "out", "--quiet") == 2
@@ -322,7 +307,6 @@ def test_odd_names_do_not_break_the_line(tmp_path: Path, capsys: pytest.CaptureF
 
 
 def test_proposed_frames_lie_in_the_clip(take: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """As many frames as requested, with the first and the last; no keyframes are required."""
     (take / "keyframes.json").unlink()
     assert main(["propose", str(take), "--count", "4", "--json"]) == 0
     said = json.loads(capsys.readouterr().out)

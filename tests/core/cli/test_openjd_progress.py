@@ -22,7 +22,6 @@ def test_a_line_for_each_percent_where_it_is_wanted(
     asked: str,
     lines: list[str],
 ) -> None:
-    """No line is repeated, and none is written with --json or --quiet."""
     monkeypatch.setenv("KEYMARK_PROGRESS", asked)
     with Console(quiet=quiet, as_json=as_json) as console:
         for fraction in (0.5, 0.5001, 0.9, 0.3):

@@ -45,7 +45,6 @@ def module_process(tmp_path: Path, repository: Path, *words: str) -> "subprocess
 
 
 def test_it_runs_as_a_module(tmp_path: Path, repository: Path) -> None:
-    """The exit status is that of the process."""
     process = module_process(tmp_path, repository, "convert", "nowhere", "--output", str(tmp_path / "out"))
     said, wrong = process.communicate()
     assert process.returncode == 2 and "nowhere" in one_line(wrong) and "Reading the take" in said
@@ -55,7 +54,6 @@ def test_it_runs_as_a_module(tmp_path: Path, repository: Path) -> None:
 def test_help_and_mistakes_wait_for_no_library(
     words: tuple[str, ...], tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Heavy modules are imported by the command that needs them alone."""
     monkeypatch.setenv("PYTHONPROFILEIMPORTTIME", "1")
     _, told = module_process(tmp_path, repository, *words).communicate()
     loaded = {line.rpartition("|")[2].strip() for line in told.splitlines()}
@@ -64,7 +62,6 @@ def test_help_and_mistakes_wait_for_no_library(
 
 
 def test_a_batch_leaves_estimating_to_its_workers(repository: Path) -> None:
-    """So that they start at once, the process that starts them imports neither SciPy nor Blender."""
     words = "import _boot, sys; _boot.load_package(); import keymark.operators.cli.commands.batch"
     done = subprocess.run(
         [sys.executable, "-c", f"{words}; print(*sys.modules)"],
@@ -82,7 +79,6 @@ def test_a_batch_leaves_estimating_to_its_workers(repository: Path) -> None:
 def test_a_process_that_is_asked_to_end_cleans_up(
     take: Path, out: Path, tmp_path: Path, repository: Path
 ) -> None:
-    """SIGTERM, which render farms send, leaves the output as it was, also in the middle of the work."""
     before = tree(out.parent)
     # Inside a Blender program this process has bpy, but the Python that it starts has none.
     find = "import importlib.util, sys; sys.exit(importlib.util.find_spec('bpy') is None)"

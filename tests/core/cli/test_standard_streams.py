@@ -13,7 +13,6 @@ from keymark.operators.cli.main import main
 def test_a_process_without_standard_streams_does_its_work(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As in a process started with `>&-`, which has the exit status alone."""
     take = write_synthetic_take(tmp_path / "take", 8)
     for stream in ("stdin", "stdout", "stderr"):
         monkeypatch.setattr(sys, stream, None)
@@ -22,7 +21,6 @@ def test_a_process_without_standard_streams_does_its_work(
 
 
 def test_blender_may_print_any_path(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its exporters print the path, and fail where standard output cannot encode it."""
     with TextIOWrapper(BytesIO(), encoding="ascii") as stream:
         monkeypatch.setattr(sys, "stdout", stream)
         with blender_silence(debug=False):

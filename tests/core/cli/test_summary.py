@@ -23,7 +23,6 @@ def outcomes(output: Path) -> list[Outcome]:
 
 
 def test_a_line_says_of_each_take_what_programs_want(tmp_path: Path) -> None:
-    """In the order of names, in ASCII, with all fields; a result counts only if it is of this input."""
     output = tmp_path / "out"
     files = write_summary(output, Shoot(tmp_path / "autumn", ()), outcomes(output))
     assert files == (output / LINES, output / PAGE)
@@ -43,7 +42,6 @@ def test_a_line_says_of_each_take_what_programs_want(tmp_path: Path) -> None:
 
 
 def test_the_same_outcomes_give_the_same_bytes(tmp_path: Path) -> None:
-    """In any order of the outcomes, and no other file is left in the folder."""
     shoot = Shoot(tmp_path, ())
     first = [file.read_bytes() for file in write_summary(tmp_path, shoot, outcomes(tmp_path))]
     again = [file.read_bytes() for file in write_summary(tmp_path, shoot, outcomes(tmp_path)[::-1])]
@@ -52,7 +50,6 @@ def test_the_same_outcomes_give_the_same_bytes(tmp_path: Path) -> None:
 
 
 def test_a_take_that_is_the_shoot_itself(tmp_path: Path) -> None:
-    """The results are beside the summary."""
     outcome = Outcome(".", tmp_path, Status.CONVERTED, RECORD)
     lines, page = write_summary(tmp_path, Shoot(tmp_path / "walk", ()), [outcome])
     assert json.loads(lines.read_text(encoding="ascii"))["files"] == [*FILES, "conversion.json"]
@@ -60,7 +57,6 @@ def test_a_take_that_is_the_shoot_itself(tmp_path: Path) -> None:
 
 
 def test_several_machines_write_at_once_and_readers_see_whole_files(tmp_path: Path) -> None:
-    """Each reader sees the summary of one writer; the last writer's stays."""
     shoot, over = Shoot(tmp_path, ()), threading.Event()
     seen: set[int] = set()
     wrong: list[BaseException] = []
@@ -96,7 +92,6 @@ def test_several_machines_write_at_once_and_readers_see_whole_files(tmp_path: Pa
 
 
 def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path) -> None:
-    """A file where the folder should be is named in a sentence."""
     (tmp_path / "out").touch()
     with pytest.raises(ConversionError, match="out"):
         write_summary(tmp_path / "out", Shoot(tmp_path, ()), [])

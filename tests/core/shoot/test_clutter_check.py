@@ -42,7 +42,6 @@ def said(take: Take) -> dict[str, object]:
 
 
 def test_the_check_names_what_take_json_must_say(folder: Path) -> None:
-    """With those words in it, the warnings of clutter are gone, and what it had said is kept."""
     proposed = said(read_take(folder))
     ((region,),) = proposed.values()
     np.testing.assert_allclose(region["box"], PANEL, atol=4.0)
@@ -59,7 +58,6 @@ def test_the_check_names_what_take_json_must_say(folder: Path) -> None:
 
 
 def test_a_sleeve_is_followed_as_if_there_were_no_panel(folder: Path, repository: Path) -> None:
-    """Its path and quality are those of the clip without one."""
     plain = run(read_footage(read_take(repository / "presets" / "demo" / "aerobic"))).tracks
     file = folder / "take.json"
     fields = json.loads(file.read_text(encoding="utf-8"))

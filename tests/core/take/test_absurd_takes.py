@@ -114,7 +114,6 @@ def convert(pristine: Path, folder: Path, change: Change, method: str) -> int:
 def test_contradictory_takes_are_refused(
     kind: str, pristine: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """One line says what does not fit; no file is made."""
     change, sentence = REFUSED[kind]
     assert convert(pristine, tmp_path, change, "interpolation") == 2
     said = capsys.readouterr().err
@@ -128,6 +127,5 @@ def test_contradictory_takes_are_refused(
 def test_unusual_takes_convert(
     kind: str, method: str, pristine: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With every method, to finite numbers."""
     assert convert(pristine, tmp_path, CONVERTED[kind], method) == 0, capsys.readouterr().err
     assert (tmp_path / "out" / "motion.json").is_file()

@@ -30,14 +30,12 @@ def radius_m(take: Take) -> np.ndarray:
 
 
 def test_near_a_keyframe_markers_are_searched_within_0_45_m(take: Take) -> None:
-    """Up to a fifth of a second before it and after."""
     assert take.keyframe_indices == (0, 24, 48)
     near = [*range(7), *range(18, 31), *range(42, 55)]
     np.testing.assert_allclose(radius_m(take)[near], 0.45, atol=1e-3)
 
 
 def test_farther_from_it_the_radius_grows_with_a_limb_s_speed(take: Take) -> None:
-    """By 3 m/s, widest in the middle between two keyframes, and on and on after the last."""
     found = radius_m(take)
     np.testing.assert_allclose(found[[9, 15]], 0.45 + 3.0 * 0.1, atol=1e-3)
     np.testing.assert_allclose(found[[12, 36]], 0.45 + 3.0 * 0.2, atol=1e-3)
@@ -45,12 +43,10 @@ def test_farther_from_it_the_radius_grows_with_a_limb_s_speed(take: Take) -> Non
 
 
 def test_time_counts_and_not_frames(take: Take) -> None:
-    """At twice the rate the same frames are half as far from a keyframe."""
     np.testing.assert_allclose(radius_m(replace(take, fps=60.0))[12], 0.45, atol=1e-3)
 
 
 def test_markers_are_expected_where_the_interpolated_keyframes_have_them(take: Take) -> None:
-    """And stay at the last keyframe's after it."""
     center = expected_regions(take, FRAMES).center
     prior = interpolate(take.keyframes, FRAMES)
     model = average_model(take)

@@ -40,7 +40,6 @@ def ignoring(folder: Path, value: Any) -> Path:
 
 
 def test_a_take_says_what_is_never_a_marker_and_is_written_back(folder: Path, tmp_path: Path) -> None:
-    """Frames are those of the scene in the file, and counted from the clip's first in core."""
     assert read_take(folder).ignored_regions == ()
     said = json.loads((folder / "take.json").read_text(encoding="utf-8"))
     keyframes = json.loads((folder / "keyframes.json").read_text(encoding="utf-8"))
@@ -60,13 +59,11 @@ def test_a_take_says_what_is_never_a_marker_and_is_written_back(folder: Path, tm
 
 
 def test_a_take_without_them_is_written_as_ever(folder: Path, tmp_path: Path) -> None:
-    """Not even an empty field."""
     write_take(read_take(ignoring(folder, None)), tmp_path / "copy")
     assert "ignored_regions" not in json.loads((tmp_path / "copy" / "take.json").read_text(encoding="utf-8"))
 
 
 def test_a_shoot_says_it_for_all_its_takes(tmp_path: Path) -> None:
-    """A camera that stands sees the same wall in every take; a take may see nothing of it."""
     shoot = write_shoot(tmp_path / "shoot", takes=2, frames=3)
     file = shoot / "shoot.json"
     write_json(file, {**json.loads(file.read_text(encoding="utf-8")), "ignored_regions": [BOX]})
@@ -80,7 +77,6 @@ def test_a_shoot_says_it_for_all_its_takes(tmp_path: Path) -> None:
 
 
 def test_a_marker_under_an_ignored_region_is_not_seen(folder: Path) -> None:
-    """The whole way from the file to the tracks."""
     plain = run(read_footage(read_take(folder))).tracks
     center = plain.centroid[0, 0]
     left, top = (center - 1.0).tolist()
@@ -126,7 +122,6 @@ def test_a_marker_under_an_ignored_region_is_not_seen(folder: Path) -> None:
     ],
 )
 def test_a_mistake_is_one_sentence(folder: Path, value: Any, sentence: str) -> None:
-    """File, field, value and what would be valid."""
     with pytest.raises(InputError, match=sentence) as error:
         read_take(ignoring(folder, value))
     assert "\n" not in str(error.value) and "take.json" in str(error.value)
