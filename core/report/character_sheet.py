@@ -11,7 +11,6 @@ from .mannequin import CharacterFigure, draw_character
 from .overlay_sheet import FOOT, GAP, MARGIN, TITLE, Cell, frame_label
 from .stick_figure import square_of, squares_around
 
-PICTURE = "character.png"
 SIDE = 220
 PAPER = (250, 249, 248)
 ROWS = ("footage", "camera", "side")

@@ -12,6 +12,7 @@ from ..evidence.contours import ContourModel
 from ..footage.camera import Camera
 from ..footage.clips.clip import Clip
 from ..footage.region_tracks import RegionTracks
+from ..pipeline.result import PICTURES
 from ..review.compared_keypoints import ComparedKeypoints
 from ..take.motion import Motion
 from ..take.take import Take
@@ -83,12 +84,6 @@ def _floor_height(motion: Motion) -> float:
     return 0.0 if abs(lowest) < FLOOR_WITHIN_M else lowest
 
 
-OVERLAY, SIDE = "overlay.png", "side.png"
-PICTURES = (OVERLAY, SIDE)
-EARLIER_PICTURES = ("speed.png", "front.png", "top.png", "matches.png", "strip.jpg")
-"""Pictures of 0.1.0, which a conversion into the same folder removes."""
-
-
 def write_pictures(
     folder: Path,
     take: Take,
@@ -103,6 +98,6 @@ def write_pictures(
     shown = footage_frames(Clip.open(take.clip, fps=take.fps), frames)
     if not shown:
         raise InputError(f"{take.clip}: can no longer be read; the pictures need it once more")
-    write_png(str(folder / OVERLAY), overlay_sheet(take, motion, tracks, shown, keypoints, contours))
-    write_png(str(folder / SIDE), side_sheet(motion, take.camera, frames))
+    write_png(str(folder / PICTURES[0]), overlay_sheet(take, motion, tracks, shown, keypoints, contours))
+    write_png(str(folder / PICTURES[1]), side_sheet(motion, take.camera, frames))
     return tuple(folder / name for name in PICTURES)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ....core.errors import ConversionError
 from ....core.estimate.reconstruct import reconstruct
+from ....core.pipeline.result import BLEND, CHARACTER_BLEND, REPORT
 from ....core.progress import run
 from ....core.review.score import Score, read_truth, score_points
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings, ConversionSettings
@@ -18,9 +19,7 @@ from ....core.take.examples import AEROBIC, POSED_BY_HAND, example_folder
 from ....core.take.motion import Motion
 from ....core.take.take import Take
 from ..console import arguments_console
-from ..conversion.blender_files import BLEND
-from ..conversion.character_result import CHARACTER_BLEND
-from ..conversion.convert_take import REPORT, convert_take
+from ..conversion.convert_take import convert_take
 from ..parser import Command, require_blender
 from .convert import conversion_summary
 

@@ -7,6 +7,16 @@ from ....core.errors import ConversionError, InputError
 from ....core.files.fields import listed
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import absolute_path, real_path
+from ....core.pipeline.result import (
+    AS_MADE,
+    BLEND,
+    CHARACTER_BLEND,
+    CHARACTER_PICTURE,
+    MOTION,
+    changed_files,
+    kept_note,
+    write_made_digests,
+)
 from ....core.retarget.retarget_record import RECORD_FILE, RetargetRecord, read_retarget_record
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.conversion_settings import (
@@ -17,9 +27,8 @@ from ....core.take.conversion_settings import (
 )
 from ....core.take.motion import read_motion
 from ..console import Console, arguments_console
-from ..conversion.blender_files import BLEND, refuse_unsupported_output
-from ..conversion.character_result import CHARACTER_BLEND, CHARACTER_PICTURE, EXPORTS, write_character_result
-from ..conversion.convert_take import AS_MADE, MOTION, changed_files, kept_note, write_made_digests
+from ..conversion.blender_files import refuse_unsupported_output
+from ..conversion.character_result import EXPORTS, write_character_result
 from ..options import CHARACTER_HELP, MAP_HELP, add_retarget_options
 from ..parser import Command, UsageError, require_blender
 

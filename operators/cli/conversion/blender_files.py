@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ....core.errors import InputError
 from ....core.files.paths import real_path
+from ....core.pipeline.result import BLEND, BVH
 from ....core.take.description import Description
 from ....core.take.motion import Motion
 from ....core.take.take import Take
@@ -67,9 +68,6 @@ def _check(path: Path, reserved_bytes: int) -> None:
             f"{path}: the whole path has {length} bytes; Blender can work with one of up to "
             f"{LONGEST_BYTES - reserved_bytes}, so move it nearer to the root"
         )
-
-
-BLEND, BVH = "motion.blend", "motion.bvh"
 
 
 def write_blender_files(take: Take, motion: Motion, staging_folder: Path, output: Path, debug: bool) -> str:

@@ -14,9 +14,9 @@ from ....core.errors import InputError, KeymarkError, describe_unexpected
 from ....core.files.digest import content_digest
 from ....core.files.paths import regular_file_size
 from ....core.finish.natural_extremities import natural_extremities
+from ....core.pipeline.result import CHARACTER_BLEND, CHARACTER_PICTURE
 from ....core.progress import Job, run
 from ....core.report.canvas import write_png
-from ....core.report.character_sheet import PICTURE
 from ....core.retarget.character import LIMBS, Character
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.maps.map_registry import ChosenMap, choose_map, map_digests
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from ...bridge.character.retarget import Retargeted
 
 
-CHARACTER_BLEND = "character.blend"
-CHARACTER_PICTURE = f"report/{PICTURE}"
 EXPORTS = {"bvh": ("BVH", "character.bvh"), "fbx": ("FBX", "character.fbx")}
 EXPORTS |= {"glb": ("GLTF", "character.glb"), "usd": ("USD", "character.usdc")}
 """By the word for it: the format of `bridge/export_formats`, and the file."""

@@ -17,7 +17,7 @@ from _command_line import one_line, tree
 from _synthetic_take import SIZE, write_json, write_synthetic_take
 from keymark.core.errors import ConversionError
 from keymark.core.estimate.reconstruct import METHODS
-from keymark.core.report.pictures import EARLIER_PICTURES
+from keymark.core.pipeline.result import EARLIER_PICTURES, RESULT_FILES
 from keymark.core.take.motion import read_motion
 from keymark.operators.cli import parser as usage
 from keymark.operators.cli.commands import SUMMARIES
@@ -124,7 +124,7 @@ def test_a_conversion_writes_its_files_and_says_so(
     said = capsys.readouterr()
     assert said.err == ""
     earlier = {f"report/{name}" for name in EARLIER_PICTURES}
-    for name in set(convert_take.RESULT_FILES) - {*earlier, *CHARACTER_FILES}:
+    for name in set(RESULT_FILES) - {*earlier, *CHARACTER_FILES}:
         assert (out / name).is_file() and str(out / name) in said.out
     motion = read_motion(out / "motion.json")
     assert len(motion.points) == FRAMES and motion.method == "interpolation"

@@ -11,6 +11,7 @@ from _synthetic_take import BODY, CAMERA, SIZE, true_postures, write_synthetic_t
 from keymark.core.evidence.contours import ContourModel
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.pipeline.result import PICTURES
 from keymark.core.report.canvas import INK, LEFT, RIGHT, Canvas, write_png
 from keymark.core.report.overlay_sheet import (
     CELL_WIDTH,
@@ -20,7 +21,7 @@ from keymark.core.report.overlay_sheet import (
     evenly_spaced_frames,
     overlay_sheet,
 )
-from keymark.core.report.pictures import PICTURES, side_sheet, write_pictures
+from keymark.core.report.pictures import side_sheet, write_pictures
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
