@@ -24,8 +24,13 @@ def version() -> str:
     return str(manifest["version"])
 
 
-def no_arguments(_parser: argparse.ArgumentParser) -> None:
-    """The arguments of a command that has none of its own."""
+Argument = tuple[tuple[str, ...], dict[str, Any]]
+"""The names and the settings of an argument."""
+
+
+def argument(*names: str, **settings: Any) -> Argument:
+    """An argument of a command, as `ArgumentParser.add_argument` takes it."""
+    return names, settings
 
 
 @dataclass(frozen=True)
@@ -36,7 +41,8 @@ class Command:
     description: str
     """What the command's own help begins with."""
     run: Callable[[argparse.Namespace], None]
-    add_arguments: Callable[[argparse.ArgumentParser], None] = no_arguments
+    arguments: Sequence[Argument] = ()
+    """Beside those that every command has."""
     summary: str = ""
     """Half a line for the list of a group; those of the other commands are in `commands/__init__.py`."""
 
@@ -167,7 +173,8 @@ def _add_command(added: Any, command: Command | CommandGroup, summary: str, prog
     one.add_argument("--quiet", "-q", action="store_true", help="write nothing but errors")
     one.add_argument("--json", action="store_true", help="write one JSON object instead of text")
     one.add_argument("--debug", action="store_true", help="on errors, show where in the program")
-    command.add_arguments(one)
+    for names, settings in command.arguments:
+        one.add_argument(*names, **settings)
     one.set_defaults(run=command.run)
 
 

@@ -28,10 +28,14 @@ from ....core.shoot.outcomes import (
 from ....core.take.conversion_record import RECORD_FILE as RECORD
 from ....core.take.conversion_record import ConversionRecord, find_record
 from ..console import Console, terminal_columns, wrapped
-from .batch_progress import BatchProgress
 from .worker_process import FAILED, Done, Job, Step
 
 LINES, PAGE = "summary.jsonl", "summary.html"
+RECORDED = (
+    *("notes", "confidence", "weakest", "weak_frames", "frames", "frame_start", "fps"),
+    *("method", "library", "keyframes", "matched", "doubtful"),
+)
+"""Fields of a take's record that its line of the summary has."""
 
 
 def write_summary(output: Path, shoot: Shoot, outcomes: Sequence[Outcome]) -> tuple[Path, ...]:
@@ -40,9 +44,11 @@ def write_summary(output: Path, shoot: Shoot, outcomes: Sequence[Outcome]) -> tu
     # ASCII: no letter of a name can be taken for the end of a line, or be refused by a disk or a terminal.
     lines = "".join(f"{json.dumps(summary_line(outcome, output), allow_nan=False)}\n" for outcome in ordered)
     page = summary_page(absolute_path(shoot.path).name, ordered, output)
-    for name, text in ((LINES, lines), (PAGE, page)):
-        write_atomically(output / name, lambda staged, text=text: _write(staged, text))
-    return (output / LINES, output / PAGE)
+    files = (output / LINES, output / PAGE)
+    for file, text in zip(files, (lines, page), strict=True):
+        content = text.encode()
+        write_atomically(file, lambda staged, content=content: staged.write_bytes(content))
+    return files
 
 
 def summary_line(outcome: Outcome, output: Path) -> dict[str, Any]:
@@ -54,9 +60,7 @@ def summary_line(outcome: Outcome, output: Path) -> dict[str, Any]:
         "seconds": None if outcome.seconds is None else round(outcome.seconds, 3),
     }
     record = current_record(outcome)
-    for name in ("notes", "confidence", "weakest", "weak_frames", "frames", "frame_start", "fps"):
-        fields[name] = None if record is None else getattr(record, name)
-    for name in ("method", "library", "keyframes", "matched", "doubtful"):
+    for name in RECORDED:
         fields[name] = None if record is None else getattr(record, name)
     evidence = None if record is None else record.evidence
     fields["evidence"] = None if evidence is None else evidence.to_json()
@@ -65,8 +69,41 @@ def summary_line(outcome: Outcome, output: Path) -> dict[str, Any]:
     return {**fields, "files": [name if path == "." else f"{path}/{name}" for name in names]}
 
 
-def _write(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8", newline="\n")
+class BatchProgress:
+    """The share of all work that is done, updated take by take."""
+
+    def __init__(self, frames: Sequence[int | None]) -> None:
+        """Begin with nothing done; a take of unknown length, None, counts as the mean of those known."""
+        self._frames = list(frames)
+        self._done = [0.0] * len(self._frames)
+        self._known, self._known_frames, self._done_frames, self._done_others = 0, 0.0, 0.0, 0.0
+        for index in range(len(self._frames)):
+            self._count(index, 1)
+
+    def update(self, index: int, fraction: float, frames: int | None = None) -> None:
+        """Set how much of a take is done, 0 to 1, and its length where that has become known."""
+        self._count(index, -1)
+        self._done[index] = fraction
+        self._frames[index] = self._frames[index] or frames
+        self._count(index, 1)
+
+    @property
+    def fraction(self) -> float:
+        """The share of the whole batch, from 0 to 1."""
+        if not self._frames:
+            return 1.0
+        mean_frames = self._known_frames / self._known if self._known else 1.0
+        whole = self._known_frames + mean_frames * (len(self._frames) - self._known)
+        return min(max((self._done_frames + mean_frames * self._done_others) / whole, 0.0), 1.0)
+
+    def _count(self, index: int, times: int) -> None:
+        frames, done = self._frames[index], self._done[index]
+        if frames is None:
+            self._done_others += times * done
+        else:
+            self._known += times
+            self._known_frames += times * frames
+            self._done_frames += times * frames * done
 
 
 SHORTEST_SUMMARY_INTERVAL_S = 5.0
@@ -121,7 +158,10 @@ class BatchOutcomes:
         name, record = job.take.name, find_record(job.folder)
         self._progress.update(self._indices[name], 1.0, _frame_count(record))
         if done.result == FAILED:
-            self._write_failure(Failure(name, done.error or "failed", done.kind or CONVERSION))
+            try:
+                write_failure(self.output, Failure(name, done.error or "failed", done.kind or CONVERSION))
+            except KeymarkError as error:
+                self._note_write_error(str(error))
         else:
             remove_failure(self.output, name)
         outcome = Outcome(name, job.folder, Status(done.result), record, done.error, done.seconds)
@@ -141,7 +181,11 @@ class BatchOutcomes:
             # Another machine may have finished, and written its own summary, while this one was written:
             # without a second look the summary that stays would lack the last take of that machine.
             after = self._other_outcomes()
-            if all(_compared(after[name]) == _compared(others[name]) for name in others):
+            if all(
+                (after[name].status, after[name].error, after[name].record)
+                == (was.status, was.error, was.record)
+                for name, was in others.items()
+            ):
                 return
 
     def _other_outcomes(self) -> dict[str, Outcome]:
@@ -208,19 +252,9 @@ class BatchOutcomes:
         words = f"{count - self._counts[Status.WAITING]} of {pluralize(count, 'take')}"
         self.console.overall(self._progress.fraction, f"{words}, {failed} failed" if failed else words)
 
-    def _write_failure(self, failure: Failure) -> None:
-        try:
-            write_failure(self.output, failure)
-        except KeymarkError as error:
-            self._note_write_error(str(error))
-
     def _note_write_error(self, sentence: str) -> None:
         if sentence not in self.write_errors:
             self.write_errors.append(sentence)
-
-
-def _compared(outcome: Outcome) -> tuple[Status, str | None, ConversionRecord | None]:
-    return outcome.status, outcome.error, outcome.record
 
 
 def _frame_count(record: ConversionRecord | None) -> int | None:

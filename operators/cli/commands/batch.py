@@ -21,8 +21,8 @@ from ..batch.outcomes import BatchOutcomes
 from ..batch.worker_pool import WorkerPool
 from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, Job, worker_command_line
 from ..console import Console, arguments_console
-from ..options import SHOOT_HELP, add_shoot_options, given_settings
-from ..parser import Command, UsageError, require_blender
+from ..options import SHOOT_HELP, SHOOT_OPTIONS, given_settings, output
+from ..parser import Command, UsageError, argument, require_blender
 
 WORKER_BYTES = 1.5 * 2**30
 """Memory that a worker may need; the default number of jobs leaves each this much."""
@@ -121,42 +121,6 @@ def _worker_count(requested: int | None) -> int:
     return max(1, min(processor_count(), fitting_memory))
 
 
-def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("shoot", metavar="SHOOT", type=Path, help=SHOOT_HELP)
-    parser.add_argument(
-        "--output", "-o", metavar="DIR", type=Path, required=True, help="folder for all results, new or old"
-    )
-    parser.add_argument(
-        "--jobs",
-        "-j",
-        metavar="N",
-        type=int,
-        help="convert N takes at a time, each in a process of its own; by default one for each processor, at "
-        "most one for each 1.5 GB of memory",
-    )
-    parser.add_argument(
-        "--part",
-        metavar="K/N",
-        help="convert the K-th of N shares of the takes only, as one of N machines",
-    )
-    parser.add_argument(
-        "--take",
-        metavar="NAME",
-        action="append",
-        help="convert this take only, named by its way from SHOOT; may be given several times",
-    )
-    parser.add_argument("--again", action="store_true", help="convert takes anew that are converted already")
-    add_shoot_options(parser)
-    parser.add_argument("--no-report", action="store_true", help="draw no pictures of takes")
-    parser.add_argument(
-        "--failed-takes",
-        choices=("fail", "pass"),
-        default="fail",
-        help="what the exit status says where takes have failed: 1 with fail, 0 with pass, so that a farm "
-        "goes on to the tasks that wait for this one; merge then names them (default: %(default)s)",
-    )
-
-
 BATCH = Command(
     name="batch",
     description=(
@@ -166,6 +130,38 @@ BATCH = Command(
         "shows what came out. Exit status: 0 all takes are converted, 1 some failed, 2 the shoot is "
         "unusable, 130 interrupted."
     ),
-    add_arguments=_add_arguments,
+    arguments=(
+        argument("shoot", metavar="SHOOT", type=Path, help=SHOOT_HELP),
+        *output("DIR", "folder for all results, new or old"),
+        argument(
+            "--jobs",
+            "-j",
+            metavar="N",
+            type=int,
+            help="convert N takes at a time, each in a process of its own; by default one for each "
+            "processor, at most one for each 1.5 GB of memory",
+        ),
+        argument(
+            "--part",
+            metavar="K/N",
+            help="convert the K-th of N shares of the takes only, as one of N machines",
+        ),
+        argument(
+            "--take",
+            metavar="NAME",
+            action="append",
+            help="convert this take only, named by its way from SHOOT; may be given several times",
+        ),
+        argument("--again", action="store_true", help="convert takes anew that are converted already"),
+        *SHOOT_OPTIONS,
+        argument("--no-report", action="store_true", help="draw no pictures of takes"),
+        argument(
+            "--failed-takes",
+            choices=("fail", "pass"),
+            default="fail",
+            help="what the exit status says where takes have failed: 1 with fail, 0 with pass, so that a "
+            "farm goes on to the tasks that wait for this one; merge then names them (default: %(default)s)",
+        ),
+    ),
     run=batch_command,
 )

@@ -19,8 +19,8 @@ from ....core.take.evidence import KEYPOINTS
 from ..console import arguments_console, terminal_columns, wrapped
 from ..conversion.character_result import CharacterChecks
 from ..library_search_path import requested_libraries
-from ..options import SHOOT_HELP, add_shoot_options, given_settings
-from ..parser import Command, UsageError
+from ..options import SHOOT_HELP, SHOOT_OPTIONS, given_settings
+from ..parser import Command, UsageError, argument
 
 MOST_JOBS = 64
 STAGE = "Looking at the takes"
@@ -138,15 +138,16 @@ def _evidence_lines(checks: Sequence[TakeCheck]) -> list[str]:
 
 
 def _words(kinds: Sequence[str]) -> str:
-    names = [kind.replace("_", " ") for kind in kinds]
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+    *names, last = (kind.replace("_", " ") for kind in kinds)
+    return f"{', '.join(names)} and {last}" if names else last
 
 
 def _table(
     shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str], columns: int | None
 ) -> list[str]:
-    names = [_name(shoot, check) for check in checks]
-    markers = _common_markers(checks)
+    folder = absolute_path(shoot.folder).name
+    names = [folder if check.name == "." else check.name for check in checks]
+    markers = list(dict.fromkeys(readout.name for check in checks for readout in check.markers))
     keypoints = (KEYPOINTS,) if any(check.keypoints for check in checks) else ()
     titles = ("", "take", "frames", "size", "rate", "keyframes", *keypoints, *markers)
     rows = [
@@ -204,10 +205,6 @@ def _aligned(cells: Sequence[str], widths: Sequence[int]) -> list[str]:
     return [SEPARATOR.join([words, f"{name:{widths[1]}}", *numbers]).rstrip()]
 
 
-def _common_markers(checks: Sequence[TakeCheck]) -> list[str]:
-    return list(dict.fromkeys(readout.name for check in checks for readout in check.markers))
-
-
 def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
     """Sentences that several takes share, with the takes: an error in a shoot's description is one error."""
     found: dict[str, list[str]] = {}
@@ -240,10 +237,6 @@ def _time(seconds: float) -> str:
 
 def _size(size_bytes: int) -> str:
     return f"{size_bytes / 1e6:.0f} MB" if size_bytes < 1e9 else f"{size_bytes / 1e9:.1f} GB"
-
-
-def _name(shoot: Shoot, check: TakeCheck) -> str:
-    return absolute_path(shoot.folder).name if check.name == "." else check.name
 
 
 def _status(check: TakeCheck) -> str:
@@ -287,12 +280,6 @@ def _take(check: TakeCheck) -> dict[str, Any]:
     }
 
 
-def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("shoot", metavar="SHOOT", type=Path, help=f"{SHOOT_HELP}, or one take")
-    parser.add_argument("--jobs", "-j", metavar="N", type=int, help="look at N takes at a time")
-    add_shoot_options(parser)
-
-
 CHECK = Command(
     name="check",
     description=(
@@ -300,6 +287,10 @@ CHECK = Command(
         "it would convert, what it would be held against, how well its markers and keypoints are seen, and "
         "what is likely to go wrong. Nothing is written."
     ),
-    add_arguments=_add_arguments,
+    arguments=(
+        argument("shoot", metavar="SHOOT", type=Path, help=f"{SHOOT_HELP}, or one take"),
+        argument("--jobs", "-j", metavar="N", type=int, help="look at N takes at a time"),
+        *SHOOT_OPTIONS,
+    ),
     run=check_command,
 )

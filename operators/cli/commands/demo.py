@@ -20,7 +20,7 @@ from ....core.take.motion import Motion
 from ....core.take.take import Take
 from ..console import arguments_console
 from ..conversion.convert_take import convert_take
-from ..parser import Command, require_blender
+from ..parser import Command, argument, require_blender
 from .convert import conversion_summary
 
 MARKED = (MARKERS, CONTOURS)
@@ -130,23 +130,21 @@ def write_demo_character(file: Path) -> None:
         raise ConversionError(f"{file}: Rigify's human cannot be generated ({said[-1]})")
 
 
-def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--output",
-        "-o",
-        metavar="DIR",
-        type=Path,
-        default=Path("keymark_demo"),
-        help="folder for the result (default: %(default)s)",
-    )
-
-
 DEMO = Command(
     name="demo",
     description=(
         "Converts the take that comes with Keymark, whose true motion is known, and prints how far each "
         "method is from it."
     ),
-    add_arguments=_add_arguments,
+    arguments=(
+        argument(
+            "--output",
+            "-o",
+            metavar="DIR",
+            type=Path,
+            default=Path("keymark_demo"),
+            help="folder for the result (default: %(default)s)",
+        ),
+    ),
     run=demo_command,
 )

@@ -21,43 +21,8 @@ from ....core.take.clip_check import LONGEST_FRAMES, open_footage
 from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, Description, find_shoot_files, sidecar_file
 from ....core.take.take_file import FRAME_RATE, FRAME_START
 from ..console import Console, arguments_console
-from ..parser import Command, UsageError, refuse_existing
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the clips, and where their keypoints go."""
-    parser.add_argument(
-        "target",
-        metavar="CLIP|TAKE|SHOOT",
-        type=Path,
-        help="a clip, a take, a folder of takes, or a list of them (JSON Lines, .jsonl)",
-    )
-    parser.add_argument(
-        "--output",
-        "-o",
-        metavar="FILE",
-        type=Path,
-        help="keypoint file of a single clip or take; by default keypoints.json in the take, or "
-        "NAME.keypoints.json beside the clip",
-    )
-    parser.add_argument("--replace", action="store_true", help="replace keypoint files that are there")
-
-
-def run_detect(arguments: argparse.Namespace) -> None:
-    """Detect the keypoints."""
-    detect_command(arguments)
-
-
-DETECT = Command(
-    name="detect",
-    description=(
-        "Finds 33 points of everybody in every frame, with a guess of their depth, by the network that comes "
-        "with Keymark, and keeps them beside the clip, where converting uses them."
-    ),
-    add_arguments=add_arguments,
-    run=run_detect,
-)
-
+from ..options import output
+from ..parser import Command, UsageError, argument, refuse_existing
 
 MOST_NAMED = 5
 
@@ -225,3 +190,28 @@ def _keypoint_file(description: Description) -> Path:
     """The file that a take's keypoints go into: the one that it names, or that of the usual name."""
     named = description.settings.keypoints or ()
     return named[0] if len(named) == 1 else description.file_called(Path(KEYPOINT_FILE))
+
+
+DETECT = Command(
+    name="detect",
+    description=(
+        "Finds 33 points of everybody in every frame, with a guess of their depth, by the network that comes "
+        "with Keymark, and keeps them beside the clip, where converting uses them."
+    ),
+    arguments=(
+        argument(
+            "target",
+            metavar="CLIP|TAKE|SHOOT",
+            type=Path,
+            help="a clip, a take, a folder of takes, or a list of them (JSON Lines, .jsonl)",
+        ),
+        *output(
+            "FILE",
+            "keypoint file of a single clip or take; by default keypoints.json in the take, or "
+            "NAME.keypoints.json beside the clip",
+            required=False,
+            replace="replace keypoint files that are there",
+        ),
+    ),
+    run=detect_command,
+)

@@ -14,7 +14,8 @@ from ....core.prior.texts import LONGEST_NAME, checked_identifier, identifier_fr
 from ..blender_silence import blender_silence
 from ..console import Console, arguments_console
 from ..library_search_path import library_folders
-from ..parser import Command, CommandGroup, UsageError, refuse_existing, require_blender
+from ..options import REPLACE_HELP, output
+from ..parser import Command, CommandGroup, UsageError, argument, refuse_existing, require_blender
 
 LIBRARY_HELP = "name or file of a library"
 
@@ -62,7 +63,7 @@ def library_lines(library: Library) -> list[str]:
 
 
 def _motion_line(motion: LibraryMotion) -> str:
-    kind = "again and again, " if motion.cyclic else ""
+    kind = "again and again, " * motion.cyclic
     x, y, _ = motion.travel
     distance_m = (x * x + y * y) ** 0.5
     travel = f", {distance_m:.2f} m on" if distance_m >= 0.01 else ""
@@ -184,12 +185,10 @@ def learn_command(arguments: argparse.Namespace) -> None:
     with arguments_console(arguments) as console:
         console.stage("Reading the motion")
         motion = read_motion(arguments.motion)
-        about = LibraryMetadata(
-            title=arguments.title,
-            author=arguments.author,
-            license=arguments.license,
-            identifier=arguments.identifier or "",
-        )
+        given = {
+            name: getattr(arguments, name) or "" for name in ("title", "author", "license", "identifier")
+        }
+        about = LibraryMetadata(**given)
         console.stage("Choosing postures")
         library = learn_library(motion.body, motion.posture, motion.time_s, about, arguments.count)
         write_new_library(console, arguments, library)
@@ -197,29 +196,25 @@ def learn_command(arguments: argparse.Namespace) -> None:
 
 def merge_command(arguments: argparse.Namespace) -> None:
     """Make one library of two."""
-    from ....core.prior.merging import join_libraries
+    from ....core.prior.merging import differing_names, join_libraries, merge_versions
 
     refuse_existing(arguments.output, arguments.replace)
     with arguments_console(arguments) as console:
         folders = library_folders()
         first, second = (find_library(name, folders) for name in (arguments.library, arguments.other))
         if first.identifier == second.identifier:
-            library = _merge_versions(first, second, arguments.conflicts)
+            conflicts, changed = arguments.conflicts, differing_names(first, second)
+            if changed and conflicts is None:
+                names = listed(map(repr, changed), 5)
+                raise UsageError(
+                    f"both versions of {first.identifier} have {names}, and differ; add --conflicts"
+                )
+            library = merge_versions(first, second, None if conflicts is None else conflicts == "replace")
         else:
             title = arguments.title or f"{first.title} and {second.title}"[:LONGEST_NAME].strip()
             identifier = arguments.identifier or identifier_from(title, [first.identifier, second.identifier])
             library = join_libraries(first, second, identifier, title)
         write_new_library(console, arguments, library)
-
-
-def _merge_versions(first: Library, second: Library, conflicts: str | None) -> Library:
-    from ....core.prior.merging import differing_names, merge_versions
-
-    changed = differing_names(first, second)
-    if changed and conflicts is None:
-        names = listed(map(repr, changed), 5)
-        raise UsageError(f"both versions of {first.identifier} have {names}, and differ; add --conflicts")
-    return merge_versions(first, second, None if conflicts is None else conflicts == "replace")
 
 
 def mirror_command(arguments: argparse.Namespace) -> None:
@@ -239,18 +234,8 @@ def mirror_command(arguments: argparse.Namespace) -> None:
         write_new_library(console, arguments, both)
 
 
-def _add_library(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("library", metavar="LIBRARY", help=LIBRARY_HELP)
-
-
-def _add_output(parser: argparse.ArgumentParser, metavar: str, text: str) -> None:
-    parser.add_argument("--output", "-o", metavar=metavar, type=Path, required=True, help=text)
-    parser.add_argument("--replace", action="store_true", help="replace what is there already")
-
-
-def _add_library_file(parser: argparse.ArgumentParser) -> None:
-    _add_output(parser, "FILE", "the new library file")
-
+LIBRARY_NAME = argument("library", metavar="LIBRARY", help=LIBRARY_HELP)
+LIBRARY_FILE = output("FILE", "the new library file", replace=REPLACE_HELP)
 
 LIST = Command(
     name="list",
@@ -260,22 +245,16 @@ LIST = Command(
 )
 
 
-def _add_show(parser: argparse.ArgumentParser) -> None:
-    _add_library(parser)
-    parser.add_argument("--sheet", metavar="FILE", type=Path, help="draw all its postures there, a PNG")
-
-
 SHOW = Command(
     name="show",
     summary="say what a library holds",
     description="Says what a library holds, and draws it.",
-    add_arguments=_add_show,
+    arguments=(
+        LIBRARY_NAME,
+        argument("--sheet", metavar="FILE", type=Path, help="draw all its postures there, a PNG"),
+    ),
     run=show_command,
 )
-
-
-def _add_check(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("files", metavar="FILE", type=Path, nargs="+", help="library files")
 
 
 CHECK = Command(
@@ -284,27 +263,9 @@ CHECK = Command(
     description=(
         "Reads library files as strictly as Keymark always does and says what is wrong with each that is."
     ),
-    add_arguments=_add_check,
+    arguments=(argument("files", metavar="FILE", type=Path, nargs="+", help="library files"),),
     run=check_command,
 )
-
-
-def _add_merge(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "library", metavar="A", help=f"{LIBRARY_HELP}, which gives title, author and proportions"
-    )
-    parser.add_argument("other", metavar="B", help=LIBRARY_HELP)
-    parser.add_argument(
-        "--conflicts",
-        choices=("keep", "replace"),
-        help="of two versions: what of A has changed in B is kept, or replaced; by default they are named "
-        "and nothing is written",
-    )
-    parser.add_argument("--title", metavar="TEXT", help="of the new library; by default that of both")
-    parser.add_argument(
-        "--identifier", metavar="NAME", help="of the new library; by default made of the title"
-    )
-    _add_library_file(parser)
 
 
 MERGE = Command(
@@ -315,17 +276,21 @@ MERGE = Command(
         "versions of one library are merged by name; different libraries become a new one, in which "
         "postures of the same name get a number."
     ),
-    add_arguments=_add_merge,
+    arguments=(
+        argument("library", metavar="A", help=f"{LIBRARY_HELP}, which gives title, author and proportions"),
+        argument("other", metavar="B", help=LIBRARY_HELP),
+        argument(
+            "--conflicts",
+            choices=("keep", "replace"),
+            help="of two versions: what of A has changed in B is kept, or replaced; by default they are "
+            "named and nothing is written",
+        ),
+        argument("--title", metavar="TEXT", help="of the new library; by default that of both"),
+        argument("--identifier", metavar="NAME", help="of the new library; by default made of the title"),
+        *LIBRARY_FILE,
+    ),
     run=merge_command,
 )
-
-
-def _add_mirror(parser: argparse.ArgumentParser) -> None:
-    _add_library(parser)
-    parser.add_argument(
-        "--both", action="store_true", help="add the mirrored postures and motions that the library lacks"
-    )
-    _add_library_file(parser)
 
 
 MIRROR = Command(
@@ -335,30 +300,15 @@ MIRROR = Command(
         "Writes a library with left and right exchanged in every posture and motion. Matching does so by "
         "itself; it is for posing."
     ),
-    add_arguments=_add_mirror,
+    arguments=(
+        LIBRARY_NAME,
+        argument(
+            "--both", action="store_true", help="add the mirrored postures and motions that the library lacks"
+        ),
+        *LIBRARY_FILE,
+    ),
     run=mirror_command,
 )
-
-
-def _add_learn(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("motion", metavar="MOTION", type=Path, help="motion.json, as convert writes it")
-    parser.add_argument("--title", metavar="TEXT", required=True, help="what people read")
-    parser.add_argument(
-        "--author", metavar="TEXT", default="Unknown", help="who made it (default: %(default)s)"
-    )
-    parser.add_argument(
-        "--license",
-        metavar="SPDX",
-        default="LicenseRef-Proprietary",
-        help="what others may do with it, as in CC0-1.0 (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--identifier", metavar="NAME", help="what it is known by; by default made of the title"
-    )
-    parser.add_argument(
-        "--count", metavar="N", type=int, help="postures; by default 10 to 40, as many as differ"
-    )
-    _add_library_file(parser)
 
 
 LEARN = Command(
@@ -368,14 +318,22 @@ LEARN = Command(
         "Makes a library of a motion's postures at spread-out, distinct frames, so that the next take of the "
         "same kind needs fewer keyframes or none. A motion that repeats itself becomes one average cycle."
     ),
-    add_arguments=_add_learn,
+    arguments=(
+        argument("motion", metavar="MOTION", type=Path, help="motion.json, as convert writes it"),
+        argument("--title", metavar="TEXT", required=True, help="what people read"),
+        argument("--author", metavar="TEXT", default="Unknown", help="who made it (default: %(default)s)"),
+        argument(
+            "--license",
+            metavar="SPDX",
+            default="LicenseRef-Proprietary",
+            help="what others may do with it, as in CC0-1.0 (default: %(default)s)",
+        ),
+        argument("--identifier", metavar="NAME", help="what it is known by; by default made of the title"),
+        argument("--count", metavar="N", type=int, help="postures; by default 10 to 40, as many as differ"),
+        *LIBRARY_FILE,
+    ),
     run=learn_command,
 )
-
-
-def _add_blend(parser: argparse.ArgumentParser) -> None:
-    _add_library(parser)
-    _add_output(parser, "DIR", "folder of the assets")
 
 
 BLEND = Command(
@@ -385,22 +343,23 @@ BLEND = Command(
         "Writes a folder to add to Blender's asset libraries: a .blend with a pose asset for each posture, "
         "and the catalog. Needs Blender."
     ),
-    add_arguments=_add_blend,
+    arguments=(
+        LIBRARY_NAME,
+        *output("DIR", "folder of the assets", replace=REPLACE_HELP),
+    ),
     run=blend_command,
 )
-
-
-def _add_read(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE.blend", type=Path, help="a .blend that Keymark wrote")
-    parser.add_argument("--identifier", metavar="NAME", help="which library, where the .blend holds several")
-    _add_library_file(parser)
 
 
 READ = Command(
     name="read",
     summary="read a library from Blender pose assets",
     description="Writes as a library file what `blend` wrote, or what was posed since. Needs Blender.",
-    add_arguments=_add_read,
+    arguments=(
+        argument("file", metavar="FILE.blend", type=Path, help="a .blend that Keymark wrote"),
+        argument("--identifier", metavar="NAME", help="which library, where the .blend holds several"),
+        *LIBRARY_FILE,
+    ),
     run=read_command,
 )
 

@@ -12,7 +12,8 @@ from ....core.shoot.discovery import find_takes
 from ....core.shoot.template import ClipSurvey, clip_lines, evidence_lines, shoot_template, survey_clips
 from ....core.take.description import SHOOT_FILE, find_shoot_files
 from ..console import arguments_console
-from ..parser import Command, program_name
+from ..options import output
+from ..parser import Command, argument, program_name
 
 
 def new_command(arguments: argparse.Namespace) -> None:
@@ -76,13 +77,6 @@ def _text(folder: Path, survey: ClipSurvey, output: Path, todo: Sequence[str]) -
     return "\n".join([*lines, f"Then run: {program_name()} check {folder}"])
 
 
-def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("shoot", metavar="SHOOT", type=Path, help="folder of clips")
-    parser.add_argument(
-        "--output", "-o", metavar="FILE", type=Path, help="where to write; by default SHOOT/shoot.json"
-    )
-
-
 NEW = Command(
     name="new",
     description=(
@@ -90,6 +84,9 @@ NEW = Command(
         "and comments on what a person must say, once for all clips: camera, actor, and markers if any. It "
         "also says what each clip's motion can be held against."
     ),
-    add_arguments=_add_arguments,
+    arguments=(
+        argument("shoot", metavar="SHOOT", type=Path, help="folder of clips"),
+        *output("FILE", "where to write; by default SHOOT/shoot.json", required=False),
+    ),
     run=new_command,
 )

@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 from keymark.core.shoot.outcomes import read_failure
 from keymark.operators.cli.batch import worker_pool
-from keymark.operators.cli.batch.batch_progress import BatchProgress
 from keymark.operators.cli.commands import batch as command
 from keymark.operators.cli.main import main
 from keymark.operators.cli.parser import program_name
