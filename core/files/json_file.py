@@ -153,6 +153,10 @@ def write_json(path: Path, value: Any, indent: int | None = None) -> None:
     """
     separators = (",", ":") if indent is None else (",", ": ")
     text = json.dumps(value, indent=indent, separators=separators, allow_nan=False, ensure_ascii=False)
+    _write_text(path, text)
+
+
+def _write_text(path: Path, text: str) -> None:
     write_atomically(path, lambda beside: beside.write_text(text + "\n", encoding="utf-8", newline="\n"))
 
 
@@ -271,13 +275,8 @@ _AXIS = re.compile(r"_[xyz]$")
 
 
 def write_readable_json(path: Path, value: Any) -> None:
-    """Write a value as formatted strict JSON, atomically; the same value always gives the same bytes.
-
-    Raises:
-        ValueError: A number is NaN or infinite.
-    """
-    text = format_json(value) + "\n"
-    write_atomically(path, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
+    """Write a value as formatted strict JSON, atomically; the same value always gives the same bytes."""
+    _write_text(path, format_json(value))
 
 
 def format_json(value: Any, depth: int = 0, before: int = 0) -> str:

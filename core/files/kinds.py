@@ -17,8 +17,6 @@ from .paths import is_control_character
 
 _PLAIN = re.compile(r"[\w.-]{1,60}", re.ASCII)
 """A name that stands in sentences without quotation marks."""
-
-
 LONGEST_PATH, LONGEST_NAME_BYTES = 1000, 255
 """Characters of a path, and bytes of each name in it, as file systems have it."""
 INSIDE = r"^(?![\\/])(?![A-Za-z]:)(?!(.*[\\/])?\.\.([\\/]|$)).*\S"
@@ -313,7 +311,10 @@ def relative_path(valid: str) -> Text:
 
 
 def number_array(value: Any, *, nulls: bool = False) -> Array | None:
-    """Nested lists of numbers as an array."""
+    """Nested lists of numbers as an array; None where they are none, or one is not finite.
+
+    `nulls`: null may stand for a number, and becomes NaN.
+    """
     try:
         items = np.asarray(value, dtype=object)  # as float64, numpy would convert text and truth values
     except ValueError:  # lists of several lengths

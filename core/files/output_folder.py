@@ -7,7 +7,17 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import ConversionError, InputError, KeymarkError
-from .commit import Commit, Moves, clean_up, files_below, recover, roll_back, roll_forward, write_journal
+from .commit import (
+    STAGING,
+    Commit,
+    Moves,
+    clean_up,
+    files_below,
+    recover,
+    roll_back,
+    roll_forward,
+    write_journal,
+)
 from .file_lock import LOCK, file_lock, hidden_prefix
 from .json_file import DISK_ERRORS
 from .paths import real_path
@@ -57,7 +67,7 @@ def output_folder(
         with file_lock(stem.with_name(stem.name + LOCK), busy_message):
             empty = Commit(target, stem, manifest)
             recover(empty)
-            _make_folder(empty.staging_folder)
+            _make_folder(empty.hidden(STAGING))
             entered = True
             yield from _stage_and_commit(empty, own_files, backups)
     except KeymarkError:
@@ -73,8 +83,8 @@ def _stage_and_commit(
 ) -> Iterator[Path]:
     moves: Moves = []
     try:
-        yield empty.staging_folder
-        written = files_below(empty.staging_folder)
+        yield empty.hidden(STAGING)
+        written = files_below(empty.hidden(STAGING))
         if written:
             removed = tuple(sorted(set(own_files) - set(written)))
             commit = Commit(empty.target, empty.stem, empty.manifest, written, removed, dict(backups))

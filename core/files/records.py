@@ -12,7 +12,18 @@ import types
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Annotated, Any, ClassVar, Self, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import (
+    Annotated,
+    Any,
+    ClassVar,
+    NamedTuple,
+    Self,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 from ..errors import InputError
 from .fields import Fields, child_location, listed
@@ -86,8 +97,7 @@ class Object(Kind):
         return value.to_json()
 
 
-@dataclass(frozen=True)
-class Declared:
+class Declared(NamedTuple):
     """A declared field of a record."""
 
     kind: Kind
@@ -143,9 +153,7 @@ def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None,
     if record.VERSION:
         check_version(fields, record.VERSION)
     if strict or record.STRICT:
-        header = [
-            name for name, given in (("schema", record.SCHEMA), ("schema_version", record.VERSION)) if given
-        ]
+        header = ["schema"] * bool(record.SCHEMA) + ["schema_version"] * bool(record.VERSION)
         fields.refuse_others([*header, *known])
     values = {}
     for name, one in known.items():

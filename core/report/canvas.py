@@ -16,6 +16,7 @@ Color = tuple[int, int, int]
 
 WHITE: Color = (255, 255, 255)
 INK: Color = (51, 45, 42)
+PAPER: Color = (250, 249, 248)
 PALE: Color = (226, 222, 219)
 GRAY: Color = (140, 134, 130)
 LEFT: Color = STRONG["L"][::-1]
@@ -81,8 +82,7 @@ class Canvas:
 
     def box(self, left: float, top: float, right: float, bottom: float, color: Color) -> None:
         """Fill a rectangle."""
-        corners = np.array([[left, top], [right, top], [right, bottom], [left, bottom]], dtype=np.float64)
-        cv2.fillConvexPoly(self._pixels, _fixed(corners), color, cv2.LINE_AA, SUBPIXEL_BITS)
+        self.polygon([[left, top], [right, top], [right, bottom], [left, bottom]], color)
 
     def polygon(self, corners: ArrayLike, color: Color) -> None:
         """Fill a convex polygon of corners (N, 2)."""

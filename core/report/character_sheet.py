@@ -6,13 +6,12 @@ import numpy as np
 
 from ..arrays import Array, Image
 from ..footage.camera import Camera
-from .canvas import GRAY, INK, Canvas, ascii_text, draw_grid, side_directions
+from .canvas import GRAY, INK, PAPER, Canvas, ascii_text, draw_grid, side_directions
 from .mannequin import CharacterFigure, draw_character
 from .overlay_sheet import FOOT, GAP, MARGIN, TITLE, Cell, frame_label
 from .stick_figure import square_of, squares_around
 
 SIDE = 220
-PAPER = (250, 249, 248)
 ROWS = ("footage", "camera", "side")
 GRID_M = 0.5
 ROOM = 1.15

@@ -16,7 +16,7 @@ from ..pipeline.result import PICTURES
 from ..review.compared_keypoints import ComparedKeypoints
 from ..take.motion import Motion
 from ..take.take import Take
-from .canvas import SCALE, Canvas, draw_grid, side_directions, write_png
+from .canvas import PAPER, SCALE, Canvas, draw_grid, side_directions, write_png
 from .overlay_sheet import CELL_WIDTH, LABEL, MARGIN, evenly_spaced_frames, frame_label, overlay_sheet, sheet
 from .stick_figure import draw_figure, legend, stick_figure
 
@@ -36,9 +36,8 @@ def _reduced(image: Image) -> Image:
     return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
 
 
-PAPER = (250, 249, 248)
 COLUMNS = 6
-CELL_WIDTH_SIDE_SHEET, CELL_HEIGHT = 220, 240
+SIDE_WIDTH, SIDE_HEIGHT = 220, 240
 LIMB_WIDTH = 4.0
 PADDING_M = 0.1
 GRID_M = 0.5
@@ -53,22 +52,20 @@ def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
     seen = np.concatenate([limb.points for limb in figure.limbs], axis=1) - origin[:, None]
     seen = seen[list(frames)] @ axes[:2].T  # (K, N, 2)
     low, high = min(seen[..., 1].min(), floor), seen[..., 1].max() + figure.head_radius_m
-    free = CELL_HEIGHT - LABEL  # the frame's number must not stand over the feet
+    free = SIDE_HEIGHT - LABEL  # the frame's number must not stand over the feet
     height = high - low + 2.0 * PADDING_M
-    scale = float(min(0.5 * CELL_WIDTH_SIDE_SHEET / (np.abs(seen[..., 0]).max() + PADDING_M), free / height))
+    scale = float(min(0.5 * SIDE_WIDTH / (np.abs(seen[..., 0]).max() + PADDING_M), free / height))
     foot = low - PADDING_M - 0.5 * (free / scale - height)  # height at the label's upper edge
     title = "Side view: the camera is to the left; depth runs to the right"
     footer = f"Parallel projection about the hips; grid of {GRID_M:g} m. Numbers: scene frames."
-    canvas, cells = sheet(title, footer, frames, COLUMNS, CELL_WIDTH_SIDE_SHEET, CELL_HEIGHT)
+    canvas, cells = sheet(title, footer, frames, COLUMNS, SIDE_WIDTH, SIDE_HEIGHT)
     for cell in cells:
         tile = Canvas(cell.width, cell.height, PAPER)
         draw_grid(tile, scale * GRID_M, free - scale * (floor - foot))
 
         def project(points: Array, frame: int = cell.frame) -> tuple[Array, Array]:
             right, upward, away = axes @ (points - origin[frame]).T
-            return np.stack(
-                [0.5 * CELL_WIDTH_SIDE_SHEET + scale * right, free - scale * (upward - foot)], axis=-1
-            ), away
+            return np.stack([0.5 * SIDE_WIDTH + scale * right, free - scale * (upward - foot)], axis=-1), away
 
         draw_figure(tile, figure, cell.frame, project, LIMB_WIDTH, outlined=False)
         canvas.paste(tile.image(), cell.left, cell.top, cell.width, cell.height)

@@ -11,7 +11,7 @@ from ..body.kinematics import segment_ends
 from ..finish.natural_extremities import natural_extremities
 from ..footage.camera import Camera
 from ..take.motion import Motion
-from .canvas import GRAY, INK, LEFT, RIGHT, WHITE, Canvas, Color
+from .canvas import GRAY, INK, LEFT, PALE, PAPER, RIGHT, WHITE, Canvas, Color
 
 Projection = Callable[[Array], tuple[Array, Array]]
 """From world points (N, 3) to canvas points (N, 2) and depths (N,), which grow with the distance."""
@@ -117,8 +117,6 @@ def legend(canvas: Canvas, right: float, y: float) -> None:
         right -= 26.0 + 18.0
 
 
-PAPER = (226, 222, 219)
-"""Color where the square is larger than the picture, or there is none."""
 PADDING = 1.35
 """Side of the square in heights or widths of the largest figure, whose points end at the head's center."""
 SMALLEST_SIDE = 0.3
@@ -161,12 +159,11 @@ def square_of(image: Image, corner: Array, side: float, resolution: tuple[int, i
     inside = image[rows, columns]
     above, before = rows.start - top, columns.start - left
     below, behind = across - above - inside.shape[0], across - before - inside.shape[1]
-    filled = cv2.copyMakeBorder(inside, above, below, before, behind, cv2.BORDER_CONSTANT, value=PAPER)
+    filled = cv2.copyMakeBorder(inside, above, below, before, behind, cv2.BORDER_CONSTANT, value=PALE)
     return np.asarray(filled, dtype=np.uint8)
 
 
 SIZE = 256
-PAPER_THUMBNAIL = (250, 249, 248)
 POSES = 3
 TURN_RAD = 0.5
 EDGE = 14
@@ -186,7 +183,7 @@ def thumbnail(motion: Motion) -> Image:
     column = (SIZE - 2 * EDGE) / POSES
     scale = min((SIZE - 2 * EDGE) / (top - floor), 1.25 * column / wide)
     ground = 0.5 * (SIZE + scale * (top - floor))
-    canvas = Canvas(SIZE, SIZE, PAPER_THUMBNAIL)
+    canvas = Canvas(SIZE, SIZE, PAPER)
     canvas.line([[EDGE, ground], [SIZE - EDGE, ground]], GRAY, 1.5)
     for number, frame in enumerate(frames):
         center = EDGE + column * (number + 0.5)

@@ -167,19 +167,17 @@ def read_take_list(path: Path) -> Shoot:
 
 
 def _lines(path: Path) -> list[str]:
-    valid = "it must be a list of takes in UTF-8, one JSON object a line"
-    regular_file_size(path, "a list of takes in UTF-8, one JSON object a line")
+    valid = "a list of takes in UTF-8, one JSON object a line"
+    regular_file_size(path, valid)
     try:
         with path.open("rb") as file:
             content = file.read(LARGEST_BYTES + 1)
         if len(content) > LARGEST_BYTES:
-            raise InputError(f"{path}: is longer than {LARGEST_BYTES // 2**20} MiB; {valid}")
-        lines = content.decode("utf-8-sig").split("\n")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); {valid}") from error
-    except ValueError as error:
-        raise InputError(f"{path}: cannot be read ({error}); {valid}") from error
-    return lines
+            raise InputError(f"{path}: is longer than {LARGEST_BYTES // 2**20} MiB; it must be {valid}")
+        return content.decode("utf-8-sig").split("\n")
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(f"{path}: cannot be read ({reason}); it must be {valid}") from error
 
 
 def _take(path: Path, where: str, line: str) -> ShootTake:

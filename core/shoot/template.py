@@ -147,7 +147,11 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
         fields |= {"//root": "nothing above this folder is inherited", "root": True}
     fields |= _rate(survey)
     fields["camera"] = _camera(survey)
-    fields |= _evidence(survey)
+    fields["//evidence"] = [
+        "what a motion is held against: markers, keypoints, depth_hints, contours; all there is, unless",
+        '"evidence" says which. What the clips have:',
+        *evidence_lines(survey),
+    ]
     fields |= {"markers": _markers(survey)} if survey.colored else {"//markers": NO_MARKERS}
     fields["actor"] = {
         "//height_m": "the performer's height in meters; lengths measured one by one (segments_m) are better",
@@ -228,12 +232,6 @@ def _camera(survey: ClipSurvey) -> dict[str, Any]:
     return camera
 
 
-def _evidence(survey: ClipSurvey) -> dict[str, Any]:
-    lines = ["what a motion is held against: markers, keypoints, depth_hints, contours; all there is, unless"]
-    lines.append('"evidence" says which. What the clips have:')
-    return {"//evidence": [*lines, *evidence_lines(survey)]}
-
-
 def evidence_lines(survey: ClipSurvey) -> list[str]:
     """What each clip seems to have for its motion to be held against, clips of one kind in one line."""
     clips: dict[tuple[bool, bool | None], list[str]] = {}
@@ -242,15 +240,12 @@ def evidence_lines(survey: ClipSurvey) -> list[str]:
         clips.setdefault((clip.detected, colored), []).append(clip.name)
     lines = []
     for (detected, colored), names in clips.items():
-        have = {True: "strong colors, as of markers", False: "no garments in strong colors", None: ""}[
-            colored
-        ]
+        seen = {True: "strong colors, as of markers", False: "no garments in strong colors", None: ""}
         found = "keypoints beside it" if detected else ""
-        words = " and ".join(filter(None, (have, found))) or "not looked at for colors"
-        advice = (
-            "" if detected or colored else "; keypoints of a detector (keymark detect), else contours alone"
-        )
-        lines.append(f"{pluralize(len(names), 'clip')}: {words}{advice} ({listed(names, MOST_NAMED)})")
+        words = " and ".join(filter(None, (seen[colored], found))) or "not looked at for colors"
+        advice = "; keypoints of a detector (keymark detect), else contours alone"
+        words += "" if detected or colored else advice
+        lines.append(f"{pluralize(len(names), 'clip')}: {words} ({listed(names, MOST_NAMED)})")
     return lines
 
 

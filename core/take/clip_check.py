@@ -57,20 +57,16 @@ def picture_count(path: Path, fps: float) -> int:
 
 def check_size(take: Take, clip: Clip) -> None:
     """Check the size of a clip's frames against the camera's resolution."""
-    if clip.size != take.camera.resolution:
-        raise InputError(
-            f"{take.file}: camera.resolution is {list(take.camera.resolution)}; "
-            f"the clip {take.clip.name} is {list(clip.size)}, and they must be equal"
-            f"{_rotation_hint(take, clip)}"
-        )
-
-
-def _rotation_hint(take: Take, clip: Clip) -> str:
-    if clip.size != take.camera.resolution[::-1]:
-        return ""
-    return (
+    given = take.camera.resolution
+    if clip.size == given:
+        return
+    turned = (
         "; the camera was held the other way, or its file says that it is to be turned: swap the two, and "
         "give sensor_width_mm and the pose of the camera as it was held"
+    )
+    raise InputError(
+        f"{take.file}: camera.resolution is {list(given)}; the clip {take.clip.name} is {list(clip.size)}, "
+        f"and they must be equal{turned if clip.size == given[::-1] else ''}"
     )
 
 
@@ -184,9 +180,5 @@ def _gap_notes(take: Take, tracks: RegionTracks) -> tuple[str, ...]:
     if len(intervals) < 2 or intervals.max() < LONGEST_INTERVAL * np.median(intervals):
         return ()
     before = int(intervals.argmax())
-    return (
-        (
-            f"{intervals[before]:.2f} s are missing after frame {before + take.frame_start}; check the "
-            "keyframes after it"
-        ),
-    )
+    gap = f"{intervals[before]:.2f} s are missing after frame {before + take.frame_start}"
+    return (f"{gap}; check the keyframes after it",)

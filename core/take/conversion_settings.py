@@ -142,7 +142,6 @@ class CharacterFields(CharacterOptions):
 
 
 HIGHEST_FLOOR_M = 1000.0
-LONGEST_NAME_CONVERSION_SETTINGS = 200
 KEYFRAMES_VALID = (
     f"a path inside the take's folder, as in keyframes.json, or {EVERY_LIBRARY} to find keyframes with all "
     "libraries"
@@ -211,8 +210,8 @@ def with_auto_as_library(
 def _library_fault(text: str) -> str:
     if text.lower().endswith(".json"):
         return relative_path(LIBRARY_VALID).fault(text)
-    path_like = len(text) > LONGEST_NAME_CONVERSION_SETTINGS or any(letter in "/\\" for letter in text)
-    return f"must be {LIBRARY_VALID}" if path_like else ""
+    odd = len(text) > 200 or any(letter in "/\\" for letter in text)
+    return f"must be {LIBRARY_VALID}" if odd else ""
 
 
 LibraryName = Annotated[str, Text(LONGEST_PATH, LIBRARY_VALID, one_line=True, fault=_library_fault)]

@@ -40,7 +40,7 @@ MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 """What a marker may be bound to: a segment of the skeleton, or all between hips and shoulders."""
 MOST_FRAMES = 10**6
 MOST_MARKERS = 64
-LONGEST_MARKER_NAME = 200
+MARKER_NAME = Text(200, "one line of at most 200 visible characters", one_line=True)
 MISTYPED = 0.85
 """Likeness of an object's name from which on it is `markers` with one letter wrong."""
 
@@ -120,15 +120,7 @@ class TakeFields(Record):
     markers: (
         Annotated[
             Mapping[str, MarkerFields],
-            ByName(
-                "markers",
-                MOST_MARKERS,
-                key=Text(
-                    LONGEST_MARKER_NAME,
-                    f"one line of at most {LONGEST_MARKER_NAME} visible characters",
-                    one_line=True,
-                ),
-            ),
+            ByName("markers", MOST_MARKERS, key=MARKER_NAME),
         ]
         | None
     ) = None
@@ -149,6 +141,9 @@ def read_take(
 ) -> Take:
     """Read a take with its inherited fields; the clip is not checked yet (see `clip_check`).
 
+    `keyframes` is by default the take's own file. `whole`: evidence that its description leaves aside is read
+    too, and none at all is accepted.
+
     Raises:
         InputError: A file or field is missing or unusable; the sentence names it and what would be valid.
     """
@@ -166,13 +161,8 @@ def read_described(
 ) -> Take:
     """Read a take from its description; see `read_take`.
 
-    Args:
-        description: The description.
-        keyframes: As for `read_take`.
-        keyframes_required: As for `read_take`.
-        fewest_keyframes: Number that the keyframe file must hold; with 0 the take's own is not opened.
-        settings: Those that say which keypoints are read and which evidence is used; by default the take's.
-        whole: As for `read_take`.
+    `fewest_keyframes` must be in the keyframe file; with 0 the take's own is not opened. `settings` say which
+    keypoints are read and which evidence is used, by default the take's own.
     """
     fields = description.fields
     settings = settings or description.settings
@@ -216,7 +206,8 @@ def read_described(
     )
     if whole:
         return take
-    check_evidence(take, settings.evidence, _source_of_evidence(description, settings))
+    own = settings.evidence == description.settings.evidence
+    check_evidence(take, settings.evidence, fields.source_of("evidence") if own else str(description.path))
     return take if settings.evidence is None else with_evidence(take, settings.evidence)
 
 
@@ -232,21 +223,12 @@ def _keypoints(
     if not files:
         return ()
     if frame_count is None:  # detectors that number their files need not write one for every frame
-        frame_count = _counted(description, fps)
+        try:
+            frame_count = picture_count(description.clip, fps)
+        except InputError as error:
+            where = description.fields.source_of("frame_count")
+            raise InputError(f"{where}: frame_count is not given, and {error}") from error
     return tuple(read_keypoints(file, frame_count, camera.resolution, fps, frame_start) for file in files)
-
-
-def _counted(description: Description, fps: float) -> int:
-    try:
-        return picture_count(description.clip, fps)
-    except InputError as error:
-        where = description.fields.source_of("frame_count")
-        raise InputError(f"{where}: frame_count is not given, and {error}") from error
-
-
-def _source_of_evidence(description: Description, settings: ConversionSettings) -> str:
-    said = settings.evidence == description.settings.evidence
-    return description.fields.source_of("evidence") if said else str(description.path)
 
 
 def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) -> None:
@@ -331,9 +313,7 @@ def _with_clip_fields(fields: Fields, path: Path) -> Fields:
     if not sized:
         from_clip["camera"] = {"resolution": list(clip.size)}
     merged = fields.values.overridden_by(from_clip, str(path))
-    if (
-        not sized
-    ):  # the clip gives the size alone: what else the camera lacks is missing where it is described
+    if not sized:  # what else the camera lacks is missing where it is described
         merged.sources["camera"] = fields.source_of("camera")
     return Fields(merged, fields.where)
 

@@ -20,26 +20,16 @@ class Findings:
     """Sentences on a take: problems stop its conversion, warnings are what is likely to go wrong."""
 
     def __init__(self) -> None:
-        self._problems: dict[str, None] = {}
-        self._warnings: dict[str, None] = {}
-
-    @property
-    def problems(self) -> tuple[str, ...]:
-        """Reasons why it would not convert."""
-        return tuple(self._problems)
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What is likely to go wrong."""
-        return tuple(self._warnings)
+        self.problems: tuple[str, ...] = ()
+        self.warnings: tuple[str, ...] = ()
 
     def problem(self, *sentences: str) -> None:
         """Add problems; the same sentence is kept once."""
-        self._problems.update(dict.fromkeys(sentences))
+        self.problems = tuple(dict.fromkeys((*self.problems, *sentences)))
 
     def warn(self, *sentences: str) -> None:
         """Add warnings; the same sentence is kept once."""
-        self._warnings.update(dict.fromkeys(sentences))
+        self.warnings = tuple(dict.fromkeys((*self.warnings, *sentences)))
 
     @contextmanager
     def catching(self) -> Iterator[None]:

@@ -30,38 +30,35 @@ _CAMERA = {
 }
 _POSES = ("matrix_world", "matrix_world_frames")
 _PLACE = (*PLACED, *_POSES)
-_COLOR = "three numbers from 0 to 255, as an eyedropper gives them on the marker"
-_HEIGHT = "the performer's height in meters"
 
 
 def find_unfilled_fields(fields: Fields) -> tuple[str, ...]:
     """A sentence on each field of a take that is null and must not be."""
-    sentences = []
+    unfilled: list[tuple[Fields, str, str]] = []
     camera = _child(fields, "camera")
     posed = any(camera.has(name) for name in _POSES)
     for name, valid in _CAMERA.items():
         said_otherwise = (name in _PLACE and posed) or (name in _POSES and camera.has("height_m"))
         if name in camera.values and not camera.has(name) and not said_otherwise:
-            sentences.append(_sentence(camera, name, valid))
+            unfilled.append((camera, name, valid))
     markers = _child(fields, "markers")
     for name in markers.values:
         marker = _child(markers, name)
         if "color_srgb" in marker.values and not marker.has("color_srgb"):
-            sentences.append(_sentence(marker, "color_srgb", _COLOR))
+            color = "three numbers from 0 to 255, as an eyedropper gives them on the marker"
+            unfilled.append((marker, "color_srgb", color))
     actor = _child(fields, "actor")
     if "height_m" in actor.values and not actor.has("height_m") and not actor.has("segments_m"):
-        sentences.append(_sentence(actor, "height_m", _HEIGHT))
-    return tuple(sentences)
+        unfilled.append((actor, "height_m", "the performer's height in meters"))
+    return tuple(
+        f"{of.source_of(name)}: {name} is still to be filled in: {valid}" for of, name, valid in unfilled
+    )
 
 
 def _child(fields: Fields, name: str) -> Fields:
     value: Any = fields.values.get(name)
     values: Mapping[str, Any] = value if isinstance(value, Mapping) else {}
     return Fields(values, child_location(fields.source_of(name), name))
-
-
-def _sentence(fields: Fields, name: str, valid: str) -> str:
-    return f"{fields.source_of(name)}: {name} is still to be filled in: {valid}"
 
 
 SECONDS_A_TAKE = 0.9

@@ -10,7 +10,6 @@ from ....core.pipeline.result import (
     AS_MADE,
     BLEND,
     CHARACTER_BLEND,
-    RECORD,
     REPORT,
     RESULT_FILES,
     Conversion,
@@ -26,7 +25,7 @@ from ....core.report.pictures import write_pictures
 from ....core.retarget.maps.map_registry import map_digests
 from ....core.review.frame_evidence import compare_keypoints
 from ....core.take.conversion_digest import conversion_digest
-from ....core.take.conversion_record import is_up_to_date
+from ....core.take.conversion_record import RECORD_FILE, is_up_to_date
 from ....core.take.conversion_settings import METHODS, ConversionSettings
 from ....core.take.description import Description
 from ..console import Console
@@ -70,7 +69,7 @@ def convert_if_changed(
     require_blender("writing motion.blend needs")
     refuse_unsupported_paths(description, output)
     character, kept_names = settings.character, dict[str, str]()
-    with output_folder(output, (*RESULT_FILES, AS_MADE), RECORD, kept_names) as staging_folder:
+    with output_folder(output, (*RESULT_FILES, AS_MADE), RECORD_FILE, kept_names) as staging_folder:
         libraries = () if settings.library is None else requested_libraries(settings.library)
         digests = [library_digest(library) for library in libraries]
         maps = () if character is None else map_digests(character.map, library_folders())
@@ -92,7 +91,8 @@ def convert_if_changed(
         console.stage("Writing the motion")
         write_motion_files(staging_folder, made)
         console.stage("Writing Blender's files")
-        real_output, notes = real_path(output), ()
+        real_output = real_path(output)
+        notes: tuple[str, ...] = ()
         curves = {BLEND: write_blender_files(take, result.motion, staging_folder, real_output, debug)}
         if character is not None:
             from ...bridge.result_files import show_take

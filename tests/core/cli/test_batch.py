@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from keymark.core.shoot.outcomes import read_failure
 from keymark.operators.cli.batch import worker_pool
+from keymark.operators.cli.batch.outcomes import BatchProgress
 from keymark.operators.cli.commands import batch as command
 from keymark.operators.cli.main import main
 from keymark.operators.cli.parser import program_name

@@ -28,5 +28,5 @@ def test_longer_and_larger_clips_cost_more() -> None:
         estimate_cost(100, (320, 240), "map", "walking"),
         estimate_cost(100, (320, 240), "map", "auto"),
     )
-    assert small.seconds < named.seconds < every.seconds
+    assert small.seconds < named.seconds == every.seconds
     assert estimate_cost(200, (320, 240), "map", None).size_bytes > small.size_bytes
