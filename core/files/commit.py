@@ -43,7 +43,7 @@ class Commit:
     """Files in the target that are kept under another name instead of being replaced or removed."""
 
     def hidden(self, ending: str) -> Path:
-        """The set's folder (`STAGING`), what it replaces (`ROLLBACK`), its list of moves (`JOURNAL`), its draft.
+        """The set's folder (`STAGING`), what it replaces (`ROLLBACK`), its moves (`JOURNAL`), their draft.
 
         While the journal exists, the set is complete but not all in the target.
         """

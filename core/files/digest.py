@@ -49,11 +49,7 @@ def digest(*parts: object) -> str:
 
 
 def file_fingerprint(path: Path) -> str:
-    """A quick digest of a file: its size, its modification time and samples of its content.
-
-    Raises:
-        InputError: There is no such regular file.
-    """
+    """A quick digest of a file: its size, its modification time and samples of its content."""
     regular_file_size(path, "a file that can be read")
     state = path.stat()
     samples = []

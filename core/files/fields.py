@@ -19,10 +19,7 @@ COMMENT_PREFIX = "//"
 _FILE = re.compile(r"\.jsonl?(, line \d+)?$", re.ASCII)
 PLACED = ("height_m", "tilt_deg", "roll_deg", "distance_m")
 """Fields that together say how a camera stands."""
-ALTERNATIVES = (
-    (("segments_m",), ("height_m",)),
-    (("matrix_world",), ("matrix_world_frames",), PLACED),
-)
+ALTERNATIVES = ((("segments_m",), ("height_m",)), (("matrix_world",), ("matrix_world_frames",), PLACED))
 """The groups of a row say the same: the nearer one counts, whichever it is."""
 
 

@@ -103,9 +103,6 @@ def read_json_value(path: Path, largest_bytes: int = LARGEST_BYTES) -> Any:
     """Read any JSON value from a file of another program, as strictly as `read_json`; NaN becomes null.
 
     Programs write NaN for what they did not find; no other number that is not finite means anything.
-
-    Raises:
-        InputError: As `read_json`, but the value need be no object.
     """
     return _parse(_read_text(path, largest_bytes), str(path), _null_for_nan)
 

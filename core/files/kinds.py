@@ -290,11 +290,7 @@ def first_twice(items: Sequence[Any], name: str, what: str) -> str:
 
 
 def safe_path(fields: Fields, name: str, folder: Path, valid: str) -> Path:
-    """The path in a field, relative to a folder that it must not leave.
-
-    Raises:
-        InputError: It is no text, absolute, too long, or climbs out of the folder.
-    """
+    """The path in a field, relative to a folder that it must not leave."""
     return folder / relative_path(valid).read(fields.required(name, valid), fields.source_of(name), name)
 
 

@@ -42,9 +42,6 @@ def regular_file_size(path: Path, valid: str) -> int:
     Args:
         path: The file.
         valid: What it must be, to follow `it must be`.
-
-    Raises:
-        InputError: It is missing, a folder, a device, a pipe or a socket, or cannot be looked at.
     """
     try:
         state = path.stat()
@@ -60,11 +57,7 @@ def regular_file_size(path: Path, valid: str) -> int:
 
 
 def check_symlinks(paths: Iterable[Path], folders: Iterable[Path]) -> None:
-    """Refuse paths that leave their folders by a symbolic link; a missing file is left to its reader.
-
-    Raises:
-        InputError: A path leads out of all of them.
-    """
+    """Refuse paths that leave their folders by a symbolic link; a missing file is left to its reader."""
     roots = [os.path.realpath(folder) for folder in folders]
     for path in paths:
         real = os.path.realpath(path)

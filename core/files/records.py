@@ -139,11 +139,7 @@ def kind_of(hint: Any) -> Kind:
 
 
 def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None, strict: bool = False) -> R:
-    """Read a record from the fields of an object; `makes` and `strict` are those of `Object`.
-
-    Raises:
-        InputError: A field is missing, unknown or not what it must be.
-    """
+    """Read a record from the fields of an object; `makes` and `strict` are those of `Object`."""
     known = declared(record)
     if record.SCHEMA and fields.values.get("schema") != record.SCHEMA:
         raise InputError(
@@ -171,11 +167,7 @@ def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None,
 
 
 def check_version(fields: Fields, newest: int) -> None:
-    """Refuse the `schema_version` of a newer Keymark; `newest` is the highest that is read.
-
-    Raises:
-        InputError: It is newer, missing, or no version.
-    """
+    """Refuse the `schema_version` of a newer Keymark; `newest` is the highest that is read."""
     kind = Whole(1, 10**6)
     fields.required("schema_version", kind.valid)
     version = read_field(fields, "schema_version", kind, None)

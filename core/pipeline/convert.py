@@ -47,11 +47,7 @@ class FoundReconstruction:
 
 
 def take_to_convert(description: Description, settings: ConversionSettings) -> Take:
-    """A described take with its posed keyframes, which may lack where others are found.
-
-    Raises:
-        InputError: A file is unusable, or all keyframes are posed and there are too few.
-    """
+    """A described take with its posed keyframes, which may lack where others are found."""
     if settings.library is None:
         return read_described(description, settings.keyframes, settings=settings)
     return take_to_pose(description, settings.keyframes, settings)

@@ -187,9 +187,6 @@ def changed_files(
 
     Returns:
         The names under which these files are to be kept, by their present names.
-
-    Raises:
-        InputError: A file cannot be read.
     """
     try:
         made = {**recorded, **read_json(output / AS_MADE, 2**16)} if recorded else {}

@@ -83,11 +83,7 @@ def take_name(path: PurePath) -> str:
 
 
 def check_names(shoot: Path, takes: Sequence[ShootTake]) -> None:
-    """Refuse takes whose results would lie in one folder on some file system, or one below another.
-
-    Raises:
-        InputError: Two takes collide, or one has a reserved name.
-    """
+    """Refuse takes whose results would lie in one folder on some file system, or one below another."""
     known: dict[str, ShootTake] = {}
     for take in takes:
         if PurePosixPath(take.name).parts[:1] and _folded(PurePosixPath(take.name).parts[0]) in RESERVED:
@@ -112,11 +108,7 @@ def check_names(shoot: Path, takes: Sequence[ShootTake]) -> None:
 
 
 def check_output(shoot: Shoot, output: Path) -> None:
-    """Refuse an output folder in which results would lie among the takes.
-
-    Raises:
-        InputError: The folder is the shoot's own, or results would lie in a folder that holds takes.
-    """
+    """Refuse an output folder in which results would lie among the takes."""
     target = Path(os.path.realpath(output))
     if target.exists() and not target.is_dir():
         raise InputError(f"{output}: is a file; the output must be a folder, new or old")
@@ -208,11 +200,7 @@ DEEPEST = 64
 
 
 def open_shoot(path: Path, excluded: Path | None = None) -> Shoot:
-    """Find the takes of a folder, a list (.jsonl) or one video; their files are not read yet.
-
-    Raises:
-        InputError: There is no such shoot, it cannot be read, it has no take, or two takes of one name.
-    """
+    """Find the takes of a folder, a list (.jsonl) or one video; their files are not read yet."""
     if path.suffix.lower() == ENDING and not path.is_dir():
         return read_take_list(path)
     if path.suffix.lower() in VIDEOS and path.is_file():
@@ -313,11 +301,7 @@ def _is_sequence(inside: list[Path], alone: bool) -> bool:
 
 
 def take_path(file: Path) -> Path:
-    """The path of a file's take: the folder of a `take.json`, the clip of a `NAME.take.json`, else itself.
-
-    Raises:
-        InputError: Not exactly one clip beside `NAME.take.json` has that name.
-    """
+    """The path of a file's take: the folder of a `take.json`, the clip of a `NAME.take.json`, else itself."""
     if file.name == TAKE_FILE:
         return file.parent
     name = file.name.removesuffix(f".{TAKE_FILE}")
@@ -331,11 +315,7 @@ def take_path(file: Path) -> Path:
 
 
 def check_hides_no_take(folder: Path) -> None:
-    """Refuse a folder in which a new `take.json` would hide takes: inside a take no other is searched.
-
-    Raises:
-        InputError: The folder holds clips of a shoot, or folders that are takes.
-    """
+    """Refuse a folder in which a new `take.json` would hide takes: inside a take no other is searched."""
     if not folder.is_dir() or (folder / TAKE_FILE).exists():
         return
     shared = bool(find_shoot_files(folder))

@@ -157,11 +157,7 @@ class Results:
 
 
 def find_results(folder: Path) -> Results:
-    """Find every result below a folder; hidden folders and links to folders are skipped.
-
-    Raises:
-        InputError: There is no such folder, it cannot be read, or it holds no result.
-    """
+    """Find every result below a folder; hidden folders and links to folders are skipped."""
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder; it must be a folder of results, as batch writes it")
     sound: list[Result] = []

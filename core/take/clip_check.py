@@ -117,11 +117,7 @@ def _damage_hint(count: int, claimed: int) -> str:
 
 
 def check_in_front(take: Take) -> None:
-    """Check that the camera sees the keyframes.
-
-    Raises:
-        InputError: A point of a keyframe lies behind the camera, or no point of any is in its picture.
-    """
+    """Check that the camera sees the keyframes."""
     size = np.asarray(take.camera.resolution, dtype=np.float64)
     in_picture = not take.keyframes
     for keyframe in take.keyframes:

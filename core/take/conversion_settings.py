@@ -54,11 +54,7 @@ class CharacterFile:
 
     @classmethod
     def parse(cls, text: str) -> "CharacterFile":
-        """Read `FILE` or `FILE:OBJECT`; drive letters and colons in folders or objects are no separators.
-
-        Raises:
-            InputError: It names no file that characters are read from.
-        """
+        """Read `FILE` or `FILE:OBJECT`; drive letters and colons in folders or objects are no separators."""
         found = _FILE.fullmatch(text)
         if found is None or found[2] == "":
             raise InputError(
@@ -188,11 +184,7 @@ NO_SETTINGS = ConversionSettings()
 def with_auto_as_library(
     values: Mapping[str, Any], inherited: Mapping[str, Any], location: str
 ) -> dict[str, Any]:
-    """The fields of one file, where `"keyframes": "auto"` has become `"library": "auto"`, which is the same.
-
-    Raises:
-        InputError: The file also names a library, which is another question.
-    """
+    """The fields of one file, where `"keyframes": "auto"` has become `"library": "auto"`, which is the same."""
     fields, keyframes, library = dict(values), values.get("keyframes"), values.get("library")
     if keyframes == EVERY_LIBRARY:
         if library not in (None, EVERY_LIBRARY):

@@ -31,11 +31,7 @@ KNOWN_FIELDS = (*FILE_FIELDS, *SHARED_FIELDS, KEYFRAMES, *SETTING_FIELDS)
 
 
 def shoot_fields(path: Path, values: dict[str, Any]) -> dict[str, Any]:
-    """The fields of one `shoot.json` that takes inherit; their values are checked where a take uses them.
-
-    Raises:
-        InputError: The file is of a newer Keymark, has an unknown field, or names a keyframe file.
-    """
+    """The fields of one `shoot.json` that takes inherit; their values are checked where a take uses them."""
     fields = Fields(values, str(path))
     fields.refuse_others([*KNOWN_FIELDS, *(name for name in values if name.startswith(COMMENT_PREFIX))])
     if fields.has("schema_version"):
@@ -55,9 +51,6 @@ def find_shoot_files(folder: Path) -> dict[Path, dict[str, Any]]:
 
     They are searched in the folder and all its parents, up to one that says `"root": true`. A broken link or
     a folder of that name is an error: what it was to say is not left out in silence.
-
-    Raises:
-        InputError: One that is found cannot be read.
     """
     found: dict[Path, dict[str, Any]] = {}
     start = absolute_path(folder)
@@ -116,9 +109,6 @@ def describe(
         overrides: Fields that override all files, as in a line of a list; their paths are relative to the
             take's folder.
         overrides_location: Location of these fields, for sentences.
-
-    Raises:
-        InputError: There is no such take, nothing describes it, or a file is unusable.
     """
     own_file = _own_file(path)
     folder, is_folder = own_file.parent, own_file.name == TAKE_FILE

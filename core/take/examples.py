@@ -24,11 +24,7 @@ COPIED = {
 
 
 def example_folder(name: str) -> Path:
-    """The folder of an example in this installation.
-
-    Raises:
-        InputError: It is missing.
-    """
+    """The folder of an example in this installation."""
     folder = SHIPPED / name
     if not folder.is_dir():
         raise InputError(f"{folder}: this example is missing from the installation; install Keymark anew")
@@ -39,9 +35,6 @@ def copy_example(name: str, into: Path) -> Path:
     """Copy an example as a take of its own into a folder; returns the folder of the copy.
 
     A copy that is there already and unchanged stays as it is.
-
-    Raises:
-        InputError: The example is missing, something else lies there, or nothing can be written.
     """
     source, target = example_folder(name), into / name
     if target.exists():

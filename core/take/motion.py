@@ -138,9 +138,6 @@ def write_motion(motion: Motion, path: Path) -> None:
 
     Lengths are in meters and angles in radians, rounded to 1e-6; lists run over the frames of the clip.
     A method that has no covariance (all NaN) leaves `sigma_m` and `covariance_mm2` out.
-
-    Raises:
-        ConversionError: A value of the motion is not finite, or the file cannot be written.
     """
     _check_finite(motion)
     names = motion.body.skeleton.point_names

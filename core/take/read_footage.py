@@ -25,11 +25,7 @@ CHUNK_FRAMES = 500
 
 
 def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
-    """Read a take's clip: tracks of its markers, notes, and an album where the camera stands still.
-
-    Raises:
-        InputError: The clip cannot be used, or a marker's color is not in it.
-    """
+    """Read a take's clip: tracks of its markers, notes, and an album where the camera stands still."""
     yield Progress("Opening the clip", 0.0)
     clip = open_clip(take)
     check_in_front(take)

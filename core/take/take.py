@@ -116,11 +116,7 @@ def with_evidence(take: Take, kinds: tuple[str, ...]) -> Take:
 
 
 def check_evidence(take: Take, kinds: tuple[str, ...] | None, source: str) -> None:
-    """Check that a take has the evidence that is asked for, and any at all.
-
-    Raises:
-        InputError: It lacks one of them, or has nothing that could be followed.
-    """
+    """Check that a take has the evidence that is asked for, and any at all."""
     has = evidence_of(take)
     lacking = [] if kinds is None else [kind for kind in kinds if kind not in has]
     if lacking:

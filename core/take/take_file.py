@@ -118,11 +118,7 @@ class TakeFields(Record):
     actor: ActorFields
     """The performer's size."""
     markers: (
-        Annotated[
-            Mapping[str, MarkerFields],
-            ByName("markers", MOST_MARKERS, key=MARKER_NAME),
-        ]
-        | None
+        Annotated[Mapping[str, MarkerFields], ByName("markers", MOST_MARKERS, key=MARKER_NAME)] | None
     ) = None
     """The performer's colored markers, by name; none where any clothes are worn."""
     ignored_regions: Annotated[tuple[RegionFields, ...], Items("regions", 0, MOST_REGIONS)] | None = None
@@ -133,19 +129,12 @@ class TakeFields(Record):
 
 
 def read_take(
-    path: Path,
-    keyframes: Path | None = None,
-    *,
-    keyframes_required: bool = True,
-    whole: bool = False,
+    path: Path, keyframes: Path | None = None, *, keyframes_required: bool = True, whole: bool = False
 ) -> Take:
     """Read a take with its inherited fields; the clip is not checked yet (see `clip_check`).
 
     `keyframes` is by default the take's own file. `whole`: evidence that its description leaves aside is read
     too, and none at all is accepted.
-
-    Raises:
-        InputError: A file or field is missing or unusable; the sentence names it and what would be valid.
     """
     return read_described(describe(path), keyframes, keyframes_required=keyframes_required, whole=whole)
 
@@ -235,9 +224,6 @@ def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) 
     """Write a take that `read_take` reads back: `take.json`, `keyframes.json`, keypoints and the clip.
 
     Every file is written atomically; a clip or keypoints that lie in the folder stay as they are.
-
-    Raises:
-        InputError: The clip is a pattern of images outside the folder, which cannot be copied as one.
     """
     clip = _copy_clip(take, folder)
     fields: dict[str, Any] = {"fps": take.fps, "frame_start": take.frame_start}

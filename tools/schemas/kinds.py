@@ -10,13 +10,7 @@ from keymark.core.body.posture import PostureValues
 from keymark.core.files import kinds, records
 from keymark.core.files.kinds import Kind, NumberArray
 from keymark.core.files.records import Record, declared
-from keymark.core.footage.camera_fields import (
-    FARTHEST_M,
-    MOST_DISTORTION,
-    CameraFields,
-    Distortion,
-    Pose,
-)
+from keymark.core.footage.camera_fields import FARTHEST_M, MOST_DISTORTION, CameraFields, Distortion, Pose
 from keymark.core.footage.ignored_regions import RegionFields
 from keymark.core.footage.keypoints.detected_frames import FARTHEST_M as FARTHEST_GUESS_M
 from keymark.core.footage.keypoints.detected_frames import FARTHEST_PX, MOST_PEOPLE
@@ -33,12 +27,7 @@ from keymark.core.take.conversion_settings import (
 from keymark.core.take.evidence import DEPTH_HINTS, EVIDENCE, KEYPOINTS
 from keymark.core.take.keyframe_file import KeyframeRow
 from keymark.core.take.motion import Diagnostic
-from keymark.core.take.take_file import (
-    ActorFields,
-    CameraKind,
-    MarkerFields,
-    TakeFields,
-)
+from keymark.core.take.take_file import ActorFields, CameraKind, MarkerFields, TakeFields
 
 Schema = dict[str, Any]
 

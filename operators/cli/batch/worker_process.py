@@ -137,10 +137,7 @@ class WorkerProcess:
         self._stderr = tempfile.TemporaryFile()
         try:
             self._process = subprocess.Popen(
-                words,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=None if debug else self._stderr,
+                words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=None if debug else self._stderr
             )
         except OSError:
             self._stderr.close()

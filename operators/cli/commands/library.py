@@ -343,10 +343,7 @@ BLEND = Command(
         "Writes a folder to add to Blender's asset libraries: a .blend with a pose asset for each posture, "
         "and the catalog. Needs Blender."
     ),
-    arguments=(
-        LIBRARY_NAME,
-        *output("DIR", "folder of the assets", replace=REPLACE_HELP),
-    ),
+    arguments=(LIBRARY_NAME, *output("DIR", "folder of the assets", replace=REPLACE_HELP)),
     run=blend_command,
 )
 

@@ -58,7 +58,6 @@ def _save(file: Path, build: Callable[[], object]) -> None:
 
 
 def _anna(character: Character) -> bpy.types.Object:
-    """A character with a skin."""
     armature = _named(build_character(character), "Anna")
     mesh = bpy.data.meshes.new("Anna body")
     mesh.from_pydata([(0, 0, 1), (0.1, 0, 1), (0, 0.1, 1.3)], [], [(0, 1, 2)])
@@ -80,7 +79,6 @@ def _scaled(armature: bpy.types.Object, scale: tuple[float, ...]) -> bpy.types.O
 
 
 def _with_cycle(armature: bpy.types.Object) -> bpy.types.Object:
-    """Two bones that each copy the other's turn."""
     for one, other in (("thigh.L", "thigh.R"), ("thigh.R", "thigh.L")):
         constraint = armature.pose.bones[one].constraints.new("COPY_ROTATION")
         constraint.target, constraint.subtarget = armature, other

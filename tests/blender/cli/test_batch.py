@@ -51,7 +51,6 @@ def shoot(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def results(shoot: Path) -> Path:
-    """The shoot's results from a single worker."""
     out = shoot.parent / "one"
     assert main(["batch", str(shoot), "--output", str(out), "--jobs", "1", "--quiet"]) == 1
     return out
@@ -81,7 +80,6 @@ def batch(shoot: Path, out: Path, capsys: pytest.CaptureFixture[str], *more: str
 
 
 def statuses(said: Any) -> dict[str, str]:
-    """The status of each take."""
     return {take["take"]: take["status"] for take in said["takes"]}
 
 

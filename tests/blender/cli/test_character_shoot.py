@@ -38,7 +38,6 @@ def pristine(cast: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def shoot(pristine: Path, tmp_path: Path) -> Path:
-    """A copy for one test."""
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 

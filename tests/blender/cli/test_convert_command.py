@@ -17,7 +17,6 @@ FRAMES = 16
 
 @pytest.fixture
 def take(tmp_path: Path) -> Path:
-    """A small take."""
     return write_synthetic_take(tmp_path / "takes" / "small", FRAMES)
 
 

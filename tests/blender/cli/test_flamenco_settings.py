@@ -23,7 +23,6 @@ KINDS = {
 
 @pytest.fixture
 def settings(repository: Path) -> list[dict[str, Any]]:
-    """All settings as the script declares them."""
     script = repository / "presets" / "flamenco" / "keymark_convert.js"
     source = f"{script.read_text(encoding='utf-8')}\nprocess.stdout.write(JSON.stringify(JOB_TYPE.settings));"
     done = subprocess.run([str(NODE), "-e", source], capture_output=True, text=True, check=True)
@@ -32,7 +31,6 @@ def settings(repository: Path) -> list[dict[str, Any]]:
 
 @pytest.fixture
 def group(settings: list[dict[str, Any]]) -> Iterator[Any]:
-    """A group of such properties in a scene."""
     made = {}
     for setting in settings:
         given = {name: setting[name] for name in ("description", "default") if name in setting}

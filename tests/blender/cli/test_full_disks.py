@@ -25,12 +25,10 @@ NEWER = ("--method", "interpolation", "--quiet")
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take of eight frames."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "tiny", 8, 4)
 
 
 def convert(take: Path, out: Path, words: tuple[str, ...]) -> int:
-    """Run `keymark convert`."""
     return main(["convert", str(take), "--output", str(out), *words])
 
 
@@ -50,13 +48,11 @@ def mounted(folder: Path, *words: str) -> Iterator[None]:
 
 
 def remount(folder: Path, options: str) -> None:
-    """Change a mounted file system."""
     subprocess.run(["mount", "-o", f"remount,{options}", str(folder)], check=True)
 
 
 @pytest.fixture(scope="module")
 def wanted(take: Path) -> dict[str, bytes | None]:
-    """The result of a conversion on a disk with room."""
     out = take.parent / "disk" / "results" / "out"
     assert convert(take, out, NEWER) == 0
     results = same_in_every_run(out)

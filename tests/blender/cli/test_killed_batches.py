@@ -31,7 +31,6 @@ SEED = 22
 
 @pytest.fixture(scope="module")
 def shoot(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A shoot of small takes."""
     return write_shoot(tmp_path_factory.mktemp("shoots") / "shoot", TAKES)
 
 
@@ -77,7 +76,6 @@ def results(out: Path) -> dict[str, bytes | None]:
 
 
 def workers(process: "subprocess.Popen[str]") -> list[int]:
-    """The processes that a batch has started."""
     with suppress(OSError):
         text = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii")
         return [int(word) for word in text.split()]

@@ -41,12 +41,10 @@ class Undisturbed:
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take of eight frames."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "tiny", 8, 4)
 
 
 def run(take: Path, out: Path, kind: str, when: str) -> "subprocess.CompletedProcess[str]":
-    """One conversion in a process of its own."""
     script = Path(__file__).resolve().parents[2] / "_dying.py"
     words = ["convert", str(take), "--output", str(out), "--quiet", *RUNS[kind]]
     return subprocess.run(
@@ -55,7 +53,6 @@ def run(take: Path, out: Path, kind: str, when: str) -> "subprocess.CompletedPro
 
 
 def to_the_end(take: Path, out: Path, kind: str) -> Undisturbed:
-    """Run a conversion to its end."""
     done = run(take, out, kind, "never")
     assert done.returncode == 0, done.stderr
     took = json.loads(done.stdout.splitlines()[-1])
@@ -65,7 +62,6 @@ def to_the_end(take: Path, out: Path, kind: str) -> Undisturbed:
 
 @pytest.fixture(scope="module")
 def undisturbed(take: Path) -> dict[str, Undisturbed]:
-    """An undisturbed run of every kind."""
     found = {}
     for kind in RUNS:
         out = take.parent / "results" / "out"  # of equal depth everywhere: a .blend holds the way to its clip

@@ -12,7 +12,6 @@ from keymark.operators.cli.main import main
 
 @pytest.fixture
 def library(tmp_path: Path) -> Path:
-    """A library's file."""
     write_library(tmp_path / "small_steps.json", small_library())
     return tmp_path / "small_steps.json"
 

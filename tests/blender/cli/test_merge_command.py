@@ -41,7 +41,6 @@ AddResult = Callable[[str], Path]
 
 @pytest.fixture
 def results(tmp_path: Path) -> Path:
-    """A folder for results."""
     return tmp_path / "results"
 
 
@@ -61,7 +60,6 @@ def add_result(results: Path, wave_motion: Motion) -> AddResult:
 
 
 def merge(results: Path, output: Path, *more: str) -> int:
-    """Run the command."""
     return main(["merge", str(results), "--output", str(output), "--quiet", *more])
 
 
@@ -73,14 +71,12 @@ def loaded(file: Path) -> list[bpy.types.Action]:
 
 
 def catalogs(folder: Path) -> dict[str, str]:
-    """Paths of catalogs by their identifiers."""
     lines = (folder / CATALOGS).read_text(encoding="utf-8").splitlines()
     entries = [line.split(":") for line in lines if line.count(":") == 2 and not line.startswith("#")]
     return {identifier: path for identifier, path, _ in entries}
 
 
 def values(action: bpy.types.Action, frame: float) -> dict[tuple[str, int], float]:
-    """Values of all curves of an Action at a frame."""
     (slot,) = action.slots
     curves = action.layers[0].strips[0].channelbag(slot).fcurves
     return {(curve.data_path, curve.array_index): curve.evaluate(frame) for curve in curves}

@@ -26,7 +26,6 @@ NAMES = [f"day1/take{number:02d}" for number in range(1, TAKES + 1)]
 
 @pytest.fixture(scope="module")
 def template(repository: Path) -> Path:
-    """The template as it comes with Keymark."""
     return repository / "presets" / "openjd" / "keymark_convert.yaml"
 
 
@@ -53,19 +52,16 @@ def keymark(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def shoot(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Three tiny takes."""
     return write_shoot(tmp_path_factory.mktemp("shoots") / "walk", TAKES)
 
 
 def openjd(*words: object) -> "subprocess.CompletedProcess[str]":
-    """Call the reference command line."""
     return subprocess.run(
         [str(OPENJD), *map(str, words)], capture_output=True, text=True, encoding="utf-8", timeout=600
     )
 
 
 def parameters(keymark: Path, shoot: Path, output: Path, tasks: int = TAKES, **more: str) -> list[str]:
-    """A job's parameters as words."""
     given = {"Shoot": shoot, "Output": output, "Tasks": tasks, "Keymark": keymark, "Name": "Walk", **more}
     return [word for name, value in given.items() for word in ("-p", f"{name}={value}")]
 

@@ -22,7 +22,6 @@ Retarget = Callable[..., int]
 
 @pytest.fixture
 def output(tmp_path: Path) -> Path:
-    """The folder for the result."""
     return tmp_path / "deep" / "out"
 
 

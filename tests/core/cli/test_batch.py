@@ -25,32 +25,27 @@ class Studio:
         self.shoot, self.out, self.log = folder / "shoot", folder / "out", folder / "worker.log"
 
     def takes(self, *names: str) -> None:
-        """Add takes to the shoot."""
         for name in names:
             (self.shoot / name).mkdir(parents=True)
             (self.shoot / name / "take.json").write_text("{}", encoding="utf-8")
 
     def batch(self, *words: str, jobs: int = 2) -> int:
-        """Run `keymark batch`."""
         return main(["batch", str(self.shoot), "--output", str(self.out), "--jobs", str(jobs), *words])
 
     @property
     def received_jobs(self) -> list[dict[str, Any]]:
-        """The jobs that the workers received, in order."""
         if not self.log.exists():
             return []
         return [json.loads(line) for line in self.log.read_text(encoding="utf-8").splitlines()]
 
     @property
     def summary(self) -> dict[str, dict[str, Any]]:
-        """The summary's lines by take."""
         lines = (self.out / "summary.jsonl").read_text(encoding="utf-8").splitlines()
         return {row["take"]: row for row in map(json.loads, lines)}
 
 
 @pytest.fixture
 def studio(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Studio:
-    """A studio without takes."""
     made = Studio(tmp_path)
     monkeypatch.setattr(command, "require_blender", lambda needing: None)
     monkeypatch.setattr(

@@ -15,7 +15,6 @@ from keymark.operators.cli.console import Console
 
 @pytest.fixture
 def shoot(tmp_path: Path) -> Shoot:
-    """Two takes without files."""
     return Shoot(tmp_path, tuple(ShootTake(name, tmp_path / name) for name in ("a", "b")))
 
 

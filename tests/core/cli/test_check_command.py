@@ -30,13 +30,11 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def one_take(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A shoot of one take, quick to check."""
     return write_shoot(tmp_path_factory.mktemp("one") / "shoot", 1, FRAMES)
 
 
 @pytest.fixture
 def shoot(one_take: Path, tmp_path: Path) -> Path:
-    """A copy of the shoot that the test may damage."""
     return Path(shutil.copytree(one_take, tmp_path / "shoot"))
 
 
@@ -52,7 +50,6 @@ def check(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, dict[s
 
 
 def edit(shoot: Path, name: str, change: Callable[[Any], object]) -> None:
-    """Change a JSON file, or make it."""
     path = shoot / name
     value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     change(value)
@@ -80,28 +77,23 @@ def test_a_sound_shoot_is_ready_and_stays_as_it_is(
 
 
 def no_video(shoot: Path) -> None:
-    """A text file with a video's suffix."""
     (shoot / f"{TAKE}.mp4").write_text("no video", encoding="utf-8")
 
 
 def no_keyframes(shoot: Path) -> None:
-    """No keyframes and no library."""
     (shoot / f"{TAKE}.keyframes.json").unlink()
 
 
 def cut_keyframes(shoot: Path) -> None:
-    """A keyframe file that is cut off."""
     path = shoot / f"{TAKE}.keyframes.json"
     path.write_bytes(path.read_bytes()[:500])
 
 
 def late_keyframe(shoot: Path) -> None:
-    """A keyframe after the clip's end."""
     edit(shoot, f"{TAKE}.keyframes.json", lambda value: value["keyframes"][-1].update(frame=FRAMES + 5))
 
 
 def said_of_take(**fields: Any) -> Callable[[Path], None]:
-    """The take's own description."""
     return lambda shoot: edit(shoot, f"{TAKE}.take.json", lambda value: value.update(fields))
 
 
@@ -136,27 +128,23 @@ def test_what_would_stop_a_take_is_said(
 
 
 def swapped(shoot: Path) -> None:
-    """Left and right arm exchanged."""
     colors = json.loads((shoot / "shoot.json").read_text(encoding="utf-8"))["markers"]
     markers = {"forearm.L": colors["forearm.R"], "forearm.R": colors["forearm.L"]}
     said_of_take(markers=markers)(shoot)
 
 
 def few(shoot: Path) -> None:
-    """Two keyframes that are seconds apart."""
     edit(shoot, f"{TAKE}.keyframes.json", lambda value: value.update(keyframes=value["keyframes"][::3]))
     said_of_take(fps=5)(shoot)
 
 
 def elsewhere(shoot: Path) -> None:
-    """A camera that was moved to the side."""
     said_of_take(camera={"matrix_world": [[1, 0, 0, 2.2], [0, 0, -1, -4.0], [0, 1, 0, 1.0], [0, 0, 0, 1]]})(
         shoot
     )
 
 
 def half_dark(shoot: Path) -> None:
-    """The light goes out in the middle."""
     images = list(drawn_frames(true_postures(FRAMES)))
     write_frames(shoot / f"{TAKE}.mp4", [*images[:6], *(np.zeros_like(image) for image in images[6:])])
 

@@ -28,7 +28,6 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def shoot(pristine: Path, tmp_path: Path) -> Path:
-    """A copy for the test."""
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 
@@ -44,13 +43,11 @@ def check(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, dict[s
 
 
 def edit(path: Path, **fields: Any) -> None:
-    """Set fields of a JSON file, which may be new."""
     value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     write_json(path, {**value, **fields})
 
 
 def rewrite(shoot: Path, change: Callable[[dict[str, Any]], object]) -> None:
-    """Change the file of keypoints."""
     path = shoot / f"{TAKE}.keypoints.json"
     value = json.loads(path.read_text(encoding="utf-8"))
     change(value)
@@ -58,7 +55,6 @@ def rewrite(shoot: Path, change: Callable[[dict[str, Any]], object]) -> None:
 
 
 def no_markers(shoot: Path) -> None:
-    """Any clothes are worn."""
     edit(shoot / f"{TAKE}.take.json", markers=None)
 
 
@@ -96,27 +92,22 @@ def test_a_take_without_markers_is_ready(shoot: Path, check: Callable[..., Any])
 
 
 def exchanged(value: dict[str, Any]) -> None:
-    """Left and right are exchanged throughout."""
     value["names"] = [mirrored_point(name) for name in value["names"]]
 
 
 def elsewhere(value: dict[str, Any]) -> None:
-    """Another person at the edge of the picture."""
     value["frames"] = [[[x - 45.0, y, score] for x, y, score in frame] for frame in value["frames"]]
 
 
 def late(value: dict[str, Any]) -> None:
-    """Each frame shows the one three before it."""
     value["frames"] = 3 * [value["frames"][0]] + value["frames"][:-3]
 
 
 def rare(value: dict[str, Any]) -> None:
-    """Found in the first three frames only."""
     value["frames"] = value["frames"][:3] + [None] * (FRAMES - 3)
 
 
 def half_the_size(value: dict[str, Any]) -> None:
-    """Found in pictures of half the size."""
     value["size"] = [side // 2 for side in SIZE]
     value["frames"] = [[[x / 2, y / 2, score] for x, y, score in frame] for frame in value["frames"]]
 

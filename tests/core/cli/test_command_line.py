@@ -31,13 +31,11 @@ FAST = ("--method", "interpolation", "--no-report")
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not change."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES)
 
 
 @pytest.fixture
 def take(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own."""
     return Path(shutil.copytree(pristine, tmp_path / "take"))
 
 
@@ -52,7 +50,6 @@ def out(tmp_path: Path) -> Path:
 
 
 def convert(take: Path, out: Path, *more: str) -> int:
-    """Run `keymark convert`."""
     return main(["convert", str(take), "--output", str(out), *more])
 
 
@@ -166,8 +163,6 @@ def test_another_keyframe_file_may_be_named(take: Path, tmp_path: Path) -> None:
 
 
 def edit(name: str, change: Callable[[Any], object]) -> Callable[[Path], None]:
-    """A change of one of a take's JSON files."""
-
     def apply(take: Path) -> None:
         value = json.loads((take / name).read_text(encoding="utf-8"))
         change(value)
@@ -177,18 +172,15 @@ def edit(name: str, change: Callable[[Any], object]) -> Callable[[Path], None]:
 
 
 def cut(name: str) -> Callable[[Path], None]:
-    """A file cut off in the middle."""
     return lambda take: os.truncate(take / name, (take / name).stat().st_size // 2)
 
 
 def no_video(take: Path) -> None:
-    """A clip that is no video."""
     (take / "clip.mp4").write_bytes(b"this is no video" * 50)
     edit("take.json", lambda v: v.update(clip="clip.mp4"))(take)
 
 
 def no_marker(take: Path) -> None:
-    """A clip in which nothing has a marker's color."""
     for file in (take / "frames").iterdir():
         cv2.imwrite(str(file), np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8))
 

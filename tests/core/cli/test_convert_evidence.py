@@ -27,12 +27,10 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def take(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own."""
     return Path(shutil.copytree(pristine, tmp_path / "take"))
 
 
 def edit(take: Path, **fields: Any) -> None:
-    """Set fields of take.json."""
     value = json.loads((take / "take.json").read_text(encoding="utf-8"))
     write_json(take / "take.json", {**value, **fields})
 

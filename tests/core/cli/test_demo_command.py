@@ -44,8 +44,6 @@ def take(tmp_path: Path, no_blender: None, monkeypatch: pytest.MonkeyPatch) -> P
 
 @pytest.fixture
 def no_character(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No character, as where Rigify is missing."""
-
     def refuse(_file: Path) -> None:
         raise ConversionError("Rigify is missing")
 

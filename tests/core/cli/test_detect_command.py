@@ -26,7 +26,6 @@ def network(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def clip(tmp_path: Path) -> Path:
-    """A clip that nothing describes."""
     file = tmp_path / "clips" / "walk.mp4"
     file.parent.mkdir()
     write_video(file, true_postures(FRAMES), seed=1)

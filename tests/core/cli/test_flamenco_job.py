@@ -25,7 +25,6 @@ SETTINGS = {
 
 @pytest.fixture
 def script(repository: Path) -> Path:
-    """The job type as it comes with Keymark."""
     return repository / "presets" / "flamenco" / "keymark_convert.js"
 
 
@@ -57,7 +56,6 @@ def words(task: dict[str, Any]) -> list[str]:
 
 
 def options(task: dict[str, Any]) -> dict[str, Any]:
-    """A task's arguments, parsed by Keymark."""
     found = words(task)
     assert found[:2] == ["--command", "keymark"]
     return vars(build_parser(found[2]).parse_args(found[2:]))

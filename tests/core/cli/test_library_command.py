@@ -34,7 +34,6 @@ def shelf(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def motion(tmp_path: Path) -> Path:
-    """A motion that is not cyclic."""
     posture = true_postures(FRAMES)
     points = BODY.points(BODY.pose(posture))
     unknown = np.full((*points.shape, 3), np.nan)
@@ -44,7 +43,6 @@ def motion(tmp_path: Path) -> Path:
 
 
 def run(*words: object) -> int:
-    """Run `keymark library`."""
     return main(["library", *map(str, words)])
 
 
@@ -106,12 +104,10 @@ def test_a_motion_is_learned_and_nothing_replaced(
 
 
 def mirror_words(shelf: Path, tmp_path: Path) -> list[object]:
-    """A command that mirrors."""
     return ["mirror", "small_steps", "--output", tmp_path / "out.json"]
 
 
 def merge_words(shelf: Path, tmp_path: Path) -> list[object]:
-    """A command that merges a library with itself."""
     return ["merge", "small_steps", shelf / "any name.json", "--output", tmp_path / "out.json"]
 
 

@@ -26,13 +26,11 @@ pytestmark = pytest.mark.usefixtures("no_blender")
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not change."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES)
 
 
 @pytest.fixture
 def take(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own, without keyframes."""
     folder = Path(shutil.copytree(pristine, tmp_path / "take"))
     (folder / "keyframes.json").rename(tmp_path / "posed.json")
     return folder
@@ -40,7 +38,6 @@ def take(pristine: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def library(tmp_path: Path) -> Path:
-    """A library of exactly the performer's motion."""
     posture = true_postures(FRAMES)
     learned = learn_library(BODY, posture, np.arange(FRAMES) / 30.0, LibraryMetadata("Swaying", "Nobody"))
     write_library(tmp_path / "swaying.json", learned)
@@ -48,12 +45,10 @@ def library(tmp_path: Path) -> Path:
 
 
 def convert(take: Path, out: Path, *more: object) -> int:
-    """Run `keymark convert` with quick options."""
     return main(["convert", str(take), "--output", str(out), "--method", "interpolation", *map(str, more)])
 
 
 def said_as_json(capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
-    """The one object on standard output."""
     return dict(json.loads(capsys.readouterr().out))
 
 

@@ -15,13 +15,11 @@ FRAMES = 16
 
 @pytest.fixture
 def take(tmp_path: Path) -> Path:
-    """A take."""
     return write_synthetic_take(tmp_path / "take", FRAMES)
 
 
 @pytest.fixture
 def out(tmp_path: Path) -> Path:
-    """An output folder that holds an earlier result."""
     folder = tmp_path / "results" / "out"
     folder.mkdir(parents=True)
     (folder / "motion.json").write_text("earlier", encoding="utf-8")

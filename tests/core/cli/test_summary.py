@@ -13,7 +13,6 @@ from keymark.operators.cli.batch.outcomes import LINES, PAGE, write_summary
 
 
 def outcomes(output: Path) -> list[Outcome]:
-    """One outcome of each kind, unordered."""
     return [
         waiting(output, "day2/jump"),
         converted(output, "day1/walk", library="walking", matched=(60,), doubtful=(60,)),

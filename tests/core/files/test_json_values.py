@@ -8,7 +8,6 @@ from keymark.core.files.json_file import read_json, read_json_value
 
 
 def write(folder: Path, text: str) -> Path:
-    """A file with this text."""
     path = folder / "value.json"
     path.write_text(text, encoding="utf-8")
     return path

@@ -19,14 +19,12 @@ def tree(folder: Path) -> dict[str, str]:
 
 
 def fill(folder: Path, text: str) -> None:
-    """Write a file, and one in a folder below."""
     (folder / "motion.json").write_text(text, encoding="utf-8")
     (folder / "report").mkdir()
     (folder / "report" / "speed.png").write_text(text, encoding="utf-8")
 
 
 def made(folder: Path) -> Path:
-    """A folder that was made."""
     folder.mkdir()
     return folder
 

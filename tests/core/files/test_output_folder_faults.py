@@ -36,7 +36,6 @@ def write_set(folder: Path, text: str, pictures: bool = True) -> None:
 
 
 def run(out: Path, text: str, pictures: bool = True) -> None:
-    """Commit a set of files, as one process does."""
     with output_folder(out, OWN_FILES, manifest=MANIFEST) as staging_folder:
         write_set(staging_folder, text, pictures)
 
@@ -66,13 +65,11 @@ KINDS = pytest.mark.parametrize("kind", ["new", "others", "older"])
 
 
 def expected(folder: Path, kind: str) -> dict[str, bytes | None]:
-    """The files that an undisturbed run leaves."""
     run(begin(folder, kind), "newer")
     return tree(folder)
 
 
 def calls_of(folder: Path, kind: str) -> int:
-    """The number of calls of an undisturbed run."""
     out = begin(folder, kind)
     with faulty_calls() as calls:
         run(out, "newer")
@@ -277,7 +274,6 @@ def test_a_journal_that_is_not_to_be_trusted_is_removed(tmp_path: Path) -> None:
 
 
 def names(folder: Path) -> dict[str, Path]:
-    """Folder names that are hard on programs."""
     return {
         "as long as a name may be": folder / ("n" * 255),
         "in other letters": folder / "Tänzerin 舞者" / "отснято 🎬",
@@ -297,7 +293,6 @@ def test_odd_names_work(what: str, tmp_path: Path) -> None:
 
 
 def endless(folder: Path) -> Path:
-    """A link that leads to itself."""
     (folder / "endless").symlink_to(folder / "endless")
     return folder / "endless" / "out"
 

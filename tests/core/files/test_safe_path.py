@@ -13,7 +13,6 @@ VALID = "a path inside the folder"
 
 
 def inside(text: object, folder: Path) -> Path:
-    """The path in a field."""
     return safe_path(Fields({"clip": text}, "take.json"), "clip", folder, VALID)
 
 

@@ -27,13 +27,11 @@ FAST = ("--method", "interpolation", "--no-report", "--quiet")
 
 @pytest.fixture(scope="module")
 def known(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Format]:
-    """Every format."""
     return formats(tmp_path_factory.mktemp("formats"))
 
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not modify."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES, 3)
 
 

@@ -29,13 +29,11 @@ NAMES = (
 
 @pytest.fixture(scope="module")
 def known(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Format]:
-    """Every format."""
     return formats(tmp_path_factory.mktemp("formats"))
 
 
 @cache
 def schemas() -> dict[str, Any]:
-    """The schemas by name."""
     folder = Path(__file__).parents[3] / "presets" / "schemas"
     return {path.name: json.loads(path.read_text(encoding="utf-8")) for path in folder.glob("*.schema.json")}
 
@@ -114,7 +112,6 @@ def test_shipped_files_are_valid(repository: Path, shared_takes: Path) -> None:
 
 
 def refused_by_reader(one: Format, value: Any) -> bool:
-    """Whether the reader refuses a value."""
     try:
         one.read(json.dumps(value).encode())
     except InputError:
@@ -145,8 +142,6 @@ Change = Callable[[Any], object]
 
 
 def at(*way: Any, to: Any) -> Change:
-    """A change that sets one value."""
-
     def change(value: Any) -> None:
         for key in way[:-1]:
             value = value[key]

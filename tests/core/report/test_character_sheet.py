@@ -32,17 +32,14 @@ RED = (10.0, 20.0, 230.0)
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A take, whose clip is not read."""
     return read_take(write_synthetic_take(tmp_path_factory.mktemp("character") / "take", 4))
 
 
 def box(place: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> CharacterFigure:
-    """A red box that stands on the floor."""
     return CharacterFigure(CORNERS + np.array(place), OUTWARD, np.tile(np.array(RED), (len(OUTWARD), 1)))
 
 
 def red(picture: Image) -> Image:
-    """Which pixels are red."""
     return (picture[..., 2].astype(int) - picture[..., 0] > 60) & (picture[..., 1] < 90)
 
 

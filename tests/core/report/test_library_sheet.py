@@ -34,7 +34,6 @@ def alike(image: np.ndarray, color: tuple[int, int, int]) -> np.ndarray:
 
 
 def moved(posture: Posture, offset: tuple[float, float, float]) -> Posture:
-    """The posture, moved."""
     return Posture(posture.skeleton, posture.translation + offset, posture.rotations, posture.angles)
 
 

@@ -32,13 +32,11 @@ CAMERA_AHEAD = Camera.from_dict(CAMERA)
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A take with a clip."""
     return read_take(write_synthetic_take(tmp_path_factory.mktemp("report") / "take", FRAMES))
 
 
 @pytest.fixture
 def motion() -> Motion:
-    """The true motion of that take."""
     posture = true_postures(FRAMES)
     points = BODY.points(BODY.pose(posture))
     unknown = np.full((FRAMES, 13, 3, 3), np.nan)
@@ -58,7 +56,6 @@ def tracks() -> RegionTracks:
 
 
 def count(image: np.ndarray, color: tuple[int, int, int], tolerance: int = 12) -> int:
-    """Number of pixels of about this color."""
     return int((np.abs(image.astype(int) - color).max(axis=-1) <= tolerance).sum())
 
 

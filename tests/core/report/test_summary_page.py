@@ -30,7 +30,6 @@ NAMES = TEXTS.filter(lambda text: text not in (".", "..") and "\0" not in text)
 
 
 def page(*outcomes: Outcome) -> Page:
-    """The page of a shoot."""
     return Page(summary_page("shoot", outcomes, OUTPUT))
 
 

@@ -20,13 +20,11 @@ PROPOSAL = re.compile(r"still areas have the color of (.*); they are left out wh
 
 @pytest.fixture(scope="module")
 def folder(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The demonstration with the panel."""
     demo = repository / "presets" / "demo" / "aerobic"
     return panelled_take(demo, tmp_path_factory.mktemp("panelled") / "take")
 
 
 def warnings(take: Take) -> tuple[str, ...]:
-    """What the check says of the footage."""
     findings, clip = Findings(), open_clip(take)
     check_footage(take, clip, clip.frame_count, findings)
     assert not findings.problems
@@ -34,7 +32,6 @@ def warnings(take: Take) -> tuple[str, ...]:
 
 
 def said(take: Take) -> dict[str, object]:
-    """The fields that the check proposes."""
     (proposal,) = (sentence for sentence in warnings(take) if "they are left out" in sentence)
     names, field = PROPOSAL.match(proposal).groups()  # type: ignore[union-attr]
     assert names == SLEEVE

@@ -34,12 +34,10 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def shoot(pristine: Path, tmp_path: Path) -> Path:
-    """A copy for the test."""
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 
 def edit(path: Path, **fields: Any) -> None:
-    """Set fields of a JSON file, which may be new."""
     value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     write_json(path, {**value, **fields})
 
@@ -101,7 +99,6 @@ def test_a_worker_gets_the_settings(shoot: Path) -> None:
 
 
 def digest(described: Description, **chosen: Any) -> str:
-    """The digest of a conversion of a take."""
     settings = effective_settings(described, ConversionSettings(**chosen))
     return conversion_digest(described, settings, (), described.folder / "out", "1")
 

@@ -14,7 +14,6 @@ from keymark.core.take.conversion_record import write_record
 
 
 def add(folder: Path) -> Path:
-    """Write a record."""
     folder.mkdir(parents=True)
     write_record(folder, replace(RECORD, take=folder.name.encode(errors="replace").decode()))
     return folder

@@ -23,7 +23,6 @@ def make(folder: Path, *paths: str) -> Path:
 
 
 def names(folder: Path, without: Path | None = None) -> list[str]:
-    """The names of the takes that are found."""
     return [take.name for take in find_takes(folder, without).takes]
 
 
@@ -154,7 +153,6 @@ def test_results_may_not_lie_over_takes(output: str, sentence: str | None, tmp_p
 
 
 def write_list(path: Path, *lines: object) -> Path:
-    """Write a list, objects as JSON."""
     text = "\n".join(line if isinstance(line, str) else json.dumps(line) for line in lines)
     path.write_text(text, encoding="utf-8")
     return path

@@ -30,23 +30,19 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(pristine: Path, tmp_path: Path) -> Path:
-    """A copy for the test."""
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 
 def new(*words: object) -> int:
-    """Run `keymark new`."""
     return main(["new", *map(str, words)])
 
 
 def written(folder: Path) -> dict[str, Any]:
-    """The fields of the new `shoot.json`."""
     value: dict[str, Any] = json.loads((folder / "shoot.json").read_text(encoding="utf-8"))
     return value
 
 
 def fill_in(folder: Path) -> None:
-    """Fill in the fields that only a person knows."""
     fields, known = written(folder), shoot_fields()
     fields["camera"] |= PLACED | {"lens_mm": 40.0}
     for name, marker in fields["markers"].items():
@@ -110,7 +106,6 @@ def test_where_clips_differ_they_tell_themselves(
 
 
 def gray(images: Iterable[np.ndarray]) -> list[np.ndarray]:
-    """The pictures without any color."""
     return [cv2.cvtColor(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR) for image in images]
 
 

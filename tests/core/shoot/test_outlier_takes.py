@@ -5,7 +5,6 @@ from keymark.core.shoot.check.take_check import TakeCheck, estimate_cost, flag_o
 
 
 def check(width: int | None, fps: float = 25.0) -> TakeCheck:
-    """A take of some width."""
     return TakeCheck("take", (), (), None if width is None else (width, 240), fps)
 
 

@@ -16,13 +16,11 @@ from keymark.core.take.description import describe, effective_settings
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A shoot of one clip that tests must not change."""
     return write_shoot(tmp_path_factory.mktemp("digests") / "shoot", takes=1, frames=3)
 
 
 @pytest.fixture
 def shoot(pristine: Path, tmp_path: Path) -> Path:
-    """A shoot of the test's own."""
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 
@@ -33,7 +31,6 @@ def digest(
     maps: tuple[str, ...] = (),
     **chosen: Any,
 ) -> str:
-    """The digest for the shoot's clip."""
     description = describe(shoot / "day1" / "take01.mp4")
     settings = effective_settings(description, ConversionSettings(**chosen))
     return conversion_digest(description, settings, libraries, shoot.parent / "out", version, maps)
@@ -51,7 +48,6 @@ def edit(name: str, **fields: Any) -> Callable[[Path], None]:
 
 
 def lengthen(shoot: Path) -> None:
-    """Append a byte to the footage."""
     with (shoot / "day1" / "take01.mp4").open("ab") as clip:
         clip.write(b"\0")
 

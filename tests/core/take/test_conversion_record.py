@@ -42,7 +42,6 @@ RECORD = ConversionRecord(
 
 
 def made(folder: Path, record: ConversionRecord = RECORD) -> Path:
-    """A folder with a record and its files."""
     for name in record.files:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).touch()
@@ -75,10 +74,7 @@ def test_a_result_with_a_damaged_record_is_not_up_to_date(content: bytes, tmp_pa
 
 
 MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
-    (
-        lambda v: v.update(schema_version=2),
-        "version is 2, made by a newer Keymark; this one reads up to 1",
-    ),
+    (lambda v: v.update(schema_version=2), "version is 2, made by a newer Keymark; this one reads up to 1"),
     (lambda v: v.pop("digest"), "digest is missing"),
     (lambda v: v.update(take="x" * 2000), "take is 'xxx"),
     (lambda v: v.update(frames=0), "frames is 0"),

@@ -30,19 +30,16 @@ WHOLE_SHARE = 0.85
 
 @pytest.fixture(scope="module")
 def folder(repository: Path, request: pytest.FixtureRequest) -> Path:
-    """The take's folder."""
     return repository / "presets" / "demo" / getattr(request, "param", "aerobic")
 
 
 @pytest.fixture(scope="module")
 def take(folder: Path) -> Take:
-    """The take as the product reads it."""
     return read_take(folder)
 
 
 @pytest.fixture(scope="module")
 def truth(folder: Path, take: Take) -> Array:
-    """(F, 13, 3) the true points."""
     assert take.frame_count is not None
     return read_truth(folder / "truth.json", take.frame_start, take.frame_count)
 

@@ -196,7 +196,6 @@ def test_fields_about_a_shoot_file_itself_are_not_inherited(tmp_path: Path) -> N
 
 
 def described(folder: Path, name: str) -> Description:
-    """A take of a small shoot."""
     return describe(folder / "day1" / name)
 
 

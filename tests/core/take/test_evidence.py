@@ -22,13 +22,11 @@ MOVING = {"matrix_world": None, "matrix_world_frames": FRAMES * [MATRIX_WORLD]}
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not change."""
     return write_synthetic_take(tmp_path_factory.mktemp("evidence") / "pristine", FRAMES)
 
 
 @pytest.fixture
 def folder(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own."""
     return Path(shutil.copytree(pristine, tmp_path / "take"))
 
 
@@ -44,14 +42,12 @@ def edit(folder: Path, **fields: Any) -> None:
 
 
 def hinted(folder: Path, name: str = "keypoints.json") -> Path:
-    """A file of keypoints with a depth for each."""
     path = write_keypoints(folder / name, true_postures(FRAMES))
     points = len(json.loads(path.read_text(encoding="utf-8"))["names"])
     return write_keypoints(path, true_postures(FRAMES), world=FRAMES * [points * [[0.1, 0.2, 0.3]]])
 
 
 def marked(take: Take) -> bool:
-    """Whether all five markers are there."""
     return len(take.markers) == 5
 
 

@@ -16,7 +16,6 @@ FRAMES, AFTER = 60, 11
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A take with keyframes 24 frames, 0.8 s, apart."""
     return read_take(write_synthetic_take(tmp_path_factory.mktemp("expected") / "take", FRAMES - AFTER, 24))
 
 

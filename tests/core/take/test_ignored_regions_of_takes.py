@@ -22,18 +22,15 @@ STROKE = {"stroke": [[5, 5], [9.5, 7]], "radius_px": 4, "frames": [11, 13]}
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not change."""
     return write_synthetic_take(tmp_path_factory.mktemp("ignored") / "pristine", FRAMES)
 
 
 @pytest.fixture
 def folder(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own."""
     return Path(shutil.copytree(pristine, tmp_path / "take"))
 
 
 def ignoring(folder: Path, value: Any) -> Path:
-    """A take with the field."""
     said = json.loads((folder / "take.json").read_text(encoding="utf-8"))
     write_json(folder / "take.json", {**said, "ignored_regions": value})
     return folder

@@ -21,7 +21,6 @@ SHIFT = np.array([45.0, 4.0])
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A take with keyframes."""
     return read_take(write_synthetic_take(tmp_path_factory.mktemp("takes") / "take", FRAMES, 4))
 
 
@@ -47,7 +46,6 @@ def two_people(take: Take, by_hand: bool = False) -> tuple[People, list[int]]:
 
 
 def assert_shows(found: Keypoints, people: People, truth: list[int]) -> None:
-    """In every frame the person with this index."""
     for index, (frame, row) in enumerate(zip(people.frames, truth, strict=True)):
         np.testing.assert_array_equal(found.pixel[index], frame.pixel[row])
 

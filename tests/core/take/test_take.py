@@ -19,18 +19,15 @@ FRAMES = 24
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not change."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES)
 
 
 @pytest.fixture
 def folder(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own."""
     return Path(shutil.copytree(pristine, tmp_path / "take"))
 
 
 def changed(folder: Path, name: str, change: Callable[[Any], object]) -> None:
-    """Change one of the take's JSON files in place."""
     value = json.loads((folder / name).read_text(encoding="utf-8"))
     change(value)
     write_json(folder / name, value)
@@ -188,7 +185,6 @@ def test_a_mistake_in_take_json_is_named(
 
 
 def keyframe_change(**fields: Any) -> Callable[[dict[str, Any]], object]:
-    """A change of the second keyframe's fields."""
     return lambda value: value["keyframes"][1].update(fields)
 
 

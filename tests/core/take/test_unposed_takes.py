@@ -22,12 +22,10 @@ TRUTH = true_postures(FRAMES)
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A small take with exact keyframes."""
     return read_take(write_synthetic_take(cast(Path, tmp_path_factory.mktemp("takes")) / "wave", FRAMES))
 
 
 def said(confidence: float = 0.9) -> Matched:
-    """The match of a keyframe."""
     return Matched("waving", "wave", False, confidence)
 
 
@@ -39,7 +37,6 @@ def unposed(take: Take, confidence: float = 0.9) -> Take:
 
 
 def found(frames: list[int], library: str = "waving") -> FoundPoses:
-    """The true postures, found at some frames."""
     known = tuple(MatchedFrame(i, (Candidate(TRUTH[i], "wave", False, 0.8),)) for i in frames)
     return FoundPoses(known, TRUTH, 0.9, 0.0, "it is", library=library)
 
