@@ -184,7 +184,7 @@ NO_SETTINGS = ConversionSettings()
 def with_auto_as_library(
     values: Mapping[str, Any], inherited: Mapping[str, Any], location: str
 ) -> dict[str, Any]:
-    """The fields of one file, where `"keyframes": "auto"` has become `"library": "auto"`, which is the same."""
+    """A file's fields, where `"keyframes": "auto"` has become `"library": "auto"`, which is the same."""
     fields, keyframes, library = dict(values), values.get("keyframes"), values.get("library")
     if keyframes == EVERY_LIBRARY:
         if library not in (None, EVERY_LIBRARY):
