@@ -1,14 +1,19 @@
-"""The command line as a process of its own: start, SIGTERM, and --help without heavy imports."""
+"""The command line as a process of its own: start, SIGTERM, --help, standard streams and progress."""
 
 import os
 import signal
 import subprocess
 import sys
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 
 import pytest
 from _command_line import one_line, tree
 from _synthetic_take import write_synthetic_take
+from keymark.core.progress import Progress
+from keymark.operators.cli.blender_silence import blender_silence
+from keymark.operators.cli.console import Console
+from keymark.operators.cli.main import main
 
 FRAMES = 16
 
@@ -93,3 +98,46 @@ def test_a_process_that_is_asked_to_end_cleans_up(
     assert "interrupted" in one_line(process.stderr.read())
     process.stderr.close()
     assert tree(out.parent) == before
+
+
+def test_a_process_without_standard_streams_does_its_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    take = write_synthetic_take(tmp_path / "take", 8)
+    for stream in ("stdin", "stdout", "stderr"):
+        monkeypatch.setattr(sys, stream, None)
+    assert main(["propose", str(take), "--count", "4"]) == 0
+    assert main(["propose", str(take), "--count", "1"]) == 2
+
+
+def test_blender_may_print_any_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    with TextIOWrapper(BytesIO(), encoding="ascii") as stream:
+        monkeypatch.setattr(sys, "stdout", stream)
+        with blender_silence(debug=False):
+            print("舞者")
+        with pytest.raises(UnicodeEncodeError):
+            print("舞者")
+
+
+@pytest.mark.parametrize(
+    ("quiet", "as_json", "asked", "lines"),
+    [
+        (False, False, "openjd", ["openjd_status: Solving", "openjd_progress: 45", "openjd_progress: 81"]),
+        (True, False, "openjd", []),
+        (False, True, "openjd", []),
+        (False, False, "", ["Solving ..."]),
+    ],
+)
+def test_a_line_for_each_percent_where_it_is_wanted(
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    quiet: bool,
+    as_json: bool,
+    asked: str,
+    lines: list[str],
+) -> None:
+    monkeypatch.setenv("KEYMARK_PROGRESS", asked)
+    with Console(quiet=quiet, as_json=as_json) as console:
+        for fraction in (0.5, 0.5001, 0.9, 0.3):
+            console.progress(Progress("Solving", fraction))
+    assert capsys.readouterr().out.splitlines() == lines
