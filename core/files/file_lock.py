@@ -19,7 +19,6 @@ HIDDEN = ".keymark-"
 LOCK = ".lock"
 DIGITS = 16
 ATTEMPTS = 200
-RETRY_DELAY_S = 0.01
 _NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP}
 
 if sys.platform == "win32":
@@ -100,7 +99,7 @@ def _acquire(file: Path, busy_message: str, wait: bool) -> int:
             transient = sys.platform == "win32" or isinstance(error, FileNotFoundError)
             if not transient or attempt == ATTEMPTS - 1:
                 raise
-            time.sleep(RETRY_DELAY_S)
+            time.sleep(0.01)
             continue
         try:
             if not _try_lock(descriptor, wait):

@@ -267,7 +267,6 @@ def _int(text: str) -> int:
 
 WIDTH = 110
 """Characters of a line: a list or an object of plain values that fits stands in one line."""
-INDENT = 2
 _AXIS = re.compile(r"_[xyz]$")
 
 
@@ -299,7 +298,7 @@ def format_json(value: Any, depth: int = 0, before: int = 0) -> str:
     short = _plain(value)
     if flat and not compound and depth + before + len(short) <= WIDTH:
         return short
-    inner = depth + INDENT
+    inner = depth + 2
     lines = [", ".join(name + format_json(item, inner, len(name)) for name, item in row) for row in rows]
     opening, closing = ("{", "}") if isinstance(value, Mapping) else ("[", "]")
     between = "\n" + " " * inner

@@ -143,7 +143,6 @@ def _pieces(body: Body) -> tuple[Piece, ...]:
 
 SIZE = 256
 EDGE = 8
-TURN_RAD = np.radians(-35.0)
 TILT_RAD = 0.16
 """Downward tilt of the view, which shows where on the floor the feet are."""
 WALL = np.array([250.0, 249.0, 248.0])
@@ -154,7 +153,7 @@ BEHIND_M = 0.45
 def posture_picture(body: Body, posture: Posture) -> Image:
     """Draw a single posture; the floor is z = 0."""
     figure = mannequin(body, posture)
-    turn = facing_rad(-posture.rotations[0, :, 1]) + TURN_RAD
+    turn = facing_rad(-posture.rotations[0, :, 1]) + np.radians(-35.0)
     seen = View(turn, TILT_RAD, 1.0, (0.0, 0.0)).project(figure.points)[0]
     floor = View(turn, TILT_RAD, 1.0, (0.0, 0.0)).project(posture.translation * [1.0, 1.0, 0.0])[0][1]
     (left, high), (right, low) = seen.min(axis=0), seen.max(axis=0)

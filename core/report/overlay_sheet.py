@@ -51,8 +51,6 @@ ARM = 3.4
 """Half-length of a cross's arms [px]; half of it for a small figure."""
 RING = 2.2
 """Radius of the ring at the predicted place [px]; the same."""
-LARGE = 220.0
-LONGEST_SOURCE = 150.0
 
 
 def source_color(keypoints: ComparedKeypoints, source: str) -> Color:
@@ -83,9 +81,7 @@ def draw_keypoint_legend(
     canvas: Canvas, keypoints: ComparedKeypoints, left: float, right: float, y: float
 ) -> None:
     """Explain the marks on a line with its baseline at `y` that ends at `right`; nothing if it lacks room."""
-    names = [
-        truncated(ascii_text(source), LONGEST_SOURCE, 8.0) for source in dict.fromkeys(keypoints.sources)
-    ]
+    names = [truncated(ascii_text(source), 150.0, 8.0) for source in dict.fromkeys(keypoints.sources)]
     words = [("Cross: keypoint of", GRAY)]
     words += [(name, SOURCE_COLORS[index % len(SOURCE_COLORS)]) for index, name in enumerate(names)]
     words.append(("slanting: not believed; boxed: sides exchanged; ring: where the motion puts it", GRAY))
@@ -99,7 +95,7 @@ def draw_keypoint_legend(
 
 def _size(predicted: Array) -> float:
     rows = predicted[np.isfinite(predicted).all(axis=-1), 1]
-    return float(np.clip(np.ptp(rows) / LARGE, 0.5, 1.0)) if len(rows) else 1.0
+    return float(np.clip(np.ptp(rows) / 220.0, 0.5, 1.0)) if len(rows) else 1.0
 
 
 def _ring(canvas: Canvas, place: Array, color: Color, size: float) -> None:
@@ -180,7 +176,6 @@ def frame_label(canvas: Canvas, cell: Cell, scene_frame: int, keyframe: bool) ->
 
 CELL_WIDTH = 400
 COLUMNS = 4
-LIMB_WIDTH = 3.5
 
 
 def overlay_sheet(
@@ -234,7 +229,7 @@ def _draw_estimate(tile: Canvas, take: Take, figure: StickFigure, tracks: Region
         pixels, depth = take.camera.project(points, cell.frame)
         return scale * pixels, depth
 
-    draw_figure(tile, figure, cell.frame, project, LIMB_WIDTH, outlined=True)
+    draw_figure(tile, figure, cell.frame, project, 3.5, outlined=True)
     for marker, style in enumerate(take.markers):
         red, green, blue = style.color_srgb
         _draw_region(tile, tracks, cell.frame, marker, scale, (blue, green, red))

@@ -38,10 +38,8 @@ def _reduced(image: Image) -> Image:
 
 COLUMNS = 6
 SIDE_WIDTH, SIDE_HEIGHT = 220, 240
-LIMB_WIDTH = 4.0
 PADDING_M = 0.1
 GRID_M = 0.5
-FLOOR_WITHIN_M = 0.5
 
 
 def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
@@ -67,7 +65,7 @@ def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
             right, upward, away = axes @ (points - origin[frame]).T
             return np.stack([0.5 * SIDE_WIDTH + scale * right, free - scale * (upward - foot)], axis=-1), away
 
-        draw_figure(tile, figure, cell.frame, project, LIMB_WIDTH, outlined=False)
+        draw_figure(tile, figure, cell.frame, project, 4.0, outlined=False)
         canvas.paste(tile.image(), cell.left, cell.top, cell.width, cell.height)
         frame_label(canvas, cell, cell.frame + motion.frame_start, cell.frame in motion.keyframe_indices)
     legend(canvas, canvas.width - MARGIN, MARGIN + 15.0)
@@ -78,7 +76,7 @@ def _floor_height(motion: Motion) -> float:
     """Height of the ground plane if the feet are near it, else of the lowest ankle [m]."""
     names = motion.body.skeleton.point_names
     lowest = float(motion.points[:, [names.index("ankle.L"), names.index("ankle.R")], 2].min())
-    return 0.0 if abs(lowest) < FLOOR_WITHIN_M else lowest
+    return 0.0 if abs(lowest) < 0.5 else lowest
 
 
 def write_pictures(

@@ -165,9 +165,7 @@ def square_of(image: Image, corner: Array, side: float, resolution: tuple[int, i
 
 SIZE = 256
 POSES = 3
-TURN_RAD = 0.5
 EDGE = 14
-LIMB_WIDTH = 5.0
 
 
 def thumbnail(motion: Motion) -> Image:
@@ -193,7 +191,7 @@ def thumbnail(motion: Motion) -> Image:
             x, y = center + scale * (right - middle[number]), ground - scale * (upward - floor)
             return np.stack([x, y], axis=-1), away
 
-        draw_figure(canvas, figure, int(frame), project, LIMB_WIDTH, outlined=True)
+        draw_figure(canvas, figure, int(frame), project, 5.0, outlined=True)
     return canvas.image()
 
 
@@ -201,6 +199,6 @@ def _axes(motion: Motion) -> Array:
     """World directions (3, 3) to the right, upwards, and away from the eye, as rows."""
     names = motion.body.skeleton.point_names
     side = (motion.points[:, names.index("hip.L")] - motion.points[:, names.index("hip.R")]).mean(axis=0)
-    angle = float(np.arctan2(side[1], side[0])) + TURN_RAD  # the performer's left is on the right of the view
+    angle = float(np.arctan2(side[1], side[0])) + 0.5  # the performer's left is on the right of the view
     right = np.array([np.cos(angle), np.sin(angle), 0.0])
     return np.stack([right, [0.0, 0.0, 1.0], [-right[1], right[0], 0.0]])

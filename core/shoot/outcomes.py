@@ -19,7 +19,6 @@ from .discovery import RESERVED, Shoot, ShootTake, take_name
 
 FOLDER = Path(RESERVED[0]) / "failures"
 LARGEST_BYTES = 2**16
-DIGITS = 16
 INPUT, CONVERSION, CRASH = "input", "conversion", "crash"
 
 
@@ -95,7 +94,7 @@ def _read(path: Path) -> Failure | None:
 
 def _file(output: Path, take: str) -> Path:
     digest = hashlib.sha256(take.encode("utf-8", "surrogatepass")).hexdigest()
-    return output / FOLDER / f"{digest[:DIGITS]}.json"
+    return output / FOLDER / f"{digest[:16]}.json"
 
 
 class Status(StrEnum):

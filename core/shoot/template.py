@@ -19,8 +19,6 @@ from .discovery import Shoot, ShootTake
 
 COLORED_CLIPS = 48
 """Clips that are sampled for colors at most: a few of every day, of all performers."""
-COLORED_FRAMES = 4
-LISTED_CLIPS = 6
 GARMENT_HUES = 4
 """Strong hues that five garments show at least; plain clothes, skin and a room seldom have as many."""
 
@@ -106,12 +104,12 @@ def survey_clips(shoot: Shoot) -> Generator[float, None, ClipSurvey]:
     chosen = _spread(len(opened), COLORED_CLIPS)
     for done, index in enumerate(chosen):
         yield 0.8 + 0.2 * done / len(chosen)
-        images[index] = run(sample_spread_frames(opened[index], COLORED_FRAMES)).images
+        images[index] = run(sample_spread_frames(opened[index], 4)).images
         seen[index] = replace(seen[index], hues=len({one.hue for one in strong_colors(images[index])}))
     yield 1.0
     # Of the clips that show garments, where there are any.
     shown = [index for index in chosen if MARKERS in seen[index].evidence] or chosen
-    listed = [image for one in _spread(len(shown), LISTED_CLIPS) for image in images[shown[one]]]
+    listed = [image for one in _spread(len(shown), 6) for image in images[shown[one]]]
     return ClipSurvey(tuple(seen), tuple(described), tuple(unreadable), strong_colors(listed))
 
 

@@ -48,7 +48,6 @@ FrameRate = Annotated[float, Number(1e-3, 1e4)]
 
 
 MOST_MARKERS, MOST_SOURCES = 64, 100
-LONGEST_NAME = 200
 Share = Annotated[float, Number(0.0, 1.0, decimals=4)]
 
 
@@ -76,7 +75,7 @@ class UsedEvidence(Record):
 
     SPARSE, REQUIRED = False, ("markers", "keypoints", "depth_hints", "contours")
 
-    markers: Annotated[tuple[Annotated[str, Text(LONGEST_NAME)], ...], Items("names", 0, MOST_MARKERS)] = ()
+    markers: Annotated[tuple[Annotated[str, Text(200)], ...], Items("names", 0, MOST_MARKERS)] = ()
     """Names of the markers."""
     keypoints: Annotated[tuple[UsedKeypoints, ...], Items("sources", 0, MOST_SOURCES)] = ()
     """The sources of keypoints."""

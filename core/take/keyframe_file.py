@@ -25,8 +25,6 @@ MOST_KEYFRAMES = 20_000
 """Ten a hundred frames in two hours of film."""
 SMALLEST_EXTENT_M = 0.05
 """Largest distance of a point from their mean, below which all points are one."""
-FITTED_TOGETHER = 500
-"""Keyframes whose points are fitted at once; bounds the memory."""
 PLACE = f"[x, y, z] in meters, each within {FARTHEST_M:g} m of the origin"
 Place = Annotated[
     tuple[Annotated[float, Number(-FARTHEST_M, FARTHEST_M)], ...], Items("numbers", 3, 3, PLACE)
@@ -128,7 +126,7 @@ def _keyframes(rows: Sequence[KeyframeRow], frame_start: int, body: Body) -> lis
     points = np.array([unseen if row.points is None else list(row.points.values()) for row in rows])
     postures = {index: row.posture for index, row in enumerate(rows) if row.posture is not None}
     points_only = np.array([index for index in range(len(rows)) if index not in postures], dtype=np.intp)
-    for chunk in chunks(points_only, FITTED_TOGETHER) if len(points_only) else []:
+    for chunk in chunks(points_only, 500) if len(points_only) else []:
         fitted = fit_posture(body, points[chunk]).posture
         postures.update({int(index): fitted[row] for row, index in enumerate(chunk)})
     keyframes = []

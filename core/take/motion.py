@@ -54,7 +54,6 @@ LARGEST_BYTES = 2**29
 """Two hours of motion: about 2 kB a frame."""
 LARGEST_NUMBER = 1e15
 """Of coordinates, angles, times and covariances, in the file's units."""
-MOST_DIAGNOSTICS = 100
 SIGNIFICANT_DIGITS = 6
 UPPER = (np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2]))
 """Rows and columns of xx, xy, xz, yy, yz, zz: the upper triangle of a covariance matrix."""
@@ -102,7 +101,7 @@ class MotionFile(Record):
     """The posture by degree of freedom: F numbers [m, rad] each."""
     actor: Actor
     """The performer's size."""
-    diagnostics: Annotated[Mapping[str, Array], ByName("lists by name", MOST_DIAGNOSTICS, item=Diagnostic())]
+    diagnostics: Annotated[Mapping[str, Array], ByName("lists by name", 100, item=Diagnostic())]
     """Diagnostics of the estimate by name; null where a number does not apply."""
     sigma_m: Annotated[Mapping[str, Array], _lists(HUMAN.point_names)] = field(default_factory=dict)
     """Square root of the trace of each point's covariance: F numbers [m] each; only for methods with

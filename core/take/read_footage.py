@@ -21,7 +21,6 @@ RADIUS_GROWTH_M_PER_S = 3.0
 KNOWN_S = 0.2
 """... this: a limb may have swung there and back in between, and before the first keyframe and after the last
 the posture is only held [s]."""
-CHUNK_FRAMES = 500
 
 
 def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
@@ -46,7 +45,7 @@ def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
     prior = interpolate(take.keyframes, frame_count)
     model = average_model(take)
     center = np.empty((frame_count, len(take.markers), 2))
-    for frame in chunks(np.arange(frame_count), CHUNK_FRAMES):
+    for frame in chunks(np.arange(frame_count), 500):
         center[frame] = model.evaluate(take.body.pose(prior[frame]), frame).centroid
     depth = take.camera.depth(prior.translation, np.arange(frame_count))
     frame, posed = np.arange(frame_count), np.array(sorted(take.keyframe_indices))

@@ -39,10 +39,7 @@ from .take import Take, check_evidence, with_evidence
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 """What a marker may be bound to: a segment of the skeleton, or all between hips and shoulders."""
 MOST_FRAMES = 10**6
-MOST_MARKERS = 64
 MARKER_NAME = Text(200, "one line of at most 200 visible characters", one_line=True)
-MISTYPED = 0.85
-"""Likeness of an object's name from which on it is `markers` with one letter wrong."""
 
 
 FRAME_RATE = Number(1.0, 1000.0, "frames per second")
@@ -117,9 +114,7 @@ class TakeFields(Record):
     """The camera that saw the performance."""
     actor: ActorFields
     """The performer's size."""
-    markers: (
-        Annotated[Mapping[str, MarkerFields], ByName("markers", MOST_MARKERS, key=MARKER_NAME)] | None
-    ) = None
+    markers: Annotated[Mapping[str, MarkerFields], ByName("markers", 64, key=MARKER_NAME)] | None = None
     """The performer's colored markers, by name; none where any clothes are worn."""
     ignored_regions: Annotated[tuple[RegionFields, ...], Items("regions", 0, MOST_REGIONS)] | None = None
     """Regions of the picture that are never a marker, as a wall panel of a marker's color: boxes and strokes
@@ -307,7 +302,7 @@ def _with_clip_fields(fields: Fields, path: Path) -> Fields:
 def _refuse_mistyped_markers(fields: Fields) -> None:
     """Without markers a take has other evidence: a mistyped name of theirs must not lead there."""
     objects = [name for name, value in islice(fields.values.items(), 100) if isinstance(value, Mapping)]
-    if not fields.has("markers") and get_close_matches("markers", objects, n=1, cutoff=MISTYPED):
+    if not fields.has("markers") and get_close_matches("markers", objects, n=1, cutoff=0.85):
         fields.required("markers", "an object of markers by name, each with color_srgb")
 
 

@@ -121,7 +121,6 @@ def _urgency(outcome: Outcome) -> tuple[float, str]:
 
 COLUMNS = ("Take", "Footage", "Confidence", "To do and to know", "Files")
 MOST_NAMED = 12
-MOST_SOURCES = 3
 SIGNS = {
     Verdict.FAILED: "✕",
     Verdict.POOR: "○",
@@ -193,7 +192,7 @@ def _made_from(record: ConversionRecord) -> str:
 
 
 def _evidence(evidence: UsedEvidence) -> str:
-    sources = [isolated(said.source) for said in evidence.keypoints[:MOST_SOURCES]]
+    sources = [isolated(said.source) for said in evidence.keypoints[:3]]
     more = len(evidence.keypoints) - len(sources)
     named = f" (keypoints: {', '.join(sources)}{f' and {more} more' if more else ''})" if sources else ""
     return f"{evidence.words}{named}"

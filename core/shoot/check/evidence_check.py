@@ -42,8 +42,6 @@ class Findings:
 
 LONGEST_GAP_S = 1.0
 """Longest gap between keyframes without a warning where none are found in it: ten in 100 frames are usual."""
-FEWEST_IN_PICTURE = 0.5
-"""Share of a keyframe's points that must lie in the picture."""
 MOST_NAMED = 3
 
 
@@ -93,7 +91,7 @@ def _check_picture(take: Take, findings: Findings) -> None:
         points = take.body.points(take.body.pose(keyframe.posture))
         x, y = np.moveaxis(take.camera.project(points, keyframe.index)[0], -1, 0)
         inside = (x >= 0.0) & (x <= width) & (y >= 0.0) & (y <= height)
-        if inside.mean() < FEWEST_IN_PICTURE:
+        if inside.mean() < 0.5:
             outside.append(keyframe.index + take.frame_start)
     if outside:
         findings.warn(
@@ -117,8 +115,6 @@ MUCH_BETTER = 0.5
 """Share of an unusual error that another reading of the file must leave to be named."""
 MOST_SHIFTED_S = 0.5
 """Longest delay that is looked for; with a longer one the movement may be another that looks alike."""
-FEWEST_FRAMES = 0.5
-"""Share of the frames in which the performer must be seen for no warning."""
 
 
 @dataclass(frozen=True)
@@ -155,7 +151,7 @@ def _readout(take: Take, people: People, findings: Findings) -> KeypointReadout:
     error = _check_agreement(take, compared, name, findings)
     found = performer.seen.any(axis=1)
     share = float(found.mean())
-    if share < FEWEST_FRAMES:
+    if share < 0.5:
         findings.warn(
             f"{name}: the performer is seen in {share:.0%} of the frames only; a keyframe in each gap helps"
         )

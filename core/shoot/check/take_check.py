@@ -217,12 +217,6 @@ def _checked(
     )
 
 
-FEWEST_TAKES = 5
-"""Known values below which none is usual."""
-USUAL_SHARE = 0.8
-"""Share of the takes that must have the same value for it to be usual."""
-
-
 def flag_outliers(checks: Sequence[TakeCheck]) -> list[TakeCheck]:
     """The checks, with a warning for each clip whose size or rate is an outlier of the shoot."""
     sizes = [None if one.size is None else f"{one.size[0]} x {one.size[1]} pixels" for one in checks]
@@ -241,9 +235,9 @@ def flag_outliers(checks: Sequence[TakeCheck]) -> list[TakeCheck]:
 def _outliers(values: Sequence[str | None]) -> list[tuple[str, str] | None]:
     """Each outlier with the usual value; None where a value is usual or unknown, or none is usual."""
     known = Counter(value for value in values if value is not None)
-    if known.total() < FEWEST_TAKES:
+    if known.total() < 5:
         return [None] * len(values)
     usual, count = known.most_common(1)[0]
-    if count < USUAL_SHARE * known.total():
+    if count < 0.8 * known.total():
         return [None] * len(values)
     return [None if value in (None, usual) else (str(value), usual) for value in values]
