@@ -40,7 +40,6 @@ class Cost:
     wall_s: float
     processor_s: float
     peak_mb: float
-    """Peak memory of the largest process."""
     others: float | None
     """Processors kept busy by other programs meanwhile; None where the system does not tell."""
 

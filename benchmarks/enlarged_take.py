@@ -22,7 +22,7 @@ load_project()
 from keymark.core.files.json_file import write_json  # noqa: E402
 from keymark.core.footage.camera import Camera  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
-from keymark.core.take.evidence_kinds import CONTOURS, MARKERS  # noqa: E402
+from keymark.core.take.evidence import CONTOURS, MARKERS  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import read_take, write_take  # noqa: E402
 

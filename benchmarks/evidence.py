@@ -25,15 +25,9 @@ from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa:
 from keymark.core.footage.keypoints.keypoints import People  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
-from keymark.core.take.evidence import (  # noqa: E402
-    CONTOURS,
-    DEPTH_HINTS,
-    KEYPOINTS,
-    MARKERS,
-    with_evidence,
-)
+from keymark.core.take.evidence import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402
-from keymark.core.take.take import Take  # noqa: E402
+from keymark.core.take.take import Take, with_evidence  # noqa: E402
 
 KEYFRAMES = {"exact": "keyframes.json", "by hand": "keyframes_noisy.json"}
 KEYPOINT_FILES = ("keypoints_mediapipe.json", "keypoints.json")

@@ -38,8 +38,9 @@ from keymark.core.evidence import regions as region_model  # noqa: E402
 from keymark.core.footage.segmentation import regions as segmentation  # noqa: E402
 from keymark.core.footage.segmentation.moments import Coverage  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
-from keymark.core.take.evidence import CONTOURS, KEYPOINTS, MARKERS, with_evidence  # noqa: E402
+from keymark.core.take.evidence import CONTOURS, KEYPOINTS, MARKERS  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402
+from keymark.core.take.take import with_evidence  # noqa: E402
 
 Switch = tuple[Any, str, Any]  # a module, a name in it, and what stands in for that
 EVIDENCE = {"markers": (MARKERS, CONTOURS), "keypoints": (KEYPOINTS, CONTOURS), "contours": (CONTOURS,)}

@@ -68,7 +68,6 @@ ROWS = {
     CONVERT: "**`keymark convert`**, all files and pictures",
     BATCH: f"**`keymark batch --jobs {JOBS}`**, a take",
 }
-"""Title of each row by its step, in the order of the work."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +75,6 @@ class Cell:
     """What one step of one clip costs."""
 
     seconds: float
-    """By the clock."""
     processor_s: float
     peak_mb: float
     takes: int = 1

@@ -6,7 +6,7 @@ from typing import Any
 
 from keymark.core.shoot.outcomes import Outcome, Status
 from keymark.core.take.conversion_record import ConversionRecord
-from keymark.core.take.evidence_kinds import UsedEvidence, UsedKeypoints
+from keymark.core.take.evidence import UsedEvidence, UsedKeypoints
 
 FILES = ("motion.json", "motion.blend", "motion.bvh", "report/overlay.png")
 RECORD = ConversionRecord(

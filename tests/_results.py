@@ -5,11 +5,11 @@ from pathlib import Path
 
 import bpy
 from _faults import tree
-from keymark.core.files.control_characters import real_path
 from keymark.core.files.digest import content_digest
+from keymark.core.files.paths import real_path
+from keymark.core.pipeline.result import AS_MADE
 from keymark.core.take.conversion_record import read_record
 from keymark.operators.bridge.actions import curve_digest
-from keymark.operators.cli.conversion.convert_take import AS_MADE
 
 VARYING = ("motion.blend", "character.blend", AS_MADE)
 """Blender writes memory addresses into its files; the record has the digest of their curves."""

@@ -26,12 +26,7 @@ def done(result: str, error: str | None = None, kind: str | None = None, memory:
 def work(job: dict[str, Any]) -> None:
     """Do what the take's name asks for."""
     name, place = job["take"]["name"], job["take"]["path"]
-    told = {
-        "take": name,
-        "process": os.getpid(),
-        "again": job["again"],
-        "nearest": job["take"]["overrides"],
-    }
+    told = {"take": name, "process": os.getpid(), "again": job["again"], "nearest": job["take"]["overrides"]}
     with log.open("ab", buffering=0) as file:  # in one piece: another worker may write as well
         file.write(json.dumps(told).encode() + b"\n")
     times = log.read_text(encoding="utf-8").count(json.dumps(name))

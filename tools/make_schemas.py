@@ -15,11 +15,9 @@ load_package()
 
 from keymark.core.body.actor import REQUIRED  # noqa: E402
 from keymark.core.files.json_file import format_json  # noqa: E402
+from keymark.core.files.kinds import relative_path  # noqa: E402
 from keymark.core.files.records import Record, declared  # noqa: E402
-from keymark.core.files.safe_path import relative_path  # noqa: E402
-from keymark.core.footage.camera_fields import (  # noqa: E402
-    CameraFields,
-)
+from keymark.core.footage.camera_fields import CameraFields  # noqa: E402
 from keymark.core.footage.keypoints.keypoint_file import NAMES, OwnFile  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
@@ -28,27 +26,12 @@ from keymark.core.retarget.retarget_record import RetargetRecord  # noqa: E402
 from keymark.core.review.score import TruthFile  # noqa: E402
 from keymark.core.shoot.discovery import KNOWN_FIELDS  # noqa: E402
 from keymark.core.take.conversion_record import ConversionRecord  # noqa: E402
-from keymark.core.take.conversion_settings import (  # noqa: E402
-    SettingsFields,
-)
+from keymark.core.take.conversion_settings import SettingsFields  # noqa: E402
 from keymark.core.take.description import SCHEMA_VERSION, SETTING_FIELDS, SHARED_FIELDS  # noqa: E402
 from keymark.core.take.keyframe_file import KeyframeFile  # noqa: E402
 from keymark.core.take.motion import MotionFile  # noqa: E402
-from keymark.core.take.take_file import (  # noqa: E402
-    ActorFields,
-    MarkerFields,
-    TakeFields,
-)
-from schemas.kinds import (  # noqa: E402
-    COMMENT,
-    NULL,
-    Schema,
-    filled,
-    inherited_schema,
-    kind_schema,
-    object_schema,
-    or_null,
-)
+from keymark.core.take.take_file import ActorFields, MarkerFields, TakeFields  # noqa: E402
+from schemas.kinds import COMMENT, NULL, Schema, filled, inherited_schema, kind_schema, object_schema, or_null  # noqa: E402
 
 FOLDER = ROOT / "presets" / "schemas"
 DRAFT = "https://json-schema.org/draft/2020-12/schema"

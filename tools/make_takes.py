@@ -28,7 +28,7 @@ from keymark.core.files.json_file import write_json  # noqa: E402
 from keymark.core.footage.keypoints.keypoint_file import write_keypoints  # noqa: E402
 from keymark.core.footage.region_tracks import MarkerStyle  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
-from keymark.core.take import evidence_kinds  # noqa: E402
+from keymark.core.take import evidence  # noqa: E402
 from keymark.core.take.description import KEYPOINT_FILE  # noqa: E402
 from keymark.core.take.keyframe_file import write_keyframes  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
@@ -52,7 +52,7 @@ from studio.posing import pose_by_hand  # noqa: E402
 from studio.room import BuiltRoom, build_room  # noqa: E402
 
 FRAME_START = 1
-WORN = (evidence_kinds.MARKERS, evidence_kinds.CONTOURS)
+WORN = (evidence.MARKERS, evidence.CONTOURS)
 """Evidence that a take is held against where its keypoints are for comparison."""
 SIDE_EXPOSURE = {"moments": 2, "shutter_frames": SHUTTER_FRAMES, "samples": 2}
 LICENSE = (

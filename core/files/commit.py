@@ -22,7 +22,6 @@ STAGING, ROLLBACK, JOURNAL, JOURNAL_DRAFT = "-new", "-old", ".json", ".json.new"
 """Endings of the hidden names. They and the journal's fields never change, so that a run that was interrupted
 before an update of Keymark is recovered after it."""
 LARGEST_BYTES = 2**24
-"""Of a journal."""
 
 Moves = list[tuple[Path, Path]]
 
@@ -38,33 +37,16 @@ class Commit:
     manifest: str | None = None
     """The file that lists the others: the first to be removed, the last to be written."""
     written: tuple[str, ...] = ()
-    """The files of the set, as paths in the target."""
     removed: tuple[str, ...] = ()
     """Files of earlier sets that this one lacks."""
     backups: Mapping[str, str] = field(default_factory=dict)
     """Files in the target that are kept under another name instead of being replaced or removed."""
 
-    @property
-    def staging_folder(self) -> Path:
-        """The folder in which the set is made."""
-        return self._hidden(STAGING)
+    def hidden(self, ending: str) -> Path:
+        """The set's folder (`STAGING`), what it replaces (`ROLLBACK`), its moves (`JOURNAL`), their draft.
 
-    @property
-    def rollback_folder(self) -> Path:
-        """The folder for what the set replaces, as long as it may have to go back."""
-        return self._hidden(ROLLBACK)
-
-    @property
-    def journal(self) -> Path:
-        """The list of moves; while it exists, the set is complete but not all in the target."""
-        return self._hidden(JOURNAL)
-
-    @property
-    def journal_draft(self) -> Path:
-        """The journal while it is written."""
-        return self._hidden(JOURNAL_DRAFT)
-
-    def _hidden(self, ending: str) -> Path:
+        While the journal exists, the set is complete but not all in the target.
+        """
         return self.stem.with_name(self.stem.name + ending)
 
 
@@ -74,7 +56,7 @@ def write_journal(commit: Commit) -> None:
     Raises:
         OSError: The disk is full, or gone.
     """
-    for folder, _, names in os.walk(commit.staging_folder):
+    for folder, _, names in os.walk(commit.hidden(STAGING)):
         for name in names:
             fsync_path(Path(folder) / name)
         fsync_path(Path(folder))
@@ -85,23 +67,15 @@ def write_journal(commit: Commit) -> None:
         "gone": list(commit.removed),
         "aside": dict(commit.backups),
     }
-    commit.journal_draft.write_text(json.dumps(fields), encoding="utf-8")
-    fsync_path(commit.journal_draft)
-    os.replace(commit.journal_draft, commit.journal)
-    fsync_path(commit.journal.parent)
+    commit.hidden(JOURNAL_DRAFT).write_text(json.dumps(fields), encoding="utf-8")
+    fsync_path(commit.hidden(JOURNAL_DRAFT))
+    os.replace(commit.hidden(JOURNAL_DRAFT), commit.hidden(JOURNAL))
+    fsync_path(commit.hidden(JOURNAL).parent)
 
 
 def roll_forward(commit: Commit, moves: Moves) -> None:
-    """Second phase: move a journaled set into its folder; what another process has moved already stays.
-
-    Args:
-        commit: The set.
-        moves: Receives every move (from, to), so that it can be rolled back.
-
-    Raises:
-        OSError: A file cannot be moved.
-    """
-    staging_folder, target = commit.staging_folder, commit.target
+    """Second phase: move a journaled set into its folder; what another process has moved already stays."""
+    staging_folder, target = commit.hidden(STAGING), commit.target
     staged = [name for name in commit.written if (staging_folder / name).is_file()]
     if staged == list(commit.written) and not target.exists():
         _move(staging_folder, target, moves)
@@ -143,17 +117,14 @@ def roll_back(commit: Commit, moves: Moves) -> None:
 
 def clean_up(commit: Commit) -> None:
     """Remove all hidden files of a commit, the journal first: without it the others mean nothing."""
-    for file in (commit.journal, commit.journal_draft):
+    for file in (commit.hidden(JOURNAL), commit.hidden(JOURNAL_DRAFT)):
         file.unlink(missing_ok=True)
-    for folder in (commit.staging_folder, commit.rollback_folder):
+    for folder in (commit.hidden(STAGING), commit.hidden(ROLLBACK)):
         shutil.rmtree(folder, ignore_errors=True)
 
 
 def recover(commit: Commit) -> None:
     """Finish or remove what a killed process has left of a commit to the same target.
-
-    Args:
-        commit: An empty one: its target and its hidden names.
 
     Raises:
         OSError: A file cannot be moved, or not removed.
@@ -165,7 +136,7 @@ def recover(commit: Commit) -> None:
     if commit.stem.parent == commit.target:
         for file in commit.target.glob(f"{commit.stem.name}-*"):  # by Blender, see `convert_take`
             file.unlink(missing_ok=True)
-    for folder in (commit.staging_folder, commit.rollback_folder):
+    for folder in (commit.hidden(STAGING), commit.hidden(ROLLBACK)):
         if os.path.lexists(folder):
             shutil.rmtree(folder)  # `clean_up` could not remove it: this time with the reason
 
@@ -177,7 +148,7 @@ def _read_journal(commit: Commit) -> Commit | None:
     files of the set are missing.
     """
     try:
-        fields = read_json(commit.journal, LARGEST_BYTES)
+        fields = read_json(commit.hidden(JOURNAL), LARGEST_BYTES)
         written, removed, backups, manifest = (fields[name] for name in ("made", "gone", "aside", "seal"))
         names = [*written, *removed, *backups, *backups.values(), *(() if manifest is None else (manifest,))]
         if fields["target"] != commit.target.name or not all(map(_is_inside, names)):
@@ -185,7 +156,7 @@ def _read_journal(commit: Commit) -> Commit | None:
     except (InputError, LookupError, TypeError, AttributeError):
         return None
     found = Commit(commit.target, commit.stem, manifest, tuple(written), tuple(removed), dict(backups))
-    folders = (found.staging_folder, found.target)
+    folders = (found.hidden(STAGING), found.target)
     complete = all(any((folder / name).is_file() for folder in folders) for name in written)
     return found if complete else None
 
@@ -202,15 +173,12 @@ def files_below(folder: Path) -> tuple[str, ...]:
 
 def backup_name(file: Path) -> Path:
     """An unused name beside a file, under which it is kept where it is not to be replaced."""
-    for number in itertools.count(1):
-        other = file.with_stem(f"{file.stem} (changed{'' if number == 1 else f' {number}'})")
-        if not os.path.lexists(other):
-            return other
-    raise AssertionError("numbers have no end")
+    endings = (f" (changed{'' if number == 1 else f' {number}'})" for number in itertools.count(1))
+    others = (file.with_stem(file.stem + ending) for ending in endings)
+    return next(other for other in others if not os.path.lexists(other))
 
 
 def _move_away(commit: Commit, name: str, moves: Moves) -> None:
-    """Make room in the target for a file of the set, or remove a file that the set lacks."""
     existing = commit.target / name
     if not existing.is_file() and not existing.is_symlink():
         return
@@ -218,7 +186,7 @@ def _move_away(commit: Commit, name: str, moves: Moves) -> None:
         backup = commit.target / commit.backups[name]
         _move(existing, backup_name(existing) if os.path.lexists(backup) else backup, moves)
     else:
-        _move(existing, commit.rollback_folder / name, moves)
+        _move(existing, commit.hidden(ROLLBACK) / name, moves)
 
 
 def _move(source: Path, destination: Path, moves: Moves) -> None:

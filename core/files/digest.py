@@ -1,4 +1,4 @@
-"""Digests of values and files: they tell whether a result was computed from the same input."""
+"""Digests of values and files, which tell whether a result has the same input; arrays kept by digest."""
 
 import hashlib
 import os
@@ -15,12 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import BusyError, InputError
-from .control_characters import regular_file_size
 from .file_lock import HIDDEN, LOCK, file_lock
 from .json_file import WORK, write_atomically
+from .paths import regular_file_size
 
 DIGITS = 32
-"""Hexadecimal digits: 128 bits."""
 SAMPLES = 16
 """Of a file's content, spread evenly, for its fingerprint."""
 SAMPLE_BYTES = 65536
@@ -50,12 +49,7 @@ def digest(*parts: object) -> str:
 
 
 def file_fingerprint(path: Path) -> str:
-    """A quick digest of a file: its size, its modification time and samples of its content.
-
-    Raises:
-        InputError: There is no such regular file.
-        OSError: The file cannot be read.
-    """
+    """A quick digest of a file: its size, its modification time and samples of its content."""
     regular_file_size(path, "a file that can be read")
     state = path.stat()
     samples = []
@@ -69,20 +63,13 @@ def file_fingerprint(path: Path) -> str:
 
 
 def content_digest(path: Path) -> str:
-    """SHA-256 of a file's whole content.
-
-    Raises:
-        InputError: The file cannot be read.
-    """
+    """SHA-256 of a file's whole content."""
     regular_file_size(path, "a file that can be read")
     try:
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from error
-
-
-# --- A cache on disk of arrays that are expensive to compute
 
 
 Arrays = dict[str, NDArray[Any]]
@@ -98,12 +85,6 @@ class ArrayCache:
     """Sets of arrays in a folder, each under a key of lower-case letters, digits and hyphens."""
 
     def __init__(self, folder: Path, largest_bytes: int = LARGEST_BYTES) -> None:
-        """Use a folder, which is made with the first entry.
-
-        Args:
-            folder: The folder of the cache's files, and of nothing else.
-            largest_bytes: Size of all files together; beyond it the least recently used are removed.
-        """
         self.folder, self.largest_bytes = folder, largest_bytes
 
     def load(self, key: str) -> Arrays | None:
@@ -127,7 +108,6 @@ class ArrayCache:
 
         Raises:
             ValueError: The key has another form, or an array holds Python objects.
-            ConversionError: The folder cannot be written.
         """
         if not _KEY.fullmatch(key):
             raise ValueError(f"the key {key!r} is not of lower-case letters, digits and hyphens")

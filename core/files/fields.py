@@ -19,10 +19,7 @@ COMMENT_PREFIX = "//"
 _FILE = re.compile(r"\.jsonl?(, line \d+)?$", re.ASCII)
 PLACED = ("height_m", "tilt_deg", "roll_deg", "distance_m")
 """Fields that together say how a camera stands."""
-ALTERNATIVES = (
-    (("segments_m",), ("height_m",)),
-    (("matrix_world",), ("matrix_world_frames",), PLACED),
-)
+ALTERNATIVES = ((("segments_m",), ("height_m",)), (("matrix_world",), ("matrix_world_frames",), PLACED))
 """The groups of a row say the same: the nearer one counts, whichever it is."""
 
 
@@ -35,12 +32,7 @@ class InheritedFields(dict[str, Any]):
         """Location of the object that gives each field, by name."""
 
     def overridden_by(self, patch: Mapping[str, Any], location: str) -> "InheritedFields":
-        """These fields with a nearer object merged over them.
-
-        Args:
-            patch: The nearer object.
-            location: Where it stands: a file, and the path to the object in it.
-        """
+        """These fields with a nearer object merged over them."""
         merged = InheritedFields()
         merged.update(self)
         merged.sources.update(self.sources)
@@ -74,9 +66,6 @@ class InheritedFields(dict[str, Any]):
 def child_location(location: str, name: str) -> str:
     """The location of an object in a field of another: `take.json: camera`, then `take.json: camera.lens`."""
     return f"{location}: {name}" if _FILE.search(location) else f"{location}.{name}"
-
-
-# --- Checked fields of a JSON object
 
 
 def listed(names: Iterable[str], most: int = 40) -> str:

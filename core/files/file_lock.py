@@ -16,13 +16,9 @@ from pathlib import Path
 from ..errors import BusyError
 
 HIDDEN = ".keymark-"
-"""Beginning of all hidden names."""
 LOCK = ".lock"
-"""Ending of the names of lock files."""
 DIGITS = 16
-"""Hexadecimal digits of a hidden name."""
 ATTEMPTS = 200
-RETRY_DELAY_S = 0.01
 _NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP}
 
 if sys.platform == "win32":
@@ -86,7 +82,6 @@ def _release(file: Path, descriptor: int) -> None:
 
 
 def _remove_idle(file: Path) -> None:
-    """Remove the lock's file unless another holds it."""
     with suppress(OSError):
         descriptor = os.open(file, os.O_RDWR)
         if _try_lock(descriptor, wait=False) and _is_same_file(file, descriptor):
@@ -104,7 +99,7 @@ def _acquire(file: Path, busy_message: str, wait: bool) -> int:
             transient = sys.platform == "win32" or isinstance(error, FileNotFoundError)
             if not transient or attempt == ATTEMPTS - 1:
                 raise
-            time.sleep(RETRY_DELAY_S)
+            time.sleep(0.01)
             continue
         try:
             if not _try_lock(descriptor, wait):

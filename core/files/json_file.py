@@ -1,4 +1,4 @@
-"""A folder of JSON files that people share: keyframe libraries and character maps, side by side."""
+"""JSON files: read strictly, written atomically, formatted for people where they edit them."""
 
 import errno
 import json
@@ -13,8 +13,8 @@ from reprlib import Repr
 from typing import Any
 
 from ..errors import ConversionError, InputError
-from .control_characters import regular_file_size
 from .file_lock import LOCK, file_lock, hidden_prefix
+from .paths import regular_file_size
 
 ENDING = ".json"
 MOST_FILES = 500
@@ -45,9 +45,6 @@ def is_other_format(value: Mapping[str, Any], schema: str) -> bool:
     return isinstance(own, str) and own.startswith(OURS) and own != schema
 
 
-# --- Flushing files and folders to the disk, so that they outlive a loss of power
-
-
 DISK_ERRORS = frozenset(
     getattr(errno, name) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EIO") if hasattr(errno, name)
 )
@@ -73,9 +70,6 @@ def fsync_path(path: Path) -> None:
             raise
 
 
-# --- JSON files, read strictly and written atomically
-
-
 LARGEST_BYTES = 64 * 2**20
 """A moving camera of an hour fits; a video given by mistake does not."""
 DEEPEST = 50
@@ -83,7 +77,6 @@ DEEPEST = 50
 MOST_LISTS = 4 * 10**6
 """Lists and objects of a file, each of which takes many times its two characters once it is read."""
 WORK = "-work"
-"""Ending of the hidden folder in which a single file is written."""
 MOST_DIGITS = 15
 """Integers of more digits have no exact float64."""
 
@@ -99,13 +92,6 @@ _SHORT.maxlist = _SHORT.maxdict = _SHORT.maxtuple = 40
 def read_json(path: Path, largest_bytes: int = LARGEST_BYTES) -> dict[str, Any]:
     """Read a JSON object.
 
-    Args:
-        path: The file, UTF-8, with or without a byte order mark.
-        largest_bytes: A larger file is refused.
-
-    Returns:
-        The object's fields; every number in it is finite.
-
     Raises:
         InputError: The file is missing, too large, not UTF-8, no JSON object, names a field
             twice or holds a number that is not finite.
@@ -117,19 +103,12 @@ def read_json_value(path: Path, largest_bytes: int = LARGEST_BYTES) -> Any:
     """Read any JSON value from a file of another program, as strictly as `read_json`; NaN becomes null.
 
     Programs write NaN for what they did not find; no other number that is not finite means anything.
-
-    Raises:
-        InputError: As `read_json`, but the value need be no object.
     """
     return _parse(_read_text(path, largest_bytes), str(path), _null_for_nan)
 
 
 def parse_json(text: str, where: str) -> dict[str, Any]:
     """The JSON object in a text, with finite numbers only.
-
-    Args:
-        text: The JSON.
-        where: Location of the text, with which sentences begin.
 
     Raises:
         InputError: It is no JSON object, is nested too deeply, names a field twice or holds a number that is
@@ -166,17 +145,15 @@ def _parse(text: str, where: str, parse_constant: Callable[[str], Any]) -> Any:
 def write_json(path: Path, value: Any, indent: int | None = None) -> None:
     """Write a value as strict JSON, atomically; the same value always gives the same bytes.
 
-    Args:
-        path: The file; an older one is replaced.
-        value: A value that `json` can write; a number that is not finite is refused.
-        indent: Spaces a level for files that people edit; None writes without spaces.
-
     Raises:
         ValueError: A number is NaN or infinite.
-        ConversionError: The file cannot be written.
     """
     separators = (",", ":") if indent is None else (",", ": ")
     text = json.dumps(value, indent=indent, separators=separators, allow_nan=False, ensure_ascii=False)
+    _write_text(path, text)
+
+
+def _write_text(path: Path, text: str) -> None:
     write_atomically(path, lambda beside: beside.write_text(text + "\n", encoding="utf-8", newline="\n"))
 
 
@@ -184,9 +161,6 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
     """Write a file atomically: `write` makes it in a hidden folder beside `path`, from which it is moved.
 
     Others that write the same file meanwhile wait. The remains of a killed process go with the next writing.
-
-    Raises:
-        ConversionError: The file cannot be written.
     """
     try:
         stem = path.parent / hidden_prefix(path.name)
@@ -291,24 +265,14 @@ def _int(text: str) -> int:
     return int(text)
 
 
-# --- JSON formatted for people
-
-
 WIDTH = 110
 """Characters of a line: a list or an object of plain values that fits stands in one line."""
-INDENT = 2
 _AXIS = re.compile(r"_[xyz]$")
 
 
 def write_readable_json(path: Path, value: Any) -> None:
-    """Write a value as formatted strict JSON, atomically; the same value always gives the same bytes.
-
-    Raises:
-        ValueError: A number is NaN or infinite.
-        ConversionError: The file cannot be written.
-    """
-    text = format_json(value) + "\n"
-    write_atomically(path, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
+    """Write a value as formatted strict JSON, atomically; the same value always gives the same bytes."""
+    _write_text(path, format_json(value))
 
 
 def format_json(value: Any, depth: int = 0, before: int = 0) -> str:
@@ -334,7 +298,7 @@ def format_json(value: Any, depth: int = 0, before: int = 0) -> str:
     short = _plain(value)
     if flat and not compound and depth + before + len(short) <= WIDTH:
         return short
-    inner = depth + INDENT
+    inner = depth + 2
     lines = [", ".join(name + format_json(item, inner, len(name)) for name, item in row) for row in rows]
     opening, closing = ("{", "}") if isinstance(value, Mapping) else ("[", "]")
     between = "\n" + " " * inner

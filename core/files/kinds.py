@@ -1,17 +1,26 @@
+# ruff: noqa: D102
 """Kinds of values of JSON: each checks a value, converts it, and says in one sentence what it must be."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any, NoReturn
 
+import numpy as np
+
+from ..arrays import Array
 from ..errors import InputError
-from .control_characters import is_control_character
 from .fields import Fields, child_location, is_number, listed
 from .json_file import shown
+from .paths import is_control_character
 
 _PLAIN = re.compile(r"[\w.-]{1,60}", re.ASCII)
 """A name that stands in sentences without quotation marks."""
+LONGEST_PATH, LONGEST_NAME_BYTES = 1000, 255
+"""Characters of a path, and bytes of each name in it, as file systems have it."""
+INSIDE = r"^(?![\\/])(?![A-Za-z]:)(?!(.*[\\/])?\.\.([\\/]|$)).*\S"
+"""What schemas can say of a path that stays inside its folder."""
 
 
 def refuse(where: str, name: str, value: Any, valid: str) -> NoReturn:
@@ -26,11 +35,7 @@ class Kind:
     """Follows "it must be" in sentences."""
 
     def read(self, value: Any, where: str, name: str) -> Any:
-        """Check a value and convert it; `where` is the object's location and `name` the field's name.
-
-        Raises:
-            InputError: It is not what it must be.
-        """
+        """Check a value and convert it; `where` is the object's location and `name` the field's name."""
         raise NotImplementedError
 
     def write(self, value: Any) -> Any:
@@ -50,17 +55,14 @@ class Number(Kind):
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         return f"a number from {self.low:g} to {self.high:g}{self.unit and ' ' + self.unit}"
 
     def read(self, value: Any, where: str, name: str) -> float:
-        """See `Kind`."""
         if not is_number(value) or not self.low <= value <= self.high:
             refuse(where, name, value, self.valid)
         return float(value)
 
     def write(self, value: float) -> float:
-        """See `Kind`; there is no negative zero."""
         return value if self.decimals is None else round(float(value), self.decimals) + 0.0
 
 
@@ -73,11 +75,9 @@ class Whole(Kind):
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         return f"a whole number from {self.low} to {self.high}"
 
     def read(self, value: Any, where: str, name: str) -> int:
-        """See `Kind`."""
         if not is_number(value) or value != int(value) or not self.low <= value <= self.high:
             refuse(where, name, value, self.valid)
         return int(value)
@@ -90,7 +90,6 @@ class Flag(Kind):
     valid: str = "true or false"
 
     def read(self, value: Any, where: str, name: str) -> bool:
-        """See `Kind`."""
         if not isinstance(value, bool):
             refuse(where, name, value, self.valid)
         return value
@@ -109,14 +108,11 @@ class Text(Kind):
     fault: Callable[[str], str] = lambda text: ""
     """What else is wrong with it, to follow "it"; empty for nothing."""
     empty: bool = False
-    """Whether it may be empty."""
 
     def __post_init__(self) -> None:
-        """Say the usual where nothing else is said."""
         object.__setattr__(self, "valid", self.valid or f"a text of at most {self.longest} characters")
 
     def read(self, value: Any, where: str, name: str) -> str:
-        """See `Kind`."""
         if self.empty and value == "":
             return ""
         if not isinstance(value, str) or len(value) > self.longest:
@@ -137,7 +133,6 @@ class Anything(Kind):
     valid: str
 
     def read(self, value: Any, where: str, name: str) -> Any:
-        """See `Kind`."""
         return value
 
 
@@ -149,11 +144,9 @@ class Choice(Kind):
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         return f"one of {listed(self.names)}"
 
     def read(self, value: Any, where: str, name: str) -> str:
-        """See `Kind`."""
         if not isinstance(value, str) or value not in self.names:
             refuse(where, name, value, self.valid)
         return value
@@ -167,15 +160,12 @@ class Nullable(Kind):
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         return f"{self.item.valid}, or null"
 
     def read(self, value: Any, where: str, name: str) -> Any:
-        """See `Kind`."""
         return None if value is None else self.item.read(value, where, name)
 
     def write(self, value: Any) -> Any:
-        """See `Kind`."""
         return None if value is None else self.item.write(value)
 
 
@@ -184,10 +174,8 @@ class Never(Kind):
     """A field of other records of the kind, which must be left out."""
 
     valid: str
-    """The sentence that says so."""
 
     def read(self, value: Any, where: str, name: str) -> NoReturn:
-        """See `Kind`."""
         raise InputError(f"{where}: {self.valid}")
 
 
@@ -208,12 +196,10 @@ class Items(Kind):
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         number = f"{self.least} to {self.most}" if self.least else f"at most {self.most}"
         return self.said or f"a list of {number} {self.of_what}"
 
     def read(self, value: Any, where: str, name: str) -> tuple[Any, ...]:
-        """See `Kind`."""
         if not isinstance(value, list):
             refuse(where, name, value, self.valid)
         if not self.least <= len(value) <= self.most:
@@ -233,7 +219,6 @@ class Items(Kind):
         return tuple(items)
 
     def write(self, value: Sequence[Any]) -> list[Any]:
-        """See `Kind`."""
         return [self.item.write(item) for item in value]
 
 
@@ -242,7 +227,6 @@ class ByName(Kind):
     """An object of items of one kind, by name."""
 
     of_what: str
-    """The items, in the plural."""
     most: int = 0
     """Most items; of no meaning where the names are known."""
     names: tuple[str, ...] = ()
@@ -250,23 +234,18 @@ class ByName(Kind):
     empty: str = ""
     """What an empty object lacks; "" where it may be empty."""
     needs: tuple[str, ...] = ()
-    """Names that must be there."""
     strict: bool = True
     """Whether other than the known names are refused."""
     key: Kind | None = None
-    """What a name must be."""
     item: Kind = field(default_factory=Kind)
-    """By default that of the annotated type."""
     others: Mapping[str, Kind] = field(default_factory=dict, hash=False)
     """Kinds of the names that differ."""
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         return f"an object of {self.of_what}"
 
     def read(self, value: Any, where: str, name: str) -> dict[str, Any]:
-        """See `Kind`."""
         if not isinstance(value, Mapping):
             refuse(where, name, value, self.valid)
         child = Fields(value, child_location(where, name))
@@ -290,16 +269,11 @@ class ByName(Kind):
         }
 
     def write(self, value: Mapping[str, Any]) -> dict[str, Any]:
-        """See `Kind`."""
         return {key: self.item.write(value[key]) for key in self.names or value if key in value}
 
 
 def read_field(fields: Fields, name: str, kind: Kind, otherwise: Any) -> Any:
-    """The value of one field; `otherwise` where it is missing.
-
-    Raises:
-        InputError: It is not what it must be.
-    """
+    """The value of one field; `otherwise` where it is missing."""
     if not fields.has(name):
         return otherwise
     return kind.read(fields.values[name], fields.source_of(name), name)
@@ -313,3 +287,58 @@ def first_twice(items: Sequence[Any], name: str, what: str) -> str:
             return f"{name} names the {what} {shown(item)} twice; each must stand once"
         seen.add(item)
     return ""
+
+
+def safe_path(fields: Fields, name: str, folder: Path, valid: str) -> Path:
+    """The path in a field, relative to a folder that it must not leave."""
+    return folder / relative_path(valid).read(fields.required(name, valid), fields.source_of(name), name)
+
+
+def relative_path(valid: str) -> Text:
+    """The kind of a field that holds a path inside a folder; `valid` is what it must be, for the sentence."""
+
+    def fault(text: str) -> str:
+        path = PureWindowsPath(text)  # it reads both kinds of slash
+        outside = PurePosixPath(text).is_absolute() or path.anchor or ".." in path.parts or path.name == ""
+        longest = max((len(part.encode("utf-8", "surrogatepass")) for part in path.parts), default=0)
+        return f"must be {valid}" if outside or longest > LONGEST_NAME_BYTES else ""
+
+    return Text(LONGEST_PATH, valid, pattern=INSIDE, one_line=True, fault=fault)
+
+
+def number_array(value: Any, *, nulls: bool = False) -> Array | None:
+    """Nested lists of numbers as an array; None where they are none, or one is not finite.
+
+    `nulls`: null may stand for a number, and becomes NaN.
+    """
+    try:
+        items = np.asarray(value, dtype=object)  # as float64, numpy would convert text and truth values
+    except ValueError:  # lists of several lengths
+        return None
+    kinds = set(map(type, items.ravel())) - ({type(None)} if nulls else set())
+    if not all(issubclass(kind, int | float) and kind is not bool for kind in kinds):
+        return None
+    array = items.astype(np.float64)
+    return array if nulls or np.isfinite(array).all() else None
+
+
+@dataclass(frozen=True)
+class NumberArray(Kind):
+    """Nested lists of numbers, an array once they are read."""
+
+    shape: tuple[int, ...]
+    """Lengths of its axes; -1 for any."""
+    limit: float
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        words = " x ".join("any number" if length < 0 else str(length) for length in self.shape)
+        return f"a list of numbers of shape {words}, each within {self.limit:g}"
+
+    def read(self, value: Any, where: str, name: str) -> Array:
+        array = number_array(value)
+        if array is None or array.ndim != len(self.shape) or not np.all(np.abs(array) <= self.limit):
+            refuse(where, name, value, self.valid)
+        if any(length not in (-1, given) for length, given in zip(self.shape, array.shape, strict=True)):
+            refuse(where, name, value, self.valid)
+        return array

@@ -7,10 +7,20 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import ConversionError, InputError, KeymarkError
-from .commit import Commit, Moves, clean_up, files_below, recover, roll_back, roll_forward, write_journal
-from .control_characters import real_path
+from .commit import (
+    STAGING,
+    Commit,
+    Moves,
+    clean_up,
+    files_below,
+    recover,
+    roll_back,
+    roll_forward,
+    write_journal,
+)
 from .file_lock import LOCK, file_lock, hidden_prefix
 from .json_file import DISK_ERRORS
+from .paths import real_path
 
 NO_BACKUPS: Mapping[str, str] = {}
 
@@ -57,7 +67,7 @@ def output_folder(
         with file_lock(stem.with_name(stem.name + LOCK), busy_message):
             empty = Commit(target, stem, manifest)
             recover(empty)
-            _make_folder(empty.staging_folder)
+            _make_folder(empty.hidden(STAGING))
             entered = True
             yield from _stage_and_commit(empty, own_files, backups)
     except KeymarkError:
@@ -71,11 +81,10 @@ def output_folder(
 def _stage_and_commit(
     empty: Commit, own_files: Collection[str], backups: Mapping[str, str]
 ) -> Iterator[Path]:
-    """Let the block fill the staging folder, then commit it, or roll back."""
     moves: Moves = []
     try:
-        yield empty.staging_folder
-        written = files_below(empty.staging_folder)
+        yield empty.hidden(STAGING)
+        written = files_below(empty.hidden(STAGING))
         if written:
             removed = tuple(sorted(set(own_files) - set(written)))
             commit = Commit(empty.target, empty.stem, empty.manifest, written, removed, dict(backups))
@@ -93,7 +102,6 @@ def _stage_and_commit(
 
 
 def _make_folder(folder: Path) -> None:
-    """Make a folder, and remove it again where that is interrupted."""
     try:
         folder.mkdir()
     except KeyboardInterrupt:

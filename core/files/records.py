@@ -1,3 +1,4 @@
+# ruff: noqa: D102
 """Records: JSON objects declared once, as dataclasses whose annotations say what each field may hold.
 
 A field's annotation is `bool`, a `Record`, or `Annotated[type, kind]` with one of `kinds`; the
@@ -11,7 +12,18 @@ import types
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Annotated, Any, ClassVar, Self, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import (
+    Annotated,
+    Any,
+    ClassVar,
+    NamedTuple,
+    Self,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 from ..errors import InputError
 from .fields import Fields, child_location, listed
@@ -33,7 +45,6 @@ class Record:
     SPARSE: ClassVar[bool] = True
     """Whether fields that hold nothing are not written."""
     TITLE: ClassVar[str] = ""
-    """What people call the file."""
     ORDER: ClassVar[tuple[str, ...]] = ()
     """The fields in the order of files; () for that of the class."""
     REQUIRED: ClassVar[tuple[str, ...]] = ()
@@ -55,11 +66,7 @@ class Record:
 
     @classmethod
     def from_json(cls, value: Any, where: str) -> Self:
-        """Read a record from JSON that is not trusted; `where` begins sentences.
-
-        Raises:
-            InputError: It is not what it must be.
-        """
+        """Read a record from JSON that is not trusted; `where` begins sentences."""
         return read_record(cls, Fields.of(value, where))
 
 
@@ -78,23 +85,19 @@ class Object(Kind):
 
     @property
     def valid(self) -> str:  # type: ignore[override]
-        """Follows "it must be"."""
         required = [name for name, one in declared(self.record).items() if one.required]
         return f"an object with {listed(required, 5)}" if required else "an object"
 
     def read(self, value: Any, where: str, name: str) -> Any:
-        """See `Kind`."""
         if not isinstance(value, Mapping):
             refuse(where, name, value, self.valid)
         return read_record(self.record, Fields(value, child_location(where, name)), self.makes, self.strict)
 
     def write(self, value: Record) -> dict[str, Any]:
-        """See `Kind`."""
         return value.to_json()
 
 
-@dataclass(frozen=True)
-class Declared:
+class Declared(NamedTuple):
     """A declared field of a record."""
 
     kind: Kind
@@ -136,11 +139,7 @@ def kind_of(hint: Any) -> Kind:
 
 
 def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None, strict: bool = False) -> R:
-    """Read a record from the fields of an object; `makes` and `strict` are those of `Object`.
-
-    Raises:
-        InputError: A field is missing, unknown or not what it must be.
-    """
+    """Read a record from the fields of an object; `makes` and `strict` are those of `Object`."""
     known = declared(record)
     if record.SCHEMA and fields.values.get("schema") != record.SCHEMA:
         raise InputError(
@@ -150,9 +149,7 @@ def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None,
     if record.VERSION:
         check_version(fields, record.VERSION)
     if strict or record.STRICT:
-        header = [
-            name for name, given in (("schema", record.SCHEMA), ("schema_version", record.VERSION)) if given
-        ]
+        header = ["schema"] * bool(record.SCHEMA) + ["schema_version"] * bool(record.VERSION)
         fields.refuse_others([*header, *known])
     values = {}
     for name, one in known.items():
@@ -170,11 +167,7 @@ def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None,
 
 
 def check_version(fields: Fields, newest: int) -> None:
-    """Refuse the `schema_version` of a newer Keymark; `newest` is the highest that is read.
-
-    Raises:
-        InputError: It is newer, missing, or no version.
-    """
+    """Refuse the `schema_version` of a newer Keymark; `newest` is the highest that is read."""
     kind = Whole(1, 10**6)
     fields.required("schema_version", kind.valid)
     version = read_field(fields, "schema_version", kind, None)

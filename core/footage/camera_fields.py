@@ -15,9 +15,8 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..errors import InputError
 from ..files.fields import PLACED, Fields
-from ..files.kinds import Items, Kind, Number, Whole, refuse
+from ..files.kinds import Items, Kind, Number, Whole, number_array, refuse
 from ..files.records import Record, read_record
-from ..files.safe_path import number_array
 
 STRAIGHT_DOWN = 1e-6  # horizontal share of a viewing direction below which it has no heading
 

@@ -1,23 +1,48 @@
-"""The result of a conversion, and the record of it."""
+"""The result of a conversion: its files, their record, and what a person has changed in them since."""
 
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from ..errors import InputError
 from ..estimate.reconstruct import Reconstruction
+from ..files.commit import backup_name
 from ..files.digest import content_digest
+from ..files.json_file import read_json, write_json
 from ..posing.found_poses import FoundPoses, contradiction_notes
 from ..prior.library import Library, library_digest
 from ..progress import run
+from ..retarget.retarget_record import RECORD_FILE as RETARGET
 from ..review.frame_evidence import used_evidence
 from ..review.review import review
-from ..take.conversion_record import ConversionRecord
+from ..take.conversion_record import RECORD_FILE as RECORD
+from ..take.conversion_record import ConversionRecord, find_record, write_record
+from ..take.conversion_settings import ConversionSettings
+from ..take.description import KEYFRAME_FILE, Description
+from ..take.keyframe_file import write_keyframes
+from ..take.motion import write_motion
 from ..take.take import Take
+from .convert import FoundReconstruction
 
-WEAKEST_PERCENTILE = 5.0
-"""Percentile of the frames' confidence that is recorded as the weakest."""
+MOTION, BLEND, BVH, REPORT = "motion.json", "motion.blend", "motion.bvh", "report"
+CHARACTER_BLEND, CHARACTER_PICTURE = "character.blend", f"{REPORT}/character.png"
+PICTURES = ("overlay.png", "side.png")
+EARLIER_PICTURES = ("speed.png", "front.png", "top.png", "matches.png", "strip.jpg")
+"""Pictures of 0.1.0, which a conversion into the same folder removes."""
+AS_MADE = ".as_made.json"
+"""SHA-256 of files as they were made: of those whose bytes differ from run to run though their content does
+not, so that the record itself is always the same."""
+RESULT_FILES = (
+    *(RECORD, MOTION, BLEND, BVH, CHARACTER_BLEND, RETARGET, CHARACTER_PICTURE),
+    *(f"{REPORT}/{name}" for name in (*PICTURES, *EARLIER_PICTURES)),
+)
+"""Every file that a conversion may make, but for the keyframes: a person may have corrected these meanwhile,
+so that only a conversion that makes them anew may replace them."""
+EDITABLE_FILES = (BLEND, CHARACTER_BLEND, KEYFRAME_FILE)
+"""Files that people go on working in; one that no record vouches for is taken to be theirs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +56,6 @@ class Conversion:
     found: FoundPoses | None = None
     """What was found of keyframes, if that was asked for, and how well it fits."""
     libraries: tuple[Library, ...] = ()
-    """Those that took part."""
     conversion_notes: tuple[str, ...] = ()
     """Sentences on unused keyframes and on files that are kept."""
 
@@ -52,16 +76,7 @@ def conversion_record(
     names: Sequence[str],
     stable_digests: Mapping[str, str],
 ) -> ConversionRecord:
-    """The record of a conversion.
-
-    Args:
-        conversion: The result.
-        version: Keymark's.
-        digest: Digest of the input.
-        folder: Folder of the result's files.
-        names: The files, as paths in the folder.
-        stable_digests: Digests of what stays the same in files whose bytes differ from run to run.
-    """
+    """The record of a conversion."""
     take, motion = conversion.take, conversion.reconstruction.motion
     frames = np.arange(len(motion.time_s), dtype=np.float64) + motion.frame_start
     reviewed = run(review(take, conversion.reconstruction, frames))
@@ -79,7 +94,7 @@ def conversion_record(
         keyframes=tuple(index + motion.frame_start for index in motion.keyframe_indices),
         matched=tuple(i + motion.frame_start for i in motion.keyframe_indices if i in found),
         confidence=round(float(confidence.mean()), 4) if len(confidence) else None,
-        weakest=round(float(np.percentile(confidence, WEAKEST_PERCENTILE)), 4) if len(confidence) else None,
+        weakest=round(float(np.percentile(confidence, 5.0)), 4) if len(confidence) else None,
         weak_frames=tuple(frame.index + motion.frame_start for frame in reviewed.weak_frames),
         notes=conversion.notes,
         files={name: stable_digests.get(name) or content_digest(folder / name) for name in names},
@@ -89,3 +104,123 @@ def conversion_record(
             index + motion.frame_start for index, said in sorted(found.items()) if said.is_doubtful
         ),
     )
+
+
+def refuse_own_folder(description: Description, output: Path) -> None:
+    """Refuse the take's own folder for a result with found keyframes."""
+    if os.path.realpath(description.folder) == os.path.realpath(output):
+        raise InputError(
+            f"{output}: is the take's own folder, whose {KEYFRAME_FILE} the found keyframes would replace; "
+            "name another folder"
+        )
+
+
+def write_motion_files(folder: Path, made: FoundReconstruction) -> None:
+    """Write the motion, and the keyframes where some were found."""
+    take = made.take
+    write_motion(made.reconstruction.motion, folder / MOTION)
+    if made.found is not None:
+        write_keyframes(folder / KEYFRAME_FILE, take.keyframes, take.body, take.frame_start)
+
+
+def finish_result(
+    made: FoundReconstruction,
+    libraries: tuple[Library, ...],
+    notes: Sequence[str],
+    input_of: tuple[Description, ConversionSettings, str],
+    version: str,
+    folders: tuple[Path, Path],
+    curves: Mapping[str, str],
+    kept_names: dict[str, str],
+) -> Conversion:
+    """Write the record of a result whose other files are complete.
+
+    Args:
+        made: The motion and the keyframes it was made from.
+        libraries: Those that took part.
+        notes: Sentences on the character.
+        input_of: The description, the settings and the digest of the input.
+        version: Keymark's.
+        folders: The staging folder, and that of the result.
+        curves: Digests of what stays the same in files whose bytes differ from run to run.
+        kept_names: Receives the names under which files that a person has changed are kept.
+    """
+    (description, settings, digest), (staging_folder, output) = input_of, folders
+    written = [name for name in (*RESULT_FILES, KEYFRAME_FILE) if (staging_folder / name).exists()]
+    record = find_record(output)
+    recorded = {} if record is None else record.files
+    replaced = (*RESULT_FILES, KEYFRAME_FILE)
+    kept_names.update(changed_files(output, staging_folder, replaced, EDITABLE_FILES, recorded))
+    conversion = Conversion(
+        made.take,
+        made.reconstruction,
+        files=tuple(output / name for name in (*written, RECORD)),
+        found=made.found,
+        libraries=libraries,
+        conversion_notes=(
+            *_unused_keyframes_note(description, settings),
+            *notes,
+            *(kept_note(*names) for names in kept_names.items()),
+        ),
+    )
+    new = conversion_record(conversion, version, digest, staging_folder, written, curves)
+    write_record(staging_folder, new)
+    return conversion
+
+
+def changed_files(
+    output: Path,
+    staging_folder: Path,
+    names: Iterable[str],
+    editable: Collection[str],
+    recorded: Mapping[str, str],
+) -> dict[str, str]:
+    """Files of a result that are no longer as they were made, though new ones are about to replace them.
+
+    Args:
+        output: Folder of the result.
+        staging_folder: Folder of the new files.
+        names: Files that the new result replaces or removes, as paths in the folder. Of those in `editable`
+            only the ones that are made anew are replaced.
+        editable: Files that belong to a person where no record says that a conversion has made them.
+        recorded: Digests of the files that the folder's record lists; empty where there is none.
+
+    Returns:
+        The names under which these files are to be kept, by their present names.
+    """
+    try:
+        made = {**recorded, **read_json(output / AS_MADE, 2**16)} if recorded else {}
+    except InputError:
+        made = {}
+    kept = {}
+    for name in names:
+        old, new = output / name, staging_folder / name
+        replaced = new.is_file() or (name in made and name not in editable)
+        if (
+            name in (RECORD, RETARGET)
+            or not replaced
+            or not old.is_file()
+            or not (name in made or name in editable)
+        ):
+            continue
+        digest = content_digest(old)
+        if digest != made.get(name) and not (new.is_file() and content_digest(new) == digest):
+            kept[name] = backup_name(old).relative_to(output).as_posix()
+    return kept
+
+
+def write_made_digests(staging_folder: Path, names: Iterable[str]) -> None:
+    """Write `AS_MADE`, by which a later conversion notices changes."""
+    write_json(staging_folder / AS_MADE, {name: content_digest(staging_folder / name) for name in names})
+
+
+def kept_note(name: str, other: str) -> str:
+    """The note on a file that is kept under another name."""
+    return f"{name} was changed after Keymark had made it and is kept as {other}"
+
+
+def _unused_keyframes_note(description: Description, settings: ConversionSettings) -> tuple[str, ...]:
+    own = description.keyframes
+    if settings.library is None or settings.keyframes is not None or not os.path.exists(own):
+        return ()
+    return (f"{own} is left aside; --keyframes {own} --library {settings.library} would use it too",)

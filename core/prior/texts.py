@@ -8,9 +8,9 @@ from functools import lru_cache, partial
 from typing import Annotated
 
 from ..errors import InputError
-from ..files.control_characters import is_control_character
 from ..files.json_file import shown
 from ..files.kinds import Items, Text
+from ..files.paths import is_control_character
 
 EVERY_LIBRARY = "auto"  # stands for all libraries where one is named; hence no valid identifier
 COMPOSED = "composed"  # stands for parts of several libraries; hence no valid identifier

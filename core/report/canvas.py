@@ -16,11 +16,11 @@ Color = tuple[int, int, int]
 
 WHITE: Color = (255, 255, 255)
 INK: Color = (51, 45, 42)
+PAPER: Color = (250, 249, 248)
 PALE: Color = (226, 222, 219)
 GRAY: Color = (140, 134, 130)
 LEFT: Color = STRONG["L"][::-1]
 RIGHT: Color = STRONG["R"][::-1]
-"""The performer's left and right, as everywhere."""
 ACCENT: Color = (115, 158, 0)
 
 SCALE = 2
@@ -82,8 +82,7 @@ class Canvas:
 
     def box(self, left: float, top: float, right: float, bottom: float, color: Color) -> None:
         """Fill a rectangle."""
-        corners = np.array([[left, top], [right, top], [right, bottom], [left, bottom]], dtype=np.float64)
-        cv2.fillConvexPoly(self._pixels, _fixed(corners), color, cv2.LINE_AA, SUBPIXEL_BITS)
+        self.polygon([[left, top], [right, top], [right, bottom], [left, bottom]], color)
 
     def polygon(self, corners: ArrayLike, color: Color) -> None:
         """Fill a convex polygon of corners (N, 2)."""
@@ -118,11 +117,7 @@ class Canvas:
 
 
 def write_png(path: str, image: Image) -> None:
-    """Write a picture as PNG; unlike OpenCV's own writer to any path on any system.
-
-    Raises:
-        OSError: The file cannot be written.
-    """
+    """Write a picture as PNG; unlike OpenCV's own writer to any path on any system."""
     done, data = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 4])
     if not done:
         raise OSError(f"{path}: the picture cannot be encoded")
@@ -141,9 +136,6 @@ def _width(thickness: float) -> int:
     return max(1, round(thickness * SCALE))
 
 
-# --- Captions from texts that people wrote
-
-
 ELLIPSIS = "..."
 
 
@@ -159,9 +151,6 @@ def truncated(text: str, width: float, size: float) -> str:
     while text and Canvas.text_width(text + ELLIPSIS, size) > width:
         text = text[:-1]
     return text.rstrip() + ELLIPSIS
-
-
-# --- The view from the side, which follows the camera, and its grid
 
 
 UP = np.array([0.0, 0.0, 1.0])

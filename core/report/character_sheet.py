@@ -6,16 +6,12 @@ import numpy as np
 
 from ..arrays import Array, Image
 from ..footage.camera import Camera
-from .canvas import GRAY, INK, Canvas, ascii_text, draw_grid, side_directions
+from .canvas import GRAY, INK, PAPER, Canvas, ascii_text, draw_grid, side_directions
 from .mannequin import CharacterFigure, draw_character
 from .overlay_sheet import FOOT, GAP, MARGIN, TITLE, Cell, frame_label
 from .stick_figure import square_of, squares_around
 
-PICTURE = "character.png"
-"""Name of the picture."""
 SIDE = 220
-"""Side of a picture [px]."""
-PAPER = (250, 249, 248)
 ROWS = ("footage", "camera", "side")
 GRID_M = 0.5
 ROOM = 1.15
@@ -39,9 +35,6 @@ def character_sheet(
         images: Frames of the clip by the same index, reduced or whole; those that are missing are left out.
         frame_start: Scene frame of index 0.
         floor_m: Height of the floor under the character [m].
-
-    Returns:
-        (height, width, 3) picture.
     """
     rows = ROWS if images else ROWS[1:]
     frames = list(figures)

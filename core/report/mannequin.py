@@ -18,7 +18,6 @@ from .canvas import GRAY, INK, Canvas, Color, ascii_text, truncated
 from .stick_figure import Projection
 
 LIGHT = np.array([0.35, -0.5, 0.8])
-"""Direction to the light in the world."""
 DARKEST = 0.45
 SKIN: Color = (196, 190, 186)
 
@@ -53,9 +52,6 @@ def draw_character(canvas: Canvas, figure: CharacterFigure, project: Projection)
     for row in np.argsort(-away[shown], kind="stable"):
         blue, green, red = (int(value) for value in np.clip(shaded[row], 0.0, 255.0))
         canvas.polygon(corners[shown[row]], (blue, green, red))
-
-
-# --- A posture as a shaded body in parallel projection, with a shadow on the floor
 
 
 SIDES_OF_RING, BANDS_OF_CAP, BANDS_OF_SHAFT = 16, 4, 5
@@ -145,29 +141,19 @@ def _pieces(body: Body) -> tuple[Piece, ...]:
     )
 
 
-# --- A small square picture of a posture for an asset browser
-
-
 SIZE = 256
 EDGE = 8
-TURN_RAD = np.radians(-35.0)
-"""Turn of the view from the front, with the face to the right of the picture."""
 TILT_RAD = 0.16
 """Downward tilt of the view, which shows where on the floor the feet are."""
 WALL = np.array([250.0, 249.0, 248.0])
 FLOOR = np.array([229.0, 225.0, 222.0])
 BEHIND_M = 0.45
-"""Distance of the wall behind the figure."""
 
 
 def posture_picture(body: Body, posture: Posture) -> Image:
-    """Draw a single posture; the floor is z = 0.
-
-    Returns:
-        (256, 256, 3) blue, green, red.
-    """
+    """Draw a single posture; the floor is z = 0."""
     figure = mannequin(body, posture)
-    turn = facing_rad(-posture.rotations[0, :, 1]) + TURN_RAD
+    turn = facing_rad(-posture.rotations[0, :, 1]) + np.radians(-35.0)
     seen = View(turn, TILT_RAD, 1.0, (0.0, 0.0)).project(figure.points)[0]
     floor = View(turn, TILT_RAD, 1.0, (0.0, 0.0)).project(posture.translation * [1.0, 1.0, 0.0])[0][1]
     (left, high), (right, low) = seen.min(axis=0), seen.max(axis=0)
@@ -179,23 +165,13 @@ def posture_picture(body: Body, posture: Posture) -> Image:
 
 
 def backdrop(height: int, width: int, floor: float, scale: float) -> Image:
-    """A floor before a wall.
-
-    Args:
-        height: Height of the picture.
-        width: Width of the picture.
-        floor: Picture row of the floor under the figure.
-        scale: Pixels a meter.
-    """
+    """A floor before a wall."""
     rows = np.arange(height) + 0.5 - (floor - scale * BEHIND_M * np.sin(TILT_RAD))
     share = np.clip(rows + 0.5, 0.0, 1.0)  # of each row, that is floor
     fade = np.clip(rows / (3.0 * scale * BEHIND_M * np.sin(TILT_RAD)), 0.0, 1.0)
     ground = FLOOR + fade[:, None] * 0.6 * (WALL - FLOOR)
     colors = WALL + share[:, None] * (ground - WALL)
     return np.asarray(np.repeat(np.round(colors)[:, None], width, axis=1), dtype=np.uint8)
-
-
-# --- All postures of a library on one sheet, each with its name
 
 
 COLUMNS, CELL, CAPTION = 10, 128, 18

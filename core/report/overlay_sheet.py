@@ -1,4 +1,4 @@
-"""Outlines of the performer's limbs and trunk over the footage, where no marker shows how the motion fits."""
+"""Contact sheet of the footage with the estimate over it: skeleton, regions, keypoints and contours."""
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
@@ -32,15 +32,7 @@ def performer_contours(reconstruction: Reconstruction) -> ContourModel:
 def draw_outlines(
     canvas: Canvas, model: ContourModel, pose: Pose, frame: int, to_canvas: Callable[[Array], Array]
 ) -> None:
-    """Draw the contour lines that the motion predicts in one frame, those of nearer parts over others.
-
-    Args:
-        canvas: The canvas.
-        model: The contours of the performer's parts.
-        pose: Forward kinematics of the clip's postures.
-        frame: Frame index in the clip.
-        to_canvas: From pixels of the clip (N, 2) to points of the canvas.
-    """
+    """Draw the contour lines that the motion predicts in one frame, those of nearer parts over others."""
     index = slice(frame, frame + 1)
     predicted = model.evaluate(pose[index], np.array([frame]))
     pixels = to_canvas(predicted.pixel[0]).reshape(-1, len(SHARES), len(SIDES), 2)
@@ -52,9 +44,6 @@ def draw_outlines(
             canvas.line(line, OUTLINE, 1.2)
 
 
-# --- Keypoints over the footage
-
-
 SOURCE_COLORS: tuple[Color, ...] = ((167, 121, 204), (66, 228, 240), (233, 180, 86), (0, 159, 230))
 """Purple, yellow, sky blue and orange for the first sources, Okabe and Ito's beside those of the limbs."""
 THROWN_OUT: Color = (40, 30, 200)
@@ -62,10 +51,6 @@ ARM = 3.4
 """Half-length of a cross's arms [px]; half of it for a small figure."""
 RING = 2.2
 """Radius of the ring at the predicted place [px]; the same."""
-LARGE = 220.0
-"""Height of a figure whose marks are of full size [px]."""
-LONGEST_SOURCE = 150.0
-"""Width of a source's name in the legend [px]."""
 
 
 def source_color(keypoints: ComparedKeypoints, source: str) -> Color:
@@ -77,14 +62,7 @@ def source_color(keypoints: ComparedKeypoints, source: str) -> Color:
 def draw_keypoints(
     canvas: Canvas, keypoints: ComparedKeypoints, frame: int, to_canvas: Callable[[Array], Array]
 ) -> None:
-    """Draw the keypoints of one frame, the marks of a small figure smaller.
-
-    Args:
-        canvas: The canvas.
-        keypoints: The keypoints.
-        frame: Frame index in the clip.
-        to_canvas: From pixels of the clip (N, 2) to points of the canvas.
-    """
+    """Draw the keypoints of one frame, the marks of a small figure smaller."""
     seen, predicted = to_canvas(keypoints.seen[frame]), to_canvas(keypoints.predicted[frame])
     colors = [source_color(keypoints, source) for source in keypoints.sources]
     thrown_out, swapped = keypoints.thrown_out[frame], keypoints.swapped[frame]
@@ -103,9 +81,7 @@ def draw_keypoint_legend(
     canvas: Canvas, keypoints: ComparedKeypoints, left: float, right: float, y: float
 ) -> None:
     """Explain the marks on a line with its baseline at `y` that ends at `right`; nothing if it lacks room."""
-    names = [
-        truncated(ascii_text(source), LONGEST_SOURCE, 8.0) for source in dict.fromkeys(keypoints.sources)
-    ]
+    names = [truncated(ascii_text(source), 150.0, 8.0) for source in dict.fromkeys(keypoints.sources)]
     words = [("Cross: keypoint of", GRAY)]
     words += [(name, SOURCE_COLORS[index % len(SOURCE_COLORS)]) for index, name in enumerate(names)]
     words.append(("slanting: not believed; boxed: sides exchanged; ring: where the motion puts it", GRAY))
@@ -118,9 +94,8 @@ def draw_keypoint_legend(
 
 
 def _size(predicted: Array) -> float:
-    """Size of the marks, from the height of the figure on the canvas."""
     rows = predicted[np.isfinite(predicted).all(axis=-1), 1]
-    return float(np.clip(np.ptp(rows) / LARGE, 0.5, 1.0)) if len(rows) else 1.0
+    return float(np.clip(np.ptp(rows) / 220.0, 0.5, 1.0)) if len(rows) else 1.0
 
 
 def _ring(canvas: Canvas, place: Array, color: Color, size: float) -> None:
@@ -140,15 +115,11 @@ def _cross(canvas: Canvas, place: Array, color: Color, size: float, thrown_out: 
             canvas.line(corners, ink, width, closed=True)
 
 
-# --- Layout of a contact sheet
-
-
 MARGIN = 16
 GAP = 8
 TITLE = 34
 FOOT = 22
 LABEL = 20
-"""Height of the frame's number within its cell."""
 
 
 @dataclass(frozen=True)
@@ -156,7 +127,6 @@ class Cell:
     """A rectangle of the sheet for one frame."""
 
     frame: int
-    """Index in the clip."""
     left: int
     top: int
     width: int
@@ -204,12 +174,8 @@ def frame_label(canvas: Canvas, cell: Cell, scene_frame: int, keyframe: bool) ->
         canvas.polygon([[x - 4.5, y], [x, y - 4.5], [x + 4.5, y], [x, y + 4.5]], WHITE)
 
 
-# --- Contact sheet of the footage with the estimate over it
-
-
 CELL_WIDTH = 400
 COLUMNS = 4
-LIMB_WIDTH = 3.5
 
 
 def overlay_sheet(
@@ -220,19 +186,7 @@ def overlay_sheet(
     keypoints: ComparedKeypoints | None = None,
     contours: ContourModel | None = None,
 ) -> Image:
-    """Draw frames of the clip with the skeleton and what was seen of the performer over them.
-
-    Args:
-        take: The take.
-        motion: Its motion.
-        tracks: The markers' regions.
-        images: Frames of the clip by frame index, in the order to show them.
-        keypoints: The performer's keypoints, if any.
-        contours: The body's contours, drawn where there are no markers.
-
-    Returns:
-        (height, width, 3) picture.
-    """
+    """Draw frames of the clip with the skeleton and what was seen of the performer over them."""
     width, height = take.camera.resolution
     cell_height = round(CELL_WIDTH * height / width)
     title = f"Estimate over the footage ({motion.method}, {len(motion.time_s)} frames)"
@@ -260,7 +214,6 @@ def overlay_sheet(
 
 
 def _footer(tracks: RegionTracks, outlines: ContourModel | None) -> str:
-    """What the drawings over the footage are."""
     shown = ""
     if tracks.names:
         shown = "Ellipse and cross: region found of each marker. "
@@ -270,14 +223,13 @@ def _footer(tracks: RegionTracks, outlines: ContourModel | None) -> str:
 
 
 def _draw_estimate(tile: Canvas, take: Take, figure: StickFigure, tracks: RegionTracks, cell: Cell) -> None:
-    """The skeleton and the markers' regions of one frame."""
     scale = cell.width / take.camera.resolution[0]
 
     def project(points: Array) -> tuple[Array, Array]:
         pixels, depth = take.camera.project(points, cell.frame)
         return scale * pixels, depth
 
-    draw_figure(tile, figure, cell.frame, project, LIMB_WIDTH, outlined=True)
+    draw_figure(tile, figure, cell.frame, project, 3.5, outlined=True)
     for marker, style in enumerate(take.markers):
         red, green, blue = style.color_srgb
         _draw_region(tile, tracks, cell.frame, marker, scale, (blue, green, red))

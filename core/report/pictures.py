@@ -1,4 +1,4 @@
-"""Frames of the footage for pictures, no larger than a picture needs them."""
+"""The pictures of a result: the estimate over the footage, and the motion from the side."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,20 +12,17 @@ from ..evidence.contours import ContourModel
 from ..footage.camera import Camera
 from ..footage.clips.clip import Clip
 from ..footage.region_tracks import RegionTracks
+from ..pipeline.result import PICTURES
 from ..review.compared_keypoints import ComparedKeypoints
 from ..take.motion import Motion
 from ..take.take import Take
-from .canvas import SCALE, Canvas, draw_grid, side_directions, write_png
+from .canvas import PAPER, SCALE, Canvas, draw_grid, side_directions, write_png
 from .overlay_sheet import CELL_WIDTH, LABEL, MARGIN, evenly_spaced_frames, frame_label, overlay_sheet, sheet
 from .stick_figure import draw_figure, legend, stick_figure
 
 
 def footage_frames(clip: Clip, frames: Sequence[int]) -> dict[int, Image]:
-    """Frames of a clip by their index, rising; those that cannot be read are left out.
-
-    Raises:
-        InputError: The clip can no longer be read.
-    """
+    """Frames of a clip by their index, rising; those that cannot be read are left out."""
     return {frame: _reduced(image) for frame, image in clip.source.at(list(frames))}
 
 
@@ -39,53 +36,36 @@ def _reduced(image: Image) -> Image:
     return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
 
 
-# --- Contact sheet of the motion from the side, where its depth shows
-
-
-PAPER = (250, 249, 248)
 COLUMNS = 6
-CELL_WIDTH_SIDE_SHEET, CELL_HEIGHT = 220, 240
-LIMB_WIDTH = 4.0
+SIDE_WIDTH, SIDE_HEIGHT = 220, 240
 PADDING_M = 0.1
 GRID_M = 0.5
-FLOOR_WITHIN_M = 0.5
 
 
 def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
-    """Draw stick figures of some frames about their hips, in parallel projection.
-
-    Args:
-        motion: The motion.
-        camera: The camera, from whose right the side is seen.
-        frames: Frame indices in the clip.
-
-    Returns:
-        (height, width, 3) picture.
-    """
+    """Draw stick figures of some frames about their hips, in parallel projection."""
     axes, figure, floor = side_directions(camera), stick_figure(motion), _floor_height(motion)
     hips = motion.points[:, [motion.body.skeleton.point_names.index(f"hip.{side}") for side in ("L", "R")]]
     origin = hips.mean(axis=1) * [1.0, 1.0, 0.0]  # (F, 3): the ground under the hips
     seen = np.concatenate([limb.points for limb in figure.limbs], axis=1) - origin[:, None]
     seen = seen[list(frames)] @ axes[:2].T  # (K, N, 2)
     low, high = min(seen[..., 1].min(), floor), seen[..., 1].max() + figure.head_radius_m
-    free = CELL_HEIGHT - LABEL  # the frame's number must not stand over the feet
+    free = SIDE_HEIGHT - LABEL  # the frame's number must not stand over the feet
     height = high - low + 2.0 * PADDING_M
-    scale = float(min(0.5 * CELL_WIDTH_SIDE_SHEET / (np.abs(seen[..., 0]).max() + PADDING_M), free / height))
+    scale = float(min(0.5 * SIDE_WIDTH / (np.abs(seen[..., 0]).max() + PADDING_M), free / height))
     foot = low - PADDING_M - 0.5 * (free / scale - height)  # height at the label's upper edge
     title = "Side view: the camera is to the left; depth runs to the right"
     footer = f"Parallel projection about the hips; grid of {GRID_M:g} m. Numbers: scene frames."
-    canvas, cells = sheet(title, footer, frames, COLUMNS, CELL_WIDTH_SIDE_SHEET, CELL_HEIGHT)
+    canvas, cells = sheet(title, footer, frames, COLUMNS, SIDE_WIDTH, SIDE_HEIGHT)
     for cell in cells:
         tile = Canvas(cell.width, cell.height, PAPER)
         draw_grid(tile, scale * GRID_M, free - scale * (floor - foot))
 
         def project(points: Array, frame: int = cell.frame) -> tuple[Array, Array]:
             right, upward, away = axes @ (points - origin[frame]).T
-            return np.stack(
-                [0.5 * CELL_WIDTH_SIDE_SHEET + scale * right, free - scale * (upward - foot)], axis=-1
-            ), away
+            return np.stack([0.5 * SIDE_WIDTH + scale * right, free - scale * (upward - foot)], axis=-1), away
 
-        draw_figure(tile, figure, cell.frame, project, LIMB_WIDTH, outlined=False)
+        draw_figure(tile, figure, cell.frame, project, 4.0, outlined=False)
         canvas.paste(tile.image(), cell.left, cell.top, cell.width, cell.height)
         frame_label(canvas, cell, cell.frame + motion.frame_start, cell.frame in motion.keyframe_indices)
     legend(canvas, canvas.width - MARGIN, MARGIN + 15.0)
@@ -96,16 +76,7 @@ def _floor_height(motion: Motion) -> float:
     """Height of the ground plane if the feet are near it, else of the lowest ankle [m]."""
     names = motion.body.skeleton.point_names
     lowest = float(motion.points[:, [names.index("ankle.L"), names.index("ankle.R")], 2].min())
-    return 0.0 if abs(lowest) < FLOOR_WITHIN_M else lowest
-
-
-# --- The pictures of a result, written to a folder
-
-
-OVERLAY, SIDE = "overlay.png", "side.png"
-PICTURES = (OVERLAY, SIDE)
-EARLIER_PICTURES = ("speed.png", "front.png", "top.png", "matches.png", "strip.jpg")
-"""Pictures of 0.1.0, which a conversion into the same folder removes."""
+    return 0.0 if abs(lowest) < 0.5 else lowest
 
 
 def write_pictures(
@@ -116,28 +87,12 @@ def write_pictures(
     keypoints: ComparedKeypoints | None = None,
     contours: ContourModel | None = None,
 ) -> tuple[Path, ...]:
-    """Write the pictures; the frames that they show are decoded in one more pass over the clip.
-
-    Args:
-        folder: Made if missing.
-        take: The take.
-        motion: Its motion, F frames.
-        tracks: The markers' regions.
-        keypoints: The performer's keypoints, if any.
-        contours: The body's contours, drawn where there are no markers.
-
-    Returns:
-        Paths of the files, in the order of `PICTURES`.
-
-    Raises:
-        OSError: A picture cannot be written.
-        InputError: The clip can no longer be read.
-    """
+    """Write the pictures; the frames that they show are decoded in one more pass over the clip."""
     folder.mkdir(parents=True, exist_ok=True)
     frames = evenly_spaced_frames(len(motion.time_s))
     shown = footage_frames(Clip.open(take.clip, fps=take.fps), frames)
     if not shown:
         raise InputError(f"{take.clip}: can no longer be read; the pictures need it once more")
-    write_png(str(folder / OVERLAY), overlay_sheet(take, motion, tracks, shown, keypoints, contours))
-    write_png(str(folder / SIDE), side_sheet(motion, take.camera, frames))
+    write_png(str(folder / PICTURES[0]), overlay_sheet(take, motion, tracks, shown, keypoints, contours))
+    write_png(str(folder / PICTURES[1]), side_sheet(motion, take.camera, frames))
     return tuple(folder / name for name in PICTURES)

@@ -11,7 +11,7 @@ from ..body.kinematics import segment_ends
 from ..finish.natural_extremities import natural_extremities
 from ..footage.camera import Camera
 from ..take.motion import Motion
-from .canvas import GRAY, INK, LEFT, RIGHT, WHITE, Canvas, Color
+from .canvas import GRAY, INK, LEFT, PALE, PAPER, RIGHT, WHITE, Canvas, Color
 
 Projection = Callable[[Array], tuple[Array, Array]]
 """From world points (N, 3) to canvas points (N, 2) and depths (N,), which grow with the distance."""
@@ -63,16 +63,7 @@ def stick_figure(motion: Motion) -> StickFigure:
 def draw_figure(
     canvas: Canvas, figure: StickFigure, frame: int, project: Projection, width: float, *, outlined: bool
 ) -> None:
-    """Draw the figure of one frame.
-
-    Args:
-        canvas: The canvas to draw on.
-        figure: The figure.
-        frame: Frame index in the clip.
-        project: Projection of world points to the canvas.
-        width: Thickness of a limb [px].
-        outlined: Whether a white edge sets it off from the picture below.
-    """
+    """Draw the figure of one frame."""
     parts: list[tuple[float, Limb | None]] = []
     for limb in figure.limbs:
         _, depth = project(limb.points[frame])
@@ -126,11 +117,6 @@ def legend(canvas: Canvas, right: float, y: float) -> None:
         right -= 26.0 + 18.0
 
 
-# --- Squares cut from frames around a figure, so that a small one in a wide shot is still seen
-
-
-PAPER = (226, 222, 219)
-"""Color where the square is larger than the picture, or there is none."""
 PADDING = 1.35
 """Side of the square in heights or widths of the largest figure, whose points end at the head's center."""
 SMALLEST_SIDE = 0.3
@@ -173,31 +159,17 @@ def square_of(image: Image, corner: Array, side: float, resolution: tuple[int, i
     inside = image[rows, columns]
     above, before = rows.start - top, columns.start - left
     below, behind = across - above - inside.shape[0], across - before - inside.shape[1]
-    filled = cv2.copyMakeBorder(inside, above, below, before, behind, cv2.BORDER_CONSTANT, value=PAPER)
+    filled = cv2.copyMakeBorder(inside, above, below, before, behind, cv2.BORDER_CONSTANT, value=PALE)
     return np.asarray(filled, dtype=np.uint8)
 
 
-# --- A small square picture of a motion for an asset browser
-
-
 SIZE = 256
-PAPER_THUMBNAIL = (250, 249, 248)
 POSES = 3
-TURN_RAD = 0.5
-"""Turn of the view from the performer's front, from where limbs show best."""
 EDGE = 14
-LIMB_WIDTH = 5.0
 
 
 def thumbnail(motion: Motion) -> Image:
-    """Draw three poses of a motion, the earliest at the left, in parallel projection.
-
-    Args:
-        motion: The motion, F frames.
-
-    Returns:
-        (256, 256, 3) blue, green, red.
-    """
+    """Draw three poses of a motion, the earliest at the left, in parallel projection."""
     frames = np.round(np.linspace(0, len(motion.time_s) - 1, 2 * POSES + 1)[1::2]).astype(np.intp)
     figure = stick_figure(motion)
     axes = _axes(motion)
@@ -209,7 +181,7 @@ def thumbnail(motion: Motion) -> Image:
     column = (SIZE - 2 * EDGE) / POSES
     scale = min((SIZE - 2 * EDGE) / (top - floor), 1.25 * column / wide)
     ground = 0.5 * (SIZE + scale * (top - floor))
-    canvas = Canvas(SIZE, SIZE, PAPER_THUMBNAIL)
+    canvas = Canvas(SIZE, SIZE, PAPER)
     canvas.line([[EDGE, ground], [SIZE - EDGE, ground]], GRAY, 1.5)
     for number, frame in enumerate(frames):
         center = EDGE + column * (number + 0.5)
@@ -219,7 +191,7 @@ def thumbnail(motion: Motion) -> Image:
             x, y = center + scale * (right - middle[number]), ground - scale * (upward - floor)
             return np.stack([x, y], axis=-1), away
 
-        draw_figure(canvas, figure, int(frame), project, LIMB_WIDTH, outlined=True)
+        draw_figure(canvas, figure, int(frame), project, 5.0, outlined=True)
     return canvas.image()
 
 
@@ -227,6 +199,6 @@ def _axes(motion: Motion) -> Array:
     """World directions (3, 3) to the right, upwards, and away from the eye, as rows."""
     names = motion.body.skeleton.point_names
     side = (motion.points[:, names.index("hip.L")] - motion.points[:, names.index("hip.R")]).mean(axis=0)
-    angle = float(np.arctan2(side[1], side[0])) + TURN_RAD  # the performer's left is on the right of the view
+    angle = float(np.arctan2(side[1], side[0])) + 0.5  # the performer's left is on the right of the view
     right = np.array([np.cos(angle), np.sin(angle), 0.0])
     return np.stack([right, [0.0, 0.0, 1.0], [-right[1], right[0], 0.0]])

@@ -9,7 +9,7 @@ from ..files.json_file import read_json, write_readable_json
 from ..files.kinds import ByName, Choice, Number, Text
 from ..files.records import Record
 from ..take.conversion_settings import CharacterOptions
-from ..take.evidence_kinds import FileDigests, Frame, FrameCount, FrameRate, Line, Notes, Sha256
+from ..take.evidence import FileDigests, Frame, FrameCount, FrameRate, Line, Notes, Sha256
 from .character import LIMBS
 from .maps.character_map import Roles, roles_mistake
 

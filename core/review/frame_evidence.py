@@ -15,7 +15,7 @@ from ..estimate.terms.contours import SURFACE_SHARE
 from ..estimate.whole_clip import WholeClipResult
 from ..evidence.contours import SHARES, SIDES
 from ..evidence.keypoints import ObservedKeypoints
-from ..take.evidence_kinds import UsedEvidence, UsedKeypoints
+from ..take.evidence import UsedEvidence, UsedKeypoints
 from .compared_keypoints import ComparedKeypoints
 from .weak_frames import FrameEvidence
 

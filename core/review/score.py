@@ -16,9 +16,8 @@ from ..body.human import HUMAN
 from ..body.posture import FARTHEST_M
 from ..errors import InputError
 from ..files.json_file import read_json, shown
-from ..files.kinds import ByName, Items, Whole
+from ..files.kinds import ByName, Items, NumberArray, Whole
 from ..files.records import Record
-from ..files.safe_path import NumberArray
 from ..footage.camera import Camera
 
 

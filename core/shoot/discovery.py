@@ -9,10 +9,10 @@ from pathlib import Path, PurePath, PurePosixPath
 from typing import Any
 
 from ..errors import InputError
-from ..files.control_characters import regular_file_size
 from ..files.fields import COMMENT_PREFIX, Fields
 from ..files.json_file import parse_json, shown
-from ..files.safe_path import check_symlinks, safe_path
+from ..files.kinds import safe_path
+from ..files.paths import check_symlinks, regular_file_size
 from ..footage.clips.image_sequence import is_image, stem_of_number
 from ..take.conversion_record import RECORD_FILE
 from ..take.conversion_settings import NO_SETTINGS, ConversionSettings
@@ -42,14 +42,9 @@ class ShootTake:
     overrides: Mapping[str, Any] | None = None
     """Fields in a line of a list, which override all files."""
     overrides_location: str = ""
-    """Location of these fields, for sentences."""
 
     def describe(self) -> Description:
-        """Merge all files that describe the take.
-
-        Raises:
-            InputError: A file is unusable.
-        """
+        """Merge all files that describe the take."""
         return describe(self.path, self.overrides, self.overrides_location)
 
     def settings(
@@ -64,7 +59,6 @@ class Shoot:
     """Takes that are converted together."""
 
     path: Path
-    """The folder, the list, or the one clip."""
     takes: tuple[ShootTake, ...]
     """In the order of their names, each name once."""
 
@@ -79,9 +73,6 @@ def part_of(takes: Collection[ShootTake], part: int, parts: int) -> list[ShootTa
     return [take for index, take in enumerate(takes) if index % parts == part - 1]
 
 
-# --- Discovery of takes
-
-
 RESERVED = (".keymark", "summary.html", "summary.jsonl")
 """Files and folders that a batch itself writes into the folder of the results."""
 
@@ -92,11 +83,7 @@ def take_name(path: PurePath) -> str:
 
 
 def check_names(shoot: Path, takes: Sequence[ShootTake]) -> None:
-    """Refuse takes whose results would lie in one folder on some file system, or one below another.
-
-    Raises:
-        InputError: Two takes collide, or one has a reserved name.
-    """
+    """Refuse takes whose results would lie in one folder on some file system, or one below another."""
     known: dict[str, ShootTake] = {}
     for take in takes:
         if PurePosixPath(take.name).parts[:1] and _folded(PurePosixPath(take.name).parts[0]) in RESERVED:
@@ -121,11 +108,7 @@ def check_names(shoot: Path, takes: Sequence[ShootTake]) -> None:
 
 
 def check_output(shoot: Shoot, output: Path) -> None:
-    """Refuse an output folder in which results would lie among the takes.
-
-    Raises:
-        InputError: The folder is the shoot's own, or results would lie in a folder that holds takes.
-    """
+    """Refuse an output folder in which results would lie among the takes."""
     target = Path(os.path.realpath(output))
     if target.exists() and not target.is_dir():
         raise InputError(f"{output}: is a file; the output must be a folder, new or old")
@@ -158,9 +141,6 @@ KNOWN_FIELDS = (TAKE_FIELD, "clip", "frame_count", "keyframes", *SHARED_FIELDS, 
 def read_take_list(path: Path) -> Shoot:
     """Read a list of takes; the values of their fields are checked where each take uses them.
 
-    Args:
-        path: The list, UTF-8. Takes are relative to its folder, paths in a take's own fields to the take's.
-
     Raises:
         InputError: The list cannot be read, is too large or holds no take; or a line is no object, or has an
             unknown field, a path outside the folder or the name of another take.
@@ -179,19 +159,17 @@ def read_take_list(path: Path) -> Shoot:
 
 
 def _lines(path: Path) -> list[str]:
-    valid = "it must be a list of takes in UTF-8, one JSON object a line"
-    regular_file_size(path, "a list of takes in UTF-8, one JSON object a line")
+    valid = "a list of takes in UTF-8, one JSON object a line"
+    regular_file_size(path, valid)
     try:
         with path.open("rb") as file:
             content = file.read(LARGEST_BYTES + 1)
         if len(content) > LARGEST_BYTES:
-            raise InputError(f"{path}: is longer than {LARGEST_BYTES // 2**20} MiB; {valid}")
-        lines = content.decode("utf-8-sig").split("\n")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); {valid}") from error
-    except ValueError as error:
-        raise InputError(f"{path}: cannot be read ({error}); {valid}") from error
-    return lines
+            raise InputError(f"{path}: is longer than {LARGEST_BYTES // 2**20} MiB; it must be {valid}")
+        return content.decode("utf-8-sig").split("\n")
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(f"{path}: cannot be read ({reason}); it must be {valid}") from error
 
 
 def _take(path: Path, where: str, line: str) -> ShootTake:
@@ -222,11 +200,7 @@ DEEPEST = 64
 
 
 def open_shoot(path: Path, excluded: Path | None = None) -> Shoot:
-    """Find the takes of a folder, a list (.jsonl) or one video; their files are not read yet.
-
-    Raises:
-        InputError: There is no such shoot, it cannot be read, it has no take, or two takes of one name.
-    """
+    """Find the takes of a folder, a list (.jsonl) or one video; their files are not read yet."""
     if path.suffix.lower() == ENDING and not path.is_dir():
         return read_take_list(path)
     if path.suffix.lower() in VIDEOS and path.is_file():
@@ -327,11 +301,7 @@ def _is_sequence(inside: list[Path], alone: bool) -> bool:
 
 
 def take_path(file: Path) -> Path:
-    """The path of a file's take: the folder of a `take.json`, the clip of a `NAME.take.json`, else itself.
-
-    Raises:
-        InputError: Not exactly one clip beside `NAME.take.json` has that name.
-    """
+    """The path of a file's take: the folder of a `take.json`, the clip of a `NAME.take.json`, else itself."""
     if file.name == TAKE_FILE:
         return file.parent
     name = file.name.removesuffix(f".{TAKE_FILE}")
@@ -345,11 +315,7 @@ def take_path(file: Path) -> Path:
 
 
 def check_hides_no_take(folder: Path) -> None:
-    """Refuse a folder in which a new `take.json` would hide takes: inside a take no other is searched.
-
-    Raises:
-        InputError: The folder holds clips of a shoot, or folders that are takes.
-    """
+    """Refuse a folder in which a new `take.json` would hide takes: inside a take no other is searched."""
     if not folder.is_dir() or (folder / TAKE_FILE).exists():
         return
     shared = bool(find_shoot_files(folder))

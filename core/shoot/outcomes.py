@@ -9,18 +9,16 @@ from pathlib import Path
 from typing import Annotated
 
 from ..errors import InputError
-from ..files.control_characters import absolute_path
 from ..files.json_file import read_json, write_json
 from ..files.kinds import Text
+from ..files.paths import absolute_path
 from ..files.records import Record
 from ..take.conversion_record import RECORD_FILE, ConversionRecord, find_record, read_record
 from ..take.description import clip_name
 from .discovery import RESERVED, Shoot, ShootTake, take_name
 
 FOLDER = Path(RESERVED[0]) / "failures"
-"""Below the folder of the results."""
 LARGEST_BYTES = 2**16
-DIGITS = 16
 INPUT, CONVERSION, CRASH = "input", "conversion", "crash"
 
 
@@ -40,11 +38,7 @@ class Failure(Record):
 
 
 def write_failure(output: Path, failure: Failure) -> None:
-    """Write a failure.
-
-    Raises:
-        ConversionError: The file cannot be written.
-    """
+    """Write a failure."""
     write_json(_file(output, failure.take), failure.to_json(), indent=1)
 
 
@@ -100,7 +94,7 @@ def _read(path: Path) -> Failure | None:
 
 def _file(output: Path, take: str) -> Path:
     digest = hashlib.sha256(take.encode("utf-8", "surrogatepass")).hexdigest()
-    return output / FOLDER / f"{digest[:DIGITS]}.json"
+    return output / FOLDER / f"{digest[:16]}.json"
 
 
 class Status(StrEnum):
@@ -119,16 +113,12 @@ class Outcome:
     """The outcome of one take."""
 
     take: Words
-    """Its name in the shoot."""
     folder: Path
-    """The folder of its results, which may not exist."""
     status: Status
     record: ConversionRecord | None = None
     """Of the results in the folder, if there are any: of an earlier input where this run has failed."""
     error: str | None = None
-    """Why it failed, in a sentence."""
     seconds: float | None = None
-    """Duration of its conversion in this run."""
 
 
 def read_outcomes(shoot: Shoot, output: Path) -> list[Outcome]:
@@ -166,11 +156,7 @@ class Results:
 
 
 def find_results(folder: Path) -> Results:
-    """Find every result below a folder; hidden folders and links to folders are skipped.
-
-    Raises:
-        InputError: There is no such folder, it cannot be read, or it holds no result.
-    """
+    """Find every result below a folder; hidden folders and links to folders are skipped."""
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder; it must be a folder of results, as batch writes it")
     sound: list[Result] = []

@@ -14,15 +14,11 @@ from ..footage.colors.strong_colors import StrongColor, strong_colors
 from ..prior.texts import EVERY_LIBRARY
 from ..progress import run
 from ..take.description import KEYFRAME_FILE, KEYPOINT_FILE, SCHEMA_VERSION, TAKE_FILE, sidecar_file
-from ..take.evidence_kinds import KEYPOINTS, MARKERS
+from ..take.evidence import KEYPOINTS, MARKERS
 from .discovery import Shoot, ShootTake
 
 COLORED_CLIPS = 48
 """Clips that are sampled for colors at most: a few of every day, of all performers."""
-COLORED_FRAMES = 4
-"""Sampled frames of each."""
-LISTED_CLIPS = 6
-"""Clips whose colors are listed together."""
 GARMENT_HUES = 4
 """Strong hues that five garments show at least; plain clothes, skin and a room seldom have as many."""
 
@@ -37,11 +33,8 @@ class SurveyedClip:
     fps: float | None
     """Frames per second; None for images, which have no rate."""
     frames: int
-    """Number of frames that the file claims."""
     posed: bool
-    """Whether it has a keyframe file."""
     detected: bool = False
-    """Whether it has a file of keypoints."""
     hues: int | None = None
     """Number of hues of its strong colors; None where it was not sampled."""
 
@@ -62,7 +55,6 @@ class ClipSurvey:
     unreadable: tuple[str, ...]
     """A sentence on each clip that cannot be opened."""
     colors: tuple[StrongColor, ...] = ()
-    """Strong colors in some of the clips."""
 
     @property
     def sizes(self) -> Counter[tuple[int, int]]:
@@ -86,11 +78,7 @@ class ClipSurvey:
 
 
 def survey_clips(shoot: Shoot) -> Generator[float, None, ClipSurvey]:
-    """Open every clip of a shoot, and sample the colors of some.
-
-    Yields:
-        The fraction done, from 0 to 1.
-    """
+    """Open every clip of a shoot, and sample the colors of some."""
     seen: list[SurveyedClip] = []
     described: list[str] = []
     unreadable: list[str] = []
@@ -116,17 +104,16 @@ def survey_clips(shoot: Shoot) -> Generator[float, None, ClipSurvey]:
     chosen = _spread(len(opened), COLORED_CLIPS)
     for done, index in enumerate(chosen):
         yield 0.8 + 0.2 * done / len(chosen)
-        images[index] = run(sample_spread_frames(opened[index], COLORED_FRAMES)).images
+        images[index] = run(sample_spread_frames(opened[index], 4)).images
         seen[index] = replace(seen[index], hues=len({one.hue for one in strong_colors(images[index])}))
     yield 1.0
     # Of the clips that show garments, where there are any.
     shown = [index for index in chosen if MARKERS in seen[index].evidence] or chosen
-    listed = [image for one in _spread(len(shown), LISTED_CLIPS) for image in images[shown[one]]]
+    listed = [image for one in _spread(len(shown), 6) for image in images[shown[one]]]
     return ClipSurvey(tuple(seen), tuple(described), tuple(unreadable), strong_colors(listed))
 
 
 def _spread(count: int, most: int) -> list[int]:
-    """At most so many indices, spread evenly over all."""
     return list(range(count))[:: max(-(-count // most), 1)]
 
 
@@ -135,7 +122,6 @@ def _is_described(take: ShootTake) -> bool:
 
 
 USUAL_MARKERS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
-"""The paper's five markers."""
 MOST_NAMED = 5
 NO_MARKERS = [
     "left out, for no garments in strong colors were found; where some are worn, it must say which:",
@@ -159,7 +145,11 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
         fields |= {"//root": "nothing above this folder is inherited", "root": True}
     fields |= _rate(survey)
     fields["camera"] = _camera(survey)
-    fields |= _evidence(survey)
+    fields["//evidence"] = [
+        "what a motion is held against: markers, keypoints, depth_hints, contours; all there is, unless",
+        '"evidence" says which. What the clips have:',
+        *evidence_lines(survey),
+    ]
     fields |= {"markers": _markers(survey)} if survey.colored else {"//markers": NO_MARKERS}
     fields["actor"] = {
         "//height_m": "the performer's height in meters; lengths measured one by one (segments_m) are better",
@@ -240,13 +230,6 @@ def _camera(survey: ClipSurvey) -> dict[str, Any]:
     return camera
 
 
-def _evidence(survey: ClipSurvey) -> dict[str, Any]:
-    """A comment on what the motion of each clip can be held against."""
-    lines = ["what a motion is held against: markers, keypoints, depth_hints, contours; all there is, unless"]
-    lines.append('"evidence" says which. What the clips have:')
-    return {"//evidence": [*lines, *evidence_lines(survey)]}
-
-
 def evidence_lines(survey: ClipSurvey) -> list[str]:
     """What each clip seems to have for its motion to be held against, clips of one kind in one line."""
     clips: dict[tuple[bool, bool | None], list[str]] = {}
@@ -255,15 +238,12 @@ def evidence_lines(survey: ClipSurvey) -> list[str]:
         clips.setdefault((clip.detected, colored), []).append(clip.name)
     lines = []
     for (detected, colored), names in clips.items():
-        have = {True: "strong colors, as of markers", False: "no garments in strong colors", None: ""}[
-            colored
-        ]
+        seen = {True: "strong colors, as of markers", False: "no garments in strong colors", None: ""}
         found = "keypoints beside it" if detected else ""
-        words = " and ".join(filter(None, (have, found))) or "not looked at for colors"
-        advice = (
-            "" if detected or colored else "; keypoints of a detector (keymark detect), else contours alone"
-        )
-        lines.append(f"{pluralize(len(names), 'clip')}: {words}{advice} ({listed(names, MOST_NAMED)})")
+        words = " and ".join(filter(None, (seen[colored], found))) or "not looked at for colors"
+        advice = "; keypoints of a detector (keymark detect), else contours alone"
+        words += "" if detected or colored else advice
+        lines.append(f"{pluralize(len(names), 'clip')}: {words} ({listed(names, MOST_NAMED)})")
     return lines
 
 

@@ -37,11 +37,7 @@ def open_clip(take: Take) -> Clip:
 
 
 def open_footage(path: Path, fps: float | None) -> Clip:
-    """Open a clip without its take; `fps` is the rate of an image sequence.
-
-    Raises:
-        InputError: It is missing or unreadable.
-    """
+    """Open a clip without its take; `fps` is the rate of an image sequence."""
     try:
         return Clip.open(path, fps=fps)
     except OSError as error:
@@ -49,11 +45,7 @@ def open_footage(path: Path, fps: float | None) -> Clip:
 
 
 def picture_count(path: Path, fps: float) -> int:
-    """Number of pictures of a clip without its take; of a sound file quickly, by its undecoded packets.
-
-    Raises:
-        InputError: It is missing or unreadable.
-    """
+    """Number of pictures of a clip without its take; of a sound file quickly, by its undecoded packets."""
     clip = open_footage(path, fps)
     if not isinstance(clip.source, VideoFile):
         return clip.frame_count
@@ -64,36 +56,22 @@ def picture_count(path: Path, fps: float) -> int:
 
 
 def check_size(take: Take, clip: Clip) -> None:
-    """Check the size of a clip's frames against the camera's resolution.
-
-    Raises:
-        InputError: They differ.
-    """
-    if clip.size != take.camera.resolution:
-        raise InputError(
-            f"{take.file}: camera.resolution is {list(take.camera.resolution)}; "
-            f"the clip {take.clip.name} is {list(clip.size)}, and they must be equal"
-            f"{_rotation_hint(take, clip)}"
-        )
-
-
-def _rotation_hint(take: Take, clip: Clip) -> str:
-    """The rest of the sentence where width and height are swapped."""
-    if clip.size != take.camera.resolution[::-1]:
-        return ""
-    return (
+    """Check the size of a clip's frames against the camera's resolution."""
+    given = take.camera.resolution
+    if clip.size == given:
+        return
+    turned = (
         "; the camera was held the other way, or its file says that it is to be turned: swap the two, and "
         "give sensor_width_mm and the pose of the camera as it was held"
+    )
+    raise InputError(
+        f"{take.file}: camera.resolution is {list(given)}; the clip {take.clip.name} is {list(clip.size)}, "
+        f"and they must be equal{turned if clip.size == given[::-1] else ''}"
     )
 
 
 def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
     """Check the true number of a clip's frames against the take.
-
-    Args:
-        take: The take.
-        count: Number of frames that can be decoded.
-        claimed: Number of frames that the clip's file claims.
 
     Raises:
         InputError: There are too many, `frame_count` or the number of frames with keypoints differs, or a
@@ -133,18 +111,13 @@ def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
 
 
 def _damage_hint(count: int, claimed: int) -> str:
-    """The rest of the sentence where a file claims more frames than it has."""
     if count >= claimed:
         return ""
     return f"; it claims {claimed}, so it may be cut off or damaged: copy it again from where it was recorded"
 
 
 def check_in_front(take: Take) -> None:
-    """Check that the camera sees the keyframes.
-
-    Raises:
-        InputError: A point of a keyframe lies behind the camera, or no point of any is in its picture.
-    """
+    """Check that the camera sees the keyframes."""
     size = np.asarray(take.camera.resolution, dtype=np.float64)
     in_picture = not take.keyframes
     for keyframe in take.keyframes:
@@ -164,9 +137,6 @@ def check_in_front(take: Take) -> None:
             f"{take.file}: not one point of any keyframe lies in the camera's picture; the camera's pose, "
             "its lens and the keyframes, all in meters in one world, must fit each other"
         )
-
-
-# --- Notes on a take's clip for a person, one sentence each
 
 
 NOTICEABLE_RATE = 0.02
@@ -206,9 +176,5 @@ def _gap_notes(take: Take, tracks: RegionTracks) -> tuple[str, ...]:
     if len(intervals) < 2 or intervals.max() < LONGEST_INTERVAL * np.median(intervals):
         return ()
     before = int(intervals.argmax())
-    return (
-        (
-            f"{intervals[before]:.2f} s are missing after frame {before + take.frame_start}; check the "
-            "keyframes after it"
-        ),
-    )
+    gap = f"{intervals[before]:.2f} s are missing after frame {before + take.frame_start}"
+    return (f"{gap}; check the keyframes after it",)

@@ -37,9 +37,6 @@ def conversion_digest(
         output: The folder of the results: a .blend holds the relative path from there to its clip.
         version: Keymark's version.
         maps: Digests of the character maps that may be used, where there is a character.
-
-    Raises:
-        InputError: A file cannot be read.
     """
     try:
         images = find_images(description.clip)

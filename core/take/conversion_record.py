@@ -14,7 +14,7 @@ from ..errors import InputError
 from ..files.json_file import read_json, write_json
 from ..files.kinds import ByName, Items, Number, Whole
 from ..files.records import Record
-from .evidence_kinds import (
+from .evidence import (
     FARTHEST_FRAME,
     MOST_FRAMES,
     FileDigests,
@@ -88,20 +88,12 @@ class ConversionRecord(Record):
 
 
 def write_record(folder: Path, record: ConversionRecord) -> None:
-    """Write a record into a folder of results, atomically.
-
-    Raises:
-        ConversionError: The file cannot be written.
-    """
+    """Write a record into a folder of results, atomically."""
     write_json(folder / RECORD_FILE, record.to_json(), indent=1)
 
 
 def read_record(folder: Path) -> ConversionRecord:
-    """Read a folder's record.
-
-    Raises:
-        InputError: There is none, or a field is unusable.
-    """
+    """Read a folder's record."""
     path = folder / RECORD_FILE
     return ConversionRecord.from_json(read_json(path, LARGEST_BYTES), str(path))
 

@@ -1,4 +1,4 @@
-"""Method names; imports nothing, so that `--help` stays fast."""
+"""How a take is converted: the settings, the fields that say them, and the character that gets the motion."""
 
 import re
 from collections.abc import Mapping
@@ -9,17 +9,13 @@ from typing import Annotated, Any
 from ..errors import InputError
 from ..files.fields import Fields, child_location, listed
 from ..files.json_file import ENDING, shown
-from ..files.kinds import Choice, Items, Kind, Number, Text
+from ..files.kinds import INSIDE, LONGEST_PATH, Choice, Items, Kind, Number, Text, relative_path
 from ..files.records import Record, declared, read_record
-from ..files.safe_path import INSIDE, LONGEST_PATH, relative_path
 from ..prior.texts import EVERY_LIBRARY
-from .evidence_kinds import evidence_mistake, in_order
+from .evidence import evidence_mistake, in_order
 
 METHODS = ("map", "ekf", "interpolation")
 """The estimate over the whole clip, the default; the paper's Kalman filter; interpolated keyframes alone."""
-
-
-# --- Words for how a motion is put onto a character
 
 
 ROOT_MOTIONS = ("as-filmed", "in-place", "root-bone")
@@ -28,11 +24,7 @@ LIMB_KEYS = ("fk", "ik", "both")
 """The options of `core/retarget/options` are called the same, with underscores."""
 
 
-# --- The character that a take's motion is put onto
-
-
 CHARACTER_ENDINGS = (".blend", ".fbx", ".glb", ".gltf", ".vrm")
-"""Files that a character is read from."""
 AUTO, NO_MAP = "auto", "none"
 """In place of a map: a saved one that knows the character's bones, else recognition; recognition alone."""
 LARGEST_TOLERANCE_MM = 1000.0
@@ -58,16 +50,11 @@ class CharacterFile:
     """Name of its armature; None where the file has only one."""
 
     def __str__(self) -> str:
-        """As it is typed on the command line."""
         return str(self.path) if self.object is None else f"{self.path}:{self.object}"
 
     @classmethod
     def parse(cls, text: str) -> "CharacterFile":
-        """Read `FILE` or `FILE:OBJECT`; drive letters and colons in folders or objects are no separators.
-
-        Raises:
-            InputError: It names no file that characters are read from.
-        """
+        """Read `FILE` or `FILE:OBJECT`; drive letters and colons in folders or objects are no separators."""
         found = _FILE.fullmatch(text)
         if found is None or found[2] == "":
             raise InputError(
@@ -150,11 +137,7 @@ class CharacterFields(CharacterOptions):
         )
 
 
-# --- Settings of a conversion
-
-
 HIGHEST_FLOOR_M = 1000.0
-LONGEST_NAME_CONVERSION_SETTINGS = 200
 KEYFRAMES_VALID = (
     f"a path inside the take's folder, as in keyframes.json, or {EVERY_LIBRARY} to find keyframes with all "
     "libraries"
@@ -179,11 +162,8 @@ class ConversionSettings:
     floor_m: float | None = None
     """Height of the floor where it is known [m]; for finding keyframes."""
     method: str | None = None
-    """`map` (the default), `ekf` or `interpolation`."""
     pictures: bool | None = None
-    """Whether to draw the report; by default it is drawn."""
     character: CharacterSettings | None = None
-    """The character that gets the motion too; None for none."""
     keypoints: tuple[Path, ...] | None = None
     """Files or folders of keypoints; by default the take's own where it has some."""
     evidence: tuple[str, ...] | None = None
@@ -204,16 +184,7 @@ NO_SETTINGS = ConversionSettings()
 def with_auto_as_library(
     values: Mapping[str, Any], inherited: Mapping[str, Any], location: str
 ) -> dict[str, Any]:
-    """The fields of one file, where `"keyframes": "auto"` has become `"library": "auto"`, which is the same.
-
-    Args:
-        values: The fields as the file has them.
-        inherited: Those that they override.
-        location: The file, for sentences.
-
-    Raises:
-        InputError: The file also names a library, which is another question.
-    """
+    """A file's fields, where `"keyframes": "auto"` has become `"library": "auto"`, which is the same."""
     fields, keyframes, library = dict(values), values.get("keyframes"), values.get("library")
     if keyframes == EVERY_LIBRARY:
         if library not in (None, EVERY_LIBRARY):
@@ -231,8 +202,8 @@ def with_auto_as_library(
 def _library_fault(text: str) -> str:
     if text.lower().endswith(".json"):
         return relative_path(LIBRARY_VALID).fault(text)
-    path_like = len(text) > LONGEST_NAME_CONVERSION_SETTINGS or any(letter in "/\\" for letter in text)
-    return f"must be {LIBRARY_VALID}" if path_like else ""
+    odd = len(text) > 200 or any(letter in "/\\" for letter in text)
+    return f"must be {LIBRARY_VALID}" if odd else ""
 
 
 LibraryName = Annotated[str, Text(LONGEST_PATH, LIBRARY_VALID, one_line=True, fault=_library_fault)]
@@ -296,15 +267,7 @@ class SettingsFields(Record):
 
 
 def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSettings:
-    """The settings in a take's description.
-
-    Args:
-        description: The fields of the take, inherited ones included.
-        folders: For each source of fields, the folder that its paths are relative to.
-
-    Raises:
-        InputError: A field has no valid value, or a path leaves its folder.
-    """
+    """The settings in a take's description."""
     said = read_record(SettingsFields, description)
 
     def inside(name: str) -> Path:

@@ -1,4 +1,4 @@
-"""`shoot.json`: fields that all takes below its folder inherit."""
+"""What files say of a take: its own, and every `shoot.json` above, whose fields it inherits."""
 
 import os
 from collections.abc import Mapping
@@ -8,23 +8,21 @@ from stat import S_ISDIR, S_ISREG
 from typing import Any
 
 from ..errors import InputError
-from ..files.control_characters import absolute_path
 from ..files.fields import COMMENT_PREFIX, Fields, InheritedFields
 from ..files.json_file import read_json, shown
+from ..files.kinds import safe_path
+from ..files.paths import absolute_path, check_symlinks
 from ..files.records import check_version
-from ..files.safe_path import check_symlinks, safe_path
 from ..footage.clips.image_sequence import is_image
 from ..prior.texts import EVERY_LIBRARY
 from .conversion_settings import NO_SETTINGS, ConversionSettings, read_settings, with_auto_as_library
-from .evidence_kinds import KEYPOINTS
+from .evidence import KEYPOINTS
 
 SHOOT_FILE = "shoot.json"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**20
 SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "ignored_regions", "actor")
-"""Fields of `take.json` that takes may inherit."""
 SETTING_FIELDS = ("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence")
-"""Fields that say how takes are converted."""
 FILE_FIELDS = ("$schema", "schema_version", "root")
 """Fields about the file itself; editors read the first."""
 KEYFRAMES = "keyframes"
@@ -33,15 +31,7 @@ KNOWN_FIELDS = (*FILE_FIELDS, *SHARED_FIELDS, KEYFRAMES, *SETTING_FIELDS)
 
 
 def shoot_fields(path: Path, values: dict[str, Any]) -> dict[str, Any]:
-    """The fields of one `shoot.json` that takes inherit; their values are checked where a take uses them.
-
-    Args:
-        path: The file, for sentences.
-        values: All its fields, as `find_shoot_files` gives them.
-
-    Raises:
-        InputError: The file is of a newer Keymark, has an unknown field, or names a keyframe file.
-    """
+    """The fields of one `shoot.json` that takes inherit; their values are checked where a take uses them."""
     fields = Fields(values, str(path))
     fields.refuse_others([*KNOWN_FIELDS, *(name for name in values if name.startswith(COMMENT_PREFIX))])
     if fields.has("schema_version"):
@@ -61,9 +51,6 @@ def find_shoot_files(folder: Path) -> dict[Path, dict[str, Any]]:
 
     They are searched in the folder and all its parents, up to one that says `"root": true`. A broken link or
     a folder of that name is an error: what it was to say is not left out in silence.
-
-    Raises:
-        InputError: One that is found cannot be read.
     """
     found: dict[Path, dict[str, Any]] = {}
     start = absolute_path(folder)
@@ -74,9 +61,6 @@ def find_shoot_files(folder: Path) -> dict[Path, dict[str, Any]]:
             if found[file].get("root") is True:
                 break
     return dict(reversed(found.items()))
-
-
-# --- The description of one take
 
 
 TAKE_FILE = "take.json"
@@ -93,7 +77,6 @@ class Description:
     path: Path
     """The take: a folder, or a bare clip."""
     name: str
-    """What people call it."""
     folder: Path
     """The folder that the take's own paths are relative to."""
     file: Path
@@ -126,9 +109,6 @@ def describe(
         overrides: Fields that override all files, as in a line of a list; their paths are relative to the
             take's folder.
         overrides_location: Location of these fields, for sentences.
-
-    Raises:
-        InputError: There is no such take, nothing describes it, or a file is unusable.
     """
     own_file = _own_file(path)
     folder, is_folder = own_file.parent, own_file.name == TAKE_FILE
@@ -189,13 +169,7 @@ def describe(
 def effective_settings(
     description: Description, defaults: ConversionSettings = NO_SETTINGS
 ) -> ConversionSettings:
-    """The settings of a take's conversion; beside a library its own keyframes are used where it has some.
-
-    Args:
-        description: The take's description.
-        defaults: Settings for what the take and its shoots leave out; their keypoints are names of files of
-            every take, as `keypoints.json` is.
-    """
+    """The settings of a take's conversion; beside a library its own keyframes are used where it has some."""
     settings = description.settings.with_defaults(defaults)
     if description.settings.keypoints is None and defaults.keypoints is not None:
         settings = replace(
@@ -219,7 +193,6 @@ def _own_name(folder: Path, clip: Path | None, name: Path) -> Path:
 
 
 def _own_file(path: Path) -> Path:
-    """A take's own file, which may not exist."""
     try:
         kind = path.stat().st_mode
         images = S_ISDIR(kind) and not (path / TAKE_FILE).exists() and any(map(is_image, path.iterdir()))
@@ -238,7 +211,6 @@ def _own_file(path: Path) -> Path:
 
 
 def _links(folder: Path) -> list[Path]:
-    """The files of a folder, as of images, that are symbolic links."""
     try:
         with os.scandir(folder) as entries:
             return [Path(entry.path) for entry in entries if entry.is_symlink()]

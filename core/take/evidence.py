@@ -1,73 +1,94 @@
-"""Kinds of evidence that the estimate of a take is held against, beside its keyframes."""
+"""Kinds of evidence, and the record of the evidence that a result rests on beside its keyframes."""
 
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated
 
-import numpy as np
+from ..errors import pluralize
+from ..files.kinds import ByName, Choice, Items, Number, Text, Whole, relative_path
+from ..files.records import Record
+from ..footage.keypoints.keypoints import BODY_POINTS
 
-from ..errors import InputError
-from ..files.fields import listed
-from .evidence_kinds import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
-from .take import Take
-
-__all__ = (
-    *("CONTOURS", "DEPTH_HINTS", "EVIDENCE", "KEYPOINTS", "MARKERS"),
-    *("check_evidence", "evidence_of", "with_evidence"),
-)
-
-REMEDIES = {
-    MARKERS: "markers must say which are worn",
-    KEYPOINTS: "a file of them must be given, as keymark detect writes it",
-    DEPTH_HINTS: "none of its files of keypoints guesses depths",
-    CONTOURS: "they need a camera that stands still",
-}
-"""What a kind of evidence takes, for a take that lacks it."""
+MARKERS, KEYPOINTS, DEPTH_HINTS, CONTOURS = "markers", "keypoints", "depth_hints", "contours"
+EVIDENCE = (MARKERS, KEYPOINTS, DEPTH_HINTS, CONTOURS)
+"""All kinds; a take's `evidence` names those that are used, by default whatever it has."""
 
 
-def evidence_of(take: Take) -> tuple[str, ...]:
-    """The kinds of evidence that a take has."""
-    hints = any(np.isfinite(frame.hint_m).any() for people in take.keypoints for frame in people.frames)
-    has = {
-        MARKERS: bool(take.markers),
-        KEYPOINTS: bool(take.keypoints),
-        DEPTH_HINTS: hints,
-        CONTOURS: take.contours and not take.camera.is_moving,
-    }
-    return tuple(kind for kind in EVIDENCE if has[kind])
+def evidence_mistake(kinds: object) -> str | None:
+    """What is wrong with a list of kinds of evidence, to follow "evidence is ..."; None where it is valid."""
+    valid = f"a list of one or more of {', '.join(EVIDENCE)}"
+    if not isinstance(kinds, list | tuple) or not kinds or not all(isinstance(one, str) for one in kinds):
+        return f"it must be {valid}"
+    unknown = [one for one in kinds if one not in EVIDENCE]
+    if unknown or len(set(kinds)) < len(kinds):
+        return f"it must be {valid}, each once"
+    if DEPTH_HINTS in kinds and KEYPOINTS not in kinds:
+        return f"{DEPTH_HINTS} are guesses of the depth of keypoints and need {KEYPOINTS} beside them"
+    return None
 
 
-def with_evidence(take: Take, kinds: tuple[str, ...]) -> Take:
-    """The take with only these kinds of evidence; hints of depth come with keypoints alone."""
-    keypoints = take.keypoints if KEYPOINTS in kinds else ()
-    if DEPTH_HINTS not in kinds:
-        keypoints = tuple(people.without_hints() for people in keypoints)
-    return replace(
-        take,
-        markers=take.markers if MARKERS in kinds else (),
-        keypoints=keypoints,
-        contours=take.contours and CONTOURS in kinds,
-    )
+def in_order(kinds: tuple[str, ...] | list[str]) -> tuple[str, ...]:
+    """The kinds in the order of `EVIDENCE`."""
+    return tuple(kind for kind in EVIDENCE if kind in kinds)
 
 
-def check_evidence(take: Take, kinds: tuple[str, ...] | None, source: str) -> None:
-    """Check that a take has the evidence that is asked for, and any at all.
+LONGEST_LINE, LONGEST_NOTE = 1000, 10_000
+MOST_NOTES, MOST_FILES = 1000, 100
+MOST_FRAMES, FARTHEST_FRAME = 10**6, 10**7
 
-    Args:
-        take: The take with everything it has.
-        kinds: The kinds that are asked for; None for whatever it has.
-        source: What asks for them, for sentences.
+Line = Annotated[str, Text(LONGEST_LINE)]
+Notes = Annotated[tuple[Annotated[str, Text(LONGEST_NOTE)], ...], Items("sentences", 0, MOST_NOTES)]
+Sha256 = Annotated[str, Text(64, "a SHA-256 of 64 digits", pattern="^[0-9a-f]{64}$")]
+FileDigests = Annotated[
+    Mapping[str, Sha256], ByName("digests of files", MOST_FILES, key=relative_path("a file of this folder"))
+]
+FrameCount = Annotated[int, Whole(1, MOST_FRAMES)]
+Frame = Annotated[int, Whole(-FARTHEST_FRAME, FARTHEST_FRAME)]
+FrameRate = Annotated[float, Number(1e-3, 1e4)]
 
-    Raises:
-        InputError: It lacks one of them, or has nothing that could be followed.
-    """
-    has = evidence_of(take)
-    lacking = [] if kinds is None else [kind for kind in kinds if kind not in has]
-    if lacking:
-        raise InputError(
-            f"{source}: evidence names {lacking[0]}, which this take has not got ({REMEDIES[lacking[0]]}); "
-            f"it has {listed(has) or 'nothing to follow'}"
-        )
-    if not has:
-        raise InputError(
-            f"{take.file}: has nothing to follow, neither markers nor keypoints, and contours need a camera "
-            "that stands still; it must have one of them"
-        )
+
+MOST_MARKERS, MOST_SOURCES = 64, 100
+Share = Annotated[float, Number(0.0, 1.0, decimals=4)]
+
+
+@dataclass(frozen=True)
+class UsedKeypoints(Record):
+    """Keypoints of one source."""
+
+    SPARSE, REQUIRED = False, ("swapped",)
+
+    source: Line
+    """The detector, Blender's tracks, or clicks."""
+    points: Annotated[
+        tuple[Annotated[str, Choice(BODY_POINTS)], ...], Items("body points", 0, len(BODY_POINTS))
+    ]
+    """The body points it shows."""
+    believed: Share
+    """Share of all keypoints it saw that were followed, 0 to 1; 0 too where it saw nobody."""
+    swapped: Share = 0.0
+    """Share of them that it saw on the other side of the body."""
+
+
+@dataclass(frozen=True)
+class UsedEvidence(Record):
+    """The markers, keypoints, hints of depth and contours that an estimate was held against."""
+
+    SPARSE, REQUIRED = False, ("markers", "keypoints", "depth_hints", "contours")
+
+    markers: Annotated[tuple[Annotated[str, Text(200)], ...], Items("names", 0, MOST_MARKERS)] = ()
+    """Names of the markers."""
+    keypoints: Annotated[tuple[UsedKeypoints, ...], Items("sources", 0, MOST_SOURCES)] = ()
+    """The sources of keypoints."""
+    depth_hints: bool = False
+    """Whether a network's guess of depths counted."""
+    contours: bool = False
+    """Whether the contours of the body were followed."""
+
+    @property
+    def words(self) -> str:
+        """The kinds that counted, in words: `5 markers, 33 keypoints, depth hints, contours`."""
+        points = sum(len(source.points) for source in self.keypoints if source.believed > 0.0)
+        counted = ((len(self.markers), "marker"), (points, "keypoint"))
+        kinds = [pluralize(count, word) for count, word in counted if count]
+        flags = ((self.depth_hints, "depth hints"), (self.contours, "contours"))
+        return ", ".join([*kinds, *(word for used, word in flags if used)]) or "keyframes alone"

@@ -24,11 +24,7 @@ COPIED = {
 
 
 def example_folder(name: str) -> Path:
-    """The folder of an example in this installation.
-
-    Raises:
-        InputError: It is missing.
-    """
+    """The folder of an example in this installation."""
     folder = SHIPPED / name
     if not folder.is_dir():
         raise InputError(f"{folder}: this example is missing from the installation; install Keymark anew")
@@ -39,13 +35,6 @@ def copy_example(name: str, into: Path) -> Path:
     """Copy an example as a take of its own into a folder; returns the folder of the copy.
 
     A copy that is there already and unchanged stays as it is.
-
-    Args:
-        name: The example.
-        into: The folder that gets a folder of the example's name.
-
-    Raises:
-        InputError: The example is missing, something else lies there, or nothing can be written.
     """
     source, target = example_folder(name), into / name
     if target.exists():
@@ -62,6 +51,5 @@ def copy_example(name: str, into: Path) -> Path:
 
 
 def _is_copy(source: Path, target: Path) -> bool:
-    """Whether a folder holds an example's files as they come along."""
     pairs = [(source / own, target / copied) for own, copied in COPIED.items()]
     return all(copy.is_file() and filecmp.cmp(own, copy, shallow=False) for own, copy in pairs)

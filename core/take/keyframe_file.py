@@ -17,7 +17,7 @@ from ..files.json_file import read_json, write_json
 from ..files.kinds import ByName, Items, Number
 from ..files.records import Record
 from ..prior.keyframes import Keyframe, Matched
-from .evidence_kinds import Frame
+from .evidence import Frame
 
 FEWEST_KEYFRAMES = 2
 """Fewest that can be interpolated."""
@@ -25,8 +25,6 @@ MOST_KEYFRAMES = 20_000
 """Ten a hundred frames in two hours of film."""
 SMALLEST_EXTENT_M = 0.05
 """Largest distance of a point from their mean, below which all points are one."""
-FITTED_TOGETHER = 500
-"""Keyframes whose points are fitted at once; bounds the memory."""
 PLACE = f"[x, y, z] in meters, each within {FARTHEST_M:g} m of the origin"
 Place = Annotated[
     tuple[Annotated[float, Number(-FARTHEST_M, FARTHEST_M)], ...], Items("numbers", 3, 3, PLACE)
@@ -83,17 +81,6 @@ def read_keyframes(
     A keyframe holds `frame` and `posture` (every degree of freedom by name, meters and radians), or `frame`
     and `points` (thirteen points [m], world axes), to which a posture of the actor is fitted. With both, the
     posture counts. A matched keyframe names its library in `matched`.
-
-    Args:
-        path: The file.
-        body: The actor's body.
-        frame_start: Scene frame of the clip's first frame.
-        frame_count: Frames of the clip; None where it is not known yet.
-        fewest: Number of keyframes that are required.
-
-    Raises:
-        InputError: The file or a field is unusable, a frame is outside the clip or given twice, or there
-            are too few keyframes, or too many.
     """
     rows = KeyframeFile.from_json(read_json(path), str(path)).keyframes
     if len(rows) < fewest:
@@ -107,11 +94,7 @@ def read_keyframes(
 
 
 def write_keyframes(path: Path, keyframes: Sequence[Keyframe], body: Body, frame_start: int) -> None:
-    """Write keyframes with both their posture, which `read_keyframes` reads back, and their thirteen points.
-
-    Raises:
-        ConversionError: The file cannot be written.
-    """
+    """Write keyframes with their posture, which `read_keyframes` reads back, and their thirteen points."""
     rows = []
     for keyframe in keyframes:
         points = rounded(body.points(body.pose(keyframe.posture)))
@@ -121,7 +104,6 @@ def write_keyframes(path: Path, keyframes: Sequence[Keyframe], body: Body, frame
 
 
 def _check_frames(path: Path, frames: Sequence[int], frame_start: int, frame_count: int | None) -> None:
-    """Refuse frames outside the clip, or given twice."""
     last = frame_start + (frame_count or 10**6) - 1
     seen: set[int] = set()
     for index, frame in enumerate(frames):
@@ -144,7 +126,7 @@ def _keyframes(rows: Sequence[KeyframeRow], frame_start: int, body: Body) -> lis
     points = np.array([unseen if row.points is None else list(row.points.values()) for row in rows])
     postures = {index: row.posture for index, row in enumerate(rows) if row.posture is not None}
     points_only = np.array([index for index in range(len(rows)) if index not in postures], dtype=np.intp)
-    for chunk in chunks(points_only, FITTED_TOGETHER) if len(points_only) else []:
+    for chunk in chunks(points_only, 500) if len(points_only) else []:
         fitted = fit_posture(body, points[chunk]).posture
         postures.update({int(index): fitted[row] for row, index in enumerate(chunk)})
     keyframes = []

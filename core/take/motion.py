@@ -15,10 +15,9 @@ from ..body.kinematics import Body
 from ..body.posture import Posture, posture_to_json, rounded
 from ..errors import ConversionError
 from ..files.json_file import read_json, shown, write_json
-from ..files.kinds import ByName, Items, Kind, Whole, refuse
+from ..files.kinds import ByName, Items, Kind, NumberArray, Whole, number_array, refuse
 from ..files.records import Record
-from ..files.safe_path import NumberArray, number_array
-from .evidence_kinds import MOST_FRAMES, Frame, FrameCount, FrameRate, Line
+from .evidence import MOST_FRAMES, Frame, FrameCount, FrameRate, Line
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,15 +30,12 @@ class Motion:
     time_s: Array
     """(F,) time stamp of each frame from the first [s]; uneven for variable frame rate."""
     posture: Posture
-    """A batch of F postures."""
     points: Array
     """(F, 13, 3) principal points in the world [m]."""
     point_covariance: Array
     """(F, 13, 3, 3) estimated covariance of each point [m²]."""
     keyframe_indices: tuple[int, ...]
-    """Frame indices of the keyframes."""
     method: str
-    """Method of the estimate: `map`, `ekf` or `interpolation`."""
     diagnostics: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
     """Diagnostics of the estimate by name, (F, ...) each."""
 
@@ -54,14 +50,10 @@ class Motion:
         return np.sqrt(np.trace(self.point_covariance, axis1=-2, axis2=-1))
 
 
-# --- `motion.json`
-
-
 LARGEST_BYTES = 2**29
 """Two hours of motion: about 2 kB a frame."""
 LARGEST_NUMBER = 1e15
 """Of coordinates, angles, times and covariances, in the file's units."""
-MOST_DIAGNOSTICS = 100
 SIGNIFICANT_DIGITS = 6
 UPPER = (np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2]))
 """Rows and columns of xx, xy, xz, yy, yz, zz: the upper triangle of a covariance matrix."""
@@ -81,7 +73,6 @@ class Diagnostic(Kind):
 
 
 def _lists(names: tuple[str, ...], *shape: int) -> ByName:
-    """Lists of every name, with one entry a frame."""
     item = NumberArray((-1, *shape), LARGEST_NUMBER)
     return ByName("lists by name", names=names, needs=names, strict=False, item=item)
 
@@ -110,7 +101,7 @@ class MotionFile(Record):
     """The posture by degree of freedom: F numbers [m, rad] each."""
     actor: Actor
     """The performer's size."""
-    diagnostics: Annotated[Mapping[str, Array], ByName("lists by name", MOST_DIAGNOSTICS, item=Diagnostic())]
+    diagnostics: Annotated[Mapping[str, Array], ByName("lists by name", 100, item=Diagnostic())]
     """Diagnostics of the estimate by name; null where a number does not apply."""
     sigma_m: Annotated[Mapping[str, Array], _lists(HUMAN.point_names)] = field(default_factory=dict)
     """Square root of the trace of each point's covariance: F numbers [m] each; only for methods with
@@ -146,13 +137,6 @@ def write_motion(motion: Motion, path: Path) -> None:
 
     Lengths are in meters and angles in radians, rounded to 1e-6; lists run over the frames of the clip.
     A method that has no covariance (all NaN) leaves `sigma_m` and `covariance_mm2` out.
-
-    Args:
-        motion: The motion, F frames.
-        path: The file.
-
-    Raises:
-        ConversionError: A value of the motion is not finite, or the file cannot be written.
     """
     _check_finite(motion)
     names = motion.body.skeleton.point_names
@@ -173,11 +157,7 @@ def write_motion(motion: Motion, path: Path) -> None:
 
 
 def read_motion(path: Path) -> Motion:
-    """Read a motion that `write_motion` wrote.
-
-    Raises:
-        InputError: The file or a field is unusable; the sentence names it.
-    """
+    """Read a motion that `write_motion` wrote."""
     file = MotionFile.from_json(read_json(path, LARGEST_BYTES), str(path))
     body = Body(file.actor)
     return Motion(

@@ -87,7 +87,6 @@ def _is_somebody_else(take: Take, people: People, chosen: IndexArray) -> bool:
 
 
 def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: int) -> Keypoints:
-    """The keypoints of the chosen person of every frame."""
     pixel = np.full((frames, len(people.names), 2), np.nan)
     score, hint = np.zeros(pixel.shape[:2]), np.full((*pixel.shape[:2], 3), np.nan)
     for index, seen in enumerate(people.frames[:frames]):
@@ -213,7 +212,6 @@ def _elsewhere(source: str) -> str:
 
 
 def _notes(people: People, chosen: IndexArray, why: str) -> tuple[str, ...]:
-    """Sentences on several people, and on frames that show somebody else only."""
     counts = np.array([len(frame.pixel) for frame in people.frames[: len(chosen)]])
     several = int((counts > 1).sum())
     left_out = int(((counts > 0) & (chosen[: len(counts)] == NOBODY)).sum())

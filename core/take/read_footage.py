@@ -21,25 +21,10 @@ RADIUS_GROWTH_M_PER_S = 3.0
 KNOWN_S = 0.2
 """... this: a limb may have swung there and back in between, and before the first keyframe and after the last
 the posture is only held [s]."""
-CHUNK_FRAMES = 500
 
 
 def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
-    """Read a take's clip: tracks of its markers, notes, and an album where the camera stands still.
-
-    Args:
-        take: A take; markers are searched near its keyframes first, where it has some.
-        kept: An earlier reading of any clip; its parts are used as far as they still hold (see `read_clip`).
-
-    Yields:
-        Progress.
-
-    Returns:
-        The reading, the same with and without `kept`.
-
-    Raises:
-        InputError: The clip cannot be used, or a marker's color is not in it.
-    """
+    """Read a take's clip: tracks of its markers, notes, and an album where the camera stands still."""
     yield Progress("Opening the clip", 0.0)
     clip = open_clip(take)
     check_in_front(take)
@@ -60,7 +45,7 @@ def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
     prior = interpolate(take.keyframes, frame_count)
     model = average_model(take)
     center = np.empty((frame_count, len(take.markers), 2))
-    for frame in chunks(np.arange(frame_count), CHUNK_FRAMES):
+    for frame in chunks(np.arange(frame_count), 500):
         center[frame] = model.evaluate(take.body.pose(prior[frame]), frame).centroid
     depth = take.camera.depth(prior.translation, np.arange(frame_count))
     frame, posed = np.arange(frame_count), np.array(sorted(take.keyframe_indices))

@@ -1,15 +1,20 @@
-"""A take: one recorded performance, validated, with notes on what looks wrong."""
+"""A take: one recorded performance, validated, and the kinds of evidence that it has."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from ..body.kinematics import Body
+from ..errors import InputError
+from ..files.fields import listed
 from ..footage.camera import Camera
 from ..footage.ignored_regions import IgnoredRegion
 from ..footage.keypoints.keypoints import People
 from ..footage.region_tracks import MarkerStyle
 from ..prior.keyframes import Keyframe
 from .description import TAKE_FILE
+from .evidence import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
 
 POORLY_FITTED_M = 0.06
 """Hand-posed points fit an actor of the right size within two or three centimeters."""
@@ -41,7 +46,6 @@ class Take:
     contours: bool = True
     """Whether the contours of the body are followed, where the camera stands still."""
     ignored_regions: tuple[IgnoredRegion, ...] = ()
-    """Regions of the picture that are never a marker."""
 
     @property
     def file(self) -> Path:
@@ -74,4 +78,54 @@ class Take:
             )
             for keyframe in self.keyframes
             if keyframe.residual_m > POORLY_FITTED_M
+        )
+
+
+REMEDIES = {
+    MARKERS: "markers must say which are worn",
+    KEYPOINTS: "a file of them must be given, as keymark detect writes it",
+    DEPTH_HINTS: "none of its files of keypoints guesses depths",
+    CONTOURS: "they need a camera that stands still",
+}
+"""What a kind of evidence takes, for a take that lacks it."""
+
+
+def evidence_of(take: Take) -> tuple[str, ...]:
+    """The kinds of evidence that a take has."""
+    hints = any(np.isfinite(frame.hint_m).any() for people in take.keypoints for frame in people.frames)
+    has = {
+        MARKERS: bool(take.markers),
+        KEYPOINTS: bool(take.keypoints),
+        DEPTH_HINTS: hints,
+        CONTOURS: take.contours and not take.camera.is_moving,
+    }
+    return tuple(kind for kind in EVIDENCE if has[kind])
+
+
+def with_evidence(take: Take, kinds: tuple[str, ...]) -> Take:
+    """The take with only these kinds of evidence; hints of depth come with keypoints alone."""
+    keypoints = take.keypoints if KEYPOINTS in kinds else ()
+    if DEPTH_HINTS not in kinds:
+        keypoints = tuple(people.without_hints() for people in keypoints)
+    return replace(
+        take,
+        markers=take.markers if MARKERS in kinds else (),
+        keypoints=keypoints,
+        contours=take.contours and CONTOURS in kinds,
+    )
+
+
+def check_evidence(take: Take, kinds: tuple[str, ...] | None, source: str) -> None:
+    """Check that a take has the evidence that is asked for, and any at all."""
+    has = evidence_of(take)
+    lacking = [] if kinds is None else [kind for kind in kinds if kind not in has]
+    if lacking:
+        raise InputError(
+            f"{source}: evidence names {lacking[0]}, which this take has not got ({REMEDIES[lacking[0]]}); "
+            f"it has {listed(has) or 'nothing to follow'}"
+        )
+    if not has:
+        raise InputError(
+            f"{take.file}: has nothing to follow, neither markers nor keypoints, and contours need a camera "
+            "that stands still; it must have one of them"
         )

@@ -33,18 +33,13 @@ from ..footage.region_tracks import MarkerStyle
 from .clip_check import open_footage, picture_count
 from .conversion_settings import ConversionSettings
 from .description import KEYPOINT_FILE, Description, describe, keypoint_files
-from .evidence import check_evidence, with_evidence
 from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
-from .take import Take
+from .take import Take, check_evidence, with_evidence
 
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 """What a marker may be bound to: a segment of the skeleton, or all between hips and shoulders."""
 MOST_FRAMES = 10**6
-MOST_MARKERS = 64
-LONGEST_MARKER_NAME = 200
-"""Characters."""
-MISTYPED = 0.85
-"""Likeness of an object's name from which on it is `markers` with one letter wrong."""
+MARKER_NAME = Text(200, "one line of at most 200 visible characters", one_line=True)
 
 
 FRAME_RATE = Number(1.0, 1000.0, "frames per second")
@@ -119,21 +114,7 @@ class TakeFields(Record):
     """The camera that saw the performance."""
     actor: ActorFields
     """The performer's size."""
-    markers: (
-        Annotated[
-            Mapping[str, MarkerFields],
-            ByName(
-                "markers",
-                MOST_MARKERS,
-                key=Text(
-                    LONGEST_MARKER_NAME,
-                    f"one line of at most {LONGEST_MARKER_NAME} visible characters",
-                    one_line=True,
-                ),
-            ),
-        ]
-        | None
-    ) = None
+    markers: Annotated[Mapping[str, MarkerFields], ByName("markers", 64, key=MARKER_NAME)] | None = None
     """The performer's colored markers, by name; none where any clothes are worn."""
     ignored_regions: Annotated[tuple[RegionFields, ...], Items("regions", 0, MOST_REGIONS)] | None = None
     """Regions of the picture that are never a marker, as a wall panel of a marker's color: boxes and strokes
@@ -143,22 +124,12 @@ class TakeFields(Record):
 
 
 def read_take(
-    path: Path,
-    keyframes: Path | None = None,
-    *,
-    keyframes_required: bool = True,
-    whole: bool = False,
+    path: Path, keyframes: Path | None = None, *, keyframes_required: bool = True, whole: bool = False
 ) -> Take:
     """Read a take with its inherited fields; the clip is not checked yet (see `clip_check`).
 
-    Args:
-        path: The folder that holds `take.json`, or a clip that a shoot describes (see `description`).
-        keyframes: The keyframe file; by default the take's own, usually `keyframes.json` in the folder.
-        keyframes_required: Whether a take without a keyframe file is refused.
-        whole: Whether evidence that its description leaves aside is read too, and none at all is accepted.
-
-    Raises:
-        InputError: A file or field is missing or unusable; the sentence names it and what would be valid.
+    `keyframes` is by default the take's own file. `whole`: evidence that its description leaves aside is read
+    too, and none at all is accepted.
     """
     return read_described(describe(path), keyframes, keyframes_required=keyframes_required, whole=whole)
 
@@ -174,13 +145,8 @@ def read_described(
 ) -> Take:
     """Read a take from its description; see `read_take`.
 
-    Args:
-        description: The description.
-        keyframes: As for `read_take`.
-        keyframes_required: As for `read_take`.
-        fewest_keyframes: Number that the keyframe file must hold; with 0 the take's own is not opened.
-        settings: Those that say which keypoints are read and which evidence is used; by default the take's.
-        whole: As for `read_take`.
+    `fewest_keyframes` must be in the keyframe file; with 0 the take's own is not opened. `settings` say which
+    keypoints are read and which evidence is used, by default the take's own.
     """
     fields = description.fields
     settings = settings or description.settings
@@ -224,7 +190,8 @@ def read_described(
     )
     if whole:
         return take
-    check_evidence(take, settings.evidence, _source_of_evidence(description, settings))
+    own = settings.evidence == description.settings.evidence
+    check_evidence(take, settings.evidence, fields.source_of("evidence") if own else str(description.path))
     return take if settings.evidence is None else with_evidence(take, settings.evidence)
 
 
@@ -240,37 +207,18 @@ def _keypoints(
     if not files:
         return ()
     if frame_count is None:  # detectors that number their files need not write one for every frame
-        frame_count = _counted(description, fps)
+        try:
+            frame_count = picture_count(description.clip, fps)
+        except InputError as error:
+            where = description.fields.source_of("frame_count")
+            raise InputError(f"{where}: frame_count is not given, and {error}") from error
     return tuple(read_keypoints(file, frame_count, camera.resolution, fps, frame_start) for file in files)
-
-
-def _counted(description: Description, fps: float) -> int:
-    """Number of pictures of the clip of a take that does not say it."""
-    try:
-        return picture_count(description.clip, fps)
-    except InputError as error:
-        where = description.fields.source_of("frame_count")
-        raise InputError(f"{where}: frame_count is not given, and {error}") from error
-
-
-def _source_of_evidence(description: Description, settings: ConversionSettings) -> str:
-    said = settings.evidence == description.settings.evidence
-    return description.fields.source_of("evidence") if said else str(description.path)
 
 
 def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) -> None:
     """Write a take that `read_take` reads back: `take.json`, `keyframes.json`, keypoints and the clip.
 
     Every file is written atomically; a clip or keypoints that lie in the folder stay as they are.
-
-    Args:
-        take: The take.
-        folder: The folder, new or old.
-        evidence: The kinds of evidence that it is to be held against; None for whatever it has.
-
-    Raises:
-        InputError: The clip is a pattern of images outside the folder, which cannot be copied as one.
-        ConversionError: A file cannot be written.
     """
     clip = _copy_clip(take, folder)
     fields: dict[str, Any] = {"fps": take.fps, "frame_start": take.frame_start}
@@ -310,7 +258,6 @@ def _copy_clip(take: Take, folder: Path) -> str:
 
 
 def _write_keypoints(take: Take, folder: Path) -> list[str]:
-    """Write keypoints into `folder`, but for those that lie there; returns their paths within."""
     names = [_name_within(people, folder) for people in take.keypoints]
     ending, number = Path(KEYPOINT_FILE), 1
     for index, people in enumerate(take.keypoints):
@@ -347,9 +294,7 @@ def _with_clip_fields(fields: Fields, path: Path) -> Fields:
     if not sized:
         from_clip["camera"] = {"resolution": list(clip.size)}
     merged = fields.values.overridden_by(from_clip, str(path))
-    if (
-        not sized
-    ):  # the clip gives the size alone: what else the camera lacks is missing where it is described
+    if not sized:  # what else the camera lacks is missing where it is described
         merged.sources["camera"] = fields.source_of("camera")
     return Fields(merged, fields.where)
 
@@ -357,7 +302,7 @@ def _with_clip_fields(fields: Fields, path: Path) -> Fields:
 def _refuse_mistyped_markers(fields: Fields) -> None:
     """Without markers a take has other evidence: a mistyped name of theirs must not lead there."""
     objects = [name for name, value in islice(fields.values.items(), 100) if isinstance(value, Mapping)]
-    if not fields.has("markers") and get_close_matches("markers", objects, n=1, cutoff=MISTYPED):
+    if not fields.has("markers") and get_close_matches("markers", objects, n=1, cutoff=0.85):
         fields.required("markers", "an object of markers by name, each with color_srgb")
 
 

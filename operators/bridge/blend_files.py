@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import ConversionError, InputError
-from ...core.files.control_characters import regular_file_size
+from ...core.files.paths import regular_file_size
 
 
 @contextmanager

@@ -8,7 +8,7 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.body.rotations import continuous_quaternions, to_quaternions
 from ...core.errors import InputError
-from ...core.files.control_characters import real_path
+from ...core.files.paths import real_path
 from ...core.footage.camera import Camera
 from ...core.footage.clips.image_sequence import find_images
 from .actions import assign_action, channelbag_for

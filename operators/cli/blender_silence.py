@@ -15,9 +15,6 @@ def blender_silence(debug: bool) -> Iterator[None]:
 
     Blender writes past Python, on the file descriptors themselves; its messages would make the one JSON
     object of `--json` unreadable.
-
-    Args:
-        debug: Whether to let the messages through, on standard error.
     """
     _flush()
     try:
@@ -71,9 +68,6 @@ def codec_silence(debug: bool) -> Iterator[None]:
     """Discard what C code writes on standard error meanwhile; Python's own lines still come through.
 
     Image decoders write warnings about damaged files there, beside our one sentence.
-
-    Args:
-        debug: Whether to let the warnings through.
     """
     if debug or not _has_descriptor(sys.stderr, 2):
         yield

@@ -31,13 +31,7 @@ def terminal_columns() -> int | None:
 
 
 def wrapped(sentence: str, indent: int, columns: int | None) -> list[str]:
-    """A sentence broken into lines between words; all but the first are indented by two columns more.
-
-    Args:
-        sentence: The text to wrap.
-        indent: Columns before the first line.
-        columns: Width of the terminal; None keeps the sentence whole.
-    """
+    """A sentence broken into lines between words; all but the first are indented by two columns more."""
     begin = " " * indent
     if columns is None or indent + len(sentence) <= columns:
         return [begin + sentence]
@@ -56,7 +50,6 @@ class _OpenjdBar:
 
     def __init__(self, write: Callable[[str], object]) -> None:
         self.n = 0.0
-        """Percent."""
         self._write = write
         self._text, self._percent = "", -1
 
@@ -102,16 +95,11 @@ class Console:
             self._bar = _OpenjdBar(self._write)
 
     def __enter__(self) -> "Console":
-        """Start the command."""
         return self
 
     def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Close the bar, also after an error."""
         self._close_bar()
 
     def progress(self, progress: Progress) -> None:

@@ -23,9 +23,5 @@ def library_folders() -> list[Path]:
 
 
 def requested_libraries(wanted: str) -> tuple[Library, ...]:
-    """The libraries that a setting means: one by name or file, or every usable one.
-
-    Raises:
-        InputError: There is no such library, or none at all, or a file is unusable.
-    """
+    """The libraries that a setting means: one by name or file, or every usable one."""
     return find_libraries(wanted, library_folders())

@@ -30,14 +30,7 @@ FIXED_IN = (5, 0)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command.
-
-    Args:
-        argv: The arguments after the program's name; by default those of the process.
-
-    Returns:
-        The exit status.
-    """
+    """Run one command."""
     status = _run(list(sys.argv[1:] if argv is None else argv))
     if argv is None:
         _end_process(status)
@@ -45,7 +38,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(words: list[str]) -> int:
-    """Run one command; returns the exit status."""
     _open_standard_streams()
     if words[: len(BLENDER_PREFIX)] == BLENDER_PREFIX:
         words = words[len(BLENDER_PREFIX) :]
@@ -93,7 +85,6 @@ def _open_standard_streams() -> None:
 
 
 def _fail(sentence: str, status: int, debug: bool) -> int:
-    """Write one line on standard error; returns the exit status."""
     if debug:
         traceback.print_exc()
     print_error(sentence)

@@ -12,8 +12,8 @@ from ...core.take.conversion_settings import (
     ROOT_MOTIONS,
     ConversionSettings,
 )
-from ...core.take.evidence_kinds import EVIDENCE, evidence_mistake, in_order
-from .parser import UsageError
+from ...core.take.evidence import EVIDENCE, evidence_mistake, in_order
+from .parser import Argument, UsageError, argument
 
 KINDS = ",".join(EVIDENCE)
 SHOOT_HELP = "folder of takes, or a list of them (JSON Lines, .jsonl)"
@@ -21,15 +21,22 @@ CHARACTER_HELP = (
     "the character's file (.blend, .fbx, .glb, .gltf or .vrm), and after a colon the name of its armature "
     "where it has several"
 )
+REPLACE_HELP = "replace what is there already"
 MAP_HELP = (
     "character map, by title or file; auto, the default: a saved one that knows the character's bones, else "
     "recognition; none: recognition"
 )
 
 
-def add_evidence(parser: argparse.ArgumentParser, condition: str = "") -> None:
-    """Add the kinds of evidence; `condition` says for which takes the option counts."""
-    parser.add_argument(
+def output(metavar: str, words: str, *, required: bool = True, replace: str = "") -> tuple[Argument, ...]:
+    """Where a command writes, and, with the help for it, whether it may replace what is there."""
+    to = argument("--output", "-o", metavar=metavar, type=Path, required=required, help=words)
+    return (to, argument("--replace", action="store_true", help=replace)) if replace else (to,)
+
+
+def evidence_option(condition: str = "") -> Argument:
+    """The kinds of evidence; `condition` says for which takes the option counts."""
+    return argument(
         "--evidence",
         metavar="KINDS",
         type=_kinds,
@@ -38,16 +45,15 @@ def add_evidence(parser: argparse.ArgumentParser, condition: str = "") -> None:
     )
 
 
-def add_keypoint_files(parser: argparse.ArgumentParser) -> None:
-    """Add keypoint files of one take."""
-    parser.add_argument(
-        "--keypoints",
-        metavar="FILE",
-        type=Path,
-        action="append",
-        help="file or folder of keypoints that a detector has found in the clip; may be given several times; "
-        "by default TAKE/keypoints.json where it is there",
-    )
+KEYPOINT_FILES = argument(
+    "--keypoints",
+    metavar="FILE",
+    type=Path,
+    action="append",
+    help="file or folder of keypoints that a detector has found in the clip; may be given several times; "
+    "by default TAKE/keypoints.json where it is there",
+)
+"""Keypoint files of one take."""
 
 
 def _kinds(text: str) -> tuple[str, ...] | None:
@@ -73,45 +79,8 @@ def _name_in_take(text: str) -> Path | None:
     return Path(text)
 
 
-def add_shoot_options(parser: argparse.ArgumentParser) -> None:
-    """Add keypoints, evidence, keyframes, library, floor and method for takes whose shoot names none."""
-    parser.add_argument(
-        "--keypoints",
-        metavar="NAME",
-        type=_name_in_take,
-        action="append",
-        help="name of the keypoint file or folder of every take where nothing in SHOOT names one: "
-        "TAKE/NAME, or CLIP.NAME beside a clip; may be given several times; by default keypoints.json where "
-        "it is there",
-    )
-    add_evidence(parser, " where nothing in SHOOT says it")
-    parser.add_argument(
-        "--keyframes",
-        metavar="auto",
-        type=_auto,
-        help="auto: find keyframes in the footage with all libraries there are, beside those that a take has "
-        "posed, where nothing in SHOOT says how",
-    )
-    parser.add_argument(
-        "--library",
-        metavar="NAME|FILE|auto",
-        type=_none_if_empty,
-        help="find keyframes by matching takes with this keyframe library alone where nothing in SHOOT says "
-        "how; auto is --keyframes auto",
-    )
-    parser.add_argument(
-        "--floor",
-        metavar="HEIGHT",
-        type=float,
-        help="height of the floor in meters where nothing in SHOOT says it",
-    )
-    parser.add_argument(
-        "--method", choices=METHODS, help="method where nothing in SHOOT names one; map is the default"
-    )
-
-
 def _auto(text: str) -> str | None:
-    """The word for finding keyframes; None for an empty text, as below."""
+    """The word for finding keyframes; None for an empty text, as above."""
     if text not in ("", EVERY_LIBRARY):
         raise argparse.ArgumentTypeError(
             f"keyframes is {text}; {EVERY_LIBRARY} is valid: a keyframe file is a take's own, named in its "
@@ -120,54 +89,78 @@ def _auto(text: str) -> str | None:
     return text or None
 
 
-def _none_if_empty(text: str) -> str | None:
-    """The text; None for an empty one, which farms pass for a setting that is not filled in."""
-    return text or None
-
-
-def add_retarget_options(parser: argparse.ArgumentParser) -> None:
-    """Add how the motion is put onto the character."""
-    parser.add_argument(
+SHOOT_OPTIONS = (
+    argument(
+        "--keypoints",
+        metavar="NAME",
+        type=_name_in_take,
+        action="append",
+        help="name of the keypoint file or folder of every take where nothing in SHOOT names one: "
+        "TAKE/NAME, or CLIP.NAME beside a clip; may be given several times; by default keypoints.json where "
+        "it is there",
+    ),
+    evidence_option(" where nothing in SHOOT says it"),
+    argument(
+        "--keyframes",
+        metavar="auto",
+        type=_auto,
+        help="auto: find keyframes in the footage with all libraries there are, beside those that a take has "
+        "posed, where nothing in SHOOT says how",
+    ),
+    argument(
+        "--library",
+        metavar="NAME|FILE|auto",
+        type=lambda text: text or None,
+        help="find keyframes by matching takes with this keyframe library alone where nothing in SHOOT says "
+        "how; auto is --keyframes auto",
+    ),
+    argument(
+        "--floor",
+        metavar="HEIGHT",
+        type=float,
+        help="height of the floor in meters where nothing in SHOOT says it",
+    ),
+    argument("--method", choices=METHODS, help="method where nothing in SHOOT names one; map is the default"),
+)
+"""For takes whose shoot does not say it."""
+RETARGET_OPTIONS = (
+    argument(
         "--limbs",
         choices=LIMB_KEYS,
         help="controls of arms and legs that are keyed; both, the default, shows IK. A limb without IK "
         "controls is keyed in FK",
-    )
-    parser.add_argument("--arms", choices=LIMB_KEYS, help="of the arms, where it is not that of --limbs")
-    parser.add_argument("--legs", choices=LIMB_KEYS, help="of the legs, where it is not that of --limbs")
-    parser.add_argument(
+    ),
+    argument("--arms", choices=LIMB_KEYS, help="of the arms, where it is not that of --limbs"),
+    argument("--legs", choices=LIMB_KEYS, help="of the legs, where it is not that of --limbs"),
+    argument(
         "--root-motion",
         choices=ROOT_MOTIONS,
         default=ROOT_MOTIONS[0],
         help="where the way over the ground goes: on the hips, nowhere, or on the root bone "
         "(default: %(default)s)",
-    )
-    parser.add_argument(
+    ),
+    argument(
         "--place",
         choices=PLACEMENTS,
         default=PLACEMENTS[0],
         help="where the character performs: where the performer stood and faced, or where it stands itself "
         "(default: %(default)s)",
-    )
-    parser.add_argument("--no-plant-feet", action="store_true", help="let resting feet move")
-    parser.add_argument(
-        "--no-reach-hands", action="store_true", help="let hands miss what the performer's reached"
-    )
-    parser.add_argument(
+    ),
+    argument("--no-plant-feet", action="store_true", help="let resting feet move"),
+    argument("--no-reach-hands", action="store_true", help="let hands miss what the performer's reached"),
+    argument(
         "--tolerance",
         metavar="MM|none",
         default="5",
         help="largest distance of any joint from the motion in millimeters, for few keys; none keeps a key "
         "on every frame (default: %(default)s)",
-    )
+    ),
+)
+"""How a motion is put onto a character."""
 
 
 def given_settings(arguments: argparse.Namespace) -> ConversionSettings:
-    """What the command line says of a conversion; None for what it leaves out, or is empty.
-
-    Raises:
-        UsageError: A value is out of range, or options contradict each other.
-    """
+    """What the command line says of a conversion; None for what it leaves out, or is empty."""
     given = vars(arguments)
     keyframes, library, floor_m = (given.get(name) for name in ("keyframes", "library", "floor"))
     if keyframes == EVERY_LIBRARY and library not in (None, EVERY_LIBRARY):

@@ -1,4 +1,4 @@
-"""Keymark's version and root folder."""
+"""The parser of the command line, what a command declares, and mistakes, each told in one line."""
 
 import argparse
 import importlib.util
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from ...core.errors import ConversionError
-from ...core.files.control_characters import escape_control_characters
+from ...core.files.paths import escape_control_characters
 from .commands import SUMMARIES
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -24,11 +24,13 @@ def version() -> str:
     return str(manifest["version"])
 
 
-# --- What a command of the command line declares
+Argument = tuple[tuple[str, ...], dict[str, Any]]
+"""The names and the settings of an argument."""
 
 
-def no_arguments(_parser: argparse.ArgumentParser) -> None:
-    """The arguments of a command that has none of its own."""
+def argument(*names: str, **settings: Any) -> Argument:
+    """An argument of a command, as `ArgumentParser.add_argument` takes it."""
+    return names, settings
 
 
 @dataclass(frozen=True)
@@ -36,12 +38,11 @@ class Command:
     """A command."""
 
     name: str
-    """What the user types."""
     description: str
     """What the command's own help begins with."""
     run: Callable[[argparse.Namespace], None]
-    add_arguments: Callable[[argparse.ArgumentParser], None] = no_arguments
-    """Adds the command's own arguments to those that every command has."""
+    arguments: Sequence[Argument] = ()
+    """Beside those that every command has."""
     summary: str = ""
     """Half a line for the list of a group; those of the other commands are in `commands/__init__.py`."""
 
@@ -55,9 +56,6 @@ class CommandGroup:
     epilog: str
     """Below the list of commands; `{program}` stands for what the user types in front of them."""
     commands: Sequence[Command]
-
-
-# --- Mistakes on the command line and what a command lacks, each told in one line on standard error
 
 
 class UsageError(Exception):
@@ -79,32 +77,18 @@ def print_error(sentence: str) -> None:
 
 
 def refuse_existing(output: Path, replace: bool) -> None:
-    """Refuse to replace a file unless `--replace` is given.
-
-    Raises:
-        UsageError: Something is there.
-    """
+    """Refuse to replace a file unless `--replace` is given."""
     if output.exists() and not replace:
         raise UsageError(f"{output} is there already; name another file, or add --replace to replace it")
 
 
 def require_blender(needing: str) -> None:
-    """Refuse work that needs Blender where there is none, at once rather than after minutes.
-
-    Args:
-        needing: What the sentence begins with, as in `writing motion.blend needs`.
-
-    Raises:
-        ConversionError: The Python module `bpy` is missing.
-    """
+    """Refuse work that needs Blender where there is none, at once rather than after minutes."""
     if importlib.util.find_spec("bpy") is None:
         raise ConversionError(
             f"{needing} Blender: install its Python module (pip install 'keymark[blender]') "
             "or run blender --command keymark in a Blender that has Keymark"
         )
-
-
-# --- The parser of the command line, made of the commands in `commands/`
 
 
 DESCRIPTION = "Turns one video of a performer, in colored markers or any clothes, into an animated armature."
@@ -129,7 +113,6 @@ A take is a folder with take.json, the clip and keyframes.json, or a clip below 
 many; a library takes the place of keyframes.
 Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable."""
 WORKER = "worker"
-"""A command that only a batch runs."""
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -141,11 +124,7 @@ class OneLineParser(argparse.ArgumentParser):
 
 
 def build_parser(chosen: str | None) -> argparse.ArgumentParser:
-    """The parser; its result has `run`, which runs the command.
-
-    Args:
-        chosen: The command that the line names, the only one whose arguments are known; None for no command.
-    """
+    """The parser; its result has `run`, which runs the command."""
     program = program_name()
     parser = OneLineParser(
         prog=program,
@@ -162,12 +141,15 @@ def build_parser(chosen: str | None) -> argparse.ArgumentParser:
         else:
             added.add_parser(name, help=summary)
     if chosen == WORKER:  # without `help`, by which argparse would list it
-        added.add_parser(WORKER).set_defaults(run=_declared(WORKER).run)
+        added.add_parser(WORKER).set_defaults(run=_run_worker)
     return parser
 
 
+def _run_worker(_arguments: argparse.Namespace) -> None:
+    import_module(".batch.worker", __package__).run_worker()
+
+
 def _declared(name: str) -> Any:
-    """What the file of a command declares."""
     return getattr(import_module(f".commands.{name}", __package__), name.upper())
 
 
@@ -191,12 +173,12 @@ def _add_command(added: Any, command: Command | CommandGroup, summary: str, prog
     one.add_argument("--quiet", "-q", action="store_true", help="write nothing but errors")
     one.add_argument("--json", action="store_true", help="write one JSON object instead of text")
     one.add_argument("--debug", action="store_true", help="on errors, show where in the program")
-    command.add_arguments(one)
+    for names, settings in command.arguments:
+        one.add_argument(*names, **settings)
     one.set_defaults(run=command.run)
 
 
 def _refuse_no_command(names: Sequence[str], program: str) -> Callable[[argparse.Namespace], None]:
-    """What runs where the user names none of these commands."""
     valid = f"{', '.join(names[:-1])} and {names[-1]}"
 
     def refuse(_arguments: argparse.Namespace) -> None:

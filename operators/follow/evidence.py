@@ -145,7 +145,7 @@ def add_keypoint_file(take: bpy.types.PropertyGroup, path: Path, replace: bool =
 
     With `replace` it takes the place of the chosen one.
     """
-    from ...core.files.control_characters import real_path
+    from ...core.files.paths import real_path
     from ..bridge.footage_to_scene import stored_path
 
     follow = take.follow

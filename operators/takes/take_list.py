@@ -114,7 +114,7 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         from ...core.shoot.discovery import check_hides_no_take
-        from ...core.take.evidence import evidence_of
+        from ...core.take.take import evidence_of
         from ...core.take.take_file import write_take
         from ..bridge.take_from_scene import read_scene_take
 

@@ -10,7 +10,7 @@ from ...core.footage.reading import clip_times
 from ...core.progress import run
 from ...core.take.clip_check import check_frame_count, open_clip, rate_note
 from ...core.take.description import KEYFRAME_FILE, describe
-from ...core.take.evidence_kinds import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
+from ...core.take.evidence import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
 from ...core.take.take import Take
 from ...core.take.take_file import read_described
 from ..actor.take_actor import add_actor

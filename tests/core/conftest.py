@@ -3,7 +3,8 @@
 from pathlib import Path
 
 import pytest
-from keymark.operators.cli.conversion import blender_files, convert_take
+from keymark.core.pipeline.result import BLEND, BVH
+from keymark.operators.cli.conversion import convert_take
 
 
 @pytest.fixture
@@ -11,7 +12,7 @@ def no_blender(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two files with no content in place of what Blender writes; tests/blender has the real ones."""
 
     def write(_take: object, _motion: object, staging_folder: Path, _output: Path, _debug: bool) -> str:
-        for name in (blender_files.BLEND, blender_files.BVH):
+        for name in (BLEND, BVH):
             (staging_folder / name).touch()
         return "0" * 64
 

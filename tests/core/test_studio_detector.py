@@ -8,7 +8,7 @@ import pytest
 from keymark.core.arrays import Array
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints, write_keypoints
 from keymark.core.footage.keypoints.keypoints import People
-from keymark.core.take.evidence import evidence_of
+from keymark.core.take.take import evidence_of
 from keymark.core.take.take_file import read_take
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))

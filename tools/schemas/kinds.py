@@ -8,16 +8,9 @@ from typing import Any
 
 from keymark.core.body.posture import PostureValues
 from keymark.core.files import kinds, records
-from keymark.core.files.kinds import Kind
+from keymark.core.files.kinds import Kind, NumberArray
 from keymark.core.files.records import Record, declared
-from keymark.core.files.safe_path import NumberArray
-from keymark.core.footage.camera_fields import (
-    FARTHEST_M,
-    MOST_DISTORTION,
-    CameraFields,
-    Distortion,
-    Pose,
-)
+from keymark.core.footage.camera_fields import FARTHEST_M, MOST_DISTORTION, CameraFields, Distortion, Pose
 from keymark.core.footage.ignored_regions import RegionFields
 from keymark.core.footage.keypoints.detected_frames import FARTHEST_M as FARTHEST_GUESS_M
 from keymark.core.footage.keypoints.detected_frames import FARTHEST_PX, MOST_PEOPLE
@@ -31,15 +24,10 @@ from keymark.core.take.conversion_settings import (
     KeypointFiles,
     SettingsFields,
 )
-from keymark.core.take.evidence_kinds import DEPTH_HINTS, EVIDENCE, KEYPOINTS
+from keymark.core.take.evidence import DEPTH_HINTS, EVIDENCE, KEYPOINTS
 from keymark.core.take.keyframe_file import KeyframeRow
 from keymark.core.take.motion import Diagnostic
-from keymark.core.take.take_file import (
-    ActorFields,
-    CameraKind,
-    MarkerFields,
-    TakeFields,
-)
+from keymark.core.take.take_file import ActorFields, CameraKind, MarkerFields, TakeFields
 
 Schema = dict[str, Any]
 

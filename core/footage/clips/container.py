@@ -12,7 +12,7 @@ import numpy as np
 from ... import MOST_PIXELS
 from ...arrays import Array, Image
 from ...errors import InputError
-from ...files.control_characters import regular_file_size
+from ...files.paths import regular_file_size
 
 DEEP_YUV420 = b"Y3\x0b"  # FFmpeg's code for planar 4:2:0 YCbCr of more than eight bits; the bit depth follows
 ROWS = 3

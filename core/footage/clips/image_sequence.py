@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from ... import MOST_PIXELS
 from ...arrays import Image
 from ...errors import InputError
-from ...files.control_characters import regular_file_size
 from ...files.fields import listed
+from ...files.paths import regular_file_size
 from .container import opencv_silence
 
 LARGEST_BYTES = 2**31  # size limit of an image file: four channels of the largest image at sixteen bits

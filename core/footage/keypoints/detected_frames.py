@@ -9,7 +9,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InputError
 from ...files.json_file import shown
-from ...files.safe_path import number_array
+from ...files.kinds import number_array
 from .layouts import Layout, layout_of, layout_words
 
 MOST_PEOPLE = 100  # people of one frame; the performer among more is nobody's take

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...errors import InputError, pluralize
 from ...files.json_file import read_json_value, shown
-from ...files.safe_path import check_symlinks
+from ...files.paths import check_symlinks
 from .detected_frames import DetectedFrames, DetectedPerson, check_people, check_points, same_layout
 from .detector_formats import BODY, instance_people, is_instances, is_openpose_frame, openpose_people
 from .layouts import Layout, with_hands

@@ -9,10 +9,10 @@ import numpy as np
 
 from ...arrays import Array
 from ...errors import InputError
-from ...files.control_characters import is_control_character
 from ...files.fields import Fields
 from ...files.json_file import read_json_value, shown, write_json
 from ...files.kinds import Anything, Choice, Items, Number, Text, Whole
+from ...files.paths import is_control_character
 from ...files.records import Record, read_record
 from .clip_fit import held_against_clip
 from .detected_frames import (

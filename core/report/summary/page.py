@@ -1,7 +1,6 @@
-"""The style and the script of a batch's page, which is one file and holds both.
+"""The HTML page of a batch for its supervisor: one file, complete without its script.
 
-Words never stand on any color of `style.css` but paper, card and wash. The script searches and sorts the
-rows; the page is complete without it.
+Words never stand on any color of `style.css` but paper, card and wash.
 """
 
 import base64
@@ -35,11 +34,7 @@ STYLE = (FOLDER / "style.css").read_text(encoding="utf-8")
 SCRIPT = "\n" + (FOLDER / "script.js").read_text(encoding="utf-8")
 
 
-# --- The head of a batch's page
-
-
 MOST_NAMED = 3
-"""Takes named in a sentence."""
 
 
 def counts(outcomes: Sequence[Outcome]) -> str:
@@ -54,12 +49,7 @@ def counts(outcomes: Sequence[Outcome]) -> str:
 
 
 def urgent_items(found: Mapping[Verdict, Sequence[Outcome]], number: Mapping[str, int]) -> str:
-    """The takes that a supervisor should turn to first, a sentence for each kind.
-
-    Args:
-        found: Takes by verdict, the most urgent verdict first.
-        number: Number of each take in its anchor.
-    """
+    """The takes that a supervisor should turn to first, a sentence for each kind."""
     sentences = []
     failed, poor, fair, waiting = (
         found.get(verdict, ()) for verdict in (Verdict.FAILED, Verdict.POOR, Verdict.FAIR, Verdict.WAITING)
@@ -110,9 +100,6 @@ def _confidence(outcome: Outcome) -> str:
     return f" ({percent(record.confidence)})"
 
 
-# --- The HTML page of a batch for its supervisor
-
-
 MOST_ROWS = 5000
 """Largest number of takes on the page; browsers are slow to lay out more."""
 HEADINGS = {
@@ -126,13 +113,7 @@ HEADINGS = {
 
 
 def summary_page(title: str, outcomes: Sequence[Outcome], output: Path) -> str:
-    """A batch as one HTML page.
-
-    Args:
-        title: Name of the shoot.
-        outcomes: The outcome of each take.
-        output: Folder of the page; links are relative to it.
-    """
+    """A batch as one HTML page."""
     named = sorted(outcomes, key=lambda outcome: outcome.take)
     number = {outcome.take: position for position, outcome in enumerate(named, 1)}
     found = sections(outcomes)
@@ -193,7 +174,6 @@ def _section(
 
 
 def _navigation(found: dict[Verdict, list[Outcome]]) -> str:
-    """Links to the sections, and the search that the script brings to life."""
     links = "".join(
         f'<a class="{css_class(verdict)}" href="#{css_class(verdict)}">'
         f'<span aria-hidden="true">{SIGNS[verdict]}</span> {len(those)} {verdict.value}</a>'

@@ -1,6 +1,6 @@
-"""Escaping of untrusted texts for HTML: nothing in them is markup, and invisible characters are spelt out.
+"""The row of one take on the page of a batch: verdict, evidence, confidence, notes and files.
 
-Names, sentences and paths come from the people who filmed or shared a take.
+Names, sentences and paths come from the people who filmed or shared a take: nothing in them is markup.
 """
 
 import html
@@ -11,15 +11,14 @@ from pathlib import Path, PurePosixPath
 from urllib.parse import quote
 
 from ...errors import pluralize
-from ...files.control_characters import escape_control_characters
+from ...files.paths import escape_control_characters
 from ...prior.texts import COMPOSED
 from ...review.weak_frames import WEAK_CONFIDENCE
 from ...shoot.outcomes import Outcome, Status
 from ...take.conversion_record import ConversionRecord
-from ...take.evidence_kinds import UsedEvidence
+from ...take.evidence import UsedEvidence
 
 LONGEST = 1000
-"""Characters shown of one text."""
 
 
 def visible(text: str) -> str:
@@ -66,9 +65,6 @@ def duration(seconds: float) -> str:
     if whole < 3600:
         return f"{whole // 60} min {whole % 60} s"
     return f"{whole // 3600} h {whole % 3600 // 60} min"
-
-
-# --- Verdicts on the takes of a batch
 
 
 GOOD = WEAK_CONFIDENCE
@@ -123,14 +119,8 @@ def _urgency(outcome: Outcome) -> tuple[float, str]:
     return (0.0 if record is None or record.confidence is None else record.confidence, outcome.take)
 
 
-# --- The row of one take on the page of a batch
-
-
 COLUMNS = ("Take", "Footage", "Confidence", "To do and to know", "Files")
 MOST_NAMED = 12
-"""Weak frames and notes shown; `conversion.json` has all."""
-MOST_SOURCES = 3
-"""Sources of keypoints named."""
 SIGNS = {
     Verdict.FAILED: "✕",
     Verdict.POOR: "○",
@@ -139,22 +129,14 @@ SIGNS = {
     Verdict.UNJUDGED: "–",
     Verdict.WAITING: "…",
 }
-"""Signs of the verdicts, beside their words and colors."""
 REPORT = "report/"
 PICTURE = f"{REPORT}overlay.png"
 """The picture that stands for a take; the page shows a part, a click all of it."""
 FILE_ORDER = (".blend", ".bvh", ".json")
-"""Suffixes of the files that people open, the most common first."""
 
 
 def row(outcome: Outcome, output: Path, number: int) -> str:
-    """The row of one take.
-
-    Args:
-        outcome: The take's outcome.
-        output: Folder of the page.
-        number: The take's number in the order of names, for its anchor.
-    """
+    """The row of one take."""
     path, record = relative_path(outcome.folder, output), current_record(outcome)
     if record is None:
         cells = f'<td role="cell" colspan="{len(COLUMNS) - 1}">{_no_result(outcome)}</td>'
@@ -210,8 +192,7 @@ def _made_from(record: ConversionRecord) -> str:
 
 
 def _evidence(evidence: UsedEvidence) -> str:
-    """What a take was held against, with the names of the sources of its keypoints."""
-    sources = [isolated(said.source) for said in evidence.keypoints[:MOST_SOURCES]]
+    sources = [isolated(said.source) for said in evidence.keypoints[:3]]
     more = len(evidence.keypoints) - len(sources)
     named = f" (keypoints: {', '.join(sources)}{f' and {more} more' if more else ''})" if sources else ""
     return f"{evidence.words}{named}"

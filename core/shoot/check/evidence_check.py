@@ -1,4 +1,4 @@
-"""Findings of a check: problems and warnings, collected so that one does not hide the next."""
+"""Findings of a check, and the checks of a take's keyframes and keypoints."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -20,26 +20,16 @@ class Findings:
     """Sentences on a take: problems stop its conversion, warnings are what is likely to go wrong."""
 
     def __init__(self) -> None:
-        self._problems: dict[str, None] = {}
-        self._warnings: dict[str, None] = {}
-
-    @property
-    def problems(self) -> tuple[str, ...]:
-        """Reasons why it would not convert."""
-        return tuple(self._problems)
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What is likely to go wrong."""
-        return tuple(self._warnings)
+        self.problems: tuple[str, ...] = ()
+        self.warnings: tuple[str, ...] = ()
 
     def problem(self, *sentences: str) -> None:
         """Add problems; the same sentence is kept once."""
-        self._problems.update(dict.fromkeys(sentences))
+        self.problems = tuple(dict.fromkeys((*self.problems, *sentences)))
 
     def warn(self, *sentences: str) -> None:
         """Add warnings; the same sentence is kept once."""
-        self._warnings.update(dict.fromkeys(sentences))
+        self.warnings = tuple(dict.fromkeys((*self.warnings, *sentences)))
 
     @contextmanager
     def catching(self) -> Iterator[None]:
@@ -50,13 +40,8 @@ class Findings:
             self.problem(str(error))
 
 
-# --- The check of a take's keyframes
-
-
 LONGEST_GAP_S = 1.0
 """Longest gap between keyframes without a warning where none are found in it: ten in 100 frames are usual."""
-FEWEST_IN_PICTURE = 0.5
-"""Share of a keyframe's points that must lie in the picture."""
 MOST_NAMED = 3
 
 
@@ -106,7 +91,7 @@ def _check_picture(take: Take, findings: Findings) -> None:
         points = take.body.points(take.body.pose(keyframe.posture))
         x, y = np.moveaxis(take.camera.project(points, keyframe.index)[0], -1, 0)
         inside = (x >= 0.0) & (x <= width) & (y >= 0.0) & (y <= height)
-        if inside.mean() < FEWEST_IN_PICTURE:
+        if inside.mean() < 0.5:
             outside.append(keyframe.index + take.frame_start)
     if outside:
         findings.warn(
@@ -121,9 +106,6 @@ def _frames(frames: Sequence[int]) -> str:
     return f"keyframe {named}" if len(frames) == 1 else f"the keyframes {named}{more}"
 
 
-# --- The check of a take's keypoints
-
-
 LARGEST_ERROR = 0.1
 """Median distance of keypoints from posed joints that is still one of the same person, as a share of the
 performer's height in the picture: detectors place hips and shoulders up to half as far from the joint."""
@@ -133,8 +115,6 @@ MUCH_BETTER = 0.5
 """Share of an unusual error that another reading of the file must leave to be named."""
 MOST_SHIFTED_S = 0.5
 """Longest delay that is looked for; with a longer one the movement may be another that looks alike."""
-FEWEST_FRAMES = 0.5
-"""Share of the frames in which the performer must be seen for no warning."""
 
 
 @dataclass(frozen=True)
@@ -142,17 +122,12 @@ class KeypointReadout:
     """What one file of keypoints holds."""
 
     file: str
-    """Its name."""
     source: str
-    """What saw them."""
     points: int
-    """Number of body points."""
     seen_frames: float
-    """Share of the frames in which the performer is seen."""
     seen_points: float
     """Share of the points seen in those frames."""
     people: int
-    """Largest number of people in a frame."""
     depth_hints: bool
     error_px: float | None
     """Median distance of the joints from those of posed keyframes; None without any to compare."""
@@ -168,7 +143,6 @@ def check_keypoints(take: Take, frames: int, findings: Findings) -> tuple[Keypoi
 
 
 def _readout(take: Take, people: People, findings: Findings) -> KeypointReadout:
-    """Check one file, the only one of the take."""
     name = Path(people.file).name or people.source
     prior = interpolate(take.keyframes, take.frame_count or 0) if len(take.keyframes) > 1 else None
     performer = performer_keypoints(take, prior)
@@ -177,7 +151,7 @@ def _readout(take: Take, people: People, findings: Findings) -> KeypointReadout:
     error = _check_agreement(take, compared, name, findings)
     found = performer.seen.any(axis=1)
     share = float(found.mean())
-    if share < FEWEST_FRAMES:
+    if share < 0.5:
         findings.warn(
             f"{name}: the performer is seen in {share:.0%} of the frames only; a keyframe in each gap helps"
         )

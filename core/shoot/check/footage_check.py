@@ -25,8 +25,6 @@ ASTRAY = 0.8
 """Share of a marker's regions near where keyframes put it, below which a warning is given."""
 BLACK, DARK = 16.0, 40.0
 """Brightest tenth of a picture that is black, or dark, in levels of 255."""
-DARK_SHARE = 0.25
-"""Share of the sampled frames that must be dark for a warning."""
 
 
 def count_frames(clip: Clip, findings: Findings) -> int:
@@ -49,11 +47,7 @@ def count_frames(clip: Clip, findings: Findings) -> int:
 
 
 def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tuple[MarkerReadout, ...]:
-    """Check a take's clip.
-
-    Returns:
-        How well each marker is seen; empty where there is none, or no frame can be read.
-    """
+    """Check a take's clip."""
     with findings.catching():
         check_size(take, clip)
     rate = rate_note(take, clip) if clip.knows_its_rate else None
@@ -101,7 +95,7 @@ def _check_light(samples: ClipSamples, findings: Findings) -> bool:
     bright = np.array([np.percentile(image.max(axis=-1), 90.0) for image in samples.images])
     for limit, word in ((BLACK, "black"), (DARK, "dark")):
         count = int(np.count_nonzero(bright < limit))
-        if count >= max(DARK_SHARE * len(bright), 1):
+        if count >= max(0.25 * len(bright), 1):
             findings.warn(
                 f"{count} of {len(bright)} sampled frames are {word}; colors are hard to tell "
                 "there, more light is worth most"

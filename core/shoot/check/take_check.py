@@ -9,14 +9,13 @@ from ...estimate.reconstruct import check_method
 from ...files.fields import PLACED, Fields, child_location
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
-from ...pipeline.found_keyframes import take_to_convert
+from ...pipeline.convert import take_to_convert
 from ...posing.posing_input import check_followed
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import METHODS, NO_SETTINGS, CharacterSettings, ConversionSettings
 from ...take.description import Description
-from ...take.evidence import evidence_of
-from ...take.evidence_kinds import CONTOURS, KEYPOINTS, MARKERS
-from ...take.take import Take
+from ...take.evidence import CONTOURS, KEYPOINTS, MARKERS
+from ...take.take import Take, evidence_of
 from ...take.take_file import read_described
 from ..discovery import ShootTake
 from .evidence_check import Findings, KeypointReadout, check_keyframes, check_keypoints
@@ -31,28 +30,29 @@ _CAMERA = {
 }
 _POSES = ("matrix_world", "matrix_world_frames")
 _PLACE = (*PLACED, *_POSES)
-_COLOR = "three numbers from 0 to 255, as an eyedropper gives them on the marker"
-_HEIGHT = "the performer's height in meters"
 
 
 def find_unfilled_fields(fields: Fields) -> tuple[str, ...]:
     """A sentence on each field of a take that is null and must not be."""
-    sentences = []
+    unfilled: list[tuple[Fields, str, str]] = []
     camera = _child(fields, "camera")
     posed = any(camera.has(name) for name in _POSES)
     for name, valid in _CAMERA.items():
         said_otherwise = (name in _PLACE and posed) or (name in _POSES and camera.has("height_m"))
         if name in camera.values and not camera.has(name) and not said_otherwise:
-            sentences.append(_sentence(camera, name, valid))
+            unfilled.append((camera, name, valid))
     markers = _child(fields, "markers")
     for name in markers.values:
         marker = _child(markers, name)
         if "color_srgb" in marker.values and not marker.has("color_srgb"):
-            sentences.append(_sentence(marker, "color_srgb", _COLOR))
+            color = "three numbers from 0 to 255, as an eyedropper gives them on the marker"
+            unfilled.append((marker, "color_srgb", color))
     actor = _child(fields, "actor")
     if "height_m" in actor.values and not actor.has("height_m") and not actor.has("segments_m"):
-        sentences.append(_sentence(actor, "height_m", _HEIGHT))
-    return tuple(sentences)
+        unfilled.append((actor, "height_m", "the performer's height in meters"))
+    return tuple(
+        f"{of.source_of(name)}: {name} is still to be filled in: {valid}" for of, name, valid in unfilled
+    )
 
 
 def _child(fields: Fields, name: str) -> Fields:
@@ -61,22 +61,16 @@ def _child(fields: Fields, name: str) -> Fields:
     return Fields(values, child_location(fields.source_of(name), name))
 
 
-def _sentence(fields: Fields, name: str, valid: str) -> str:
-    return f"{fields.source_of(name)}: {name} is still to be filled in: {valid}"
-
-
 SECONDS_A_TAKE = 0.9
 """Writing Blender's files and drawing pictures."""
 SECONDS_A_FRAME = {"map": 0.004, "ekf": 0.004, "interpolation": 0.002}
 """By method, without reading the frame and without what follows."""
 SECONDS_FOR_KEYPOINTS = 0.001
-"""A frame."""
 SECONDS_FOR_CONTOURS, SECONDS_FOR_WIDE_CONTOURS = 0.006, 0.009
 """A frame, with markers and without, where contours are searched far and wide."""
 SECONDS_A_MEGAPIXEL = 0.012
 """Decoding and following the markers."""
 SECONDS_TO_POSE = 0.1
-"""A frame, with all libraries."""
 BYTES_A_TAKE = 1_800_000
 BYTES_A_FRAME = 5_000
 
@@ -86,9 +80,7 @@ class CostEstimate:
     """Cost of one conversion."""
 
     seconds: float
-    """Time of one processor."""
     size_bytes: int
-    """Size of the files written."""
 
 
 def estimate_cost(
@@ -98,15 +90,7 @@ def estimate_cost(
     library: str | None,
     evidence: Collection[str] = (MARKERS, CONTOURS),
 ) -> CostEstimate:
-    """Estimate the cost of converting a take.
-
-    Args:
-        frames: Number of frames of its clip.
-        size: Width and height of the clip [px].
-        method: One of `METHODS`.
-        library: The library that keyframes are found with; None where all are posed.
-        evidence: Kinds of evidence that it is held against.
-    """
+    """Estimate the cost of converting a take."""
     a_frame = SECONDS_A_FRAME[method] + SECONDS_A_MEGAPIXEL * size[0] * size[1] / 1e6
     if method == "map":
         a_frame += SECONDS_FOR_KEYPOINTS * (KEYPOINTS in evidence)
@@ -128,7 +112,6 @@ class TakeCheck:
     """The findings on one take."""
 
     name: str
-    """The take's, in its shoot."""
     problems: tuple[str, ...]
     """Reasons why it would not convert."""
     warnings: tuple[str, ...]
@@ -138,11 +121,9 @@ class TakeCheck:
     fps: float | None = None
     frames: int | None = None
     evidence: tuple[str, ...] = ()
-    """Kinds of evidence that it would be held against."""
     markers: tuple[MarkerReadout, ...] = ()
     keypoints: tuple[KeypointReadout, ...] = ()
     keyframes: int = 0
-    """Keyframes that a person posed."""
     library: str | None = None
     """Setting by which the others are found; None where all are posed."""
     cost: CostEstimate | None = None
@@ -160,15 +141,7 @@ def check_take(
     defaults: ConversionSettings = NO_SETTINGS,
     check_character: Callable[[CharacterSettings], Sequence[str]] = lambda _settings: (),
 ) -> TakeCheck:
-    """Check one take; nothing is written.
-
-    Args:
-        found: The take.
-        find_libraries: Raises `InputError` where there is no such library.
-        defaults: Settings for what its description leaves out.
-        check_character: Raises `InputError` where a character or its map cannot be used, and returns what is
-            doubtful about it.
-    """
+    """Check one take; nothing is written."""
     findings = Findings()
     description = None
     with findings.catching():
@@ -244,12 +217,6 @@ def _checked(
     )
 
 
-FEWEST_TAKES = 5
-"""Known values below which none is usual."""
-USUAL_SHARE = 0.8
-"""Share of the takes that must have the same value for it to be usual."""
-
-
 def flag_outliers(checks: Sequence[TakeCheck]) -> list[TakeCheck]:
     """The checks, with a warning for each clip whose size or rate is an outlier of the shoot."""
     sizes = [None if one.size is None else f"{one.size[0]} x {one.size[1]} pixels" for one in checks]
@@ -268,9 +235,9 @@ def flag_outliers(checks: Sequence[TakeCheck]) -> list[TakeCheck]:
 def _outliers(values: Sequence[str | None]) -> list[tuple[str, str] | None]:
     """Each outlier with the usual value; None where a value is usual or unknown, or none is usual."""
     known = Counter(value for value in values if value is not None)
-    if known.total() < FEWEST_TAKES:
+    if known.total() < 5:
         return [None] * len(values)
     usual, count = known.most_common(1)[0]
-    if count < USUAL_SHARE * known.total():
+    if count < 0.8 * known.total():
         return [None] * len(values)
     return [None if value in (None, usual) else (str(value), usual) for value in values]

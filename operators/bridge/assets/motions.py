@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 
 from ....core.errors import InputError
-from ....core.files.control_characters import real_path
+from ....core.files.paths import real_path
 from ....core.finish.natural_extremities import natural_extremities
 from ....core.report.stick_figure import thumbnail
 from ....core.take.motion import Motion

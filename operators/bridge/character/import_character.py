@@ -10,9 +10,9 @@ from pathlib import Path
 import bpy
 
 from ....core.errors import InputError
-from ....core.files.control_characters import real_path, regular_file_size
 from ....core.files.fields import listed
 from ....core.files.json_file import shown
+from ....core.files.paths import real_path, regular_file_size
 from ....core.take.conversion_settings import CharacterFile
 from ..actions import curve_digest
 from ..blend_files import check_blend, one_line, showing_scene, write_blend

@@ -9,7 +9,7 @@ from ....core.arrays import Array
 from ....core.body.human import HUMAN
 from ....core.body.kinematics import Extremities, SegmentMotion, extremity_names, segment_motion
 from ....core.errors import InputError
-from ....core.files.control_characters import real_path
+from ....core.files.paths import real_path
 from ....core.finish.natural_extremities import natural_extremities
 from ....core.finish.rig import Rig, RigPose
 from ....core.progress import Job, Progress, within

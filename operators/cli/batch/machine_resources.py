@@ -1,4 +1,4 @@
-"""Memory and processors of the machine, and the memory of this process, as far as the system tells."""
+"""Memory and processors of the machine; as a script, a worker of a batch in plain Python."""
 
 import importlib.util
 import os
@@ -35,9 +35,6 @@ def processor_count() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
-
-
-# --- Script that runs a worker in plain Python
 
 
 ROOT = Path(__file__).resolve().parents[3]

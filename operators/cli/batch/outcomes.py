@@ -1,4 +1,4 @@
-"""The summary of a batch: JSON Lines with one take each for programs, and an HTML page for people."""
+"""Outcomes of a batch's takes, and its summary: JSON Lines for programs, an HTML page for people."""
 
 import json
 import time
@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from ....core.errors import KeymarkError, pluralize
-from ....core.files.control_characters import absolute_path
 from ....core.files.json_file import write_atomically
+from ....core.files.paths import absolute_path
 from ....core.report.summary.page import summary_page
 from ....core.report.summary.row import current_record, relative_path
 from ....core.shoot.discovery import Shoot
@@ -28,28 +28,27 @@ from ....core.shoot.outcomes import (
 from ....core.take.conversion_record import RECORD_FILE as RECORD
 from ....core.take.conversion_record import ConversionRecord, find_record
 from ..console import Console, terminal_columns, wrapped
-from .batch_progress import BatchProgress
 from .worker_process import FAILED, Done, Job, Step
 
 LINES, PAGE = "summary.jsonl", "summary.html"
+RECORDED = (
+    *("notes", "confidence", "weakest", "weak_frames", "frames", "frame_start", "fps"),
+    *("method", "library", "keyframes", "matched", "doubtful"),
+)
+"""Fields of a take's record that its line of the summary has."""
 
 
 def write_summary(output: Path, shoot: Shoot, outcomes: Sequence[Outcome]) -> tuple[Path, ...]:
-    """Write `summary.jsonl` and `summary.html`, each atomically; of several writers, the last one counts.
-
-    Returns:
-        Paths of both files.
-
-    Raises:
-        ConversionError: A file cannot be written.
-    """
+    """Write `summary.jsonl` and `summary.html`, each atomically; of several writers, the last one counts."""
     ordered = sorted(outcomes, key=lambda outcome: outcome.take)
     # ASCII: no letter of a name can be taken for the end of a line, or be refused by a disk or a terminal.
     lines = "".join(f"{json.dumps(summary_line(outcome, output), allow_nan=False)}\n" for outcome in ordered)
     page = summary_page(absolute_path(shoot.path).name, ordered, output)
-    for name, text in ((LINES, lines), (PAGE, page)):
-        write_atomically(output / name, lambda staged, text=text: _write(staged, text))
-    return (output / LINES, output / PAGE)
+    files = (output / LINES, output / PAGE)
+    for file, text in zip(files, (lines, page), strict=True):
+        content = text.encode()
+        write_atomically(file, lambda staged, content=content: staged.write_bytes(content))
+    return files
 
 
 def summary_line(outcome: Outcome, output: Path) -> dict[str, Any]:
@@ -61,9 +60,7 @@ def summary_line(outcome: Outcome, output: Path) -> dict[str, Any]:
         "seconds": None if outcome.seconds is None else round(outcome.seconds, 3),
     }
     record = current_record(outcome)
-    for name in ("notes", "confidence", "weakest", "weak_frames", "frames", "frame_start", "fps"):
-        fields[name] = None if record is None else getattr(record, name)
-    for name in ("method", "library", "keyframes", "matched", "doubtful"):
+    for name in RECORDED:
         fields[name] = None if record is None else getattr(record, name)
     evidence = None if record is None else record.evidence
     fields["evidence"] = None if evidence is None else evidence.to_json()
@@ -72,11 +69,41 @@ def summary_line(outcome: Outcome, output: Path) -> dict[str, Any]:
     return {**fields, "files": [name if path == "." else f"{path}/{name}" for name in names]}
 
 
-def _write(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8", newline="\n")
+class BatchProgress:
+    """The share of all work that is done, updated take by take."""
 
+    def __init__(self, frames: Sequence[int | None]) -> None:
+        """Begin with nothing done; a take of unknown length, None, counts as the mean of those known."""
+        self._frames = list(frames)
+        self._done = [0.0] * len(self._frames)
+        self._known, self._known_frames, self._done_frames, self._done_others = 0, 0.0, 0.0, 0.0
+        for index in range(len(self._frames)):
+            self._count(index, 1)
 
-# --- Outcomes of a batch's takes while it runs
+    def update(self, index: int, fraction: float, frames: int | None = None) -> None:
+        """Set how much of a take is done, 0 to 1, and its length where that has become known."""
+        self._count(index, -1)
+        self._done[index] = fraction
+        self._frames[index] = self._frames[index] or frames
+        self._count(index, 1)
+
+    @property
+    def fraction(self) -> float:
+        """The share of the whole batch, from 0 to 1."""
+        if not self._frames:
+            return 1.0
+        mean_frames = self._known_frames / self._known if self._known else 1.0
+        whole = self._known_frames + mean_frames * (len(self._frames) - self._known)
+        return min(max((self._done_frames + mean_frames * self._done_others) / whole, 0.0), 1.0)
+
+    def _count(self, index: int, times: int) -> None:
+        frames, done = self._frames[index], self._done[index]
+        if frames is None:
+            self._done_others += times * done
+        else:
+            self._known += times
+            self._known_frames += times * frames
+            self._done_frames += times * frames * done
 
 
 SHORTEST_SUMMARY_INTERVAL_S = 5.0
@@ -89,14 +116,7 @@ class BatchOutcomes:
     """Receives the events of a worker pool; counts, shows and stores the outcomes of the takes."""
 
     def __init__(self, shoot: Shoot, output: Path, jobs: Sequence[Job], console: Console) -> None:
-        """Begin with the outcomes that the folder has of all takes.
-
-        Args:
-            shoot: The whole shoot, whichever part is converted here.
-            output: Folder of all results.
-            jobs: The takes that are converted here.
-            console: Shows progress and a line for every take that has ended.
-        """
+        """Begin with the outcomes that the folder has of all takes."""
         self.shoot, self.output, self.console = shoot, output, console
         self._names = [job.take.name for job in jobs]
         self._outcomes = {outcome.take: outcome for outcome in read_outcomes(shoot, output)}
@@ -108,7 +128,6 @@ class BatchOutcomes:
         self._width = min(max(map(len, self._names), default=0), WIDEST_NAME)
         self._next_summary = time.monotonic()
         self.files: tuple[Path, ...] = ()
-        """Files of the summary."""
         self.write_errors: list[str] = []
         """Sentences on summaries and failures that could not be written."""
         remove_failures_of_deleted_takes(output, shoot)
@@ -139,7 +158,10 @@ class BatchOutcomes:
         name, record = job.take.name, find_record(job.folder)
         self._progress.update(self._indices[name], 1.0, _frame_count(record))
         if done.result == FAILED:
-            self._write_failure(Failure(name, done.error or "failed", done.kind or CONVERSION))
+            try:
+                write_failure(self.output, Failure(name, done.error or "failed", done.kind or CONVERSION))
+            except KeymarkError as error:
+                self._note_write_error(str(error))
         else:
             remove_failure(self.output, name)
         outcome = Outcome(name, job.folder, Status(done.result), record, done.error, done.seconds)
@@ -159,11 +181,14 @@ class BatchOutcomes:
             # Another machine may have finished, and written its own summary, while this one was written:
             # without a second look the summary that stays would lack the last take of that machine.
             after = self._other_outcomes()
-            if all(_compared(after[name]) == _compared(others[name]) for name in others):
+            if all(
+                (after[name].status, after[name].error, after[name].record)
+                == (was.status, was.error, was.record)
+                for name, was in others.items()
+            ):
                 return
 
     def _other_outcomes(self) -> dict[str, Outcome]:
-        """Outcomes of the takes that are not converted here, as the folder has them now."""
         here = set(self._names)
         return {
             take.name: read_outcome(take, self.output) for take in self.shoot.takes if take.name not in here
@@ -227,19 +252,9 @@ class BatchOutcomes:
         words = f"{count - self._counts[Status.WAITING]} of {pluralize(count, 'take')}"
         self.console.overall(self._progress.fraction, f"{words}, {failed} failed" if failed else words)
 
-    def _write_failure(self, failure: Failure) -> None:
-        try:
-            write_failure(self.output, failure)
-        except KeymarkError as error:
-            self._note_write_error(str(error))
-
     def _note_write_error(self, sentence: str) -> None:
         if sentence not in self.write_errors:
             self.write_errors.append(sentence)
-
-
-def _compared(outcome: Outcome) -> tuple[Status, str | None, ConversionRecord | None]:
-    return outcome.status, outcome.error, outcome.record
 
 
 def _frame_count(record: ConversionRecord | None) -> int | None:

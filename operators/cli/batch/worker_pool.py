@@ -57,31 +57,16 @@ class WorkerPool:
         heartbeat_timeout_s: float,
         debug: bool,
     ) -> None:
-        """Queue the jobs.
-
-        Args:
-            jobs: In the order in which they are handed out.
-            words: The command that starts a worker.
-            outcomes: Receives progress and results.
-            heartbeat_timeout_s: Longest time between two messages [s].
-            debug: Whether the workers' standard error is shown.
-        """
         self._queue = deque(_QueuedJob(job) for job in jobs)
         self._words, self._debug = words, debug
         self._outcomes = outcomes
         self._heartbeat_timeout_s = heartbeat_timeout_s
         self._events: Events = Events()
         self._workers: dict[WorkerProcess, _QueuedJob | None] = {}
-        """The workers, each with the job that it runs."""
         self._failed_starts, self._start_error = 0, ""
 
     def run(self, workers: int) -> None:
-        """Run all jobs, as many at a time as there are workers.
-
-        Raises:
-            KeyboardInterrupt: A signal asked the batch to end; all workers have ended.
-            ConversionError: No worker starts.
-        """
+        """Run all jobs, as many at a time as there are workers."""
         with self._interruptible():
             try:
                 while self._queue or any(self._workers.values()):
@@ -112,7 +97,6 @@ class WorkerPool:
                 worker.send(queued.job)
 
     def _start_workers(self, most: int) -> None:
-        """Start as many workers as there are jobs for."""
         idle = sum(job is None for job in self._workers.values())
         for _ in range(min(most - len(self._workers), len(self._queue) - idle)):
             if self._failed_starts >= MOST_ATTEMPTS:
@@ -128,7 +112,6 @@ class WorkerPool:
         self._failed_starts, self._start_error = self._failed_starts + 1, reason
 
     def _handle_events(self) -> None:
-        """Wait for an event and handle it; give up workers that are overdue."""
         moments = [worker.deadline for worker in self._workers]
         if any(worker.ready and job is None for worker, job in self._workers.items()):
             moments += [queued.not_before for queued in self._queue]

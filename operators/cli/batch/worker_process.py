@@ -1,4 +1,4 @@
-"""The protocol between a batch and its workers: JSON Lines, jobs one way and messages the other."""
+"""A worker as its batch sees it, and the JSON Lines between them: jobs one way, messages the other."""
 
 import json
 import signal
@@ -30,11 +30,9 @@ class Job:
 
     take: ShootTake
     folder: Path
-    """Folder for the results."""
     defaults: ConversionSettings
     """Settings where the take and its shoots give none."""
     again: bool = False
-    """Whether to convert the take even where its results are there already."""
     debug: bool = False
 
     def to_line(self) -> bytes:
@@ -69,7 +67,6 @@ class Step:
 
     stage: str
     fraction: float
-    """From 0 to 1."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +77,6 @@ class Done:
     """`converted`, `unchanged`, `failed`, or `busy` where another process holds the lock of the results."""
     seconds: float = 0.0
     error: str | None = None
-    """Why the job failed, in a sentence."""
     kind: str | None = None
     """Kind of failure, see `core/shoot/outcomes`."""
     memory_bytes: int | None = None
@@ -110,10 +106,7 @@ def _line(value: Any) -> bytes:
     return json.dumps(value, default=str).encode("ascii") + b"\n"
 
 
-# --- A worker as its batch sees it
-
-
-SCRIPT = Path(__file__).with_name("start_worker.py")
+SCRIPT = Path(__file__).with_name("machine_resources.py")
 START_TIMEOUT_S = 300.0
 HEARTBEAT_TIMEOUT_S = 1800.0
 """A worker that sends no message for so long will never end: its decoder or its disk hangs."""
@@ -138,21 +131,13 @@ class WorkerProcess:
     """A running worker; a thread of its own reads its messages."""
 
     def __init__(self, words: Sequence[str], debug: bool, events: "Events") -> None:
-        """Start a worker.
-
-        Raises:
-            OSError: There is no such program.
-        """
         self.ready = self._asked_to_end = False
         self.deadline = time.monotonic() + START_TIMEOUT_S
         """When it is lost unless it sends a message before."""
         self._stderr = tempfile.TemporaryFile()
         try:
             self._process = subprocess.Popen(
-                words,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=None if debug else self._stderr,
+                words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=None if debug else self._stderr
             )
         except OSError:
             self._stderr.close()

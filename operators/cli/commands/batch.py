@@ -21,25 +21,18 @@ from ..batch.outcomes import BatchOutcomes
 from ..batch.worker_pool import WorkerPool
 from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, Job, worker_command_line
 from ..console import Console, arguments_console
-from ..options import SHOOT_HELP, add_shoot_options, given_settings
-from ..parser import Command, UsageError, require_blender
+from ..options import SHOOT_HELP, SHOOT_OPTIONS, given_settings, output
+from ..parser import Command, UsageError, argument, require_blender
 
 WORKER_BYTES = 1.5 * 2**30
 """Memory that a worker may need; the default number of jobs leaves each this much."""
 MOST_JOBS = 1000
 MOST_PARTS = 10**6
 MOST_NAMED = 5
-"""Failed takes named in the last line."""
 
 
 def batch_command(arguments: argparse.Namespace) -> None:
-    """Convert the takes that the command line names, and report the outcome of each.
-
-    Raises:
-        InputError: The shoot or the folder for the results is unusable; nothing was written.
-        ConversionError: A take has failed, or no worker starts.
-        KeyboardInterrupt: The batch was interrupted; the text says how many takes are converted.
-    """
+    """Convert the takes that the command line names, and report the outcome of each."""
     shoot, takes, defaults = _plan(arguments)
     require_blender("writing motion.blend needs")
     output: Path = arguments.output
@@ -84,12 +77,7 @@ def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, c
 
 
 def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], ConversionSettings]:
-    """The whole shoot, its takes to convert, and the settings of those that have none of their own.
-
-    Raises:
-        UsageError: An option is unusable.
-        InputError: The shoot is unusable, or there is no such library.
-    """
+    """The whole shoot, its takes to convert, and the settings of those that have none of their own."""
     part, parts = _parsed_part(arguments.part)
     if arguments.jobs is not None and not 1 <= arguments.jobs <= MOST_JOBS:
         raise UsageError(f"--jobs is {arguments.jobs}; a number from 1 to {MOST_JOBS} is valid")
@@ -133,42 +121,6 @@ def _worker_count(requested: int | None) -> int:
     return max(1, min(processor_count(), fitting_memory))
 
 
-def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("shoot", metavar="SHOOT", type=Path, help=SHOOT_HELP)
-    parser.add_argument(
-        "--output", "-o", metavar="DIR", type=Path, required=True, help="folder for all results, new or old"
-    )
-    parser.add_argument(
-        "--jobs",
-        "-j",
-        metavar="N",
-        type=int,
-        help="convert N takes at a time, each in a process of its own; by default one for each processor, at "
-        "most one for each 1.5 GB of memory",
-    )
-    parser.add_argument(
-        "--part",
-        metavar="K/N",
-        help="convert the K-th of N shares of the takes only, as one of N machines",
-    )
-    parser.add_argument(
-        "--take",
-        metavar="NAME",
-        action="append",
-        help="convert this take only, named by its way from SHOOT; may be given several times",
-    )
-    parser.add_argument("--again", action="store_true", help="convert takes anew that are converted already")
-    add_shoot_options(parser)
-    parser.add_argument("--no-report", action="store_true", help="draw no pictures of takes")
-    parser.add_argument(
-        "--failed-takes",
-        choices=("fail", "pass"),
-        default="fail",
-        help="what the exit status says where takes have failed: 1 with fail, 0 with pass, so that a farm "
-        "goes on to the tasks that wait for this one; merge then names them (default: %(default)s)",
-    )
-
-
 BATCH = Command(
     name="batch",
     description=(
@@ -178,6 +130,38 @@ BATCH = Command(
         "shows what came out. Exit status: 0 all takes are converted, 1 some failed, 2 the shoot is "
         "unusable, 130 interrupted."
     ),
-    add_arguments=_add_arguments,
+    arguments=(
+        argument("shoot", metavar="SHOOT", type=Path, help=SHOOT_HELP),
+        *output("DIR", "folder for all results, new or old"),
+        argument(
+            "--jobs",
+            "-j",
+            metavar="N",
+            type=int,
+            help="convert N takes at a time, each in a process of its own; by default one for each "
+            "processor, at most one for each 1.5 GB of memory",
+        ),
+        argument(
+            "--part",
+            metavar="K/N",
+            help="convert the K-th of N shares of the takes only, as one of N machines",
+        ),
+        argument(
+            "--take",
+            metavar="NAME",
+            action="append",
+            help="convert this take only, named by its way from SHOOT; may be given several times",
+        ),
+        argument("--again", action="store_true", help="convert takes anew that are converted already"),
+        *SHOOT_OPTIONS,
+        argument("--no-report", action="store_true", help="draw no pictures of takes"),
+        argument(
+            "--failed-takes",
+            choices=("fail", "pass"),
+            default="fail",
+            help="what the exit status says where takes have failed: 1 with fail, 0 with pass, so that a "
+            "farm goes on to the tasks that wait for this one; merge then names them (default: %(default)s)",
+        ),
+    ),
     run=batch_command,
 )

@@ -1,7 +1,6 @@
-"""`keymark character`: its arguments."""
+"""`keymark character`: recognize a character's bones and controls, or check its map."""
 
 import argparse
-from pathlib import Path
 
 from ....core.retarget.character import ROLES
 from ....core.retarget.maps.character_map import CharacterMap, IkControls, write_character_map
@@ -10,37 +9,8 @@ from ....core.retarget.retarget_record import GIVEN, SAVED
 from ....core.take.conversion_settings import CharacterFile
 from ..console import arguments_console, terminal_columns, wrapped
 from ..conversion.character_result import opened_character
-from ..options import CHARACTER_HELP, MAP_HELP
-from ..parser import Command, refuse_existing, require_blender
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the character, a map to check, and where to write its map."""
-    parser.add_argument("character", metavar="FILE[:OBJECT]", help=CHARACTER_HELP)
-    parser.add_argument("--map", metavar="TITLE|FILE|auto|none", default="auto", help=MAP_HELP)
-    parser.add_argument("--output", "-o", metavar="FILE", type=Path, help="write its character map there")
-    parser.add_argument("--replace", action="store_true", help="replace what is there already")
-
-
-def run(arguments: argparse.Namespace) -> None:
-    """Show the character."""
-    character_command(arguments)
-
-
-CHARACTER = Command(
-    name="character",
-    description=(
-        "Opens a character, recognizes which bones play which role, and says how surely and what it doubts. "
-        "With --map it checks that the map is for this character; with --output it writes the map, to be "
-        "corrected, kept and shared. Nothing else is written. Needs Blender."
-    ),
-    add_arguments=add_arguments,
-    run=run,
-)
-
-
-# --- `keymark character`
-
+from ..options import CHARACTER_HELP, MAP_HELP, REPLACE_HELP, output
+from ..parser import Command, argument, refuse_existing, require_blender
 
 UNSURE = 0.75
 """Confidence below which a role is marked."""
@@ -48,11 +18,7 @@ SOURCE_WORDS = {"preset": "convention", "names": "names", "shape": "shape", "you
 
 
 def character_command(arguments: argparse.Namespace) -> None:
-    """Show which bones play which role, how surely, and what is doubtful; write the map.
-
-    Raises:
-        InputError: The character or the map cannot be used; nothing was written.
-    """
+    """Show which bones play which role, how surely, and what is doubtful; write the map."""
     require_blender("opening a character needs")
     file = CharacterFile.parse(arguments.character)
     if arguments.output is not None:
@@ -128,3 +94,19 @@ def _control_names(controls: IkControls) -> str:
     if controls.switch is not None:
         parts.append(f"switch {controls.switch.property} of {controls.switch.bone}")
     return ", ".join(parts)
+
+
+CHARACTER = Command(
+    name="character",
+    description=(
+        "Opens a character, recognizes which bones play which role, and says how surely and what it doubts. "
+        "With --map it checks that the map is for this character; with --output it writes the map, to be "
+        "corrected, kept and shared. Nothing else is written. Needs Blender."
+    ),
+    arguments=(
+        argument("character", metavar="FILE[:OBJECT]", help=CHARACTER_HELP),
+        argument("--map", metavar="TITLE|FILE|auto|none", default="auto", help=MAP_HELP),
+        *output("FILE", "write its character map there", required=False, replace=REPLACE_HELP),
+    ),
+    run=character_command,
+)

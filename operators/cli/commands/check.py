@@ -9,18 +9,18 @@ from pathlib import Path
 from typing import Any
 
 from ....core.errors import ConversionError, describe_unexpected, pluralize
-from ....core.files.control_characters import absolute_path
 from ....core.files.fields import listed
+from ....core.files.paths import absolute_path
 from ....core.progress import Job, Progress, run
 from ....core.shoot.check.take_check import TakeCheck, check_take, flag_outliers
 from ....core.shoot.discovery import Shoot, ShootTake, open_shoot
 from ....core.take.conversion_settings import ConversionSettings
-from ....core.take.evidence_kinds import KEYPOINTS
+from ....core.take.evidence import KEYPOINTS
 from ..console import arguments_console, terminal_columns, wrapped
 from ..conversion.character_result import CharacterChecks
 from ..library_search_path import requested_libraries
-from ..options import SHOOT_HELP, add_shoot_options, given_settings
-from ..parser import Command, UsageError
+from ..options import SHOOT_HELP, SHOOT_OPTIONS, given_settings
+from ..parser import Command, UsageError, argument
 
 MOST_JOBS = 64
 STAGE = "Looking at the takes"
@@ -32,19 +32,11 @@ FEWEST_IN_COMMON = 3
 """Number of takes from which on a sentence that they share is printed once."""
 MOST_NAMED = 3
 SEPARATOR = "  "
-"""Between two columns of the table."""
 NARROWEST_NAME = 12
-"""Smallest width of the column of names."""
 
 
 def check_command(arguments: argparse.Namespace) -> None:
-    """Check the takes that the command line names, and list the problems of each.
-
-    Raises:
-        InputError: The shoot is unusable.
-        UsageError: `--jobs` is out of range, or options contradict each other.
-        ConversionError: A take would not convert.
-    """
+    """Check the takes that the command line names, and list the problems of each."""
     jobs = 1 if arguments.jobs is None else arguments.jobs
     if not 1 <= jobs <= MOST_JOBS:
         raise UsageError(f"--jobs is {jobs}; a number from 1 to {MOST_JOBS} is valid")
@@ -118,13 +110,7 @@ def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
 
 
 def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = None) -> str:
-    """The checks as text for people.
-
-    Args:
-        shoot: The shoot that was checked.
-        checks: The check of every take.
-        columns: Width of the terminal, to which sentences are wrapped; None keeps them whole.
-    """
+    """The checks as text for people."""
     shared = _shared(checks)
     lines = _table(shoot, checks, shared, columns)
     together: dict[tuple[str, ...], list[str]] = {}
@@ -139,7 +125,6 @@ def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = 
 
 
 def _evidence_lines(checks: Sequence[TakeCheck]) -> list[str]:
-    """What the motions will be held against, a line for each combination of evidence."""
     takes: dict[tuple[str, ...], list[str]] = {}
     for check in checks:
         if check.evidence and check.converts:
@@ -153,16 +138,16 @@ def _evidence_lines(checks: Sequence[TakeCheck]) -> list[str]:
 
 
 def _words(kinds: Sequence[str]) -> str:
-    names = [kind.replace("_", " ") for kind in kinds]
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+    *names, last = (kind.replace("_", " ") for kind in kinds)
+    return f"{', '.join(names)} and {last}" if names else last
 
 
 def _table(
     shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str], columns: int | None
 ) -> list[str]:
-    """A row a take, and below it the sentences on this take alone."""
-    names = [_name(shoot, check) for check in checks]
-    markers = _common_markers(checks)
+    folder = absolute_path(shoot.folder).name
+    names = [folder if check.name == "." else check.name for check in checks]
+    markers = list(dict.fromkeys(readout.name for check in checks for readout in check.markers))
     keypoints = (KEYPOINTS,) if any(check.keypoints for check in checks) else ()
     titles = ("", "take", "frames", "size", "rate", "keyframes", *keypoints, *markers)
     rows = [
@@ -220,11 +205,6 @@ def _aligned(cells: Sequence[str], widths: Sequence[int]) -> list[str]:
     return [SEPARATOR.join([words, f"{name:{widths[1]}}", *numbers]).rstrip()]
 
 
-def _common_markers(checks: Sequence[TakeCheck]) -> list[str]:
-    """Names of the markers of all takes, without repetition, in order of appearance."""
-    return list(dict.fromkeys(readout.name for check in checks for readout in check.markers))
-
-
 def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
     """Sentences that several takes share, with the takes: an error in a shoot's description is one error."""
     found: dict[str, list[str]] = {}
@@ -257,10 +237,6 @@ def _time(seconds: float) -> str:
 
 def _size(size_bytes: int) -> str:
     return f"{size_bytes / 1e6:.0f} MB" if size_bytes < 1e9 else f"{size_bytes / 1e9:.1f} GB"
-
-
-def _name(shoot: Shoot, check: TakeCheck) -> str:
-    return absolute_path(shoot.folder).name if check.name == "." else check.name
 
 
 def _status(check: TakeCheck) -> str:
@@ -304,12 +280,6 @@ def _take(check: TakeCheck) -> dict[str, Any]:
     }
 
 
-def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("shoot", metavar="SHOOT", type=Path, help=f"{SHOOT_HELP}, or one take")
-    parser.add_argument("--jobs", "-j", metavar="N", type=int, help="look at N takes at a time")
-    add_shoot_options(parser)
-
-
 CHECK = Command(
     name="check",
     description=(
@@ -317,6 +287,10 @@ CHECK = Command(
         "it would convert, what it would be held against, how well its markers and keypoints are seen, and "
         "what is likely to go wrong. Nothing is written."
     ),
-    add_arguments=_add_arguments,
+    arguments=(
+        argument("shoot", metavar="SHOOT", type=Path, help=f"{SHOOT_HELP}, or one take"),
+        argument("--jobs", "-j", metavar="N", type=int, help="look at N takes at a time"),
+        *SHOOT_OPTIONS,
+    ),
     run=check_command,
 )

@@ -5,16 +5,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ....core.pipeline.found_keyframes import found_summary
+from ....core.pipeline.convert import found_summary
 from ....core.pipeline.result import Conversion
 from ....core.shoot.discovery import take_path
 from ....core.take.conversion_settings import METHODS, ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
-from ....core.take.evidence_kinds import KEYPOINTS
+from ....core.take.evidence import KEYPOINTS
 from ..console import arguments_console
 from ..conversion.convert_take import convert_take
-from ..options import add_evidence, add_keypoint_files, given_settings
-from ..parser import Command, UsageError
+from ..options import KEYPOINT_FILES, evidence_option, given_settings, output
+from ..parser import Command, UsageError, argument
 
 
 def convert_command(arguments: argparse.Namespace) -> None:
@@ -46,9 +46,6 @@ def _settings(arguments: argparse.Namespace, description: Description) -> Conver
     """The settings of the command line, and else of the take.
 
     Where keyframes are to be found by the command line's word, only posed ones that it names count beside.
-
-    Raises:
-        UsageError: The options contradict each other.
     """
     given = given_settings(arguments)
     settings = given.with_defaults(effective_settings(description))
@@ -76,41 +73,6 @@ def _text(conversion: Conversion) -> str:
     return "\n".join([*notes, *lines, *(f"  {file}" for file in conversion.files)])
 
 
-def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("take", metavar="TAKE", type=Path, help="folder with take.json, or a clip of a shoot")
-    parser.add_argument(
-        "--output", "-o", metavar="OUT", type=Path, required=True, help="folder for the result, new or old"
-    )
-    parser.add_argument(
-        "--keyframes",
-        metavar="FILE|auto",
-        help="keyframe file, by default TAKE/keyframes.json; or auto: nothing needs to be posed, keyframes "
-        "are found in the footage with all libraries there are",
-    )
-    add_keypoint_files(parser)
-    add_evidence(parser)
-    parser.add_argument(
-        "--library",
-        metavar="NAME|FILE|auto",
-        help="find keyframes by matching the footage with this keyframe library alone; auto is --keyframes "
-        "auto. --keyframes FILE beside it has posed keyframes, which stay",
-    )
-    parser.add_argument(
-        "--floor",
-        metavar="HEIGHT",
-        type=float,
-        help="height of the floor in meters where it is known, which says best how far away the performer "
-        "is; where keyframes are found",
-    )
-    parser.add_argument(
-        "--method",
-        choices=METHODS,
-        help="map: the whole clip at once (default); ekf: the filter of the paper; "
-        "interpolation: the keyframes alone",
-    )
-    parser.add_argument("--no-report", action="store_true", help="draw no pictures")
-
-
 CONVERT = Command(
     name="convert",
     description=(
@@ -119,6 +81,37 @@ CONVERT = Command(
         "--library nothing needs to be posed: TAKE/keyframes.json is left aside, and OUT gets the keyframes "
         "that were found."
     ),
-    add_arguments=_add_arguments,
+    arguments=(
+        argument("take", metavar="TAKE", type=Path, help="folder with take.json, or a clip of a shoot"),
+        *output("OUT", "folder for the result, new or old"),
+        argument(
+            "--keyframes",
+            metavar="FILE|auto",
+            help="keyframe file, by default TAKE/keyframes.json; or auto: nothing needs to be posed, "
+            "keyframes are found in the footage with all libraries there are",
+        ),
+        KEYPOINT_FILES,
+        evidence_option(),
+        argument(
+            "--library",
+            metavar="NAME|FILE|auto",
+            help="find keyframes by matching the footage with this keyframe library alone; auto is "
+            "--keyframes auto. --keyframes FILE beside it has posed keyframes, which stay",
+        ),
+        argument(
+            "--floor",
+            metavar="HEIGHT",
+            type=float,
+            help="height of the floor in meters where it is known, which says best how far away the "
+            "performer is; where keyframes are found",
+        ),
+        argument(
+            "--method",
+            choices=METHODS,
+            help="map: the whole clip at once (default); ekf: the filter of the paper; "
+            "interpolation: the keyframes alone",
+        ),
+        argument("--no-report", action="store_true", help="draw no pictures"),
+    ),
     run=convert_command,
 )

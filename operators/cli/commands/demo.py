@@ -9,25 +9,22 @@ from pathlib import Path
 
 from ....core.errors import ConversionError
 from ....core.estimate.reconstruct import reconstruct
+from ....core.pipeline.result import BLEND, CHARACTER_BLEND, REPORT
 from ....core.progress import run
 from ....core.review.score import Score, read_truth, score_points
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings, ConversionSettings
 from ....core.take.description import describe
-from ....core.take.evidence_kinds import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
+from ....core.take.evidence import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
 from ....core.take.examples import AEROBIC, POSED_BY_HAND, example_folder
 from ....core.take.motion import Motion
 from ....core.take.take import Take
 from ..console import arguments_console
-from ..conversion.blender_files import BLEND
-from ..conversion.character_result import CHARACTER_BLEND
-from ..conversion.convert_take import REPORT, convert_take
-from ..parser import Command, require_blender
+from ..conversion.convert_take import convert_take
+from ..parser import Command, argument, require_blender
 from .convert import conversion_summary
 
 MARKED = (MARKERS, CONTOURS)
-"""Evidence of the paper's example."""
 UNMARKED = (KEYPOINTS, DEPTH_HINTS, CONTOURS)
-"""Evidence of the same performance in any clothes."""
 UNMARKED_FOLDER = "without_markers"
 CHARACTER_FILE = "human.blend"
 COLUMNS = {"mpjpe": "all", "rooted": "about hips", "depth": "in depth", "image": "across", "jitter": "jitter"}
@@ -109,15 +106,10 @@ def _table(scores: Mapping[str, Score]) -> list[str]:
 
 SCRIPT = Path(__file__).parent.with_name("generate_rigify_human.py")
 LONGEST_S = 300.0
-"""Generating takes a second or two; a process that takes this long hangs."""
 
 
 def write_demo_character(file: Path) -> None:
-    """Generate the rig with a simple body into a .blend.
-
-    Raises:
-        ConversionError: Blender could not generate it.
-    """
+    """Generate the rig with a simple body into a .blend."""
     import bpy
 
     program = bpy.app.binary_path
@@ -138,23 +130,21 @@ def write_demo_character(file: Path) -> None:
         raise ConversionError(f"{file}: Rigify's human cannot be generated ({said[-1]})")
 
 
-def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--output",
-        "-o",
-        metavar="DIR",
-        type=Path,
-        default=Path("keymark_demo"),
-        help="folder for the result (default: %(default)s)",
-    )
-
-
 DEMO = Command(
     name="demo",
     description=(
         "Converts the take that comes with Keymark, whose true motion is known, and prints how far each "
         "method is from it."
     ),
-    add_arguments=_add_arguments,
+    arguments=(
+        argument(
+            "--output",
+            "-o",
+            metavar="DIR",
+            type=Path,
+            default=Path("keymark_demo"),
+            help="folder for the result (default: %(default)s)",
+        ),
+    ),
     run=demo_command,
 )

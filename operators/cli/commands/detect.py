@@ -1,4 +1,4 @@
-"""`keymark detect`: its arguments."""
+"""`keymark detect`: find points of the body in clips."""
 
 import argparse
 import os
@@ -21,46 +21,8 @@ from ....core.take.clip_check import LONGEST_FRAMES, open_footage
 from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, Description, find_shoot_files, sidecar_file
 from ....core.take.take_file import FRAME_RATE, FRAME_START
 from ..console import Console, arguments_console
-from ..parser import Command, UsageError, refuse_existing
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the clips, and where their keypoints go."""
-    parser.add_argument(
-        "target",
-        metavar="CLIP|TAKE|SHOOT",
-        type=Path,
-        help="a clip, a take, a folder of takes, or a list of them (JSON Lines, .jsonl)",
-    )
-    parser.add_argument(
-        "--output",
-        "-o",
-        metavar="FILE",
-        type=Path,
-        help="keypoint file of a single clip or take; by default keypoints.json in the take, or "
-        "NAME.keypoints.json beside the clip",
-    )
-    parser.add_argument("--replace", action="store_true", help="replace keypoint files that are there")
-
-
-def run_detect(arguments: argparse.Namespace) -> None:
-    """Detect the keypoints."""
-    detect_command(arguments)
-
-
-DETECT = Command(
-    name="detect",
-    description=(
-        "Finds 33 points of everybody in every frame, with a guess of their depth, by the network that comes "
-        "with Keymark, and keeps them beside the clip, where converting uses them."
-    ),
-    add_arguments=add_arguments,
-    run=run_detect,
-)
-
-
-# --- `keymark detect`
-
+from ..options import output
+from ..parser import Command, UsageError, argument, refuse_existing
 
 MOST_NAMED = 5
 
@@ -102,13 +64,7 @@ class Outcome:
 
 
 def detect_command(arguments: argparse.Namespace) -> None:
-    """Detect the keypoints of what the command line names.
-
-    Raises:
-        UsageError: An option is unusable, or a file is there and `--replace` is not given.
-        InputError: What is named is unusable, or shows nobody.
-        ConversionError: Some takes of a shoot failed.
-    """
+    """Detect the keypoints of what the command line names."""
     network = PoseNetwork()
     one = _single(arguments.target)
     with arguments_console(arguments) as console:
@@ -137,13 +93,11 @@ def detect_command(arguments: argparse.Namespace) -> None:
 
 
 def _found_text(people: People) -> str:
-    """What was found, for a person."""
     who = "a person" if people.most_people == 1 else f"up to {people.most_people} people"
     return f"{who} in {people.seen_frames} of {pluralize(len(people.frames), 'frame')}"
 
 
 def _summary(people: People) -> dict[str, Any]:
-    """What was found, for `--json`."""
     return {
         "detector": people.source,
         "frames": len(people.frames),
@@ -191,7 +145,6 @@ def _outcome(
 
 
 def _detect(footage: Footage, network: PoseNetwork, console: Console, first: float, last: float) -> People:
-    """Find the keypoints of one clip and write them."""
     if not os.access(footage.output.parent, os.W_OK | os.X_OK):
         raise InputError(f"{footage.output}: cannot be written; its folder must exist and be writable")
     clip = open_footage(footage.clip, footage.fps)
@@ -210,7 +163,6 @@ def _single(path: Path) -> Footage | None:
 
 
 def _is_sequence(path: Path) -> bool:
-    """Whether a path is a folder or pattern of images, or one of them."""
     try:
         return find_images(path) is not None
     except (InputError, OSError):
@@ -218,11 +170,7 @@ def _is_sequence(path: Path) -> bool:
 
 
 def _footage(take: ShootTake) -> Footage:
-    """The clip of a take, as its files describe it, or as it is where none do.
-
-    Raises:
-        InputError: A file is unusable.
-    """
+    """The clip of a take, as its files describe it, or as it is where none do."""
     path = take.path
     described = (path / TAKE_FILE, sidecar_file(path, TAKE_FILE))
     if not take.overrides and not any(map(os.path.isfile, described)) and not find_shoot_files(path.parent):
@@ -242,3 +190,28 @@ def _keypoint_file(description: Description) -> Path:
     """The file that a take's keypoints go into: the one that it names, or that of the usual name."""
     named = description.settings.keypoints or ()
     return named[0] if len(named) == 1 else description.file_called(Path(KEYPOINT_FILE))
+
+
+DETECT = Command(
+    name="detect",
+    description=(
+        "Finds 33 points of everybody in every frame, with a guess of their depth, by the network that comes "
+        "with Keymark, and keeps them beside the clip, where converting uses them."
+    ),
+    arguments=(
+        argument(
+            "target",
+            metavar="CLIP|TAKE|SHOOT",
+            type=Path,
+            help="a clip, a take, a folder of takes, or a list of them (JSON Lines, .jsonl)",
+        ),
+        *output(
+            "FILE",
+            "keypoint file of a single clip or take; by default keypoints.json in the take, or "
+            "NAME.keypoints.json beside the clip",
+            required=False,
+            replace="replace keypoint files that are there",
+        ),
+    ),
+    run=detect_command,
+)

@@ -1,217 +1,23 @@
-"""`keymark library` with its commands: their arguments."""
+"""`keymark library`: list, show, check, merge, mirror, learn and exchange keyframe libraries."""
 
 import argparse
 from collections import Counter
-from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from ....core.errors import InputError
+from ....core.files.fields import listed
 from ....core.files.json_file import write_atomically
 from ....core.prior.library import Library, LibraryMotion, read_library, write_library
 from ....core.prior.registry import find_library, registered_libraries
-from ....core.prior.texts import checked_identifier
-from ....core.report.canvas import write_png
+from ....core.prior.texts import LONGEST_NAME, checked_identifier, identifier_from
 from ..blender_silence import blender_silence
 from ..console import Console, arguments_console
 from ..library_search_path import library_folders
-from ..parser import Command, CommandGroup, UsageError, refuse_existing, require_blender
+from ..options import REPLACE_HELP, output
+from ..parser import Command, CommandGroup, UsageError, argument, refuse_existing, require_blender
 
 LIBRARY_HELP = "name or file of a library"
-
-
-def _use_case(module: str, function: str) -> Callable[[argparse.Namespace], None]:
-    """A command's function in `use_cases/library`, imported when it runs."""
-
-    def run(arguments: argparse.Namespace) -> None:
-        getattr(import_module(f"..use_cases.library.{module}", __package__), function)(arguments)
-
-    return run
-
-
-def _add_library(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("library", metavar="LIBRARY", help=LIBRARY_HELP)
-
-
-def _add_output(parser: argparse.ArgumentParser, metavar: str, text: str) -> None:
-    """Add where a command writes, and whether it may replace what is there."""
-    parser.add_argument("--output", "-o", metavar=metavar, type=Path, required=True, help=text)
-    parser.add_argument("--replace", action="store_true", help="replace what is there already")
-
-
-def _add_library_file(parser: argparse.ArgumentParser) -> None:
-    _add_output(parser, "FILE", "the new library file")
-
-
-LIST = Command(
-    name="list",
-    summary="list the libraries that can be named",
-    description="Lists the libraries that come with Keymark and those in the folders of KEYMARK_LIBRARIES.",
-    run=_use_case("list_show_check", "list_command"),
-)
-
-
-def _add_show(parser: argparse.ArgumentParser) -> None:
-    _add_library(parser)
-    parser.add_argument("--sheet", metavar="FILE", type=Path, help="draw all its postures there, a PNG")
-
-
-SHOW = Command(
-    name="show",
-    summary="say what a library holds",
-    description="Says what a library holds, and draws it.",
-    add_arguments=_add_show,
-    run=_use_case("list_show_check", "show_command"),
-)
-
-
-def _add_check(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("files", metavar="FILE", type=Path, nargs="+", help="library files")
-
-
-CHECK = Command(
-    name="check",
-    summary="check library files",
-    description=(
-        "Reads library files as strictly as Keymark always does and says what is wrong with each that is."
-    ),
-    add_arguments=_add_check,
-    run=_use_case("list_show_check", "check_command"),
-)
-
-
-def _add_merge(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "library", metavar="A", help=f"{LIBRARY_HELP}, which gives title, author and proportions"
-    )
-    parser.add_argument("other", metavar="B", help=LIBRARY_HELP)
-    parser.add_argument(
-        "--conflicts",
-        choices=("keep", "replace"),
-        help="of two versions: what of A has changed in B is kept, or replaced; by default they are named "
-        "and nothing is written",
-    )
-    parser.add_argument("--title", metavar="TEXT", help="of the new library; by default that of both")
-    parser.add_argument(
-        "--identifier", metavar="NAME", help="of the new library; by default made of the title"
-    )
-    _add_library_file(parser)
-
-
-MERGE = Command(
-    name="merge",
-    summary="join two libraries",
-    description=(
-        "Writes the postures and motions of both libraries as one, on the proportions of the first. Two "
-        "versions of one library are merged by name; different libraries become a new one, in which "
-        "postures of the same name get a number."
-    ),
-    add_arguments=_add_merge,
-    run=_use_case("learn_merge_mirror", "merge_command"),
-)
-
-
-def _add_mirror(parser: argparse.ArgumentParser) -> None:
-    _add_library(parser)
-    parser.add_argument(
-        "--both", action="store_true", help="add the mirrored postures and motions that the library lacks"
-    )
-    _add_library_file(parser)
-
-
-MIRROR = Command(
-    name="mirror",
-    summary="exchange left and right",
-    description=(
-        "Writes a library with left and right exchanged in every posture and motion. Matching does so by "
-        "itself; it is for posing."
-    ),
-    add_arguments=_add_mirror,
-    run=_use_case("learn_merge_mirror", "mirror_command"),
-)
-
-
-def _add_learn(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("motion", metavar="MOTION", type=Path, help="motion.json, as convert writes it")
-    parser.add_argument("--title", metavar="TEXT", required=True, help="what people read")
-    parser.add_argument(
-        "--author", metavar="TEXT", default="Unknown", help="who made it (default: %(default)s)"
-    )
-    parser.add_argument(
-        "--license",
-        metavar="SPDX",
-        default="LicenseRef-Proprietary",
-        help="what others may do with it, as in CC0-1.0 (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--identifier", metavar="NAME", help="what it is known by; by default made of the title"
-    )
-    parser.add_argument(
-        "--count", metavar="N", type=int, help="postures; by default 10 to 40, as many as differ"
-    )
-    _add_library_file(parser)
-
-
-LEARN = Command(
-    name="learn",
-    summary="make a library of a finished motion",
-    description=(
-        "Makes a library of a motion's postures at spread-out, distinct frames, so that the next take of the "
-        "same kind needs fewer keyframes or none. A motion that repeats itself becomes one average cycle."
-    ),
-    add_arguments=_add_learn,
-    run=_use_case("learn_merge_mirror", "learn_command"),
-)
-
-
-def _add_blend(parser: argparse.ArgumentParser) -> None:
-    _add_library(parser)
-    _add_output(parser, "DIR", "folder of the assets")
-
-
-BLEND = Command(
-    name="blend",
-    summary="write a library as Blender pose assets",
-    description=(
-        "Writes a folder to add to Blender's asset libraries: a .blend with a pose asset for each posture, "
-        "and the catalog. Needs Blender."
-    ),
-    add_arguments=_add_blend,
-    run=_use_case("blend_read", "blend_command"),
-)
-
-
-def _add_read(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE.blend", type=Path, help="a .blend that Keymark wrote")
-    parser.add_argument("--identifier", metavar="NAME", help="which library, where the .blend holds several")
-    _add_library_file(parser)
-
-
-READ = Command(
-    name="read",
-    summary="read a library from Blender pose assets",
-    description="Writes as a library file what `blend` wrote, or what was posed since. Needs Blender.",
-    add_arguments=_add_read,
-    run=_use_case("blend_read", "read_command"),
-)
-
-LIBRARY = CommandGroup(
-    name="library",
-    description="Lists, looks at, checks, joins and makes keyframe libraries.",
-    epilog="""\
-examples:
-  {program} list
-  {program} show walking --sheet walking.png
-  {program} learn out/walk/motion.json --title "Anna walking" --author Anna --output anna_walking.json
-  {program} merge walking anna_walking.json --output studio.json
-
-A library is a file, or the name of one that comes with Keymark or lies in a folder of KEYMARK_LIBRARIES.""",
-    commands=(LIST, SHOW, CHECK, MERGE, MIRROR, LEARN, BLEND, READ),
-)
-
-
-# --- The contents of a keyframe library, as an object for programs and as lines for people
 
 
 def library_summary(library: Library) -> dict[str, Any]:
@@ -257,14 +63,11 @@ def library_lines(library: Library) -> list[str]:
 
 
 def _motion_line(motion: LibraryMotion) -> str:
-    kind = "again and again, " if motion.cyclic else ""
+    kind = "again and again, " * motion.cyclic
     x, y, _ = motion.travel
     distance_m = (x * x + y * y) ** 0.5
     travel = f", {distance_m:.2f} m on" if distance_m >= 0.01 else ""
     return f"{motion.name}: {len(motion.steps)} postures, {kind}{motion.duration_s:.2f} s{travel}"
-
-
-# --- The library file that `learn`, `merge`, `mirror` and `read` write, and what they say of it
 
 
 def write_new_library(console: Console, arguments: argparse.Namespace, library: Library) -> None:
@@ -272,9 +75,6 @@ def write_new_library(console: Console, arguments: argparse.Namespace, library: 
     write_library(arguments.output, library)
     result = {**library_summary(library), "files": [str(arguments.output)]}
     console.finish(result, "\n".join([*library_lines(library), f"Written: {arguments.output}"]))
-
-
-# --- `keymark library list`, `show` and `check`
 
 
 def list_command(arguments: argparse.Namespace) -> None:
@@ -303,11 +103,7 @@ def list_command(arguments: argparse.Namespace) -> None:
 
 
 def show_command(arguments: argparse.Namespace) -> None:
-    """Print a library's contents; draw its postures where `--sheet` is given.
-
-    Raises:
-        UsageError: The picture is no .png: a library named there by mistake must not be overwritten.
-    """
+    """Print a library's contents; draw its postures where `--sheet` is given."""
     if arguments.sheet is not None and arguments.sheet.suffix.lower() != ".png":
         raise UsageError(f"--sheet is {str(arguments.sheet)!r}; name a file that ends in .png")
     with arguments_console(arguments) as console:
@@ -315,6 +111,7 @@ def show_command(arguments: argparse.Namespace) -> None:
         lines = library_lines(library)
         result = library_summary(library)
         if arguments.sheet is not None:
+            from ....core.report.canvas import write_png
             from ....core.report.mannequin import library_sheet
 
             console.stage("Drawing the postures")
@@ -326,11 +123,7 @@ def show_command(arguments: argparse.Namespace) -> None:
 
 
 def check_command(arguments: argparse.Namespace) -> None:
-    """Read library files and print what they hold.
-
-    Raises:
-        InputError: Files are invalid; one line names the problem of each.
-    """
+    """Read library files and print what they hold."""
     with arguments_console(arguments) as console:
         problems, lines, good = [], [], []
         for file in arguments.files:
@@ -344,9 +137,6 @@ def check_command(arguments: argparse.Namespace) -> None:
         if problems:
             raise InputError("; ".join(problems))
         console.finish({"libraries": good}, "\n".join(lines))
-
-
-# --- `keymark library blend` and `read`
 
 
 def blend_command(arguments: argparse.Namespace) -> None:
@@ -368,11 +158,7 @@ def blend_command(arguments: argparse.Namespace) -> None:
 
 
 def read_command(arguments: argparse.Namespace) -> None:
-    """Write the library of a .blend's pose assets as a library file.
-
-    Raises:
-        InputError: The .blend holds no library, or more than one.
-    """
+    """Write the library of a .blend's pose assets as a library file."""
     require_blender("pose assets need")
     refuse_existing(arguments.output, arguments.replace)
     with arguments_console(arguments) as console:
@@ -386,3 +172,204 @@ def read_command(arguments: argparse.Namespace) -> None:
             names = ", ".join(one.identifier for one in found)
             raise InputError(f"{arguments.file}: holds the libraries {names}; name one with --identifier")
         write_new_library(console, arguments, chosen[0])
+
+
+def learn_command(arguments: argparse.Namespace) -> None:
+    """Make a library of a finished motion."""
+    from ....core.prior.learning import LibraryMetadata, learn_library
+    from ....core.take.motion import read_motion
+
+    refuse_existing(arguments.output, arguments.replace)
+    if arguments.identifier is not None:
+        checked_identifier(arguments.identifier, "--identifier")
+    with arguments_console(arguments) as console:
+        console.stage("Reading the motion")
+        motion = read_motion(arguments.motion)
+        given = {
+            name: getattr(arguments, name) or "" for name in ("title", "author", "license", "identifier")
+        }
+        about = LibraryMetadata(**given)
+        console.stage("Choosing postures")
+        library = learn_library(motion.body, motion.posture, motion.time_s, about, arguments.count)
+        write_new_library(console, arguments, library)
+
+
+def merge_command(arguments: argparse.Namespace) -> None:
+    """Make one library of two."""
+    from ....core.prior.merging import differing_names, join_libraries, merge_versions
+
+    refuse_existing(arguments.output, arguments.replace)
+    with arguments_console(arguments) as console:
+        folders = library_folders()
+        first, second = (find_library(name, folders) for name in (arguments.library, arguments.other))
+        if first.identifier == second.identifier:
+            conflicts, changed = arguments.conflicts, differing_names(first, second)
+            if changed and conflicts is None:
+                names = listed(map(repr, changed), 5)
+                raise UsageError(
+                    f"both versions of {first.identifier} have {names}, and differ; add --conflicts"
+                )
+            library = merge_versions(first, second, None if conflicts is None else conflicts == "replace")
+        else:
+            title = arguments.title or f"{first.title} and {second.title}"[:LONGEST_NAME].strip()
+            identifier = arguments.identifier or identifier_from(title, [first.identifier, second.identifier])
+            library = join_libraries(first, second, identifier, title)
+        write_new_library(console, arguments, library)
+
+
+def mirror_command(arguments: argparse.Namespace) -> None:
+    """Exchange left and right."""
+    from ....core.prior.transfer import mirrored_library, with_mirrored
+
+    refuse_existing(arguments.output, arguments.replace)
+    with arguments_console(arguments) as console:
+        library = find_library(arguments.library, library_folders())
+        if not arguments.both:
+            write_new_library(console, arguments, mirrored_library(library))
+            return
+        try:
+            both = with_mirrored(library)
+        except ValueError as error:
+            raise InputError(f"library {library.identifier!r}: {error}") from error
+        write_new_library(console, arguments, both)
+
+
+LIBRARY_NAME = argument("library", metavar="LIBRARY", help=LIBRARY_HELP)
+LIBRARY_FILE = output("FILE", "the new library file", replace=REPLACE_HELP)
+
+LIST = Command(
+    name="list",
+    summary="list the libraries that can be named",
+    description="Lists the libraries that come with Keymark and those in the folders of KEYMARK_LIBRARIES.",
+    run=list_command,
+)
+
+
+SHOW = Command(
+    name="show",
+    summary="say what a library holds",
+    description="Says what a library holds, and draws it.",
+    arguments=(
+        LIBRARY_NAME,
+        argument("--sheet", metavar="FILE", type=Path, help="draw all its postures there, a PNG"),
+    ),
+    run=show_command,
+)
+
+
+CHECK = Command(
+    name="check",
+    summary="check library files",
+    description=(
+        "Reads library files as strictly as Keymark always does and says what is wrong with each that is."
+    ),
+    arguments=(argument("files", metavar="FILE", type=Path, nargs="+", help="library files"),),
+    run=check_command,
+)
+
+
+MERGE = Command(
+    name="merge",
+    summary="join two libraries",
+    description=(
+        "Writes the postures and motions of both libraries as one, on the proportions of the first. Two "
+        "versions of one library are merged by name; different libraries become a new one, in which "
+        "postures of the same name get a number."
+    ),
+    arguments=(
+        argument("library", metavar="A", help=f"{LIBRARY_HELP}, which gives title, author and proportions"),
+        argument("other", metavar="B", help=LIBRARY_HELP),
+        argument(
+            "--conflicts",
+            choices=("keep", "replace"),
+            help="of two versions: what of A has changed in B is kept, or replaced; by default they are "
+            "named and nothing is written",
+        ),
+        argument("--title", metavar="TEXT", help="of the new library; by default that of both"),
+        argument("--identifier", metavar="NAME", help="of the new library; by default made of the title"),
+        *LIBRARY_FILE,
+    ),
+    run=merge_command,
+)
+
+
+MIRROR = Command(
+    name="mirror",
+    summary="exchange left and right",
+    description=(
+        "Writes a library with left and right exchanged in every posture and motion. Matching does so by "
+        "itself; it is for posing."
+    ),
+    arguments=(
+        LIBRARY_NAME,
+        argument(
+            "--both", action="store_true", help="add the mirrored postures and motions that the library lacks"
+        ),
+        *LIBRARY_FILE,
+    ),
+    run=mirror_command,
+)
+
+
+LEARN = Command(
+    name="learn",
+    summary="make a library of a finished motion",
+    description=(
+        "Makes a library of a motion's postures at spread-out, distinct frames, so that the next take of the "
+        "same kind needs fewer keyframes or none. A motion that repeats itself becomes one average cycle."
+    ),
+    arguments=(
+        argument("motion", metavar="MOTION", type=Path, help="motion.json, as convert writes it"),
+        argument("--title", metavar="TEXT", required=True, help="what people read"),
+        argument("--author", metavar="TEXT", default="Unknown", help="who made it (default: %(default)s)"),
+        argument(
+            "--license",
+            metavar="SPDX",
+            default="LicenseRef-Proprietary",
+            help="what others may do with it, as in CC0-1.0 (default: %(default)s)",
+        ),
+        argument("--identifier", metavar="NAME", help="what it is known by; by default made of the title"),
+        argument("--count", metavar="N", type=int, help="postures; by default 10 to 40, as many as differ"),
+        *LIBRARY_FILE,
+    ),
+    run=learn_command,
+)
+
+
+BLEND = Command(
+    name="blend",
+    summary="write a library as Blender pose assets",
+    description=(
+        "Writes a folder to add to Blender's asset libraries: a .blend with a pose asset for each posture, "
+        "and the catalog. Needs Blender."
+    ),
+    arguments=(LIBRARY_NAME, *output("DIR", "folder of the assets", replace=REPLACE_HELP)),
+    run=blend_command,
+)
+
+
+READ = Command(
+    name="read",
+    summary="read a library from Blender pose assets",
+    description="Writes as a library file what `blend` wrote, or what was posed since. Needs Blender.",
+    arguments=(
+        argument("file", metavar="FILE.blend", type=Path, help="a .blend that Keymark wrote"),
+        argument("--identifier", metavar="NAME", help="which library, where the .blend holds several"),
+        *LIBRARY_FILE,
+    ),
+    run=read_command,
+)
+
+LIBRARY = CommandGroup(
+    name="library",
+    description="Lists, looks at, checks, joins and makes keyframe libraries.",
+    epilog="""\
+examples:
+  {program} list
+  {program} show walking --sheet walking.png
+  {program} learn out/walk/motion.json --title "Anna walking" --author Anna --output anna_walking.json
+  {program} merge walking anna_walking.json --output studio.json
+
+A library is a file, or the name of one that comes with Keymark or lies in a folder of KEYMARK_LIBRARIES.""",
+    commands=(LIST, SHOW, CHECK, MERGE, MIRROR, LEARN, BLEND, READ),
+)

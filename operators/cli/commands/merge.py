@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ....core.errors import ConversionError, InputError, pluralize
-from ....core.files.control_characters import absolute_path
 from ....core.files.digest import content_digest
 from ....core.files.fields import listed
+from ....core.files.paths import absolute_path
+from ....core.pipeline.result import CHARACTER_BLEND, MOTION
 from ....core.progress import Progress
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.retarget.retarget_record import read_retarget_record
@@ -17,9 +18,8 @@ from ....core.shoot.outcomes import Failure, Result, Results, find_results, read
 from ....core.take.motion import Motion, read_motion
 from ..blender_silence import blender_silence
 from ..console import Console, arguments_console, terminal_columns, wrapped
-from ..conversion.character_result import CHARACTER_BLEND
-from ..conversion.convert_take import MOTION
-from ..parser import Command, require_blender
+from ..options import output
+from ..parser import Command, argument, require_blender
 
 if TYPE_CHECKING:
     from ...bridge.assets.motions import CharacterAsset, MotionAsset
@@ -30,17 +30,11 @@ LONGEST_NAME_BYTES = 63
 LONGEST_TAG_BYTES = 63
 LONGEST_DESCRIPTION = 1000
 MOST_NAMED = 5
-"""Takes named in the last line."""
 STAGE = "Gathering the motions"
 
 
 def merge_command(arguments: argparse.Namespace) -> None:
-    """Gather all results below a folder in one .blend of Action assets.
-
-    Raises:
-        InputError: There are no results, or the .blend cannot be written where it is asked for.
-        ConversionError: Some results are damaged, or takes have failed; all others have been gathered.
-    """
+    """Gather all results below a folder in one .blend of Action assets."""
     require_blender("an asset library needs")
     with arguments_console(arguments) as console:
         console.stage("Looking for results")
@@ -71,24 +65,21 @@ class MotionGathering:
         """The problem of each take that the library lacks or has of an earlier input, in a sentence."""
         self.problems |= {failure.take: failure.error for failure in failures}
         self.count = 0
-        """Number of motions in the library."""
         self.character_count = 0
-        """Number of characters' Actions in the library."""
         self._found, self._shoot, self._console = found, shoot, console
 
     def assets(self) -> "Iterator[MotionAsset | CharacterAsset]":
-        """Yield the asset of every sound motion, one at a time: together they may not fit into memory.
-
-        Raises:
-            ConversionError: No motion is sound.
-        """
+        """Yield the asset of every sound motion, one at a time: together they may not fit into memory."""
         from ...bridge.assets.motions import MotionAsset
 
         names: set[str] = set()
         for index, result in enumerate(self._found.sound):
             self._console.progress(Progress(STAGE, index / len(self._found.sound)))
             try:
-                motion = _motion(result)
+                file = result.folder / MOTION
+                if content_digest(file) != result.record.files.get(MOTION):
+                    raise InputError(f"{file}: is not the file that the conversion wrote")
+                motion = read_motion(file)
             except InputError as error:
                 self.problems[result.name] = str(error)
                 continue
@@ -96,13 +87,17 @@ class MotionGathering:
             names.add(name)
             self.count += 1
             catalog = "/".join(catalog_part(part) for part in (self._shoot, *result.name.split("/")[:-1]))
-            yield MotionAsset(name, catalog, description(result), tags(result), motion)
-            yield from self._character(result, catalog, motion, names)
+            marks = _short_tags("keymark", result.record.method, result.record.library)
+            yield MotionAsset(name, catalog, description(result), marks, motion)
+            yield from self._character(result, catalog, marks, motion, names)
         if not names:
-            raise ConversionError(f"none of the results can be used: {_listed(self.problems)}")
+            reasons = [self.problems[name] for name in sorted(self.problems)]
+            more = [f"{len(reasons) - MOST_NAMED} more"] * (len(reasons) > MOST_NAMED)
+            first = "; ".join([*reasons[:MOST_NAMED], *more])
+            raise ConversionError(f"none of the results can be used: {first}")
 
     def _character(
-        self, result: Result, catalog: str, motion: Motion, names: set[str]
+        self, result: Result, catalog: str, marks: tuple[str, ...], motion: Motion, names: set[str]
     ) -> "Iterator[CharacterAsset]":
         """The asset of a result's character, where it has one; a problem of the take where it is unusable."""
         from ...bridge.assets.motions import CharacterAsset, load_character_action
@@ -124,7 +119,7 @@ class MotionGathering:
         self.character_count += 1
         words = f"For the character '{record.character.object}' of {record.character.file}. "
         about = shortened(words + description(result))
-        marks = (*tags(result), *_short_tags(record.character.object, record.map.preset))
+        marks += _short_tags(record.character.object, record.map.preset)
         yield CharacterAsset(name, catalog, about, marks, motion, action)
 
 
@@ -170,27 +165,10 @@ def shortened(text: str) -> str:
     return text if len(text) <= LONGEST_DESCRIPTION else f"{text[: LONGEST_DESCRIPTION - 3]}..."
 
 
-def tags(result: Result) -> tuple[str, ...]:
-    """The tags of a motion in an asset browser."""
-    return _short_tags("keymark", result.record.method, result.record.library)
-
-
 def _short_tags(*words: str | None) -> tuple[str, ...]:
     return tuple(
         word.encode()[:LONGEST_TAG_BYTES].decode(errors="ignore") for word in words if word is not None
     )
-
-
-def _motion(result: Result) -> Motion:
-    """The motion of a result, as it was when the record was written.
-
-    Raises:
-        InputError: The motion is missing, unusable, or has changed.
-    """
-    file = result.folder / MOTION
-    if content_digest(file) != result.record.files.get(MOTION):
-        raise InputError(f"{file}: is not the file that the conversion wrote")
-    return read_motion(file)
 
 
 def _check_output(output: Path, found: Results) -> None:
@@ -218,21 +196,6 @@ def _text(counts: dict[str, int], files: Sequence[str], problems: dict[str, str]
     return "\n".join(lines)
 
 
-def _listed(problems: dict[str, str]) -> str:
-    """The first few of the problems."""
-    reasons = [problems[name] for name in sorted(problems)]
-    more = [f"{len(reasons) - MOST_NAMED} more"] if len(reasons) > MOST_NAMED else []
-    return "; ".join([*reasons[:MOST_NAMED], *more])
-
-
-def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("results", metavar="DIR", type=Path, help="folder of results, as batch writes it")
-    parser.add_argument(
-        "--output", "-o", metavar="FILE", type=Path, required=True, help="the .blend to write, new or old"
-    )
-    parser.add_argument("--name", metavar="NAME", help="what the shoot is called; by default DIR's name")
-
-
 MERGE = Command(
     name="merge",
     description=(
@@ -241,6 +204,10 @@ MERGE = Command(
         "an actor to drag into a scene. Exit status: 0 all takes are in it, 1 some have failed or are "
         "damaged and the others are in it, 2 there are none."
     ),
-    add_arguments=_add_arguments,
+    arguments=(
+        argument("results", metavar="DIR", type=Path, help="folder of results, as batch writes it"),
+        *output("FILE", "the .blend to write, new or old"),
+        argument("--name", metavar="NAME", help="what the shoot is called; by default DIR's name"),
+    ),
     run=merge_command,
 )

@@ -5,22 +5,19 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ....core.errors import InputError
-from ....core.files.control_characters import absolute_path
 from ....core.files.json_file import write_readable_json
+from ....core.files.paths import absolute_path
 from ....core.progress import run, within
 from ....core.shoot.discovery import find_takes
 from ....core.shoot.template import ClipSurvey, clip_lines, evidence_lines, shoot_template, survey_clips
 from ....core.take.description import SHOOT_FILE, find_shoot_files
 from ..console import arguments_console
-from ..parser import Command, program_name
+from ..options import output
+from ..parser import Command, argument, program_name
 
 
 def new_command(arguments: argparse.Namespace) -> None:
-    """Write a shoot's description from its clips, and list the fields that a person must fill in.
-
-    Raises:
-        InputError: The file exists, or no clip can be read or needs a description.
-    """
+    """Write a shoot's description from its clips, and list the fields that a person must fill in."""
     folder: Path = arguments.shoot
     output: Path = arguments.output or folder / SHOOT_FILE
     with arguments_console(arguments) as console:
@@ -80,13 +77,6 @@ def _text(folder: Path, survey: ClipSurvey, output: Path, todo: Sequence[str]) -
     return "\n".join([*lines, f"Then run: {program_name()} check {folder}"])
 
 
-def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("shoot", metavar="SHOOT", type=Path, help="folder of clips")
-    parser.add_argument(
-        "--output", "-o", metavar="FILE", type=Path, help="where to write; by default SHOOT/shoot.json"
-    )
-
-
 NEW = Command(
     name="new",
     description=(
@@ -94,6 +84,9 @@ NEW = Command(
         "and comments on what a person must say, once for all clips: camera, actor, and markers if any. It "
         "also says what each clip's motion can be held against."
     ),
-    add_arguments=_add_arguments,
+    arguments=(
+        argument("shoot", metavar="SHOOT", type=Path, help="folder of clips"),
+        *output("FILE", "where to write; by default SHOOT/shoot.json", required=False),
+    ),
     run=new_command,
 )

@@ -13,12 +13,11 @@ from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
 from ....core.take.take_file import read_described
 from ..console import arguments_console
-from ..options import add_evidence, add_keypoint_files, given_settings
-from ..parser import Command
+from ..options import KEYPOINT_FILES, evidence_option, given_settings
+from ..parser import Command, argument
 
 UNPOSED = "no keyframe is posed yet; pose these frames, or let convert find them with --keyframes auto"
 READING_SHARE = 0.9
-"""Share of the work that reading the clip is."""
 
 
 def propose_command(arguments: argparse.Namespace) -> None:
@@ -55,22 +54,18 @@ def _speed_job(take: Take) -> Job[EvidenceSpeed]:
     return (yield from within("Measuring the speed", moved, READING_SHARE, 1.0))
 
 
-def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("take", metavar="TAKE", type=Path, help="take to pose, as in convert")
-    add_keypoint_files(parser)
-    add_evidence(parser)
-    parser.add_argument(
-        "--count", metavar="N", type=int, help="number of keyframes; by default 10 per 100 frames"
-    )
-    parser.add_argument("--largest-gap", metavar="N", type=int, help="most frames between two keyframes")
-
-
 PROPOSE = Command(
     name="propose",
     description=(
         "Follows the performer by markers or keypoints, else by what moves in the picture, and proposes "
         "frames to pose as keyframes: about evenly spaced, where the performer moves slowly."
     ),
-    add_arguments=_add_arguments,
+    arguments=(
+        argument("take", metavar="TAKE", type=Path, help="take to pose, as in convert"),
+        KEYPOINT_FILES,
+        evidence_option(),
+        argument("--count", metavar="N", type=int, help="number of keyframes; by default 10 per 100 frames"),
+        argument("--largest-gap", metavar="N", type=int, help="most frames between two keyframes"),
+    ),
     run=propose_command,
 )

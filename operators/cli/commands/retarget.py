@@ -1,12 +1,24 @@
-"""`keymark retarget`: its arguments."""
+"""`keymark retarget`: put a motion onto a character."""
 
 import argparse
+from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 
 from ....core.errors import ConversionError, InputError
-from ....core.files.control_characters import absolute_path, real_path
 from ....core.files.fields import listed
 from ....core.files.output_folder import output_folder
+from ....core.files.paths import absolute_path, real_path
+from ....core.pipeline.result import (
+    AS_MADE,
+    BLEND,
+    CHARACTER_BLEND,
+    CHARACTER_PICTURE,
+    MOTION,
+    changed_files,
+    kept_note,
+    write_made_digests,
+)
 from ....core.retarget.retarget_record import RECORD_FILE, RetargetRecord, read_retarget_record
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.conversion_settings import (
@@ -17,58 +29,12 @@ from ....core.take.conversion_settings import (
 )
 from ....core.take.motion import read_motion
 from ..console import Console, arguments_console
-from ..conversion.blender_files import BLEND, refuse_unsupported_output
-from ..conversion.character_result import CHARACTER_BLEND, CHARACTER_PICTURE, EXPORTS, write_character_result
-from ..conversion.convert_take import AS_MADE, MOTION, changed_files, kept_note, write_made_digests
-from ..options import CHARACTER_HELP, MAP_HELP, add_retarget_options
-from ..parser import Command, UsageError, require_blender
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the motion, the character, where the result goes, and how it is made."""
-    parser.add_argument(
-        "motion",
-        metavar="OUT|motion.json",
-        type=Path,
-        help="folder of a result, as convert writes it, or its motion",
-    )
-    parser.add_argument("--character", "-c", metavar="FILE[:OBJECT]", required=True, help=CHARACTER_HELP)
-    parser.add_argument("--map", metavar="TITLE|FILE|auto|none", default="auto", help=MAP_HELP)
-    parser.add_argument(
-        "--output", "-o", metavar="DIR", type=Path, required=True, help="folder for the result, new or old"
-    )
-    parser.add_argument(
-        "--format",
-        metavar="bvh,fbx,glb,usd",
-        default="",
-        help="further files of the character with its motion, separated by commas",
-    )
-    add_retarget_options(parser)
-
-
-def run(arguments: argparse.Namespace) -> None:
-    """Put the motion onto the character."""
-    retarget_command(arguments)
-
-
-RETARGET = Command(
-    name="retarget",
-    description=(
-        "Puts the motion of a finished conversion onto a character. DIR then holds character.blend, the "
-        "character with the motion as its Action in front of the camera that filmed it, and retarget.json, "
-        "which says what was recognized, how surely, and how good the result is. DIR changes only once all "
-        "files are complete. Needs Blender."
-    ),
-    add_arguments=add_arguments,
-    run=run,
-)
-
-
-# --- `keymark retarget`
-
+from ..conversion.blender_files import refuse_unsupported_output
+from ..conversion.character_result import EXPORTS, write_character_result
+from ..options import CHARACTER_HELP, MAP_HELP, RETARGET_OPTIONS, output
+from ..parser import Command, UsageError, argument, require_blender
 
 RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
-"""Every file that the command may make."""
 FIGURES = {
     "arms_deg": "arms are {:.1f} degrees from the performer's on average",
     "legs_deg": "legs are {:.1f} degrees from the performer's on average",
@@ -77,7 +43,6 @@ FIGURES = {
     "hands_mm": "hands are {:.0f} mm from what they reach on average",
     "ik_fk_mm": "FK and IK are at most {:.1f} mm apart",
 }
-"""Sentences on the figures that people ask for first."""
 
 
 def retarget_command(arguments: argparse.Namespace) -> None:
@@ -86,28 +51,36 @@ def retarget_command(arguments: argparse.Namespace) -> None:
     settings = CharacterSettings(CharacterFile.parse(arguments.character), arguments.map, _options(arguments))
     formats = _formats(arguments.format)
     motion_file, blend = _source(arguments.motion)
-    _check_output(arguments.output)
+    output: Path = arguments.output
+    refuse_unsupported_output(output)
+    if (output / CONVERSION).exists():
+        raise InputError(f"{output}: holds the result of a conversion; name another folder for the character")
     with arguments_console(arguments) as console:
-        record, files, notes = _retarget(arguments, settings, formats, (motion_file, blend), console)
+        record, files, notes = _retarget(
+            output, settings, formats, (motion_file, blend), console, arguments.debug
+        )
         result = {**record.to_json(), "notes": list(notes), "files": [str(file) for file in files]}
         console.finish(result, _text(record, notes, files))
 
 
 def _retarget(
-    arguments: argparse.Namespace,
+    output: Path,
     settings: CharacterSettings,
     formats: tuple[str, ...],
     source: tuple[Path, Path | None],
     console: Console,
+    debug: bool,
 ) -> tuple[RetargetRecord, list[Path], tuple[str, ...]]:
-    """Write the result; returns its record, its files, and notes on it."""
+    from ...bridge.character.import_character import missing_exporter
     from ...bridge.character.source import show_result
 
     motion_file, blend = source
     console.stage("Reading the motion")
     motion = read_motion(motion_file)
-    _check_formats(formats)
-    output: Path = arguments.output
+    for word in formats:  # what this Blender cannot write is refused before the work
+        why = missing_exporter(EXPORTS[word][0])
+        if why:
+            raise ConversionError(f"--format {word} cannot be written: {why[:1].lower()}{why[1:]}")
     kept: dict[str, str] = {}
     with output_folder(output, (*RESULT_FILES, AS_MADE), RECORD_FILE, kept) as staging_folder:
         record = write_character_result(
@@ -117,25 +90,18 @@ def _retarget(
             lambda scene, shown: show_result(scene, blend, shown),
             (staging_folder, real_path(output)),
             console,
-            arguments.debug,
+            debug,
             formats,
         )
         made = [name for name in RESULT_FILES[1:] if (staging_folder / name).exists()]
         write_made_digests(staging_folder, made)
-        kept.update(
-            changed_files(output, staging_folder, RESULT_FILES, (CHARACTER_BLEND,), _made_before(output))
-        )
+        before: Mapping[str, str] = {}
+        with suppress(InputError):
+            before = read_retarget_record(output).files
+        kept.update(changed_files(output, staging_folder, RESULT_FILES, (CHARACTER_BLEND,), before))
         files = [output / name for name in (*made, RECORD_FILE)]
     notes = (*record.notes, *(kept_note(*names) for names in kept.items()))
     return record, files, notes
-
-
-def _made_before(output: Path) -> dict[str, str]:
-    """Digests of the files of the last result in a folder."""
-    try:
-        return dict(read_retarget_record(output).files)
-    except InputError:
-        return {}
 
 
 def _options(arguments: argparse.Namespace) -> CharacterOptions:
@@ -174,22 +140,8 @@ def _formats(text: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(words))
 
 
-def _check_formats(formats: tuple[str, ...]) -> None:
-    """Refuse formats that this Blender cannot write, before the work."""
-    from ...bridge.character.import_character import missing_exporter
-
-    for word in formats:
-        why = missing_exporter(EXPORTS[word][0])
-        if why:
-            raise ConversionError(f"--format {word} cannot be written: {why[:1].lower()}{why[1:]}")
-
-
 def _source(path: Path) -> tuple[Path, Path | None]:
-    """The motion's file, and the .blend with its footage where it is a folder that has one.
-
-    Raises:
-        InputError: The folder has no motion.
-    """
+    """The motion's file, and the .blend with its footage where it is a folder that has one."""
     if not path.is_dir():
         return path, None
     motion, blend = path / MOTION, path / BLEND
@@ -198,12 +150,6 @@ def _source(path: Path) -> tuple[Path, Path | None]:
             f"{path}: holds no {MOTION}; it must be a folder that convert has written, or a motion's file"
         )
     return motion, blend if blend.is_file() else None
-
-
-def _check_output(output: Path) -> None:
-    refuse_unsupported_output(output)
-    if (output / CONVERSION).exists():
-        raise InputError(f"{output}: holds the result of a conversion; name another folder for the character")
 
 
 def _text(record: RetargetRecord, notes: tuple[str, ...], files: list[Path]) -> str:
@@ -216,3 +162,33 @@ def _text(record: RetargetRecord, notes: tuple[str, ...], files: list[Path]) -> 
     figures = {name: record.quality.get(name) for name in FIGURES}
     lines += [f"  {FIGURES[name].format(value)}" for name, value in figures.items() if value is not None]
     return "\n".join([*lines, *(f"  {file}" for file in files)])
+
+
+RETARGET = Command(
+    name="retarget",
+    description=(
+        "Puts the motion of a finished conversion onto a character. DIR then holds character.blend, the "
+        "character with the motion as its Action in front of the camera that filmed it, and retarget.json, "
+        "which says what was recognized, how surely, and how good the result is. DIR changes only once all "
+        "files are complete. Needs Blender."
+    ),
+    arguments=(
+        argument(
+            "motion",
+            metavar="OUT|motion.json",
+            type=Path,
+            help="folder of a result, as convert writes it, or its motion",
+        ),
+        argument("--character", "-c", metavar="FILE[:OBJECT]", required=True, help=CHARACTER_HELP),
+        argument("--map", metavar="TITLE|FILE|auto|none", default="auto", help=MAP_HELP),
+        *output("DIR", "folder for the result, new or old"),
+        argument(
+            "--format",
+            metavar="bvh,fbx,glb,usd",
+            default="",
+            help="further files of the character with its motion, separated by commas",
+        ),
+        *RETARGET_OPTIONS,
+    ),
+    run=retarget_command,
+)

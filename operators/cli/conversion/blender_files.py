@@ -6,7 +6,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ....core.errors import InputError
-from ....core.files.control_characters import real_path
+from ....core.files.paths import real_path
+from ....core.pipeline.result import BLEND, BVH
 from ....core.take.description import Description
 from ....core.take.motion import Motion
 from ....core.take.take import Take
@@ -43,21 +44,13 @@ FILE_NAME_BYTES = 64
 
 
 def refuse_unsupported_paths(description: Description, output: Path) -> None:
-    """Refuse a take or an output folder whose path is too long for Blender or not valid UTF-8.
-
-    Raises:
-        InputError: A path is unsupported; the sentence says how long it may be.
-    """
+    """Refuse a take or an output folder whose path is too long for Blender or not valid UTF-8."""
     _check(description.clip, 0)
     refuse_unsupported_output(output)
 
 
 def refuse_unsupported_output(output: Path) -> None:
-    """Refuse an output folder in which Blender could not write.
-
-    Raises:
-        InputError: Its path is too long for Blender or not valid UTF-8.
-    """
+    """Refuse an output folder in which Blender could not write."""
     _check(output, FILE_NAME_BYTES)
 
 
@@ -77,26 +70,8 @@ def _check(path: Path, reserved_bytes: int) -> None:
         )
 
 
-BLEND, BVH = "motion.blend", "motion.bvh"
-
-
 def write_blender_files(take: Take, motion: Motion, staging_folder: Path, output: Path, debug: bool) -> str:
-    """Let Blender write both files into the staging folder.
-
-    Args:
-        take: Clip, camera, body and what is followed.
-        motion: The motion to write.
-        staging_folder: Where the files are wanted.
-        output: The folder of the result, as a real path.
-        debug: Whether to let Blender's messages through.
-
-    Returns:
-        Digest of the curves in the .blend.
-
-    Raises:
-        InputError: Blender cannot read the clip.
-        ConversionError: Blender cannot write a file.
-    """
+    """Let Blender write both files into the staging folder."""
     with hidden_files((BLEND, BVH), staging_folder, output) as hidden, blender_silence(debug):
         from ...bridge.result_files import write_scene
 

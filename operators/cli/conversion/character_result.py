@@ -11,12 +11,12 @@ import numpy as np
 
 from ....core.body.kinematics import SegmentMotion, segment_motion
 from ....core.errors import InputError, KeymarkError, describe_unexpected
-from ....core.files.control_characters import regular_file_size
 from ....core.files.digest import content_digest
+from ....core.files.paths import regular_file_size
 from ....core.finish.natural_extremities import natural_extremities
+from ....core.pipeline.result import CHARACTER_BLEND, CHARACTER_PICTURE
 from ....core.progress import Job, run
 from ....core.report.canvas import write_png
-from ....core.report.character_sheet import PICTURE
 from ....core.retarget.character import LIMBS, Character
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.maps.map_registry import ChosenMap, choose_map, map_digests
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from ...bridge.character.retarget import Retargeted
 
 
-CHARACTER_BLEND = "character.blend"
-CHARACTER_PICTURE = f"report/{PICTURE}"
 EXPORTS = {"bvh": ("BVH", "character.bvh"), "fbx": ("FBX", "character.fbx")}
 EXPORTS |= {"glb": ("GLTF", "character.glb"), "usd": ("USD", "character.usdc")}
 """By the word for it: the format of `bridge/export_formats`, and the file."""
@@ -69,12 +67,7 @@ class OpenedCharacter:
 def opened_character(
     file: CharacterFile, wanted_map: str, debug: bool
 ) -> Iterator[tuple["bpy.types.Scene", OpenedCharacter]]:
-    """Open a character and choose its map, in a scene that is removed again with all that is in it.
-
-    Raises:
-        InputError: The file cannot be read, holds no such armature, or one that is no character; or there is
-            no such map, or it is for another character. The sentence begins with the file or the map.
-    """
+    """Open a character and choose its map, in a scene that is removed again with all that is in it."""
     with blender_silence(debug):
         from ...bridge.blend_files import own_scene, showing_scene
         from ...bridge.character.import_character import import_character
@@ -118,10 +111,6 @@ def write_character_result(
         debug: Whether to let Blender's messages through.
         formats: Words of `EXPORTS`.
         picture: Whether to draw the character beside the footage, where the scene shows some.
-
-    Raises:
-        InputError: The character or its map cannot be used.
-        ConversionError: A file cannot be written.
     """
     staging_folder, output = folders
     console.stage("Opening the character")
@@ -214,9 +203,6 @@ def _silenced(job: Job[Result], debug: bool) -> Job[Result]:
         yield progress
 
 
-# --- The characters of a shoot, each looked at once, before takes are checked in threads without Blender
-
-
 Wanted = tuple[CharacterFile, str]
 
 
@@ -224,7 +210,6 @@ class CharacterChecks:
     """What is wrong with characters, and what is doubtful about them."""
 
     def __init__(self, shoot: Shoot, debug: bool) -> None:
-        """Look at all characters that the takes of a shoot name."""
         self._debug = debug
         self._findings: dict[Wanted, tuple[KeymarkError | None, Sequence[str]]] = {}
         for take in shoot.takes:
@@ -234,11 +219,7 @@ class CharacterChecks:
                     self._look_at(settings)
 
     def check(self, settings: CharacterSettings) -> Sequence[str]:
-        """What is doubtful about a character.
-
-        Raises:
-            InputError: It cannot be used, or its map is not for it.
-        """
+        """What is doubtful about a character."""
         error, doubts = self._findings[settings.file, settings.map]
         if error is not None:
             raise error

@@ -57,7 +57,6 @@ def _save(file: Path, build: Callable[[], object]) -> None:
 
 
 def _anna(character: Character) -> bpy.types.Object:
-    """A character with a skin."""
     armature = _named(build_character(character), "Anna")
     mesh = bpy.data.meshes.new("Anna body")
     mesh.from_pydata([(0, 0, 1), (0.1, 0, 1), (0, 0.1, 1.3)], [], [(0, 1, 2)])

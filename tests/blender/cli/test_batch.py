@@ -51,7 +51,6 @@ def shoot(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def results(shoot: Path) -> Path:
-    """The shoot's results from a single worker."""
     out = shoot.parent / "one"
     assert main(["batch", str(shoot), "--output", str(out), "--jobs", "1", "--quiet"]) == 1
     return out
@@ -81,12 +80,10 @@ def batch(shoot: Path, out: Path, capsys: pytest.CaptureFixture[str], *more: str
 
 
 def statuses(said: Any) -> dict[str, str]:
-    """The status of each take."""
     return {take["take"]: take["status"] for take in said["takes"]}
 
 
 def test_good_takes_are_converted_and_bad_ones_say_why(results: Path) -> None:
-    """Every good take has the files of its record; a bad one has none, and a sentence in the summary."""
     for name in GOOD:
         record = read_record(results / name)
         assert all((results / name / file).stat().st_size > 0 for file in record.files)
@@ -102,7 +99,6 @@ def test_good_takes_are_converted_and_bad_ones_say_why(results: Path) -> None:
 def test_takes_of_any_clothes_are_converted_beside_others(
     shoot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Markers, keypoints by the name that every take has, and contours alone; one lacks what is asked for."""
     own = tmp_path / "shoot"
     shutil.copytree(shoot / "day1", own / "day1", ignore=shutil.ignore_patterns("text.mp4"))
     said = json.loads((shoot / "shoot.json").read_text(encoding="utf-8"))
@@ -123,7 +119,6 @@ def test_takes_of_any_clothes_are_converted_beside_others(
 def test_two_workers_give_the_same_bytes_as_one(
     shoot: Path, results: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Motions, records and failures, by any worker and in any order."""
     out = shoot.parent / "two"
     status, said = batch(shoot, out, capsys, "--jobs", "2")
     assert status == 1 and said["counts"] == {"converted": 3, "unchanged": 0, "failed": 2, "waiting": 0}
@@ -133,7 +128,6 @@ def test_two_workers_give_the_same_bytes_as_one(
 def test_what_is_converted_is_skipped_until_its_input_changes(
     shoot: Path, results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A run on a copy changes no file; changed keyframes or a lost file cause a conversion."""
     own = Path(shutil.copytree(shoot / "day1", tmp_path / "shoot" / "day1")).parent
     shutil.copyfile(shoot / "shoot.json", own / "shoot.json")
     (own / "day1" / "text.mp4").unlink()
@@ -157,7 +151,6 @@ def test_what_is_converted_is_skipped_until_its_input_changes(
 def test_keyframes_are_found_and_found_again_where_a_library_changes(
     shoot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """By the option and by the field, which are the same input; beside keyframes that are posed."""
     own = Path(shutil.copytree(shoot / "day1", tmp_path / "shoot" / "day1")).parent
     shutil.copyfile(shoot / "shoot.json", own / "shoot.json")
     (own / "day1" / "text.mp4").unlink()
@@ -188,7 +181,6 @@ def test_a_worker_killed_in_the_middle_costs_its_take_one_retry(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A take whose worker is killed once converts to the same bytes; killed twice, it alone fails."""
     for death in ("take01-1", "take02-1", "take02-2"):
         (tmp_path / death).touch()
     words = [sys.executable, str(TESTS / "_dying_worker.py"), str(tmp_path)]
@@ -212,7 +204,6 @@ def test_a_worker_killed_in_the_middle_costs_its_take_one_retry(
 def test_an_interrupted_batch_is_whole_and_goes_on(
     shoot: Path, results: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """By Ctrl-C and by SIGTERM; the same command then converts the rest."""
     out = shoot.parent / "interrupted"
     interrupt(shoot, out, os.killpg, signal.SIGINT)
     interrupt(shoot, out, os.kill, signal.SIGTERM)
@@ -244,7 +235,6 @@ def interrupt(shoot: Path, out: Path, send: Callable[[int, int], None], how: int
 
 
 def test_workers_end_when_their_batch_does(shoot: Path, tmp_path: Path) -> None:
-    """A worker whose batch is gone stops at its next message, and cleans up."""
     words = [*command.worker_command_line()]
     worker = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert worker.stdin is not None and worker.stdout is not None

@@ -22,7 +22,6 @@ def said(capfd: Out) -> tuple[str, str]:
 
 
 def test_it_says_what_plays_which_role(cast: Path, capfd: Out) -> None:
-    """A line a role, with its bones and how surely; nothing on standard error."""
     assert main(["character", str(cast / "anna.blend")]) == 0
     out, err = said(capfd)
     assert err == "" and "'Anna', recognized" in out
@@ -31,7 +30,6 @@ def test_it_says_what_plays_which_role(cast: Path, capfd: Out) -> None:
 
 
 def test_its_map_can_be_kept_and_used_again(cast: Path, tmp_path: Path, capfd: Out) -> None:
-    """Written once, not over a file that is there; then found to be the character's own."""
     file = tmp_path / "maps" / "anna.json"
     file.parent.mkdir()
     words = ["character", f"{cast / 'two.blend'}:Anna", "--output", str(file)]
@@ -54,7 +52,6 @@ def test_its_map_can_be_kept_and_used_again(cast: Path, tmp_path: Path, capfd: O
 def test_a_saved_map_is_found_by_the_bones(
     cast: Path, tmp_path: Path, capfd: Out, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """In the folders of libraries; `none` recognizes all the same."""
     write_character_map(tmp_path / "own.json", replace(plain_map(plain_character()), title="Studio"))
     monkeypatch.setenv("KEYMARK_LIBRARIES", str(tmp_path))
     assert main(["character", str(cast / "anna.blend")]) == 0
@@ -86,7 +83,6 @@ BAD = {
 def test_bad_characters_are_one_sentence(
     cast: Path, result: Path, tmp_path: Path, capfd: Out, command: str, text: str
 ) -> None:
-    """Status 2, the file is named, and nothing is written."""
     output = tmp_path / "out"
     output.mkdir()
     (output / "mine.txt").write_text("mine", encoding="utf-8")
@@ -119,7 +115,6 @@ def test_bad_characters_are_one_sentence(
 def test_a_map_for_other_bones_is_refused(
     cast: Path, result: Path, tmp_path: Path, capfd: Out, change: object, expected: str
 ) -> None:
-    """By both commands: the map, the character and the first bones that are missing."""
     assert callable(change)
     write_character_map(tmp_path / "other.json", change(plain_map(plain_character())))
     character, given = str(cast / "anna.blend"), str(tmp_path / "other.json")
@@ -134,7 +129,6 @@ def test_a_map_for_other_bones_is_refused(
 
 
 def test_a_map_that_is_none_is_refused(cast: Path, tmp_path: Path, capfd: Out) -> None:
-    """A missing file, another format, and a name that no map has."""
     character = str(cast / "anna.blend")
     shutil.copyfile(Path(__file__), tmp_path / "code.json")
     (tmp_path / "take.json").write_text('{"fps": 30}', encoding="utf-8")

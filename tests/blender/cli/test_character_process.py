@@ -17,7 +17,6 @@ PATIENCE_S = 120.0
 
 @pytest.mark.parametrize("name", ["anna.glb", "damaged.glb"])
 def test_a_process_that_reads_gltf_ends(tmp_path: Path, repository: Path, name: str) -> None:
-    """Blender's messages stay away, the status is the command's, and the process does not wait for ever."""
     (tmp_path / "links").mkdir()
     (tmp_path / "links" / "keymark").symlink_to(repository, target_is_directory=True)
     write_glb(plain_character(), tmp_path / "anna.glb")

@@ -38,7 +38,6 @@ def pristine(cast: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def shoot(pristine: Path, tmp_path: Path) -> Path:
-    """A copy for one test."""
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 
@@ -80,7 +79,6 @@ def batch(shoot: Path, tmp_path: Path, capfd: Out) -> Batch:
 
 
 def test_every_take_gets_the_character(batch: Batch, converted: Path, tmp_path: Path) -> None:
-    """Its files are part of the result, which a second batch skips, and the clip is behind the camera."""
     lines = (converted / "summary.jsonl").read_text(encoding="utf-8").splitlines()
     assert [json.loads(line)["status"] for line in lines] == ["converted"] * TAKES
     for name in NAMES:
@@ -104,7 +102,6 @@ def test_every_take_gets_the_character(batch: Batch, converted: Path, tmp_path: 
 def test_a_change_of_the_character_converts_anew(
     batch: Batch, converted: Path, shoot: Path, tmp_path: Path
 ) -> None:
-    """Of its file, its options, its map, and of saved maps; without a character its files go."""
     assert batch() == {"unchanged": TAKES}
     name_character(shoot, file="cast/anna.blend", legs="fk")
     assert batch() == {"converted": TAKES}
@@ -134,7 +131,6 @@ def test_a_change_of_the_character_converts_anew(
 def test_a_bad_character_fails_its_takes_before_the_work(
     batch: Batch, shoot: Path, tmp_path: Path, capfd: Out
 ) -> None:
-    """Nothing of them is written; the sentence names the character."""
     name_character(shoot, file="cast/two.blend")
     assert batch() == {"failed": TAKES}
     assert not (tmp_path / "out" / NAMES[0]).exists()
@@ -146,7 +142,6 @@ def test_a_bad_character_fails_its_takes_before_the_work(
 
 
 def test_check_says_it_beforehand(shoot: Path, capfd: Out) -> None:
-    """A character that cannot be used, one that is not there, a map for other bones; a good one is ready."""
     before = tree(shoot)
     for character, said in (
         ({"file": "cast/two.blend"}, "holds 2 armatures, 'Anna', 'Ben'"),
@@ -168,7 +163,6 @@ def test_check_says_it_beforehand(shoot: Path, capfd: Out) -> None:
 
 
 def test_merge_carries_the_characters_actions(converted: Path, tmp_path: Path, capfd: Out) -> None:
-    """Beside the actors', in catalogs of their own, with curves and slot as they were made."""
     library = tmp_path / "library.blend"
     words = ["merge", str(converted), "--output", str(library), "--name", "Walk"]
     assert main([*words, "--json"]) == 0
@@ -198,7 +192,6 @@ def test_merge_carries_the_characters_actions(converted: Path, tmp_path: Path, c
 def test_merge_names_a_character_that_was_changed(
     converted: Path, tmp_path: Path, capfd: Out, file: str
 ) -> None:
-    """Its take's motion is in the library, the character's Action is not, and the status says so."""
     damaged = converted / NAMES[1] / file
     damaged.write_bytes(damaged.read_bytes()[: damaged.stat().st_size // 2])
     library = tmp_path / "library.blend"

@@ -17,12 +17,10 @@ FRAMES = 16
 
 @pytest.fixture
 def take(tmp_path: Path) -> Path:
-    """A small take."""
     return write_synthetic_take(tmp_path / "takes" / "small", FRAMES)
 
 
 def test_converting_writes_a_scene_that_opens_and_finds_its_clip(take: Path, tmp_path: Path) -> None:
-    """motion.blend has an animated armature and the footage by a relative path, motion.bvh every frame."""
     out = tmp_path / "results" / "out"
     assert main(["convert", str(take), "--output", str(out), "--method", "interpolation", "--quiet"]) == 0
     bpy.ops.wm.open_mainfile(filepath=str(out / "motion.blend"))
@@ -39,7 +37,6 @@ def test_converting_writes_a_scene_that_opens_and_finds_its_clip(take: Path, tmp
 def test_a_folder_filled_from_within_finds_its_clip_as_well(
     take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where staging beside the output is impossible, the clip's relative path is right as well."""
     out = tmp_path / "results" / "out"
     out.mkdir(parents=True)
     from keymark.core.files import output_folder
@@ -73,7 +70,6 @@ def test_a_folder_filled_from_within_finds_its_clip_as_well(
     reason="a Blender program's own Python has no bpy; tests/real_blender converts in it",
 )
 def test_standard_output_is_json_alone(take: Path, tmp_path: Path, repository: Path) -> None:
-    """In a process of its own, Blender's messages reach neither standard output nor standard error."""
     links = tmp_path / "links"
     links.mkdir()
     (links / "keymark").symlink_to(repository, target_is_directory=True)
@@ -93,7 +89,6 @@ def test_standard_output_is_json_alone(take: Path, tmp_path: Path, repository: P
 def test_a_scene_that_cannot_be_written_leaves_nothing_behind(
     take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """When Blender's exporter fails, status is 1, the line says so, and the output was never made."""
     from keymark.core.errors import ConversionError
     from keymark.operators.bridge import result_files
 
@@ -115,7 +110,6 @@ def test_a_scene_that_cannot_be_written_leaves_nothing_behind(
 def test_a_failure_leaves_the_old_files_and_nothing_else(
     take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, writer: str, within: bool
 ) -> None:
-    """Half a file never replaces a whole one, with staging beside the output and within it."""
     from keymark.core.errors import ConversionError
     from keymark.core.files import output_folder
     from keymark.operators.bridge import result_files

@@ -23,7 +23,6 @@ KINDS = {
 
 @pytest.fixture
 def settings(repository: Path) -> list[dict[str, Any]]:
-    """All settings as the script declares them."""
     script = repository / "presets" / "flamenco" / "keymark_convert.js"
     source = f"{script.read_text(encoding='utf-8')}\nprocess.stdout.write(JSON.stringify(JOB_TYPE.settings));"
     done = subprocess.run([str(NODE), "-e", source], capture_output=True, text=True, check=True)
@@ -32,7 +31,6 @@ def settings(repository: Path) -> list[dict[str, Any]]:
 
 @pytest.fixture
 def group(settings: list[dict[str, Any]]) -> Iterator[Any]:
-    """A group of such properties in a scene."""
     made = {}
     for setting in settings:
         given = {name: setting[name] for name in ("description", "default") if name in setting}
@@ -52,7 +50,6 @@ def group(settings: list[dict[str, Any]]) -> Iterator[Any]:
 
 
 def test_blender_takes_every_setting(group: Any, settings: list[dict[str, Any]]) -> None:
-    """The property has the setting's type, limits, choices and default."""
     for setting in settings:
         assert getattr(group, setting["key"]) == setting.get("default", "")
     group.tasks = -5
@@ -63,7 +60,6 @@ def test_blender_takes_every_setting(group: Any, settings: list[dict[str, Any]])
 
 
 def test_people_can_read_what_they_are_asked(settings: list[dict[str, Any]]) -> None:
-    """A visible setting has a label and a tooltip, without the full stop that Blender adds."""
     shown = [one for one in settings if one.get("visible") != "web"]
     assert len(shown) == 13
     assert all(one["label"] and one["description"][-1] not in ".!" for one in shown)

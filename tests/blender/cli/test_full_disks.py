@@ -15,7 +15,7 @@ import pytest
 from _faults import tree
 from _results import blend_is_of, hidden_files, is_whole, same_in_every_run
 from _synthetic_take import write_synthetic_take
-from keymark.core.files.control_characters import real_path
+from keymark.core.files.paths import real_path
 from keymark.operators.cli.main import main
 
 pytestmark = pytest.mark.faults
@@ -25,12 +25,10 @@ NEWER = ("--method", "interpolation", "--quiet")
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take of eight frames."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "tiny", 8, 4)
 
 
 def convert(take: Path, out: Path, words: tuple[str, ...]) -> int:
-    """Run `keymark convert`."""
     return main(["convert", str(take), "--output", str(out), *words])
 
 
@@ -50,13 +48,11 @@ def mounted(folder: Path, *words: str) -> Iterator[None]:
 
 
 def remount(folder: Path, options: str) -> None:
-    """Change a mounted file system."""
     subprocess.run(["mount", "-o", f"remount,{options}", str(folder)], check=True)
 
 
 @pytest.fixture(scope="module")
 def wanted(take: Path) -> dict[str, bytes | None]:
-    """The result of a conversion on a disk with room."""
     out = take.parent / "disk" / "results" / "out"
     assert convert(take, out, NEWER) == 0
     results = same_in_every_run(out)
@@ -67,7 +63,6 @@ def wanted(take: Path) -> dict[str, bytes | None]:
 def test_a_disk_that_fills_up_keeps_the_older_results(
     take: Path, wanted: dict[str, bytes | None], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Wherever the disk becomes full, one sentence says so and no file has changed; with room it converts."""
     disk = take.parent / "disk"
     out = disk / "results" / "out"
     with mounted(disk, "-t", "tmpfs", "-o", "size=16m", "none"):
@@ -99,7 +94,6 @@ def test_a_disk_that_fills_up_keeps_the_older_results(
 def test_files_that_may_not_grow_further_are_noticed(
     take: Path, wanted: dict[str, bytes | None], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With each writer: Python, OpenCV, Blender and its exporters."""
     import resource
 
     out = take.parent / "disk" / "results" / "out"
@@ -127,7 +121,6 @@ def test_files_that_may_not_grow_further_are_noticed(
 def test_what_is_read_may_lie_on_a_disk_that_cannot_be_written(
     take: Path, wanted: dict[str, bytes | None], tmp_path: Path
 ) -> None:
-    """No file is written beside the input."""
     disk = take.parent / "disk"
     before = tree(take)
     with mounted(take, "--bind", str(take)):
@@ -141,7 +134,6 @@ def test_what_is_read_may_lie_on_a_disk_that_cannot_be_written(
 def test_results_on_a_disk_that_cannot_be_written_are_refused(
     take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """At once, with a sentence that names the folder."""
     disk = tmp_path / "disk"
     with mounted(disk, "-t", "tmpfs", "-o", "size=4m", "none"):
         (disk / "old").mkdir()
@@ -153,7 +145,6 @@ def test_results_on_a_disk_that_cannot_be_written_are_refused(
 
 
 def test_a_folder_that_is_a_disk_of_its_own_is_filled_from_within(take: Path, tmp_path: Path) -> None:
-    """Unfinished files of a killed process are removed from within it, too."""
     out = tmp_path / "results" / "out"
     with mounted(out, "-t", "tmpfs", "-o", "size=16m", "none"):
         assert convert(take, out, OLDER) == 0
@@ -184,7 +175,6 @@ def odd_paths(folder: Path) -> dict[str, Path]:
 @pytest.mark.skipif(os.name == "nt", reason="Windows forbids such names")
 @pytest.mark.parametrize("what", sorted(odd_paths(Path("/"))))
 def test_odd_paths_are_read_and_written(what: str, take: Path, tmp_path: Path) -> None:
-    """Both the take and its results have such paths, and Blender finds both."""
     folder = odd_paths(tmp_path)[what]
     own, out = folder / "take", folder / "results"
     if what == "as long as a name may be":
@@ -216,7 +206,6 @@ def test_paths_that_blender_cannot_reach_are_one_sentence(
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Before any work, and without a new file."""
     far = path_below(tmp_path)
     own, out = (far, tmp_path / "out") if of == "take" else (take, far)
     if of == "take":
@@ -232,7 +221,6 @@ def test_paths_that_blender_cannot_reach_are_one_sentence(
 
 
 def test_what_somebody_has_changed_is_kept_beside(take: Path, tmp_path: Path) -> None:
-    """A .blend that a person has changed is kept, also one without a record; the notes say so."""
     out = tmp_path / "out"
     assert convert(take, out, OLDER) == 0
     (out / "motion.blend").write_bytes(b"worked in")

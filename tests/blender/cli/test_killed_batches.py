@@ -31,7 +31,6 @@ SEED = 22
 
 @pytest.fixture(scope="module")
 def shoot(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A shoot of small takes."""
     return write_shoot(tmp_path_factory.mktemp("shoots") / "shoot", TAKES)
 
 
@@ -77,7 +76,6 @@ def results(out: Path) -> dict[str, bytes | None]:
 
 
 def workers(process: "subprocess.Popen[str]") -> list[int]:
-    """The processes that a batch has started."""
     with suppress(OSError):
         text = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii")
         return [int(word) for word in text.split()]
@@ -85,7 +83,6 @@ def workers(process: "subprocess.Popen[str]") -> list[int]:
 
 
 def test_killed_batches_lose_nothing(shoot: Path) -> None:
-    """The batch, one of its workers, or all of them are killed at random moments."""
     chance = random.Random(SEED)
     out = shoot.parent / "results"
     begun = time.monotonic()
@@ -121,7 +118,6 @@ def test_killed_batches_lose_nothing(shoot: Path) -> None:
 
 
 def test_two_batches_on_one_folder_end_well(shoot: Path) -> None:
-    """Each take is converted by one batch; the other waits for it or skips it."""
     out = shoot.parent / "alone"
     undisturbed = to_the_end(shoot, out, "--jobs", "2")
     shutil.rmtree(out)

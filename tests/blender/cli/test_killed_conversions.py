@@ -41,12 +41,10 @@ class Undisturbed:
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take of eight frames."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "tiny", 8, 4)
 
 
 def run(take: Path, out: Path, kind: str, when: str) -> "subprocess.CompletedProcess[str]":
-    """One conversion in a process of its own."""
     script = Path(__file__).resolve().parents[2] / "_dying.py"
     words = ["convert", str(take), "--output", str(out), "--quiet", *RUNS[kind]]
     return subprocess.run(
@@ -55,7 +53,6 @@ def run(take: Path, out: Path, kind: str, when: str) -> "subprocess.CompletedPro
 
 
 def to_the_end(take: Path, out: Path, kind: str) -> Undisturbed:
-    """Run a conversion to its end."""
     done = run(take, out, kind, "never")
     assert done.returncode == 0, done.stderr
     took = json.loads(done.stdout.splitlines()[-1])
@@ -65,7 +62,6 @@ def to_the_end(take: Path, out: Path, kind: str) -> Undisturbed:
 
 @pytest.fixture(scope="module")
 def undisturbed(take: Path) -> dict[str, Undisturbed]:
-    """An undisturbed run of every kind."""
     found = {}
     for kind in RUNS:
         out = take.parent / "results" / "out"  # of equal depth everywhere: a .blend holds the way to its clip
@@ -75,7 +71,6 @@ def undisturbed(take: Path) -> dict[str, Undisturbed]:
 
 
 def test_two_runs_leave_the_same(take: Path, undisturbed: dict[str, Undisturbed]) -> None:
-    """Every file is the same byte for byte; of the .blend, the curves."""
     out = take.parent / "results" / "out"
     assert to_the_end(take, out, "newer").results == undisturbed["newer"].results
     assert blend_is_of(out)
@@ -84,10 +79,6 @@ def test_two_runs_leave_the_same(take: Path, undisturbed: dict[str, Undisturbed]
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_fifty_deaths_leave_no_trace(take: Path, undisturbed: dict[str, Undisturbed], seed: int) -> None:
-    """Kills at random times and file accesses: a result is whole or not taken for one, and the last is right.
-
-    Two kinds of run follow each other in one folder, so that the results of one are replaced by the other's.
-    """
     chance = random.Random(seed)
     out = take.parent / "results" / "out"
     survived = ended = 0

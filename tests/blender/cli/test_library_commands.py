@@ -12,7 +12,6 @@ from keymark.operators.cli.main import main
 
 @pytest.fixture
 def library(tmp_path: Path) -> Path:
-    """A library's file."""
     write_library(tmp_path / "small_steps.json", small_library())
     return tmp_path / "small_steps.json"
 
@@ -20,7 +19,6 @@ def library(tmp_path: Path) -> Path:
 def test_a_library_survives_its_way_through_a_blend(
     library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The file that comes back has the same bytes; the folder holds the .blend and the catalogs."""
     folder = tmp_path / "assets"
     assert main(["library", "blend", str(library), "--output", str(folder), "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
@@ -36,7 +34,6 @@ def test_a_library_survives_its_way_through_a_blend(
 def test_nothing_is_replaced_unless_told(
     library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """An existing .blend is kept; a file that is no .blend is refused in one line."""
     folder = tmp_path / "assets"
     folder.mkdir()
     (folder / "small_steps.blend").write_text("mine", encoding="utf-8")

@@ -41,7 +41,6 @@ AddResult = Callable[[str], Path]
 
 @pytest.fixture
 def results(tmp_path: Path) -> Path:
-    """A folder for results."""
     return tmp_path / "results"
 
 
@@ -61,7 +60,6 @@ def add_result(results: Path, wave_motion: Motion) -> AddResult:
 
 
 def merge(results: Path, output: Path, *more: str) -> int:
-    """Run the command."""
     return main(["merge", str(results), "--output", str(output), "--quiet", *more])
 
 
@@ -73,14 +71,12 @@ def loaded(file: Path) -> list[bpy.types.Action]:
 
 
 def catalogs(folder: Path) -> dict[str, str]:
-    """Paths of catalogs by their identifiers."""
     lines = (folder / CATALOGS).read_text(encoding="utf-8").splitlines()
     entries = [line.split(":") for line in lines if line.count(":") == 2 and not line.startswith("#")]
     return {identifier: path for identifier, path, _ in entries}
 
 
 def values(action: bpy.types.Action, frame: float) -> dict[tuple[str, int], float]:
-    """Values of all curves of an Action at a frame."""
     (slot,) = action.slots
     curves = action.layers[0].strips[0].channelbag(slot).fcurves
     return {(curve.data_path, curve.array_index): curve.evaluate(frame) for curve in curves}
@@ -89,7 +85,6 @@ def values(action: bpy.types.Action, frame: float) -> dict[tuple[str, int], floa
 def test_every_motion_becomes_an_asset_that_says_what_it_is(
     add_result: AddResult, results: Path, tmp_path: Path
 ) -> None:
-    """Names are the takes' own, catalogs their folders; description, tags and picture are there."""
     for name in ("day2/clip01", "day1/clip01", "day1/night: 2/clip", "single"):
         add_result(name)
     output = tmp_path / "library" / "shoot.blend"
@@ -121,7 +116,6 @@ def test_an_actor_given_the_action_moves_as_the_motion_says(
     wave_motion: Motion,
     shown_points: Callable[[bpy.types.Object], np.ndarray],
 ) -> None:
-    """Its bones show the motion's points to a hundredth of a millimeter, at any frame."""
     add_result("clip")
     assert merge(results, tmp_path / "library.blend") == 0
     (action,) = loaded(tmp_path / "library.blend")
@@ -135,7 +129,6 @@ def test_an_actor_given_the_action_moves_as_the_motion_says(
 def test_blender_itself_finds_the_slot(
     add_result: AddResult, results: Path, tmp_path: Path, body: Body
 ) -> None:
-    """Choosing the Action for an actor of the usual name, as animators do, animates it."""
     add_result("clip")
     assert merge(results, tmp_path / "library.blend") == 0
     (action,) = loaded(tmp_path / "library.blend")
@@ -145,7 +138,6 @@ def test_blender_itself_finds_the_slot(
 
 
 def test_curves_are_those_of_the_converted_scene(results: Path, tmp_path: Path) -> None:
-    """To the last digit that motion.json keeps, and on the same frames."""
     take = write_synthetic_take(tmp_path / "takes" / "small", 16)
     words = ["convert", str(take), "--output", str(results / "small"), "--no-report", "--quiet"]
     assert main([*words, "--method", "interpolation"]) == 0
@@ -169,7 +161,6 @@ def test_an_actor_that_is_dragged_into_a_scene_moves(
     wave_motion: Motion,
     shown_points: Callable[[bpy.types.Object], np.ndarray],
 ) -> None:
-    """Each take's motion is there as an actor as well, in catalogs of their own, all on one armature."""
     for name in ("day1/a", "day1/b"):
         add_result(name)
     assert merge(results, tmp_path / "library.blend") == 0
@@ -191,7 +182,6 @@ def test_an_actor_that_is_dragged_into_a_scene_moves(
 def test_merging_again_replaces_the_motions_and_keeps_the_catalogs(
     add_result: AddResult, results: Path, tmp_path: Path
 ) -> None:
-    """A deleted take leaves the library; a catalog that a person has added stays."""
     for name in ("day1/a", "day2/b"):
         add_result(name)
     output = tmp_path / "library.blend"
@@ -209,7 +199,6 @@ def test_merging_again_replaces_the_motions_and_keeps_the_catalogs(
 
 
 def test_the_open_file_stays_as_it_was(add_result: AddResult, results: Path, tmp_path: Path) -> None:
-    """The open file gets no data-block."""
     add_result("clip")
     before = {block.name for block in bpy.data.user_map()}
     assert merge(results, tmp_path / "library.blend") == 0
@@ -219,7 +208,6 @@ def test_the_open_file_stays_as_it_was(add_result: AddResult, results: Path, tmp
 def test_damaged_results_are_named_and_the_others_merged(
     add_result: AddResult, results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A changed motion, a cut off record and a record without its motion: exit 1, with all sound takes."""
     add_result("a")
     changed, cut, without = (add_result(name) for name in ("changed", "cut", "without"))
     motion = (changed / "motion.json").read_text(encoding="utf-8")
@@ -240,7 +228,6 @@ def test_damaged_results_are_named_and_the_others_merged(
 def test_takes_that_have_failed_are_named(
     add_result: AddResult, results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With the batch's sentences, so that the library is not taken for complete."""
     add_result("a")
     for number in range(7):
         write_failure(results, Failure(f"bad{number}", f"clip {number} is cut off", "input"))
@@ -254,7 +241,6 @@ def test_takes_that_have_failed_are_named(
 def test_where_nothing_is_sound_nothing_is_written(
     add_result: AddResult, results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Neither the .blend nor a file of catalogs."""
     (add_result("only") / "motion.json").write_text("{}", encoding="utf-8")
     output = tmp_path / "new" / "library.blend"
     assert merge(results, output) == 1
@@ -278,7 +264,6 @@ def test_unusable_places_are_refused(
     output: str,
     sentence: str,
 ) -> None:
-    """With a sentence, before any result is read."""
     add_result("clip")
     (tmp_path / "folder.blend").mkdir()
     assert merge(results, tmp_path / output) == 2
@@ -286,7 +271,6 @@ def test_unusable_places_are_refused(
 
 
 def test_folders_without_results_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Empty folders and missing ones."""
     assert merge(tmp_path / "nowhere", tmp_path / "library.blend") == 2
     assert "no such folder" in capsys.readouterr().err
     assert merge(tmp_path, tmp_path / "library.blend") == 2
@@ -294,7 +278,6 @@ def test_folders_without_results_are_refused(tmp_path: Path, capsys: pytest.Capt
 
 
 def test_long_and_like_names_are_told_apart(add_result: AddResult, results: Path, tmp_path: Path) -> None:
-    """No two Actions share a name, and none is longer than Blender 4.5 can hold."""
     names = ["day1/clip", "day1 clip", "ü" * 60 + "/" + "x" * 30 + "1", "ü" * 60 + "/" + "x" * 30 + "2"]
     for name in names:
         add_result(name)

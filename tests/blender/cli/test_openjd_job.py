@@ -26,7 +26,6 @@ NAMES = [f"day1/take{number:02d}" for number in range(1, TAKES + 1)]
 
 @pytest.fixture(scope="module")
 def template(repository: Path) -> Path:
-    """The template as it comes with Keymark."""
     return repository / "presets" / "openjd" / "keymark_convert.yaml"
 
 
@@ -53,25 +52,21 @@ def keymark(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def shoot(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Three tiny takes."""
     return write_shoot(tmp_path_factory.mktemp("shoots") / "walk", TAKES)
 
 
 def openjd(*words: object) -> "subprocess.CompletedProcess[str]":
-    """Call the reference command line."""
     return subprocess.run(
         [str(OPENJD), *map(str, words)], capture_output=True, text=True, encoding="utf-8", timeout=600
     )
 
 
 def parameters(keymark: Path, shoot: Path, output: Path, tasks: int = TAKES, **more: str) -> list[str]:
-    """A job's parameters as words."""
     given = {"Shoot": shoot, "Output": output, "Tasks": tasks, "Keymark": keymark, "Name": "Walk", **more}
     return [word for name, value in given.items() for word in ("-p", f"{name}={value}")]
 
 
 def test_the_template_is_valid_without_extensions(template: Path) -> None:
-    """The template is valid and has a task for each share."""
     done = openjd("check", template, "--extensions", "")
     assert done.returncode == 0, done.stdout + done.stderr
     words = ("-p", "Shoot=/shoot", "-p", "Output=/out", "-p", "Tasks=12", "--output", "json")
@@ -81,14 +76,12 @@ def test_the_template_is_valid_without_extensions(template: Path) -> None:
 
 @pytest.mark.parametrize("wrong", ["Tasks=0", "Tasks=many", "Method=best", "FailedTakes=maybe", "Name="])
 def test_unusable_parameters_are_refused(template: Path, wrong: str) -> None:
-    """Before any task runs, and by their names."""
     words = ("-p", "Shoot=/shoot", "-p", "Output=/out", "-p", "Tasks=1", "-p", wrong)
     done = openjd("summary", template, *words)
     assert done.returncode != 0 and wrong.partition("=")[0] in done.stdout + done.stderr
 
 
 def test_the_job_gives_what_a_batch_gives(template: Path, keymark: Path, shoot: Path, tmp_path: Path) -> None:
-    """Both tasks, then the merge: the same bytes of every motion and record, and a library of all three."""
     farm, alone = tmp_path / "farm", tmp_path / "alone"
     step = ("--step", "Merge", "--run-dependencies")
     done = openjd("run", template, *step, *parameters(keymark, shoot, farm, tasks=2))
@@ -110,7 +103,6 @@ def test_the_job_gives_what_a_batch_gives(template: Path, keymark: Path, shoot: 
 def test_a_task_converts_its_share_and_nothing_else(
     template: Path, keymark: Path, shoot: Path, tmp_path: Path
 ) -> None:
-    """One of two shares; and one beyond the takes has nothing to do."""
     output = tmp_path / "out"
     words = ("--step", "Convert", "-tp", "Task=2")
     done = openjd("run", template, *words, *parameters(keymark, shoot, output, tasks=2))
@@ -124,7 +116,6 @@ def test_a_task_converts_its_share_and_nothing_else(
 
 
 def test_a_character_goes_along(template: Path, keymark: Path, cast: Path, tmp_path: Path) -> None:
-    """A shoot that names one needs no further parameter: its files and its Action are there."""
     shoot, output = write_shoot(tmp_path / "shoot", 1), tmp_path / "out"
     shutil.copyfile(cast / "anna.blend", shoot / "anna.blend")
     said = json.loads((shoot / "shoot.json").read_text("utf-8")) | {"character": {"file": "anna.blend"}}
@@ -143,7 +134,6 @@ def test_a_character_goes_along(template: Path, keymark: Path, cast: Path, tmp_p
 def test_a_failed_take_stops_the_others_only_if_that_is_wanted(
     template: Path, keymark: Path, tmp_path: Path
 ) -> None:
-    """Then the others are merged, and the job fails at its end with the name of the take."""
     shoot = write_shoot(tmp_path / "shoot", 2)
     (shoot / "day1" / "take02.mp4").write_bytes(b"no video")
     output = tmp_path / "out"

@@ -22,7 +22,6 @@ Retarget = Callable[..., int]
 
 @pytest.fixture
 def output(tmp_path: Path) -> Path:
-    """The folder for the result."""
     return tmp_path / "deep" / "out"
 
 
@@ -44,7 +43,6 @@ def opened(file: Path) -> bpy.types.Scene:
 
 
 def test_the_character_performs_as_filmed(retarget: Retarget, result: Path, output: Path) -> None:
-    """With camera, clip, range and rate of the take, its skin, and the Action assigned with its slot."""
     assert retarget() == 0
     assert sorted(tree(output)) == MADE
     bpy.ops.wm.open_mainfile(filepath=str(result / "motion.blend"))
@@ -73,7 +71,6 @@ def test_the_character_performs_as_filmed(retarget: Retarget, result: Path, outp
 def test_the_record_says_what_was_recognized_and_how_good_it_is(
     retarget: Retarget, output: Path, cast: Path
 ) -> None:
-    """Roles with confidence and source, options, and the digest of the curves in character.blend."""
     assert retarget("--legs", "fk", "--root-motion", "in-place", "--tolerance", "none") == 0
     record = read_retarget_record(output)
     assert record.take == "small" and record.character.file == "anna.blend"
@@ -88,7 +85,6 @@ def test_the_record_says_what_was_recognized_and_how_good_it_is(
 
 
 def test_the_same_input_gives_the_same_result(retarget: Retarget, output: Path) -> None:
-    """A second run replaces the first; nothing in the record depends on time."""
     assert retarget() == 0
     first = (output / "retarget.json").read_bytes()
     assert retarget() == 0
@@ -99,7 +95,6 @@ def test_the_same_input_gives_the_same_result(retarget: Retarget, output: Path) 
 def test_what_a_person_has_changed_is_kept(
     retarget: Retarget, output: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """The animator's character.blend stays beside the new one, and a note says so."""
     assert retarget() == 0
     scene = opened(output / "character.blend")
     scene.objects["Anna"].location.x += 1.0
@@ -112,7 +107,6 @@ def test_what_a_person_has_changed_is_kept(
 
 
 def test_it_says_what_it_made(retarget: Retarget, output: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """One object for programs."""
     assert retarget("--json") == 0
     answer = json.loads(capsys.readouterr().out)
     assert sorted(answer["files"]) == [str(output / name) for name in MADE if name[0] != "." and "." in name]
@@ -121,7 +115,6 @@ def test_it_says_what_it_made(retarget: Retarget, output: Path, capsys: pytest.C
 
 @pytest.mark.parametrize("word", ["bvh", "fbx", "glb", "usd"])
 def test_exports_hold_character_and_motion(retarget: Retarget, output: Path, word: str) -> None:
-    """Each can be imported again, with the bones and a motion; BVH has no mesh."""
     kind = {"bvh": "BVH", "fbx": "FBX", "glb": "GLTF", "usd": "USD"}[word]
     if FORMATS[kind].missing():
         pytest.skip(FORMATS[kind].missing())
@@ -144,7 +137,6 @@ def test_exports_hold_character_and_motion(retarget: Retarget, output: Path, wor
 
 
 def test_a_motion_needs_no_footage(retarget: Retarget, result: Path, output: Path, tmp_path: Path) -> None:
-    """A motion's file alone gives range and rate, and no camera."""
     file = tmp_path / "lone" / "motion.json"
     file.parent.mkdir()
     shutil.copyfile(result / "motion.json", file)
@@ -170,7 +162,6 @@ def test_a_motion_needs_no_footage(retarget: Retarget, result: Path, output: Pat
 def test_unusable_options_are_refused(
     retarget: Retarget, output: Path, capfd: pytest.CaptureFixture[str], words: list[str], said: str
 ) -> None:
-    """Status 2, and nothing is written."""
     assert retarget(*words) == 2
     assert said in one_line(capfd.readouterr().err) and not output.parent.exists()
 
@@ -183,7 +174,6 @@ def test_what_is_no_motion_is_refused(
     tmp_path: Path,
     capfd: pytest.CaptureFixture[str],
 ) -> None:
-    """A folder without one, a file of another kind, a motion that is not the actor's; nothing is written."""
     (tmp_path / "empty").mkdir()
     strange = json.loads((result / "motion.json").read_text(encoding="utf-8"))
     strange["posture"]["tail.wag"] = strange["posture"].pop("knee.L.flexion")
@@ -203,7 +193,6 @@ def test_what_is_no_motion_is_refused(
 def test_results_of_a_take_are_no_place_for_it(
     retarget: Retarget, result: Path, cast: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """Where a conversion would remove it again."""
     before = tree(result)
     words = ["retarget", str(result), "--character", str(cast / "anna.blend"), "--output", str(result)]
     assert main([*words, "--quiet"]) == 2
@@ -214,7 +203,6 @@ def test_results_of_a_take_are_no_place_for_it(
 def test_a_failure_leaves_the_folder_as_it_was(
     retarget: Retarget, output: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """Half a file never replaces a whole one."""
     from keymark.core.errors import ConversionError
     from keymark.operators.bridge.character import import_character as character_files
 
@@ -232,7 +220,6 @@ def test_a_failure_leaves_the_folder_as_it_was(
 
 
 def test_nothing_stays_in_the_open_file(retarget: Retarget) -> None:
-    """A Blender that works on something else is as before."""
     mine = bpy.data.objects.new("Mine", None)
     bpy.context.scene.collection.objects.link(mine)
     before, scene = set(bpy.data.user_map()), bpy.context.scene
@@ -243,14 +230,12 @@ def test_nothing_stays_in_the_open_file(retarget: Retarget) -> None:
 def test_the_character_of_the_open_file_is_refused(
     retarget: Retarget, cast: Path, output: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """Blender appends nothing from the file that it has open."""
     bpy.ops.wm.open_mainfile(filepath=str(cast / "anna.blend"))
     assert retarget() == 2
     assert "is open in this Blender" in one_line(capfd.readouterr().err) and not output.parent.exists()
 
 
 def test_feet_need_not_be_planted(retarget: Retarget, output: Path) -> None:
-    """All the same files come of it, the picture too; no foot is held to a ground."""
     assert retarget("--no-plant-feet", "--no-reach-hands") == 0
     assert sorted(tree(output)) == MADE
     assert "skate_mm" not in read_retarget_record(output).quality

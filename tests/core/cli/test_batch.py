@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from keymark.core.shoot.outcomes import read_failure
 from keymark.operators.cli.batch import worker_pool
-from keymark.operators.cli.batch.batch_progress import BatchProgress
+from keymark.operators.cli.batch.outcomes import BatchProgress
 from keymark.operators.cli.commands import batch as command
 from keymark.operators.cli.main import main
 from keymark.operators.cli.parser import program_name
@@ -25,32 +25,27 @@ class Studio:
         self.shoot, self.out, self.log = folder / "shoot", folder / "out", folder / "worker.log"
 
     def takes(self, *names: str) -> None:
-        """Add takes to the shoot."""
         for name in names:
             (self.shoot / name).mkdir(parents=True)
             (self.shoot / name / "take.json").write_text("{}", encoding="utf-8")
 
     def batch(self, *words: str, jobs: int = 2) -> int:
-        """Run `keymark batch`."""
         return main(["batch", str(self.shoot), "--output", str(self.out), "--jobs", str(jobs), *words])
 
     @property
     def received_jobs(self) -> list[dict[str, Any]]:
-        """The jobs that the workers received, in order."""
         if not self.log.exists():
             return []
         return [json.loads(line) for line in self.log.read_text(encoding="utf-8").splitlines()]
 
     @property
     def summary(self) -> dict[str, dict[str, Any]]:
-        """The summary's lines by take."""
         lines = (self.out / "summary.jsonl").read_text(encoding="utf-8").splitlines()
         return {row["take"]: row for row in map(json.loads, lines)}
 
 
 @pytest.fixture
 def studio(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Studio:
-    """A studio without takes."""
     made = Studio(tmp_path)
     monkeypatch.setattr(command, "require_blender", lambda needing: None)
     monkeypatch.setattr(
@@ -63,7 +58,6 @@ def studio(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Studio:
 def test_every_take_is_converted_once_and_workers_are_kept(
     studio: Studio, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Two workers convert all takes; a line a take counts those done, and the last line gives the total."""
     names = [f"day{day}/take{take}" for day in (1, 2) for take in range(4)]
     studio.takes(*names)
     assert studio.batch() == 0
@@ -78,7 +72,6 @@ def test_every_take_is_converted_once_and_workers_are_kept(
 def test_failures_stop_nothing_and_are_said_kept_and_forgotten(
     studio: Studio, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 1, the others converted; the sentence is in the output, the summary and the folder."""
     studio.takes("a", "wrong", "z")
     assert studio.batch() == 1
     said = capsys.readouterr()
@@ -101,7 +94,6 @@ def test_failures_stop_nothing_and_are_said_kept_and_forgotten(
 
 
 def test_quiet_is_errors_alone(studio: Studio, capsys: pytest.CaptureFixture[str]) -> None:
-    """Standard output is empty; standard error has a line for each failure and the final one."""
     studio.takes("a", "wrong")
     assert studio.batch("--quiet") == 1
     said = capsys.readouterr()
@@ -110,7 +102,6 @@ def test_quiet_is_errors_alone(studio: Studio, capsys: pytest.CaptureFixture[str
 
 
 def test_a_lost_worker_costs_its_take_one_retry(studio: Studio, capsys: pytest.CaptureFixture[str]) -> None:
-    """A take whose worker dies once converts on the retry; one whose worker always dies fails after two."""
     studio.takes("a", "crash", "stumble", "z", *(["killed"] if os.name == "posix" else []))
     assert studio.batch() == 1
     said = capsys.readouterr().out
@@ -130,7 +121,6 @@ def test_a_lost_worker_costs_its_take_one_retry(studio: Studio, capsys: pytest.C
 def test_a_worker_that_says_nothing_is_given_up(
     studio: Studio, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It is ended at the heartbeat timeout; its take is retried once, and the others go on."""
     studio.takes("a", "hang")
     monkeypatch.setattr(command, "HEARTBEAT_TIMEOUT_S", 0.3)
     assert studio.batch(jobs=1) == 1
@@ -139,7 +129,6 @@ def test_a_worker_that_says_nothing_is_given_up(
 
 
 def test_a_worker_that_has_grown_is_replaced(studio: Studio) -> None:
-    """The result of the take counts; the next take goes to a new process."""
     studio.takes("grown-1", "grown-2", "z")
     assert studio.batch(jobs=1) == 0
     first, second, last = [job["process"] for job in studio.received_jobs]
@@ -149,7 +138,6 @@ def test_a_worker_that_has_grown_is_replaced(studio: Studio) -> None:
 def test_a_busy_take_comes_last_and_is_taken_as_it_is(
     studio: Studio, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A take that another process converts is retried until that is done, and not converted again."""
     studio.takes("busy", "m", "z")
     assert studio.batch("--again", jobs=1) == 0
     assert [job["take"] for job in studio.received_jobs] == ["busy", "m", "z", "busy", "busy"]
@@ -160,7 +148,6 @@ def test_a_busy_take_comes_last_and_is_taken_as_it_is(
 def test_no_worker_no_batch(
     studio: Studio, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The batch ends with the worker's last line on standard error; no take counts as failed."""
     studio.takes("a", "b")
     broken = [sys.executable, "-I", "-S", str(STAND_IN), str(studio.log.with_name("broken.log"))]
     monkeypatch.setattr(command, "worker_command_line", lambda: broken)
@@ -176,7 +163,6 @@ def test_no_worker_no_batch(
 def test_an_interruption_ends_the_workers_and_says_how_far_it_has_come(
     studio: Studio, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 130; finished takes are in the summary, the others wait, and no process is left."""
     studio.takes("a", "interrupt", "z")
     assert studio.batch(jobs=1) == 130
     said = capsys.readouterr()
@@ -193,8 +179,6 @@ def test_an_interruption_ends_the_workers_and_says_how_far_it_has_come(
 def test_an_interruption_of_the_end_does_not_say_that_nothing_was_written(
     studio: Studio, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Ctrl-C while the summary is written, and again while it is written once more."""
-
     def interrupted(self: object) -> None:
         raise KeyboardInterrupt
 
@@ -208,7 +192,6 @@ def test_an_interruption_of_the_end_does_not_say_that_nothing_was_written(
 def test_a_log_that_cannot_grow_stops_nothing(
     studio: Studio, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """All takes are converted; only with --json, whose result is lost, is that an error."""
     studio.takes("a", "b")
     for more, status in (((), 0), (("--again", "--json"), 1)):
         with monkeypatch.context() as patched, open("/dev/full", "w", encoding="utf-8") as full:
@@ -219,7 +202,6 @@ def test_a_log_that_cannot_grow_stops_nothing(
 
 
 def test_parts_share_the_takes(studio: Studio) -> None:
-    """Three machines convert every take once between them, and the last summary has all takes."""
     names = [f"take{number}" for number in range(5)]
     studio.takes(*names)
     for part in (1, 2, 3):
@@ -229,7 +211,6 @@ def test_parts_share_the_takes(studio: Studio) -> None:
 
 
 def test_a_list_says_which_takes_and_how(studio: Studio) -> None:
-    """Only the takes of the list are converted, each with the fields of its line."""
     studio.takes("a", "b", "c")
     listed = studio.shoot / "night.jsonl"
     listed.write_text('{"take": "c"}\n\n{"take": "a", "method": "ekf", "// why": "try"}\n', encoding="utf-8")
@@ -255,7 +236,6 @@ def test_a_list_says_which_takes_and_how(studio: Studio) -> None:
 def test_an_unusable_command_line_writes_nothing(
     words: list[str], sentence: str, studio: Studio, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 2 and one sentence before anything is made."""
     studio.takes("take1")
     assert main(["batch", str(studio.shoot), "--output", str(studio.out), *words]) == 2
     (line,) = capsys.readouterr().err.splitlines()
@@ -263,7 +243,6 @@ def test_an_unusable_command_line_writes_nothing(
 
 
 def test_an_unusable_shoot_writes_nothing(studio: Studio, capsys: pytest.CaptureFixture[str]) -> None:
-    """No shoot, no take in it, results among the takes: status 2 and one sentence."""
     assert studio.batch() == 2
     assert f"{studio.shoot}: no such folder" in capsys.readouterr().err
     studio.shoot.mkdir()
@@ -276,7 +255,6 @@ def test_an_unusable_shoot_writes_nothing(studio: Studio, capsys: pytest.Capture
 
 
 def test_the_share_of_all_work_counts_frames_where_they_are_known() -> None:
-    """A take of unknown length counts as the mean one, until its length becomes known."""
     progress = BatchProgress([300, None, 100])
     assert progress.fraction == 0.0
     progress.update(0, 1.0)

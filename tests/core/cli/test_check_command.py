@@ -30,13 +30,11 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def one_take(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A shoot of one take, quick to check."""
     return write_shoot(tmp_path_factory.mktemp("one") / "shoot", 1, FRAMES)
 
 
 @pytest.fixture
 def shoot(one_take: Path, tmp_path: Path) -> Path:
-    """A copy of the shoot that the test may damage."""
     return Path(shutil.copytree(one_take, tmp_path / "shoot"))
 
 
@@ -52,7 +50,6 @@ def check(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, dict[s
 
 
 def edit(shoot: Path, name: str, change: Callable[[Any], object]) -> None:
-    """Change a JSON file, or make it."""
     path = shoot / name
     value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     change(value)
@@ -62,7 +59,6 @@ def edit(shoot: Path, name: str, change: Callable[[Any], object]) -> None:
 def test_a_sound_shoot_is_ready_and_stays_as_it_is(
     pristine: Path, check: Callable[..., Any], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 0, every marker seen; no file is written or touched; several jobs give the same result."""
     before = {path: path.stat().st_mtime_ns for path in pristine.rglob("*")}
     status, said = check(pristine)
     assert status == 0 and said["counts"] == {"ready": 3, "look": 0, "fails": 0}
@@ -81,28 +77,23 @@ def test_a_sound_shoot_is_ready_and_stays_as_it_is(
 
 
 def no_video(shoot: Path) -> None:
-    """A text file with a video's suffix."""
     (shoot / f"{TAKE}.mp4").write_text("no video", encoding="utf-8")
 
 
 def no_keyframes(shoot: Path) -> None:
-    """No keyframes and no library."""
     (shoot / f"{TAKE}.keyframes.json").unlink()
 
 
 def cut_keyframes(shoot: Path) -> None:
-    """A keyframe file that is cut off."""
     path = shoot / f"{TAKE}.keyframes.json"
     path.write_bytes(path.read_bytes()[:500])
 
 
 def late_keyframe(shoot: Path) -> None:
-    """A keyframe after the clip's end."""
     edit(shoot, f"{TAKE}.keyframes.json", lambda value: value["keyframes"][-1].update(frame=FRAMES + 5))
 
 
 def said_of_take(**fields: Any) -> Callable[[Path], None]:
-    """The take's own description."""
     return lambda shoot: edit(shoot, f"{TAKE}.take.json", lambda value: value.update(fields))
 
 
@@ -128,7 +119,6 @@ BEHIND = [[-1.0, 0, 0, 0], [0, 0, 1.0, -4.0], [0, 1.0, 0, 1.0], [0, 0, 0, 1.0]]
 def test_what_would_stop_a_take_is_said(
     shoot: Path, check: Callable[..., Any], spoil: Callable[[Path], None], sentence: str
 ) -> None:
-    """Status 1, and one problem."""
     spoil(shoot)
     status, said = check(shoot)
     first = said["takes"][0]
@@ -138,27 +128,23 @@ def test_what_would_stop_a_take_is_said(
 
 
 def swapped(shoot: Path) -> None:
-    """Left and right arm exchanged."""
     colors = json.loads((shoot / "shoot.json").read_text(encoding="utf-8"))["markers"]
     markers = {"forearm.L": colors["forearm.R"], "forearm.R": colors["forearm.L"]}
     said_of_take(markers=markers)(shoot)
 
 
 def few(shoot: Path) -> None:
-    """Two keyframes that are seconds apart."""
     edit(shoot, f"{TAKE}.keyframes.json", lambda value: value.update(keyframes=value["keyframes"][::3]))
     said_of_take(fps=5)(shoot)
 
 
 def elsewhere(shoot: Path) -> None:
-    """A camera that was moved to the side."""
     said_of_take(camera={"matrix_world": [[1, 0, 0, 2.2], [0, 0, -1, -4.0], [0, 1, 0, 1.0], [0, 0, 0, 1]]})(
         shoot
     )
 
 
 def half_dark(shoot: Path) -> None:
-    """The light goes out in the middle."""
     images = list(drawn_frames(true_postures(FRAMES)))
     write_frames(shoot / f"{TAKE}.mp4", [*images[:6], *(np.zeros_like(image) for image in images[6:])])
 
@@ -178,7 +164,6 @@ def half_dark(shoot: Path) -> None:
 def test_what_is_likely_to_go_wrong_is_said(
     shoot: Path, check: Callable[..., Any], spoil: Callable[[Path], None], sentence: str
 ) -> None:
-    """Status 0, as the take would convert; its status is `look`."""
     spoil(shoot)
     status, said = check(shoot)
     first = said["takes"][0]
@@ -189,7 +174,6 @@ def test_what_is_likely_to_go_wrong_is_said(
 def test_a_mistake_of_all_is_said_once(
     pristine: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Below the table; a sentence on one take alone is below its row, marked where it stops the take."""
     shoot = Path(shutil.copytree(pristine, tmp_path / "shoot"))
     edit(shoot, "shoot.json", lambda value: value["actor"].update(height_m=None))
     no_video(shoot)
@@ -203,7 +187,6 @@ def test_a_mistake_of_all_is_said_once(
 
 
 def test_defaults_count_where_a_shoot_says_nothing(shoot: Path, check: Callable[..., Any]) -> None:
-    """Where keyframes are found, none are required."""
     no_keyframes(shoot)
     assert check(shoot)[0] == 1
     for words, library in ((["--library", "waving"], "waving"), (["--keyframes", "auto"], "auto")):
@@ -213,7 +196,6 @@ def test_defaults_count_where_a_shoot_says_nothing(shoot: Path, check: Callable[
 
 
 def test_a_take_without_keyframes_is_told_how_to_get_some(shoot: Path, check: Callable[..., Any]) -> None:
-    """By option and by field; few keyframes as well."""
     no_keyframes(shoot)
     (problem,) = check(shoot)[1]["takes"][0]["problems"]
     assert "--keyframes auto" in problem and '"keyframes": "auto"' in problem
@@ -224,7 +206,6 @@ def test_a_take_without_keyframes_is_told_how_to_get_some(shoot: Path, check: Ca
 def test_options_that_contradict_each_other_are_one_line(
     shoot: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 2; a keyframe file is no option for a whole shoot."""
     for words, sentence in (
         (
             ["--keyframes", "auto", "--library", "waving"],
@@ -241,7 +222,6 @@ def test_options_that_contradict_each_other_are_one_line(
 def test_what_nobody_thought_of_stops_one_take_and_ctrl_c_all(
     pristine: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, jobs: str
 ) -> None:
-    """The error is a problem of the take, without a traceback; the interruption is status 130."""
     raised: list[BaseException] = [ZeroDivisionError("two\nlines")]
 
     def fail(take: ShootTake, *_more: object) -> TakeCheck:
@@ -262,7 +242,6 @@ def test_what_nobody_thought_of_stops_one_take_and_ctrl_c_all(
 
 
 def test_sentences_are_broken_to_the_terminal() -> None:
-    """Continuation lines are indented; where there is no terminal, lines stay whole."""
     shoot = Shoot(Path("shoot"), ())
     check = TakeCheck("one", ("a word " * 30,), ())
     whole, broken = check_text(shoot, [check]).splitlines(), check_text(shoot, [check], 70).splitlines()
@@ -271,7 +250,6 @@ def test_sentences_are_broken_to_the_terminal() -> None:
 
 
 def test_the_table_fits_the_terminal() -> None:
-    """A long name gets a line of its own above its figures, which keep their columns."""
     shoot = Shoot(Path("shoot"), ())
     checks = [TakeCheck(name, (), (), frames=77) for name in ("a/short", LONG)]
     lines = check_text(shoot, checks, 60).splitlines()
@@ -282,7 +260,6 @@ def test_the_table_fits_the_terminal() -> None:
 
 
 def test_what_three_takes_share_is_said_once() -> None:
-    """Regardless of the number of other sentences."""
     shoot = Shoot(Path("shoot"), ())
     checks = [TakeCheck(f"take{number}", ("no camera",) if number < 3 else (), ()) for number in range(9)]
     said = check_text(shoot, checks)
@@ -292,7 +269,6 @@ def test_what_three_takes_share_is_said_once() -> None:
 def test_an_unusable_shoot_is_one_line_and_status_two(
     shoot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A missing folder, one without takes, an invalid list, takes of one name, an invalid number of jobs."""
     (tmp_path / "empty").mkdir()
     (tmp_path / "bad.jsonl").write_text("[]", encoding="utf-8")
     shutil.copy(shoot / f"{TAKE}.mp4", shoot / "day1" / "take01.mkv")

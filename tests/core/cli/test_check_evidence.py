@@ -28,7 +28,6 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def shoot(pristine: Path, tmp_path: Path) -> Path:
-    """A copy for the test."""
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 
@@ -44,13 +43,11 @@ def check(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, dict[s
 
 
 def edit(path: Path, **fields: Any) -> None:
-    """Set fields of a JSON file, which may be new."""
     value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     write_json(path, {**value, **fields})
 
 
 def rewrite(shoot: Path, change: Callable[[dict[str, Any]], object]) -> None:
-    """Change the file of keypoints."""
     path = shoot / f"{TAKE}.keypoints.json"
     value = json.loads(path.read_text(encoding="utf-8"))
     change(value)
@@ -58,14 +55,12 @@ def rewrite(shoot: Path, change: Callable[[dict[str, Any]], object]) -> None:
 
 
 def no_markers(shoot: Path) -> None:
-    """Any clothes are worn."""
     edit(shoot / f"{TAKE}.take.json", markers=None)
 
 
 def test_good_keypoints_are_said_to_be_good(
     pristine: Path, check: Callable[..., Any], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Seen everywhere, at the posed joints; the table has a column for them and a line on the evidence."""
     status, take = check(pristine)
     assert status == 0 and take["status"] == "ready" and take["warnings"] == []
     assert take["evidence"] == ["markers", "keypoints", "contours"] and len(take["markers"]) == 5
@@ -80,7 +75,6 @@ def test_good_keypoints_are_said_to_be_good(
 
 
 def test_a_take_without_markers_is_ready(shoot: Path, check: Callable[..., Any]) -> None:
-    """With keypoints; with contours alone it is one to look at, and the evidence may be chosen."""
     no_markers(shoot)
     status, take = check(shoot)
     assert status == 0 and take["status"] == "ready"
@@ -98,27 +92,22 @@ def test_a_take_without_markers_is_ready(shoot: Path, check: Callable[..., Any])
 
 
 def exchanged(value: dict[str, Any]) -> None:
-    """Left and right are exchanged throughout."""
     value["names"] = [mirrored_point(name) for name in value["names"]]
 
 
 def elsewhere(value: dict[str, Any]) -> None:
-    """Another person at the edge of the picture."""
     value["frames"] = [[[x - 45.0, y, score] for x, y, score in frame] for frame in value["frames"]]
 
 
 def late(value: dict[str, Any]) -> None:
-    """Each frame shows the one three before it."""
     value["frames"] = 3 * [value["frames"][0]] + value["frames"][:-3]
 
 
 def rare(value: dict[str, Any]) -> None:
-    """Found in the first three frames only."""
     value["frames"] = value["frames"][:3] + [None] * (FRAMES - 3)
 
 
 def half_the_size(value: dict[str, Any]) -> None:
-    """Found in pictures of half the size."""
     value["size"] = [side // 2 for side in SIZE]
     value["frames"] = [[[x / 2, y / 2, score] for x, y, score in frame] for frame in value["frames"]]
 
@@ -136,7 +125,6 @@ def half_the_size(value: dict[str, Any]) -> None:
 def test_keypoints_that_look_wrong_are_said(
     shoot: Path, check: Callable[..., Any], change: Callable[[dict[str, Any]], None], sentence: str
 ) -> None:
-    """The take would convert, and is one to look at."""
     if change is late:  # which is seen in fast movement only
         faster(shoot)
     rewrite(shoot, change)
@@ -171,7 +159,6 @@ def faster(shoot: Path) -> None:
 def test_keypoints_that_stop_a_take_are_said(
     shoot: Path, check: Callable[..., Any], change: Callable[[dict[str, Any]], object], sentence: str
 ) -> None:
-    """One problem; the markers are looked at all the same."""
     rewrite(shoot, change)
     status, take = check(shoot)
     assert status == 1 and len(take["problems"]) == 1 and sentence in take["problems"][0]
@@ -179,8 +166,6 @@ def test_keypoints_that_stop_a_take_are_said(
 
 
 def test_two_people_need_a_keyframe(shoot: Path, check: Callable[..., Any]) -> None:
-    """Which says who performs; without one, a library matches whoever is seen best."""
-
     def doubled(value: dict[str, Any]) -> None:
         other = [[[x / 2, y, score] for x, y, score in frame] for frame in value["frames"]]
         value["people"] = [list(pair) for pair in zip(value.pop("frames"), other, strict=True)]
@@ -198,7 +183,6 @@ def test_two_people_need_a_keyframe(shoot: Path, check: Callable[..., Any]) -> N
 def test_an_option_that_is_none_is_one_line(
     pristine: Path, capsys: pytest.CaptureFixture[str], words: tuple[str, str]
 ) -> None:
-    """Status 2, and what would be valid; an empty one counts as none, as farms pass it."""
     assert main(["check", str(pristine), *words]) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1 and words[1] in said
@@ -206,7 +190,6 @@ def test_an_option_that_is_none_is_one_line(
 
 
 def test_evidence_costs_time() -> None:
-    """Keypoints a little, contours that are searched without markers more."""
     seconds = [
         estimate_cost(1000, (320, 240), "map", None, kinds).seconds
         for kinds in (

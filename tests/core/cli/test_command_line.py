@@ -17,7 +17,7 @@ from _command_line import one_line, tree
 from _synthetic_take import SIZE, write_json, write_synthetic_take
 from keymark.core.errors import ConversionError
 from keymark.core.estimate.reconstruct import METHODS
-from keymark.core.report.pictures import EARLIER_PICTURES
+from keymark.core.pipeline.result import EARLIER_PICTURES, RESULT_FILES
 from keymark.core.take.motion import read_motion
 from keymark.operators.cli import parser as usage
 from keymark.operators.cli.commands import SUMMARIES
@@ -31,13 +31,11 @@ FAST = ("--method", "interpolation", "--no-report")
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not change."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES)
 
 
 @pytest.fixture
 def take(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own."""
     return Path(shutil.copytree(pristine, tmp_path / "take"))
 
 
@@ -52,7 +50,6 @@ def out(tmp_path: Path) -> Path:
 
 
 def convert(take: Path, out: Path, *more: str) -> int:
-    """Run `keymark convert`."""
     return main(["convert", str(take), "--output", str(out), *more])
 
 
@@ -77,7 +74,6 @@ def test_an_unusable_command_line_is_one_line_and_status_two(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The line names the mistake; no file is made."""
     monkeypatch.chdir(tmp_path)
     assert main([*words, "--quiet"] if words[:1] == ["convert"] else words) == 2
     said = capsys.readouterr()
@@ -88,7 +84,6 @@ def test_an_unusable_command_line_is_one_line_and_status_two(
 def test_help_has_examples_and_version_is_the_manifests(
     capsys: pytest.CaptureFixture[str], repository: Path
 ) -> None:
-    """Both go to standard output with status 0."""
     assert main(["--help"]) == 0
     assert "convert takes/walk --output out/walk" in capsys.readouterr().out
     assert main(["--version"]) == 0
@@ -97,9 +92,8 @@ def test_help_has_examples_and_version_is_the_manifests(
 
 
 def test_every_file_of_a_command_is_on_the_list(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A new file in `commands/` is on the list, in --help and in the sentence on a missing command."""
     files = {path.stem for path in (repository / "operators" / "cli" / "commands").glob("*.py")}
-    assert files - {"__init__"} == {*SUMMARIES, "worker"}
+    assert files - {"__init__"} == set(SUMMARIES)
     shown = list(SUMMARIES)
     for name in shown:
         module = import_module(f"keymark.operators.cli.commands.{name}")
@@ -112,7 +106,6 @@ def test_every_file_of_a_command_is_on_the_list(repository: Path, capsys: pytest
 
 
 def test_the_methods_offered_are_the_methods_there_are() -> None:
-    """The parser, which must not load the estimators, lists exactly theirs."""
     assert set(convert_arguments.METHODS) == set(METHODS)
 
 
@@ -124,12 +117,11 @@ CHARACTER_FILES = ("character.blend", "retarget.json", "report/character.png")
 def test_a_conversion_writes_its_files_and_says_so(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 0; the files named on standard output exist, and the motion has every frame."""
     assert convert(take, out, "--method", "interpolation") == 0
     said = capsys.readouterr()
     assert said.err == ""
     earlier = {f"report/{name}" for name in EARLIER_PICTURES}
-    for name in set(convert_take.RESULT_FILES) - {*earlier, *CHARACTER_FILES}:
+    for name in set(RESULT_FILES) - {*earlier, *CHARACTER_FILES}:
         assert (out / name).is_file() and str(out / name) in said.out
     motion = read_motion(out / "motion.json")
     assert len(motion.points) == FRAMES and motion.method == "interpolation"
@@ -141,7 +133,6 @@ def test_a_conversion_writes_its_files_and_says_so(
 def test_json_is_one_object_and_quiet_is_silence(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With --json standard output is an object with files, frames, notes and seconds; with --quiet empty."""
     assert convert(take, out, *FAST, "--json") == 0
     said = json.loads(capsys.readouterr().out)
     assert said["frames"] == FRAMES and said["keyframes"][0] == 1 and said["notes"] == []
@@ -153,7 +144,6 @@ def test_json_is_one_object_and_quiet_is_silence(
 
 @pytest.mark.usefixtures("no_blender")
 def test_a_second_run_without_pictures_leaves_no_old_pictures(take: Path, out: Path) -> None:
-    """A folder holds the result of one run only; the same conversion gives the same motion."""
     assert convert(take, out, "--method", "interpolation", "--quiet") == 0
     first = (out / "motion.json").read_bytes()
     assert convert(take, out, *FAST, "--quiet") == 0
@@ -163,7 +153,6 @@ def test_a_second_run_without_pictures_leaves_no_old_pictures(take: Path, out: P
 
 @pytest.mark.usefixtures("no_blender")
 def test_another_keyframe_file_may_be_named(take: Path, tmp_path: Path) -> None:
-    """--keyframes is read in place of the take's own file."""
     value = json.loads((take / "keyframes.json").read_text(encoding="utf-8"))
     value["keyframes"] = value["keyframes"][::2]
     write_json(tmp_path / "fewer.json", value)
@@ -174,8 +163,6 @@ def test_another_keyframe_file_may_be_named(take: Path, tmp_path: Path) -> None:
 
 
 def edit(name: str, change: Callable[[Any], object]) -> Callable[[Path], None]:
-    """A change of one of a take's JSON files."""
-
     def apply(take: Path) -> None:
         value = json.loads((take / name).read_text(encoding="utf-8"))
         change(value)
@@ -185,18 +172,15 @@ def edit(name: str, change: Callable[[Any], object]) -> Callable[[Path], None]:
 
 
 def cut(name: str) -> Callable[[Path], None]:
-    """A file cut off in the middle."""
     return lambda take: os.truncate(take / name, (take / name).stat().st_size // 2)
 
 
 def no_video(take: Path) -> None:
-    """A clip that is no video."""
     (take / "clip.mp4").write_bytes(b"this is no video" * 50)
     edit("take.json", lambda v: v.update(clip="clip.mp4"))(take)
 
 
 def no_marker(take: Path) -> None:
-    """A clip in which nothing has a marker's color."""
     for file in (take / "frames").iterdir():
         cv2.imwrite(str(file), np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8))
 
@@ -217,7 +201,14 @@ DAMAGES: dict[str, tuple[Callable[[Path], Any], str]] = {
     "keyframes.json cut off": (cut("keyframes.json"), "keyframes.json: line"),
     "wrong type": (edit("take.json", lambda v: v.update(camera=3)), "take.json: camera is 3"),
     "NaN": (edit("take.json", lambda v: v.update(fps=float("nan"))), "take.json: NaN"),
-    "unknown segment": (edit("take.json", lambda v: v["markers"].update(tail={})), "'tail'"),
+    "unknown segment": (
+        edit("take.json", lambda v: v["markers"].update(tail={"color_srgb": [9, 8, 7]})),
+        r"take.json: markers: 'tail' is bound to the unknown segment 'tail'; known are trunk, ",
+    ),
+    "no color": (
+        edit("take.json", lambda v: v["markers"].update(tail={})),
+        r"take.json: markers.tail: color_srgb is missing; it must be three numbers from 0 to 255",
+    ),
     "keyframe outside": (edit("keyframes.json", lambda v: v["keyframes"][0].update(frame=99)), "frame is 99"),
     "one keyframe": (edit("keyframes.json", lambda v: v.update(keyframes=v["keyframes"][:1])), "at least 2"),
     "resolution": (edit("take.json", lambda v: v["camera"].update(resolution=[64, 48])), r"\[64, 48\]"),
@@ -235,7 +226,6 @@ DAMAGES: dict[str, tuple[Callable[[Path], Any], str]] = {
 def test_a_damaged_take_is_one_line_and_status_two(
     damage: str, take: Path, out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The line names file and value, without a traceback; the output folder is byte for byte as before."""
     apply, sentence = DAMAGES[damage]
     apply(take)
     before = tree(out.parent)
@@ -266,8 +256,6 @@ def test_a_failing_conversion_is_one_line_and_leaves_nothing_behind(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Any error after the motion is written leaves the output folder as it was."""
-
     def fail(_take: object, _motion: object, staging_folder: Path, *_rest: object) -> None:
         assert (staging_folder / "motion.json").is_file()
         (staging_folder / "motion.blend").write_bytes(b"half a file")
@@ -284,8 +272,6 @@ def test_a_failing_conversion_is_one_line_and_leaves_nothing_behind(
 def test_debug_shows_where(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Only with --debug does a traceback come before the line."""
-
     def fail(*_rest: object) -> None:
         raise RuntimeError("something odd")
 
@@ -298,7 +284,6 @@ def test_debug_shows_where(
 def test_without_blender_one_sentence_says_what_to_install(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Before any work, and with the output folder as it was."""
     monkeypatch.setattr(usage.importlib.util, "find_spec", lambda name: None)
     before = tree(out.parent)
     assert convert(take, out, "--quiet") == 1
@@ -307,7 +292,6 @@ def test_without_blender_one_sentence_says_what_to_install(
 
 
 def test_odd_names_do_not_break_the_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A folder with a line break or undecodable bytes in its name still makes one line."""
     assert convert(tmp_path / "two\nlines", tmp_path / "out", "--quiet") == 2
     assert "two lines" in one_line(capsys.readouterr().err)
     assert convert(tmp_path / "odd\udcff", tmp_path / "out", "--quiet") == 2
@@ -315,7 +299,6 @@ def test_odd_names_do_not_break_the_line(tmp_path: Path, capsys: pytest.CaptureF
 
 
 def test_proposed_frames_lie_in_the_clip(take: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """As many frames as requested, with the first and the last; no keyframes are required."""
     (take / "keyframes.json").unlink()
     assert main(["propose", str(take), "--count", "4", "--json"]) == 0
     said = json.loads(capsys.readouterr().out)

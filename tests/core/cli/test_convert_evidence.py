@@ -27,19 +27,16 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def take(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own."""
     return Path(shutil.copytree(pristine, tmp_path / "take"))
 
 
 def edit(take: Path, **fields: Any) -> None:
-    """Set fields of take.json."""
     value = json.loads((take / "take.json").read_text(encoding="utf-8"))
     write_json(take / "take.json", {**value, **fields})
 
 
 @pytest.mark.usefixtures("no_blender")
 def test_any_clothes_convert(pristine: Path, tmp_path: Path) -> None:
-    """With contours alone, and with keypoints; each gives a motion of its own."""
     words: dict[str, list[str]] = {
         "contours": [],
         "keypoints": ["--keypoints", str(pristine / "pose.json"), "--evidence", "keypoints"],
@@ -74,7 +71,6 @@ def test_any_clothes_convert(pristine: Path, tmp_path: Path) -> None:
 def test_a_mistake_in_the_evidence_is_one_line(
     pristine: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], sentence: str
 ) -> None:
-    """Status 2; nothing is written."""
     said = [word.format(take=pristine) for word in words]
     assert main(["convert", str(pristine), "--output", str(tmp_path / "out"), "--quiet", *said]) == 2
     assert sentence in one_line(capsys.readouterr().err)
@@ -85,7 +81,6 @@ def test_a_mistake_in_the_evidence_is_one_line(
 def test_keypoints_that_are_wrong_change_nothing(
     take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Cut off, of another clip, nobody in it, outside the take: status 2, and the result stays."""
     out = tmp_path / "out"
     assert main(["convert", str(take), "--output", str(out), "--no-report", "--quiet"]) == 0
     before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
@@ -112,7 +107,6 @@ def test_keypoints_that_are_wrong_change_nothing(
 
 @pytest.mark.usefixtures("no_blender")
 def test_a_folder_with_holes_is_noted(take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Of a detector that writes a file a frame: nobody is seen in the frames that are missing."""
     holes = take / "openpose"
     holes.mkdir()
     person = {"pose_keypoints_2d": [80.0, 60.0, 0.9] * 25}
@@ -128,7 +122,6 @@ def test_a_folder_with_holes_is_noted(take: Path, tmp_path: Path, capsys: pytest
 def test_frames_are_proposed_from_any_evidence(
     pristine: Path, capsys: pytest.CaptureFixture[str], more: list[str]
 ) -> None:
-    """Keypoints, or what moves in the picture; the first and the last frame are always among them."""
     words = [word.format(take=pristine) for word in more]
     assert main(["propose", str(pristine), "--count", "5", "--json", *words]) == 0
     said = json.loads(capsys.readouterr().out)

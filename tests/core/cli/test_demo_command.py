@@ -44,8 +44,6 @@ def take(tmp_path: Path, no_blender: None, monkeypatch: pytest.MonkeyPatch) -> P
 
 @pytest.fixture
 def no_character(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No character, as where Rigify is missing."""
-
     def refuse(_file: Path) -> None:
         raise ConversionError("Rigify is missing")
 
@@ -56,7 +54,6 @@ def no_character(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_it_scores_every_method_by_the_motion_it_wrote(
     take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The score of `map` is that of motion.json against truth.json; the other methods have theirs."""
     assert main(["demo", "--output", str(tmp_path / "out"), "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
     motion = read_motion(tmp_path / "out" / "motion.json")
@@ -80,7 +77,6 @@ def test_it_scores_every_method_by_the_motion_it_wrote(
 def test_it_says_what_it_does_and_where_to_look(
     take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], request: pytest.FixtureRequest
 ) -> None:
-    """A line for each step, a row of numbers for each method, the .blend, the character and the pictures."""
     has_blender = importlib.util.find_spec("bpy") is not None
     if not has_blender:
         request.getfixturevalue("no_character")
@@ -106,7 +102,6 @@ def test_it_says_what_it_does_and_where_to_look(
 def test_an_installation_without_it_is_one_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without the demonstration take the status is 2 and nothing is made."""
     monkeypatch.setattr(examples, "SHIPPED", tmp_path / "nowhere")
     assert main(["demo", "--output", str(tmp_path / "out")]) == 2
     assert "example is missing" in capsys.readouterr().err

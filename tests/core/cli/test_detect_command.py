@@ -26,7 +26,6 @@ def network(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def clip(tmp_path: Path) -> Path:
-    """A clip that nothing describes."""
     file = tmp_path / "clips" / "walk.mp4"
     file.parent.mkdir()
     write_video(file, true_postures(FRAMES), seed=1)
@@ -34,7 +33,6 @@ def clip(tmp_path: Path) -> Path:
 
 
 def test_a_bare_clip_gets_its_file_beside_it(clip: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A clip needs no description; the text says what was found and where it is."""
     assert main(["detect", str(clip)]) == 0
     file = clip.with_name("walk.keypoints.json")
     assert f"a person in 8 of 8 frames: {file}" in capsys.readouterr().out
@@ -45,7 +43,6 @@ def test_a_bare_clip_gets_its_file_beside_it(clip: Path, capsys: pytest.CaptureF
 def test_a_take_gets_its_file_in_its_folder_with_its_own_frame_numbers(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Images are a clip too."""
     take = write_synthetic_take(tmp_path / "take", FRAMES)
     fields = json.loads((take / "take.json").read_text())
     (take / "take.json").write_text(json.dumps({**fields, "frame_start": 101}))
@@ -61,7 +58,6 @@ def test_a_take_gets_its_file_in_its_folder_with_its_own_frame_numbers(
 def test_a_file_that_is_there_stays_unless_it_is_to_be_replaced(
     clip: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Before anything is looked at; another name is another file."""
     file = clip.with_name("walk.keypoints.json")
     file.write_text("mine")
     assert main(["detect", str(clip), "--quiet"]) == 2
@@ -76,8 +72,6 @@ def test_a_file_that_is_there_stays_unless_it_is_to_be_replaced(
 def test_what_fails_is_one_sentence_and_changes_nothing(
     clip: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """No place for the file, a clip that cannot be read, a picture, nobody there, no network."""
-
     def fails(path: Path, said: str, *words: str) -> None:
         assert main(["detect", str(path), *words, "--quiet"]) == 2
         assert said in one_line(capsys.readouterr().err)
@@ -100,7 +94,6 @@ def test_what_fails_is_one_sentence_and_changes_nothing(
 def test_a_shoot_goes_on_after_failures_and_leaves_what_is_there(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Every take in turn; status 1 and the names of those that failed."""
     shoot = write_shoot(tmp_path / "shoot", 3, FRAMES)
     day = shoot / "day1"
     (day / "take02.keypoints.json").write_text("mine")
@@ -119,7 +112,6 @@ def test_a_shoot_goes_on_after_failures_and_leaves_what_is_there(
 
 
 def test_clips_need_no_description(clip: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A folder of bare clips, before there is any shoot.json."""
     shutil.copyfile(clip, clip.with_name("run.mp4"))
     assert main(["detect", str(clip.parent)]) == 0
     assert "2 takes: 2 detected, 0 there already, 0 failed" in capsys.readouterr().out
@@ -128,7 +120,6 @@ def test_clips_need_no_description(clip: Path, capsys: pytest.CaptureFixture[str
 
 
 def test_a_take_that_names_its_keypoints_gets_them_there(tmp_path: Path) -> None:
-    """So that the conversion reads what was detected."""
     take = write_synthetic_take(tmp_path / "take", FRAMES)
     fields = json.loads((take / "take.json").read_text())
     (take / "take.json").write_text(json.dumps({**fields, "keypoints": "found.json"}))

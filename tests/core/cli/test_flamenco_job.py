@@ -25,7 +25,6 @@ SETTINGS = {
 
 @pytest.fixture
 def script(repository: Path) -> Path:
-    """The job type as it comes with Keymark."""
     return repository / "presets" / "flamenco" / "keymark_convert.js"
 
 
@@ -57,14 +56,12 @@ def words(task: dict[str, Any]) -> list[str]:
 
 
 def options(task: dict[str, Any]) -> dict[str, Any]:
-    """A task's arguments, parsed by Keymark."""
     found = words(task)
     assert found[:2] == ["--command", "keymark"]
     return vars(build_parser(found[2]).parse_args(found[2:]))
 
 
 def test_every_task_has_its_share_and_the_merge_waits_for_all(script: Path) -> None:
-    """Keymark's command line accepts all arguments."""
     tasks = compiled(script, SETTINGS)["tasks"]
     *converting, merging = tasks
     assert [task["name"] for task in converting] == [f"convert-{part:02d}" for part in range(1, 13)]
@@ -83,7 +80,6 @@ def test_every_task_has_its_share_and_the_merge_waits_for_all(script: Path) -> N
 
 
 def test_choices_reach_the_command_line(script: Path) -> None:
-    """Method, library, program and the option on failed takes; without a merge there is no merge task."""
     chosen = {**SETTINGS, "tasks": 1, "method": "ekf", "library": "walking", "merge": False, "go_on": False}
     (task,) = compiled(script, {**chosen, "program": "/opt/keymark"})["tasks"]
     share = options(task)
@@ -105,7 +101,6 @@ def test_choices_reach_the_command_line(script: Path) -> None:
 
 
 def test_paths_count_as_blender_has_resolved_them(script: Path) -> None:
-    """Paths relative to a .blend have no meaning for workers."""
     resolved = {"shoot": "//clips", "output": "//out", "shoot_path": r"F:\clips", "output_path": r"F:\out"}
     tasks = compiled(script, {**SETTINGS, **resolved})["tasks"]
     assert words(tasks[0])[2:6] == ["batch", r"F:\clips", "--output", r"F:\out"]
@@ -116,7 +111,6 @@ def test_paths_count_as_blender_has_resolved_them(script: Path) -> None:
     ("name", "file"), [("", "A job"), ("a/b: c?", "a-b- c-"), ("Été 2", "Été 2"), ("  ", "shoot")]
 )
 def test_the_library_has_a_name_that_every_system_allows(script: Path, name: str, file: str) -> None:
-    """The job's own where none is given."""
     merge = options(compiled(script, {**SETTINGS, "name": name})["tasks"][-1])
     assert merge["output"].name == f"{file}.blend" and merge["name"] == file
 
@@ -138,14 +132,12 @@ def test_the_library_has_a_name_that_every_system_allows(script: Path, name: str
 def test_unusable_settings_are_refused_with_a_sentence(
     script: Path, change: dict[str, Any], sentence: str
 ) -> None:
-    """Before any task is made."""
     with pytest.raises(ValueError, match="^") as refused:
         compiled(script, {**SETTINGS, **change})
     assert str(refused.value).startswith(sentence)
 
 
 def test_the_number_of_tasks_follows_the_folder(script: Path, tmp_path: Path) -> None:
-    """What the add-on evaluates, in its words, counts the takes that Keymark finds."""
     setting = next(one for one in compiled(script, SETTINGS)["jobType"]["settings"] if one["key"] == "tasks")
     for name in ("a/clip.mp4", "a/take.json", "b/one.MOV", "b/two.mp4", "b/notes.txt", "c/d/three.mkv"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
@@ -163,7 +155,6 @@ def test_the_number_of_tasks_follows_the_folder(script: Path, tmp_path: Path) ->
 
 
 def test_paths_are_made_absolute_when_the_job_is_submitted(script: Path) -> None:
-    """By settings that people do not see, evaluated as the add-on does it."""
     settings = {one["key"]: one for one in compiled(script, SETTINGS)["jobType"]["settings"]}
     here = PurePosixPath("/project")
     given = SimpleNamespace(shoot="clips", output="", own_library="anna.json")
@@ -180,7 +171,6 @@ def test_paths_are_made_absolute_when_the_job_is_submitted(script: Path) -> None
 def test_the_libraries_to_choose_from_are_those_that_come_with_keymark(
     script: Path, repository: Path
 ) -> None:
-    """By their identifiers, so that workers find them."""
     settings = {one["key"]: one for one in compiled(script, SETTINGS)["jobType"]["settings"]}
     shipped = sorted(
         json.loads(file.read_text(encoding="utf-8"))["identifier"]
@@ -207,7 +197,6 @@ def test_the_libraries_to_choose_from_are_those_that_come_with_keymark(
 def test_the_stand_in_refuses_what_flamenco_would(
     script: Path, tmp_path: Path, old: str, new: str, sentence: str
 ) -> None:
-    """Otherwise passing the test would prove nothing."""
     source = script.read_text(encoding="utf-8")
     assert old in source
     wrong = tmp_path / "wrong.js"

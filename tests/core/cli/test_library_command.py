@@ -34,7 +34,6 @@ def shelf(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def motion(tmp_path: Path) -> Path:
-    """A motion that is not cyclic."""
     posture = true_postures(FRAMES)
     points = BODY.points(BODY.pose(posture))
     unknown = np.full((*points.shape, 3), np.nan)
@@ -44,12 +43,10 @@ def motion(tmp_path: Path) -> Path:
 
 
 def run(*words: object) -> int:
-    """Run `keymark library`."""
     return main(["library", *map(str, words)])
 
 
 def test_the_list_says_what_cannot_be_used(capsys: pytest.CaptureFixture[str]) -> None:
-    """Status 0: the other libraries remain usable."""
     assert run("list") == 0
     lines = capsys.readouterr().out.splitlines()
     assert any(
@@ -65,7 +62,6 @@ def test_the_list_says_what_cannot_be_used(capsys: pytest.CaptureFixture[str]) -
 def test_a_library_is_shown_by_name_and_by_file(
     shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Its motions with their times; the sheet is a picture."""
     said = []
     for name in ("small_steps", shelf / "any name.json"):
         assert run("show", name) == 0
@@ -82,7 +78,6 @@ def test_a_library_is_shown_by_name_and_by_file(
 def test_checking_names_every_broken_file(
     shelf: Path, motion: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 2 and one line with all problems; 0 where every file is valid."""
     assert run("check", shelf / "any name.json") == 0
     assert "Small steps" in capsys.readouterr().out
     assert run("check", shelf / "any name.json", shelf / "broken.json", motion) == 2
@@ -94,7 +89,6 @@ def test_checking_names_every_broken_file(
 def test_a_motion_is_learned_and_nothing_replaced(
     motion: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The library has as many postures as requested; a second run needs --replace."""
     output = tmp_path / "learned.json"
     words: tuple[object, ...] = ("learn", motion, "--title", "Anna Sways", "--output", output)
     assert run(*words, "--count", "12", "--author", "Anna", "--license", "CC0-1.0", "--json") == 0
@@ -110,12 +104,10 @@ def test_a_motion_is_learned_and_nothing_replaced(
 
 
 def mirror_words(shelf: Path, tmp_path: Path) -> list[object]:
-    """A command that mirrors."""
     return ["mirror", "small_steps", "--output", tmp_path / "out.json"]
 
 
 def merge_words(shelf: Path, tmp_path: Path) -> list[object]:
-    """A command that merges a library with itself."""
     return ["merge", "small_steps", shelf / "any name.json", "--output", tmp_path / "out.json"]
 
 
@@ -126,7 +118,6 @@ def test_what_is_made_of_libraries_is_one(
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The file written can be read, and the source files are unchanged."""
     before = (shelf / "any name.json").read_bytes()
     assert run(*words(shelf, tmp_path), "--json") == 0
     assert json.loads(capsys.readouterr().out)["files"] == [str(tmp_path / "out.json")]
@@ -137,7 +128,6 @@ def test_what_is_made_of_libraries_is_one(
 def test_two_versions_are_merged_only_as_told(
     shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The differences are named and nothing is written, until --conflicts says which version counts."""
     mine = small_library()
     first, *others = mine.postures
     moved = replace(first, posture=others[0].posture)
@@ -155,7 +145,6 @@ def test_two_versions_are_merged_only_as_told(
 def test_different_libraries_become_a_new_one(
     shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With the content of both, and a new identifier."""
     write_library(tmp_path / "other.json", replace(small_library(), identifier="other", title="Other"))
     words = ("merge", "small_steps", tmp_path / "other.json", "--output", tmp_path / "out.json")
     assert run(*words, "--title", "Both of Them", "--quiet") == 0
@@ -164,7 +153,6 @@ def test_different_libraries_become_a_new_one(
 
 
 def test_both_sides_fit_in_one_library(tmp_path: Path) -> None:
-    """With --both the mirrored postures are added."""
     assert run("mirror", "small_steps", "--both", "--output", tmp_path / "out.json", "--quiet") == 0
     assert len(read_library(tmp_path / "out.json").postures) == 6
 
@@ -196,7 +184,6 @@ def test_mistakes_are_one_line(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Status 2, on standard error, and nothing is written."""
     empty = tmp_path / "empty"
     empty.mkdir()
     monkeypatch.chdir(empty)
@@ -209,7 +196,6 @@ def test_mistakes_are_one_line(
 
 
 def test_a_sheet_never_takes_the_place_of_a_library(shelf: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`show A --sheet A` by mistake: one line, status 2, and the file is as it was."""
     file = shelf / "any name.json"
     before = file.read_bytes()
     assert run("show", file, "--sheet", file) == 2

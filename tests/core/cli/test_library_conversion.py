@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
-from keymark.core.pipeline import found_keyframes
+from keymark.core.pipeline import convert as pipeline
 from keymark.core.posing.candidates import Candidate, MatchedFrame
 from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.prior.learning import LibraryMetadata, learn_library
@@ -26,13 +26,11 @@ pytestmark = pytest.mark.usefixtures("no_blender")
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not change."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES)
 
 
 @pytest.fixture
 def take(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own, without keyframes."""
     folder = Path(shutil.copytree(pristine, tmp_path / "take"))
     (folder / "keyframes.json").rename(tmp_path / "posed.json")
     return folder
@@ -40,7 +38,6 @@ def take(pristine: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def library(tmp_path: Path) -> Path:
-    """A library of exactly the performer's motion."""
     posture = true_postures(FRAMES)
     learned = learn_library(BODY, posture, np.arange(FRAMES) / 30.0, LibraryMetadata("Swaying", "Nobody"))
     write_library(tmp_path / "swaying.json", learned)
@@ -48,19 +45,16 @@ def library(tmp_path: Path) -> Path:
 
 
 def convert(take: Path, out: Path, *more: object) -> int:
-    """Run `keymark convert` with quick options."""
     return main(["convert", str(take), "--output", str(out), "--method", "interpolation", *map(str, more)])
 
 
 def said_as_json(capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
-    """The one object on standard output."""
     return dict(json.loads(capsys.readouterr().out))
 
 
 def test_a_take_without_keyframes_is_matched(
     take: Path, library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Motion, and matched keyframes are written; the summary has match and confidence."""
     out = tmp_path / "out"
     assert convert(take, out, "--library", library, "--json") == 0
     said = said_as_json(capsys)
@@ -79,7 +73,6 @@ def test_a_take_without_keyframes_is_matched(
 def test_keyframes_in_the_take_are_left_aside_and_said_to_be(
     take: Path, library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The posed keyframes are neither read nor changed."""
     (take / "keyframes.json").write_text("no JSON at all", encoding="utf-8")
     assert convert(take, tmp_path / "out", "--library", library, "--json", "--no-report") == 0
     notes = said_as_json(capsys)["notes"]
@@ -90,7 +83,6 @@ def test_keyframes_in_the_take_are_left_aside_and_said_to_be(
 def test_posed_and_matched_keyframes_work_together(
     take: Path, library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """One posed frame is enough; keyframes matched earlier are matched anew."""
     posed = json.loads((tmp_path / "posed.json").read_text(encoding="utf-8"))["keyframes"]
     earlier = {**posed[-1], "matched": {"library": "x", "posture": "y", "mirrored": False, "confidence": 0.5}}
     write_json(tmp_path / "one.json", {"keyframes": [posed[1], earlier]})
@@ -106,7 +98,6 @@ def test_posed_and_matched_keyframes_work_together(
 def test_matched_keyframes_can_be_given_back(
     take: Path, library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without the library, into the same folder: the keyframe file is used and kept with its corrections."""
     out = tmp_path / "out"
     assert convert(take, out, "--library", library, "--quiet", "--no-report") == 0
     kept = (out / "keyframes.json").read_bytes()
@@ -127,7 +118,6 @@ def few_libraries(library: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_keyframes_are_found_with_all_libraries(
     take: Path, few_libraries: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """By either spelling: motion, found keyframes and their picture, and a record of the libraries."""
     made = []
     for name, words in (("one", ["--keyframes", "auto"]), ("other", ["--library", "auto"])):
         out = tmp_path / name
@@ -148,7 +138,6 @@ def test_keyframes_are_found_with_all_libraries(
 def test_posed_keyframes_stay_and_the_others_are_found(
     take: Path, few_libraries: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Those in the take are left aside, which a note says, unless their file is named."""
     posed = Path(shutil.copy(tmp_path / "posed.json", take / "keyframes.json"))
     assert convert(take, tmp_path / "found", "--keyframes", "auto", "--json", "--no-report") == 0
     (note, *_) = said_as_json(capsys)["notes"]
@@ -166,8 +155,6 @@ def test_posed_keyframes_stay_and_the_others_are_found(
 def test_found_keyframes_are_said_to_be_doubtful_and_contradictions_are_named(
     take: Path, few_libraries: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
 ) -> None:
-    """In notes of the summary and of the record, with the frames to pose."""
-
     def pose(given: Any, _reading: object, _libraries: object, _floor_m: object = None) -> Any:
         yield from ()
         truth = true_postures(FRAMES)
@@ -179,7 +166,7 @@ def test_found_keyframes_are_said_to_be_doubtful_and_contradictions_are_named(
         against = {12: (given.markers[0].name, "wrist.L"), 23: ("wrist.L",)}
         return FoundPoses(frames, truth, 0.7, 0.0, "two frames are in doubt", against)
 
-    monkeypatch.setattr(found_keyframes, "pose_clip", pose)
+    monkeypatch.setattr(pipeline, "pose_clip", pose)
     assert convert(take, tmp_path / "out", "--keyframes", "auto", "--json", "--no-report") == 0
     said = said_as_json(capsys)
     first = json.loads((take / "take.json").read_text(encoding="utf-8"))["frame_start"]
@@ -198,7 +185,6 @@ def test_found_keyframes_are_said_to_be_doubtful_and_contradictions_are_named(
 def test_without_a_library_nothing_can_be_found(
     take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 2, one line, and no folder."""
     (tmp_path / "none").mkdir()
     monkeypatch.setattr(library_search_path, "SHIPPED", tmp_path / "none")
     assert convert(take, tmp_path / "out", "--keyframes", "auto", "--quiet") == 2
@@ -227,7 +213,6 @@ def test_what_cannot_be_matched_with_is_one_line(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Status 2, before the clip is read."""
     monkeypatch.setenv(library_search_path.VARIABLE, str(library.parent))
     assert convert(take, tmp_path / "out", *more, "--quiet") == 2
     said = capsys.readouterr().err
@@ -239,6 +224,5 @@ def test_what_cannot_be_matched_with_is_one_line(
 def test_matched_keyframes_never_replace_posed_ones(
     take: Path, library: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The take's own folder is refused as output."""
     assert convert(take, take, "--library", library, "--quiet") == 2
     assert "own folder" in capsys.readouterr().err and not (take / "keyframes.json").exists()

@@ -1,27 +1,30 @@
-"""The command line as a process of its own: start, SIGTERM, and --help without heavy imports."""
+"""The command line as a process of its own: start, SIGTERM, --help, standard streams and progress."""
 
 import os
 import signal
 import subprocess
 import sys
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 
 import pytest
 from _command_line import one_line, tree
 from _synthetic_take import write_synthetic_take
+from keymark.core.progress import Progress
+from keymark.operators.cli.blender_silence import blender_silence
+from keymark.operators.cli.console import Console
+from keymark.operators.cli.main import main
 
 FRAMES = 16
 
 
 @pytest.fixture
 def take(tmp_path: Path) -> Path:
-    """A take."""
     return write_synthetic_take(tmp_path / "take", FRAMES)
 
 
 @pytest.fixture
 def out(tmp_path: Path) -> Path:
-    """An output folder that holds an earlier result."""
     folder = tmp_path / "results" / "out"
     folder.mkdir(parents=True)
     (folder / "motion.json").write_text("earlier", encoding="utf-8")
@@ -45,7 +48,6 @@ def module_process(tmp_path: Path, repository: Path, *words: str) -> "subprocess
 
 
 def test_it_runs_as_a_module(tmp_path: Path, repository: Path) -> None:
-    """The exit status is that of the process."""
     process = module_process(tmp_path, repository, "convert", "nowhere", "--output", str(tmp_path / "out"))
     said, wrong = process.communicate()
     assert process.returncode == 2 and "nowhere" in one_line(wrong) and "Reading the take" in said
@@ -55,7 +57,6 @@ def test_it_runs_as_a_module(tmp_path: Path, repository: Path) -> None:
 def test_help_and_mistakes_wait_for_no_library(
     words: tuple[str, ...], tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Heavy modules are imported by the command that needs them alone."""
     monkeypatch.setenv("PYTHONPROFILEIMPORTTIME", "1")
     _, told = module_process(tmp_path, repository, *words).communicate()
     loaded = {line.rpartition("|")[2].strip() for line in told.splitlines()}
@@ -64,7 +65,6 @@ def test_help_and_mistakes_wait_for_no_library(
 
 
 def test_a_batch_leaves_estimating_to_its_workers(repository: Path) -> None:
-    """So that they start at once, the process that starts them imports neither SciPy nor Blender."""
     words = "import _boot, sys; _boot.load_package(); import keymark.operators.cli.commands.batch"
     done = subprocess.run(
         [sys.executable, "-c", f"{words}; print(*sys.modules)"],
@@ -82,7 +82,6 @@ def test_a_batch_leaves_estimating_to_its_workers(repository: Path) -> None:
 def test_a_process_that_is_asked_to_end_cleans_up(
     take: Path, out: Path, tmp_path: Path, repository: Path
 ) -> None:
-    """SIGTERM, which render farms send, leaves the output as it was, also in the middle of the work."""
     before = tree(out.parent)
     # Inside a Blender program this process has bpy, but the Python that it starts has none.
     find = "import importlib.util, sys; sys.exit(importlib.util.find_spec('bpy') is None)"
@@ -99,3 +98,46 @@ def test_a_process_that_is_asked_to_end_cleans_up(
     assert "interrupted" in one_line(process.stderr.read())
     process.stderr.close()
     assert tree(out.parent) == before
+
+
+def test_a_process_without_standard_streams_does_its_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    take = write_synthetic_take(tmp_path / "take", 8)
+    for stream in ("stdin", "stdout", "stderr"):
+        monkeypatch.setattr(sys, stream, None)
+    assert main(["propose", str(take), "--count", "4"]) == 0
+    assert main(["propose", str(take), "--count", "1"]) == 2
+
+
+def test_blender_may_print_any_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    with TextIOWrapper(BytesIO(), encoding="ascii") as stream:
+        monkeypatch.setattr(sys, "stdout", stream)
+        with blender_silence(debug=False):
+            print("舞者")
+        with pytest.raises(UnicodeEncodeError):
+            print("舞者")
+
+
+@pytest.mark.parametrize(
+    ("quiet", "as_json", "asked", "lines"),
+    [
+        (False, False, "openjd", ["openjd_status: Solving", "openjd_progress: 45", "openjd_progress: 81"]),
+        (True, False, "openjd", []),
+        (False, True, "openjd", []),
+        (False, False, "", ["Solving ..."]),
+    ],
+)
+def test_a_line_for_each_percent_where_it_is_wanted(
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    quiet: bool,
+    as_json: bool,
+    asked: str,
+    lines: list[str],
+) -> None:
+    monkeypatch.setenv("KEYMARK_PROGRESS", asked)
+    with Console(quiet=quiet, as_json=as_json) as console:
+        for fraction in (0.5, 0.5001, 0.9, 0.3):
+            console.progress(Progress("Solving", fraction))
+    assert capsys.readouterr().out.splitlines() == lines

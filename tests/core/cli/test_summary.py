@@ -1,19 +1,22 @@
-"""The summary files of a batch: a line a take and a page, each written atomically."""
+"""Outcomes of a batch and its summary: a line a take and a page, each written atomically."""
 
 import json
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from _outcomes import FILES, RECORD, converted, failed, waiting
 from keymark.core.errors import ConversionError
-from keymark.core.shoot.discovery import Shoot
-from keymark.core.shoot.outcomes import Outcome, Status
-from keymark.operators.cli.batch.outcomes import LINES, PAGE, write_summary
+from keymark.core.shoot.discovery import Shoot, ShootTake
+from keymark.core.shoot.outcomes import Failure, Outcome, Status, read_failures, write_failure
+from keymark.core.take.conversion_record import write_record
+from keymark.operators.cli.batch import outcomes as batch_outcomes
+from keymark.operators.cli.batch.outcomes import LINES, PAGE, BatchOutcomes, write_summary
+from keymark.operators.cli.console import Console
 
 
 def outcomes(output: Path) -> list[Outcome]:
-    """One outcome of each kind, unordered."""
     return [
         waiting(output, "day2/jump"),
         converted(output, "day1/walk", library="walking", matched=(60,), doubtful=(60,)),
@@ -23,7 +26,6 @@ def outcomes(output: Path) -> list[Outcome]:
 
 
 def test_a_line_says_of_each_take_what_programs_want(tmp_path: Path) -> None:
-    """In the order of names, in ASCII, with all fields; a result counts only if it is of this input."""
     output = tmp_path / "out"
     files = write_summary(output, Shoot(tmp_path / "autumn", ()), outcomes(output))
     assert files == (output / LINES, output / PAGE)
@@ -43,7 +45,6 @@ def test_a_line_says_of_each_take_what_programs_want(tmp_path: Path) -> None:
 
 
 def test_the_same_outcomes_give_the_same_bytes(tmp_path: Path) -> None:
-    """In any order of the outcomes, and no other file is left in the folder."""
     shoot = Shoot(tmp_path, ())
     first = [file.read_bytes() for file in write_summary(tmp_path, shoot, outcomes(tmp_path))]
     again = [file.read_bytes() for file in write_summary(tmp_path, shoot, outcomes(tmp_path)[::-1])]
@@ -52,7 +53,6 @@ def test_the_same_outcomes_give_the_same_bytes(tmp_path: Path) -> None:
 
 
 def test_a_take_that_is_the_shoot_itself(tmp_path: Path) -> None:
-    """The results are beside the summary."""
     outcome = Outcome(".", tmp_path, Status.CONVERTED, RECORD)
     lines, page = write_summary(tmp_path, Shoot(tmp_path / "walk", ()), [outcome])
     assert json.loads(lines.read_text(encoding="ascii"))["files"] == [*FILES, "conversion.json"]
@@ -60,7 +60,6 @@ def test_a_take_that_is_the_shoot_itself(tmp_path: Path) -> None:
 
 
 def test_several_machines_write_at_once_and_readers_see_whole_files(tmp_path: Path) -> None:
-    """Each reader sees the summary of one writer; the last writer's stays."""
     shoot, over = Shoot(tmp_path, ()), threading.Event()
     seen: set[int] = set()
     wrong: list[BaseException] = []
@@ -96,7 +95,50 @@ def test_several_machines_write_at_once_and_readers_see_whole_files(tmp_path: Pa
 
 
 def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path) -> None:
-    """A file where the folder should be is named in a sentence."""
     (tmp_path / "out").touch()
     with pytest.raises(ConversionError, match="out"):
         write_summary(tmp_path / "out", Shoot(tmp_path, ()), [])
+
+
+@pytest.fixture
+def shoot(tmp_path: Path) -> Shoot:
+    return Shoot(tmp_path, tuple(ShootTake(name, tmp_path / name) for name in ("a", "b")))
+
+
+def test_a_take_that_is_done_elsewhere_meanwhile_is_in_the_summary(
+    shoot: Shoot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    output = tmp_path / "out"
+    written: list[dict[str, Status]] = []
+
+    def write(_output: Path, _shoot: Shoot, outcomes: list[Outcome]) -> tuple[Path, ...]:
+        written.append({outcome.take: outcome.status for outcome in outcomes})
+        if len(written) == 1:
+            (output / "b").mkdir(parents=True)
+            write_record(output / "b", replace(RECORD, files={}))
+        return ()
+
+    monkeypatch.setattr(batch_outcomes, "write_summary", write)
+    BatchOutcomes(shoot, output, [], Console(quiet=True, as_json=False)).finish()
+    assert [summary["b"] for summary in written] == [Status.WAITING, Status.CONVERTED]
+
+
+def test_failures_of_takes_that_are_deleted_are_forgotten(shoot: Shoot, tmp_path: Path) -> None:
+    output = tmp_path / "out"
+    (tmp_path / "day1").mkdir()
+    (tmp_path / "day1" / "clip.mp4").touch()
+    (tmp_path / "folder").mkdir()
+    for name in ("a", "gone", "day1/clip", "day1/gone", "day2/gone", "folder"):
+        write_failure(output, Failure(name, "it is cut off", "input"))
+    BatchOutcomes(shoot, output, [], Console(quiet=True, as_json=False))
+    assert [failure.take for failure in read_failures(output)] == ["a", "day1/clip", "folder"]
+
+
+def test_a_list_makes_nobody_forget_the_takes_it_lacks(shoot: Shoot, tmp_path: Path) -> None:
+    output = tmp_path / "out"
+    for name in ("a", "of the larger shoot"):
+        write_failure(output, Failure(name, "it is cut off", "input"))
+    part = replace(shoot, path=tmp_path / "part.jsonl")
+    part.path.touch()
+    BatchOutcomes(part, output, [], Console(quiet=True, as_json=False))
+    assert [failure.take for failure in read_failures(output)] == ["a", "of the larger shoot"]

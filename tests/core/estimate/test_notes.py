@@ -8,7 +8,7 @@ import pytest
 from _synthetic_take import write_synthetic_take
 from keymark.core.estimate.notes import evidence_notes
 from keymark.core.footage.keypoints.keypoints import People
-from keymark.core.take.evidence import with_evidence
+from keymark.core.take.take import with_evidence
 from keymark.core.take.take_file import read_take
 
 

@@ -17,7 +17,6 @@ ARRAYS = {
 
 
 def test_what_is_saved_is_loaded_alike(tmp_path: Path) -> None:
-    """Kinds and missing values included; other keys hold nothing."""
     cache = ArrayCache(tmp_path / "results")
     cache.save("reading-1a", ARRAYS)
     found = ArrayCache(tmp_path / "results").load("reading-1a")
@@ -29,7 +28,6 @@ def test_what_is_saved_is_loaded_alike(tmp_path: Path) -> None:
 
 
 def test_saving_again_replaces_and_leaves_nothing_beside(tmp_path: Path) -> None:
-    """One file a key."""
     cache = ArrayCache(tmp_path)
     cache.save("a", {"x": np.zeros(3)})
     cache.save("a", {"y": np.ones(2)})
@@ -39,7 +37,6 @@ def test_saving_again_replaces_and_leaves_nothing_beside(tmp_path: Path) -> None
 
 @pytest.mark.parametrize("damage", ["cut", "flipped", "empty", "text"])
 def test_a_damaged_file_counts_as_absent(tmp_path: Path, damage: str) -> None:
-    """In any way."""
     cache = ArrayCache(tmp_path)
     cache.save("a", {"x": np.arange(1000.0)})
     file = tmp_path / "a.npz"
@@ -52,7 +49,6 @@ def test_a_damaged_file_counts_as_absent(tmp_path: Path, damage: str) -> None:
 
 
 def test_python_objects_are_neither_kept_nor_read(tmp_path: Path) -> None:
-    """A file that somebody put there runs nothing."""
     cache = ArrayCache(tmp_path)
     with pytest.raises(ValueError, match="objects"):
         cache.save("a", {"x": np.array([{}], dtype=object)})
@@ -62,7 +58,6 @@ def test_python_objects_are_neither_kept_nor_read(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("key", ["../a", "", "A", "a/b", "a.npz", "-a", "a" * 200])
 def test_keys_cannot_leave_the_folder(tmp_path: Path, key: str) -> None:
-    """A key may come from somebody else's scene."""
     np.savez(tmp_path / "a.npz", x=np.zeros(1))
     cache = ArrayCache(tmp_path / "inside")
     assert cache.load(key) is None
@@ -71,7 +66,6 @@ def test_keys_cannot_leave_the_folder(tmp_path: Path, key: str) -> None:
 
 
 def test_the_least_recently_used_is_evicted_first(tmp_path: Path) -> None:
-    """Loading counts as use; the newest always stays."""
     cache = ArrayCache(tmp_path, largest_bytes=4000)
     for age, key in enumerate(("c", "b", "a")):
         cache.save(key, {"x": np.zeros(100)})
@@ -85,7 +79,6 @@ def test_the_least_recently_used_is_evicted_first(tmp_path: Path) -> None:
 
 
 def test_a_half_written_file_is_removed_unless_its_writer_lives(tmp_path: Path) -> None:
-    """Locks tell, not clocks."""
     for name in (".keymark-dead-work", ".keymark-live-work"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "a.npz").write_bytes(b"half")
@@ -99,7 +92,6 @@ def test_a_half_written_file_is_removed_unless_its_writer_lives(tmp_path: Path) 
 
 
 def test_a_folder_that_cannot_be_written_is_said_so(tmp_path: Path) -> None:
-    """In one sentence."""
     (tmp_path / "file").write_text("")
     with pytest.raises(ConversionError, match="cannot be written"):
         ArrayCache(tmp_path / "file" / "cache").save("a", {"x": np.zeros(1)})

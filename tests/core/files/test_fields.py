@@ -12,7 +12,6 @@ NO_FLOAT_HOLDS_IT = 10**400
 
 @pytest.mark.parametrize("value", [NO_FLOAT_HOLDS_IT, -NO_FLOAT_HOLDS_IT, float("inf"), float("nan"), True])
 def test_what_is_no_number_of_the_range_is_refused_in_one_sentence(value: Any) -> None:
-    """Alone, whole, and in a list."""
     one = Number(0.0, 3.0)
     kinds = (one, Whole(0, 3), Items("numbers", 1, 1, "a list of one number", item=one))
     for kind, given in zip(kinds, (value, value, [value]), strict=True):
@@ -22,6 +21,5 @@ def test_what_is_no_number_of_the_range_is_refused_in_one_sentence(value: Any) -
 
 
 def test_a_length_of_the_body_no_float_holds_is_refused() -> None:
-    """The actor's check is the fields' own."""
     with pytest.raises(InputError, match=r"actor\.segments_m\.trunk is 1000"):
         Actor({**Actor.from_stature(1.8).segments_m, "trunk": NO_FLOAT_HOLDS_IT})

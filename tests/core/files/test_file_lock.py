@@ -25,7 +25,6 @@ sys.stdin.read()
 
 @pytest.mark.skipif(os.name == "nt", reason="uses the other kind of lock")
 def test_a_lock_dies_with_its_process(tmp_path: Path) -> None:
-    """The lock of another process is respected until that is killed; the file it leaves means nothing."""
     file = tmp_path / "a.lock"
     words = [sys.executable, "-c", HOLD, str(file)]
     with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
@@ -41,8 +40,6 @@ def test_a_lock_dies_with_its_process(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="uses the other kind of lock")
 def test_where_there_are_no_locks_work_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Some network folders have none; other errors are not taken for that."""
-
     def fail(number: int) -> None:
         def lock(_descriptor: int, _wait: bool) -> None:
             raise OSError(number, os.strerror(number))
@@ -58,13 +55,11 @@ def test_where_there_are_no_locks_work_goes_on(tmp_path: Path, monkeypatch: pyte
 
 
 def test_hidden_prefixes_are_short_and_different() -> None:
-    """For names of any length and script."""
     names = [hidden_prefix(name) for name in ("a", "b", "n" * 255, "舞者", os.fsdecode(b"\xff"))]
     assert len(set(names)) == len(names) and all(len(name.encode()) == len(names[0]) < 40 for name in names)
 
 
 def test_who_writes_the_same_file_waits(tmp_path: Path) -> None:
-    """Both are written completely, one after the other; nothing is left but the later one."""
     inside, order = threading.Event(), []
 
     def first(beside: Path) -> None:
@@ -88,7 +83,6 @@ def test_who_writes_the_same_file_waits(tmp_path: Path) -> None:
 
 
 def test_a_file_written_by_a_process_that_dies_is_the_old_one_or_the_new(tmp_path: Path) -> None:
-    """At any call; the next writing leaves nothing else."""
     path = tmp_path / "a.json"
     write_json(path, {"a": 0})
     old = path.read_bytes()
@@ -106,7 +100,6 @@ def test_a_file_written_by_a_process_that_dies_is_the_old_one_or_the_new(tmp_pat
 
 
 def test_a_file_that_cannot_be_written_leaves_nothing(tmp_path: Path) -> None:
-    """Nor does it change the old one."""
     (tmp_path / "a.txt").write_text("old", encoding="utf-8")
 
     def fail(beside: Path) -> None:
@@ -120,7 +113,6 @@ def test_a_file_that_cannot_be_written_leaves_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("call", ["open", "stat", "fstat", "unlink", "close"])
 def test_an_interruption_leaves_no_lock(call: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ctrl-C in the moment after any call of taking or releasing a lock, when its result is not known yet."""
     real, interrupted = getattr(os, call), []
 
     def interrupt(*words: object, **more: object) -> object:

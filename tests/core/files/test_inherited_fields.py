@@ -23,7 +23,6 @@ def merged(*patches: dict[str, Any]) -> InheritedFields:
 
 
 def test_the_nearer_field_counts_and_objects_are_merged() -> None:
-    """A list is replaced whole, an object field by field."""
     far = {"fps": 24, "camera": {"lens_mm": 35.0, "resolution": [640, 480]}}
     fields = merged(far, {"fps": 30, "camera": {"resolution": [320, 240]}})
     assert fields == {"fps": 30, "camera": {"lens_mm": 35.0, "resolution": [320, 240]}}
@@ -32,7 +31,6 @@ def test_the_nearer_field_counts_and_objects_are_merged() -> None:
 
 
 def test_null_removes_an_inherited_field_and_stays_where_there_is_none() -> None:
-    """Then the sentence can say that it is null."""
     fields = merged({"fps": 24, "camera": {"shift_x": 0.1}}, {"fps": None, "camera": {"shift_x": None}})
     assert "fps" not in fields and fields["camera"] == {} and "fps" not in fields.sources
     with pytest.raises(InputError, match=r"^1\.json: fps is null"):
@@ -40,7 +38,6 @@ def test_null_removes_an_inherited_field_and_stays_where_there_is_none() -> None
 
 
 def test_a_removed_field_can_be_given_again() -> None:
-    """By a file that is nearer still."""
     fields = merged({"method": "ekf"}, {"method": None}, {"method": "map"})
     assert fields == {"method": "map"} and fields.sources == {"method": "2.json"}
 
@@ -58,7 +55,6 @@ PAIRS = [
 
 @pytest.mark.parametrize("pair", PAIRS)
 def test_of_two_ways_to_say_one_thing_the_nearer_counts(pair: tuple[str, str]) -> None:
-    """Either of the two; both in one object are both kept, and null removes nothing but its own field."""
     one, other = pair
     assert merged({one: 1}, {other: 2}) == {other: 2}
     assert merged({one: 1}, {one: 3, other: 2}) == {one: 3, other: 2}
@@ -67,12 +63,10 @@ def test_of_two_ways_to_say_one_thing_the_nearer_counts(pair: tuple[str, str]) -
 
 
 def test_comments_are_left_out_at_any_level() -> None:
-    """They are no fields and remove none."""
     assert merged({"//": 1, "camera": {"// lens": "?", "lens_mm": 1}}) == {"camera": {"lens_mm": 1}}
 
 
 def test_an_object_replaces_another_value_and_the_other_way_round() -> None:
-    """As in a merge patch."""
     assert merged({"distortion": [1, 2]}, {"distortion": {"k1": 3}}) == {"distortion": {"k1": 3}}
     assert merged({"distortion": {"k1": 3}}, {"distortion": [1]}) == {"distortion": [1]}
 
@@ -86,7 +80,6 @@ def test_an_object_replaces_another_value_and_the_other_way_round() -> None:
     ],
 )
 def test_a_sentence_names_the_file_that_says_the_field(field: str, said: str) -> None:
-    """And for a field that is missing everywhere, the nearest file."""
     fields = InheritedFields().overridden_by({"camera": {"lens_mm": -1}}, FAR)
     fields = fields.overridden_by({"camera": {"sensor_width_mm": "x"}}, NEAR)
     camera = make_dataclass("Camera", [(field, Annotated[float, Number(0.0, 1.0)])], bases=(Record,))
@@ -96,7 +89,6 @@ def test_a_sentence_names_the_file_that_says_the_field(field: str, said: str) ->
 
 
 def test_locations_of_objects_read_well() -> None:
-    """The file, then the path in it."""
     assert child_location("a.json", "camera") == "a.json: camera"
     assert child_location("a.json: camera", "lens") == "a.json: camera.lens"
     assert child_location("takes.jsonl, line 3", "camera") == "takes.jsonl, line 3: camera"
@@ -132,7 +124,6 @@ def without_nulls(value: Any) -> Any:
 
 @given(st.lists(OBJECTS, max_size=4))
 def test_merging_is_that_of_a_merge_patch(patches: list[dict[str, Any]]) -> None:
-    """But for nulls that remove nothing, which stay."""
     expected: Any = {}
     for patch in patches:
         expected = merge_patch(expected, patch)

@@ -18,14 +18,12 @@ VALUES = st.recursive(
 
 @given(VALUES)
 def test_the_layout_changes_nothing_but_spaces(value: object) -> None:
-    """What is laid out is the same JSON."""
     text = format_json(value)
     assert json.loads(text) == value
     assert format_json(json.loads(text)) == text
 
 
 def test_what_is_short_stands_in_one_line() -> None:
-    """Short lists and objects do, components of one thing do, everything else has a line of its own."""
     value = {
         "tags": ["a", "b"],
         "values": {"hip.L.rotation_x": 0.1, "hip.L.rotation_z": 0.2, "knee.L.flexion": 0.3},
@@ -53,13 +51,11 @@ def test_what_is_short_stands_in_one_line() -> None:
 
 @pytest.mark.parametrize("more", [0, 1])
 def test_a_list_is_broken_where_it_is_too_long(more: int) -> None:
-    """Up to the width it stands in one line, its own line's beginning counted."""
     value = {"list": ["x" * (WIDTH - len('  "list": [""]') + more)]}
     assert len(format_json(value).splitlines()) == (5 if more else 3)
 
 
 def test_numbers_must_be_finite(tmp_path: Path) -> None:
-    """And the file ends with a line break."""
     with pytest.raises(ValueError, match="JSON compliant"):
         write_readable_json(tmp_path / "a.json", {"a": float("nan")})
     assert list(tmp_path.iterdir()) == []
@@ -69,7 +65,6 @@ def test_numbers_must_be_finite(tmp_path: Path) -> None:
 
 
 def test_what_is_nested_too_deeply_is_shown_all_the_same() -> None:
-    """A sentence about a value can always be said."""
     value: list[object] = []
     for _ in range(100_000):
         value = [value]

@@ -8,14 +8,12 @@ from keymark.core.files.json_file import read_json, read_json_value
 
 
 def write(folder: Path, text: str) -> Path:
-    """A file with this text."""
     path = folder / "value.json"
     path.write_text(text, encoding="utf-8")
     return path
 
 
 def test_lists_are_read_and_nan_is_null(tmp_path: Path) -> None:
-    """Our own files are objects without NaN."""
     path = write(tmp_path, '[1, NaN, {"x": NaN}]')
     assert read_json_value(path) == [1, None, {"x": None}]
     for text in ("[1]", '{"x": NaN}'):
@@ -25,6 +23,5 @@ def test_lists_are_read_and_nan_is_null(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("text", ["[Infinity]", "[-Infinity]", "[1e999]", '{"x": 1, "x": 2}', "[1, 2", ""])
 def test_the_rest_is_as_strict(tmp_path: Path, text: str) -> None:
-    """Numbers that are not finite, fields that stand twice, and files that were cut off."""
     with pytest.raises(InputError, match=r"value\.json"):
         read_json_value(write(tmp_path, text))

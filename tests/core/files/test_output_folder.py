@@ -19,20 +19,17 @@ def tree(folder: Path) -> dict[str, str]:
 
 
 def fill(folder: Path, text: str) -> None:
-    """Write a file, and one in a folder below."""
     (folder / "motion.json").write_text(text, encoding="utf-8")
     (folder / "report").mkdir()
     (folder / "report" / "speed.png").write_text(text, encoding="utf-8")
 
 
 def made(folder: Path) -> Path:
-    """A folder that was made."""
     folder.mkdir()
     return folder
 
 
 def test_a_new_folder_appears_with_all_files(tmp_path: Path) -> None:
-    """A folder and its parents are made, and nothing is left beside it."""
     with output_folder(tmp_path / "a" / "b" / "out") as staging_folder:
         fill(staging_folder, "new")
         assert not (tmp_path / "a" / "b" / "out").exists()
@@ -46,7 +43,6 @@ def test_a_new_folder_appears_with_all_files(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, GeneratorExit])
 def test_a_failing_block_changes_nothing(tmp_path: Path, error: type[BaseException]) -> None:
-    """After any exception the folder is as before; a new one does not exist, nor do its parents."""
     for out in (tmp_path / "old", tmp_path / "not" / "there"):
         if out.name == "old":
             out.mkdir()
@@ -59,7 +55,6 @@ def test_a_failing_block_changes_nothing(tmp_path: Path, error: type[BaseExcepti
 
 
 def test_files_of_others_stay_and_files_of_earlier_runs_go(tmp_path: Path) -> None:
-    """A second run replaces its own files, removes what it no longer makes, and keeps what is not its own."""
     out = tmp_path / "out"
     with output_folder(out) as staging_folder:
         fill(staging_folder, "first")
@@ -71,7 +66,6 @@ def test_files_of_others_stay_and_files_of_earlier_runs_go(tmp_path: Path) -> No
 
 @pytest.mark.parametrize("fails_at", [1, 2, 3, 4])
 def test_a_move_that_fails_is_undone(tmp_path: Path, fails_at: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where a file cannot be moved, those moved already are rolled back."""
     out = tmp_path / "out"
     with output_folder(out) as staging_folder:
         fill(staging_folder, "old")
@@ -92,7 +86,6 @@ def test_a_move_that_fails_is_undone(tmp_path: Path, fails_at: int, monkeypatch:
 
 
 def test_a_path_that_is_no_folder_is_refused(tmp_path: Path) -> None:
-    """A file under the output's name, or under a parent's, is one sentence and stays."""
     (tmp_path / "file").write_text("mine", encoding="utf-8")
     with pytest.raises(InputError, match="is a file"), output_folder(tmp_path / "file"):
         pass
@@ -104,7 +97,6 @@ def test_a_path_that_is_no_folder_is_refused(tmp_path: Path) -> None:
 def test_a_mounted_folder_holds_its_own_staging_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where the parent may not be written, the staging folder lies in the output, and is gone afterwards."""
     out = tmp_path / "out"
     out.mkdir()
     monkeypatch.setattr(module.os, "access", lambda path, mode: Path(path) == out)
@@ -115,7 +107,6 @@ def test_a_mounted_folder_holds_its_own_staging_folder(
 
 
 def test_a_link_to_a_folder_stays_a_link(tmp_path: Path) -> None:
-    """Results go where the link leads."""
     (tmp_path / "disk").mkdir()
     (tmp_path / "out").symlink_to(tmp_path / "disk", target_is_directory=True)
     with output_folder(tmp_path / "out") as staging_folder:
@@ -124,7 +115,6 @@ def test_a_link_to_a_folder_stays_a_link(tmp_path: Path) -> None:
 
 
 def test_a_run_interrupted_before_an_update_is_recovered(tmp_path: Path) -> None:
-    """The hidden names and the journal's fields are those of every version."""
     out, stem = tmp_path / "out", tmp_path / ".keymark-762069bc07a6e1b5"
     fill(made(out), "old")
     fill(made(stem.with_name(f"{stem.name}-new")), "new")

@@ -36,7 +36,6 @@ def write_set(folder: Path, text: str, pictures: bool = True) -> None:
 
 
 def run(out: Path, text: str, pictures: bool = True) -> None:
-    """Commit a set of files, as one process does."""
     with output_folder(out, OWN_FILES, manifest=MANIFEST) as staging_folder:
         write_set(staging_folder, text, pictures)
 
@@ -66,13 +65,11 @@ KINDS = pytest.mark.parametrize("kind", ["new", "others", "older"])
 
 
 def expected(folder: Path, kind: str) -> dict[str, bytes | None]:
-    """The files that an undisturbed run leaves."""
     run(begin(folder, kind), "newer")
     return tree(folder)
 
 
 def calls_of(folder: Path, kind: str) -> int:
-    """The number of calls of an undisturbed run."""
     out = begin(folder, kind)
     with faulty_calls() as calls:
         run(out, "newer")
@@ -81,7 +78,6 @@ def calls_of(folder: Path, kind: str) -> int:
 
 @KINDS
 def test_a_run_killed_at_any_call_is_repeated_without_a_trace(kind: str, tmp_path: Path) -> None:
-    """Wherever a process dies, a reader finds a whole set or none; the next run recovers."""
     wanted = expected(tmp_path / "wanted", kind)
     total = calls_of(tmp_path / "counted", kind)
     assert total > 25
@@ -96,7 +92,6 @@ def test_a_run_killed_at_any_call_is_repeated_without_a_trace(kind: str, tmp_pat
 
 
 def test_a_run_that_makes_nothing_recovers_a_killed_one(tmp_path: Path) -> None:
-    """A journaled set is rolled forward, though the next process makes no files itself."""
     wanted = expected(tmp_path / "wanted", "older")
     total = calls_of(tmp_path / "counted", "older")
     older = tree(begin(tmp_path / "older", "older").parent)
@@ -116,7 +111,6 @@ def test_a_run_that_makes_nothing_recovers_a_killed_one(tmp_path: Path) -> None:
 
 @pytest.mark.faults
 def test_the_process_that_recovers_may_be_killed_as_well(tmp_path: Path) -> None:
-    """A second kill, at any call of the run after the first."""
     wanted = expected(tmp_path / "wanted", "older")
     total = calls_of(tmp_path / "counted", "older")
     for at in range(1, total + 1, 2):
@@ -135,7 +129,6 @@ def test_the_process_that_recovers_may_be_killed_as_well(tmp_path: Path) -> None
 @KINDS
 @pytest.mark.parametrize("lasting", [False, True])
 def test_a_disk_that_is_full_at_any_call_changes_nothing(kind: str, lasting: bool, tmp_path: Path) -> None:
-    """One sentence, and all is as before; where even rolling back needs room, nothing is lost."""
     wanted = expected(tmp_path / "wanted", kind)
     out = begin(tmp_path / "counted", kind)
     with faulty_calls(None, disk_full, names=GROWING) as calls:
@@ -161,7 +154,6 @@ def test_a_disk_that_is_full_at_any_call_changes_nothing(kind: str, lasting: boo
 
 
 def test_a_run_interrupted_at_any_call_changes_nothing(tmp_path: Path) -> None:
-    """Ctrl-C may come at any call, also just after a file has been moved."""
     out = begin(tmp_path / "counted", "older")
     with faulty_calls(None, disk_full) as calls:
         run(out, "newer")
@@ -182,8 +174,6 @@ def test_a_run_interrupted_at_any_call_changes_nothing(tmp_path: Path) -> None:
 
 
 def test_files_that_others_changed_are_backed_up(tmp_path: Path) -> None:
-    """Under the name they are given, also through kills at any call."""
-
     def again(out: Path) -> None:
         backups: dict[str, str] = {}
         with output_folder(out, OWN_FILES, MANIFEST, backups) as staging_folder:
@@ -208,14 +198,12 @@ def test_files_that_others_changed_are_backed_up(tmp_path: Path) -> None:
 
 
 def test_a_second_backup_gets_a_name_of_its_own(tmp_path: Path) -> None:
-    """No backup is replaced."""
     for name in ("motion.blend", "motion (changed).blend"):
         (tmp_path / name).touch()
     assert backup_name(tmp_path / "motion.blend").name == "motion (changed 2).blend"
 
 
 def test_a_folder_is_one_processs_at_a_time(tmp_path: Path) -> None:
-    """A second thread, or process, is refused; afterwards the folder is free, and no lock is left."""
     out = tmp_path / "out"
     said: list[KeymarkError] = []
 
@@ -236,7 +224,6 @@ def test_a_folder_is_one_processs_at_a_time(tmp_path: Path) -> None:
 
 
 def test_threads_that_race_for_a_folder_leave_one_whole_set(tmp_path: Path) -> None:
-    """The set is of one of them; the parent folder comes and goes meanwhile."""
     out = tmp_path / "above" / "out"
     ended: list[str] = []
 
@@ -260,7 +247,6 @@ def test_threads_that_race_for_a_folder_leave_one_whole_set(tmp_path: Path) -> N
 
 
 def test_a_journal_that_is_not_to_be_trusted_is_removed(tmp_path: Path) -> None:
-    """One that names paths elsewhere, or of whose set files are missing, moves nothing."""
     out = begin(tmp_path, "older")
     with faulty_calls() as calls:
         run(out, "newer")
@@ -288,7 +274,6 @@ def test_a_journal_that_is_not_to_be_trusted_is_removed(tmp_path: Path) -> None:
 
 
 def names(folder: Path) -> dict[str, Path]:
-    """Folder names that are hard on programs."""
     return {
         "as long as a name may be": folder / ("n" * 255),
         "in other letters": folder / "Tänzerin 舞者" / "отснято 🎬",
@@ -301,7 +286,6 @@ def names(folder: Path) -> dict[str, Path]:
 @pytest.mark.skipif(os.name == "nt", reason="Windows forbids such names")
 @pytest.mark.parametrize("what", sorted(names(Path())))
 def test_odd_names_work(what: str, tmp_path: Path) -> None:
-    """Hidden files have short names of their own."""
     out = names(tmp_path)[what]
     for text in ("older", "newer"):
         run(out, text)
@@ -309,7 +293,6 @@ def test_odd_names_work(what: str, tmp_path: Path) -> None:
 
 
 def endless(folder: Path) -> Path:
-    """A link that leads to itself."""
     (folder / "endless").symlink_to(folder / "endless")
     return folder / "endless" / "out"
 
@@ -324,7 +307,6 @@ def endless(folder: Path) -> Path:
     ],
 )
 def test_impossible_paths_are_one_sentence(path: Callable[[Path], Path], tmp_path: Path) -> None:
-    """And none of the parent folders is left."""
     out = path(tmp_path)
     before = os.listdir(tmp_path)
     with pytest.raises(InputError, match="cannot be written"), output_folder(out):
@@ -333,12 +315,10 @@ def test_impossible_paths_are_one_sentence(path: Callable[[Path], Path], tmp_pat
 
 
 def test_a_link_to_nowhere_leads_there(tmp_path: Path) -> None:
-    """The folder is made where the link says."""
     (tmp_path / "out").symlink_to(tmp_path / "disk" / "results")
     run(tmp_path / "out", "newer")
     assert is_whole(tmp_path / "disk" / "results") and (tmp_path / "out").is_symlink()
 
 
 def test_the_fault_is_the_one_asked_for() -> None:
-    """The stand-ins themselves: a kill is no Exception, so that no code catches it by accident."""
     assert not isinstance(killed("open"), Exception) and isinstance(disk_full("open"), OSError)

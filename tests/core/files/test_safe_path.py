@@ -6,13 +6,13 @@ from pathlib import Path
 import pytest
 from keymark.core.errors import InputError
 from keymark.core.files.fields import Fields
-from keymark.core.files.safe_path import LONGEST_NAME_BYTES, LONGEST_PATH, check_symlinks, safe_path
+from keymark.core.files.kinds import LONGEST_NAME_BYTES, LONGEST_PATH, safe_path
+from keymark.core.files.paths import check_symlinks
 
 VALID = "a path inside the folder"
 
 
 def inside(text: object, folder: Path) -> Path:
-    """The path in a field."""
     return safe_path(Fields({"clip": text}, "take.json"), "clip", folder, VALID)
 
 
@@ -31,7 +31,6 @@ def inside(text: object, folder: Path) -> Path:
     ],
 )
 def test_a_path_inside_is_taken(text: str, tmp_path: Path) -> None:
-    """In any script."""
     assert inside(text, tmp_path) == tmp_path / text
 
 
@@ -44,13 +43,11 @@ def test_a_path_inside_is_taken(text: str, tmp_path: Path) -> None:
     ],
 )
 def test_any_other_path_is_refused(text: object, tmp_path: Path) -> None:
-    """It leaves the folder, is absolute, has control characters or is impossible."""
     with pytest.raises(InputError, match=r"^take\.json: clip is"):
         inside(text, tmp_path)
 
 
 def test_links_must_stay_in_one_of_the_folders(tmp_path: Path) -> None:
-    """Through any number of links; a missing file is accepted."""
     root, other = tmp_path / "root", tmp_path / "other"
     for folder in (root, other):
         folder.mkdir()
@@ -71,7 +68,6 @@ def test_links_must_stay_in_one_of_the_folders(tmp_path: Path) -> None:
 
 
 def test_a_circle_of_links_is_accepted(tmp_path: Path) -> None:
-    """Its reader finds that it leads nowhere."""
     try:
         os.symlink(tmp_path / "a", tmp_path / "a")
     except OSError:

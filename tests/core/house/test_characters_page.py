@@ -22,7 +22,8 @@ def test_every_option_is_described(page: str) -> None:
     """All that the two commands take, but for the ones that every command has."""
     for command in (CHARACTER, RETARGET):
         parser = argparse.ArgumentParser()
-        command.add_arguments(parser)
+        for names, settings in command.arguments:
+            parser.add_argument(*names, **settings)
         options = [max(action.option_strings) for action in parser._actions if action.option_strings]
         assert [one for one in options if one not in ("--help", "--replace") and one not in page] == []
     assert [ending for ending in CHARACTER_ENDINGS if f"`{ending}`" not in page] == []

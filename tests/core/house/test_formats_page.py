@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from keymark.core import MOST_PIXELS
 from keymark.core.body import posture as posture_fields
-from keymark.core.files import json_file, safe_path
+from keymark.core.files import json_file, kinds
 from keymark.core.footage import camera_fields
 from keymark.core.footage import ignored_regions as ignored_region_fields
 from keymark.core.footage.clips import image_sequence
@@ -35,7 +35,7 @@ LIMITS = {
     f"{discovery.LONGEST_LINE_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
     f"{character_map_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
     f"{json_file.MOST_LISTS}, {json_file.DEEPEST} levels deep": "lists and objects in a file",
-    f"{safe_path.LONGEST_PATH} characters; {safe_path.LONGEST_NAME_BYTES} bytes": "a path; a name in it",
+    f"{kinds.LONGEST_PATH} characters; {kinds.LONGEST_NAME_BYTES} bytes": "a path; a name in it",
     f"{shoot.MOST_TAKES}": "takes of a shoot",
     f"{take_file.MOST_FRAMES}": "frames of a take",
     f"{keyframe_file.MOST_KEYFRAMES}": "keyframes of a take",

@@ -27,13 +27,11 @@ FAST = ("--method", "interpolation", "--no-report", "--quiet")
 
 @pytest.fixture(scope="module")
 def known(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Format]:
-    """Every format."""
     return formats(tmp_path_factory.mktemp("formats"))
 
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not modify."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES, 3)
 
 
@@ -42,7 +40,6 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @settings(max_examples=25 * FUZZ, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_any_content_is_read_or_refused(known: dict[str, Format], name: str, data: st.DataObject) -> None:
-    """Random changes of values and bytes raise no other error, no second line and no NumPy warning."""
     content = data.draw(files(known[name].valid))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -96,7 +93,6 @@ def changed_take(pristine: Path, take: Path, data: st.DataObject) -> None:
 def test_a_mutated_take_converts_or_is_refused(
     pristine: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], data: st.DataObject
 ) -> None:
-    """A conversion prints at most one line, and its output folder is complete or unchanged."""
     changed_take(pristine, tmp_path / "take", data)
     shutil.rmtree(tmp_path / "out", ignore_errors=True)
     converts(tmp_path / "take", tmp_path / "out", capfd)
@@ -108,7 +104,6 @@ def test_a_mutated_take_converts_or_is_refused(
 def test_reading_commands_report_errors(
     pristine: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], data: st.DataObject
 ) -> None:
-    """They return a status and print one line on standard error; their input is unchanged."""
     changed_take(pristine, tmp_path / "shoot" / "take", data)
     command = data.draw(st.sampled_from(["check", "propose", "library check"]))
     path = {
@@ -137,7 +132,6 @@ def test_special_files_do_not_block(
     capfd: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Reading a pipe may never begin, a device never end, and a link may lead to private files."""
     take = Path(shutil.copytree(pristine, tmp_path / "take"))
     path = take / name
     if name == "clip":
@@ -182,7 +176,6 @@ HUGE: dict[str, bytes] = {
 
 @pytest.mark.parametrize("kind", HUGE)
 def test_excessive_json_is_refused(tmp_path: Path, kind: str) -> None:
-    """Deep, numerous or large content is refused with one short sentence before memory is allocated."""
     path = tmp_path / "huge.json"
     path.write_bytes(HUGE[kind])
     with pytest.raises(InputError, match=r"huge\.json") as caught:
@@ -191,7 +184,6 @@ def test_excessive_json_is_refused(tmp_path: Path, kind: str) -> None:
 
 
 def test_brackets_in_strings_are_not_nesting() -> None:
-    """Brackets within strings do not count as nesting."""
     text = json.dumps({"a": "[" * 500 + '"\\' + "{" * 500, "b": [[1]]})
     assert parse_json(text, "here")["b"] == [[1]]
     assert parse_json('{"a": "\\ud83c\\udfac"}', "here")["a"] == "\U0001f3ac"

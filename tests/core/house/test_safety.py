@@ -85,7 +85,6 @@ def _says(node: ast.AST | None, value: object) -> bool:
 
 
 def test_nothing_of_the_package_reaches_a_network_or_runs_data(repository: Path) -> None:
-    """Neither core nor operators import, call or name such modules; few start processes."""
     found = []
     for folder in ("core", "operators"):
         for file in sorted((repository / folder).rglob("*.py")):
@@ -113,19 +112,16 @@ def test_nothing_of_the_package_reaches_a_network_or_runs_data(repository: Path)
     ],
 )
 def test_forbidden_code_is_found(source: str) -> None:
-    """The check above can fail: it reports each of these lines."""
     assert len(list(faults("core.take.take", source))) == 1
 
 
 def test_allowed_code_passes() -> None:
-    """Processes in the batch's own module, arrays without pickles, patterns and own modules are allowed."""
     assert list(faults("operators.cli.batch.pool", "import subprocess")) == []
     source = "np.load(path, allow_pickle=False)\nre.compile(text)\nfrom .code import x\nimport json"
     assert list(faults("core.take.take", source)) == []
 
 
 def test_the_extension_requests_file_permission_only(repository: Path) -> None:
-    """No permission but files, with a short reason: no network, clipboard, camera or microphone."""
     manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
     assert set(manifest["permissions"]) == {"files"}
     reason = manifest["permissions"]["files"]
@@ -167,7 +163,6 @@ def watched(repository: Path, *words: str) -> dict[str, object]:
 
 
 def test_a_command_opens_no_socket_and_writes_only_where_it_is_told(repository: Path, tmp_path: Path) -> None:
-    """Converting a take, or without Blender inspecting it, makes no such attempt."""
     take, output = write_synthetic_take(tmp_path / "take", 8), tmp_path / "out"
     said = watched(repository, "convert", str(take), "--output", str(output / "take"), "--quiet")
     if not said["blender"]:

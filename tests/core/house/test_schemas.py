@@ -29,13 +29,11 @@ NAMES = (
 
 @pytest.fixture(scope="module")
 def known(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Format]:
-    """Every format."""
     return formats(tmp_path_factory.mktemp("formats"))
 
 
 @cache
 def schemas() -> dict[str, Any]:
-    """The schemas by name."""
     folder = Path(__file__).parents[3] / "presets" / "schemas"
     return {path.name: json.loads(path.read_text(encoding="utf-8")) for path in folder.glob("*.schema.json")}
 
@@ -50,7 +48,6 @@ def validator(name: str, whole: bool = False) -> Draft202012Validator:
 
 
 def test_there_is_a_schema_for_every_format() -> None:
-    """Each is valid in its draft and has a title and a description."""
     assert set(schemas()) == {f"{name}.schema.json" for name in NAMES}
     for schema in schemas().values():
         Draft202012Validator.check_schema(schema)
@@ -59,7 +56,6 @@ def test_there_is_a_schema_for_every_format() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_schemas_are_made_of_the_declarations(name: str, repository: Path) -> None:
-    """Byte for byte what tools/make_schemas.py writes."""
     file = repository / "presets" / "schemas" / f"{name}.schema.json"
     assert file.read_text(encoding="utf-8") == make_schemas.text_of(name)
 
@@ -80,7 +76,6 @@ def fields_of(schema: Any) -> list[tuple[str, Any]]:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_numbers_and_texts_have_limits(name: str) -> None:
-    """Every number has a range, every text a largest length or a pattern."""
     for field, schema in fields_of(schemas()[f"{name}.schema.json"]):
         kinds = schema.get("type", ())
         kinds = {kinds} if isinstance(kinds, str) else set(kinds)
@@ -92,14 +87,12 @@ def test_numbers_and_texts_have_limits(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_schema_and_reader_accept_a_valid_file(known: dict[str, Format], name: str) -> None:
-    """Both accept the file from which all tests of the format begin."""
     one = known[name]
     assert list(validator(name, one.whole).iter_errors(one.valid)) == []
     assert not refused_by_reader(one, one.valid)
 
 
 def test_shipped_files_are_valid(repository: Path, shared_takes: Path) -> None:
-    """Every library, the demonstration, and the development takes."""
     libraries = sorted((repository / "presets" / "keyframes").glob("*.json"))
     assert libraries
     for path in libraries:
@@ -119,7 +112,6 @@ def test_shipped_files_are_valid(repository: Path, shared_takes: Path) -> None:
 
 
 def refused_by_reader(one: Format, value: Any) -> bool:
-    """Whether the reader refuses a value."""
     try:
         one.read(json.dumps(value).encode())
     except InputError:
@@ -140,7 +132,6 @@ def as_read(value: Any) -> Any:
 @settings(max_examples=25 * FUZZ, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_readers_refuse_what_schemas_refuse(known: dict[str, Format], name: str, data: st.DataObject) -> None:
-    """Random changes of a valid file that a schema refuses are refused by its reader too."""
     one = known[name]
     value = as_read(data.draw(changed(one.valid, 2)))
     if value is not None and not validator(name, one.whole).is_valid(value):
@@ -151,8 +142,6 @@ Change = Callable[[Any], object]
 
 
 def at(*way: Any, to: Any) -> Change:
-    """A change that sets one value."""
-
     def change(value: Any) -> None:
         for key in way[:-1]:
             value = value[key]
@@ -266,7 +255,6 @@ MISTAKES: list[tuple[str, Change]] = [
 
 @pytest.mark.parametrize(("name", "change"), MISTAKES)
 def test_schema_and_reader_refuse_a_mistake(known: dict[str, Format], name: str, change: Change) -> None:
-    """Schema and reader refuse each mistake, so editors mark it."""
     one = known[name]
     value = json.loads(json.dumps(one.valid))
     change(value)
@@ -275,7 +263,6 @@ def test_schema_and_reader_refuse_a_mistake(known: dict[str, Format], name: str,
 
 
 def test_a_partial_take_is_valid_below_a_shoot(known: dict[str, Format]) -> None:
-    """`take.json` may be empty; only a take that inherits nothing must be complete."""
     assert validator("take").is_valid({}) and validator("take").is_valid({"camera": {"lens_mm": None}})
     assert not validator("take", True).is_valid({})
     assert validator("shoot").is_valid({"$schema": "shoot.schema.json", "//": 1})

@@ -32,23 +32,18 @@ RED = (10.0, 20.0, 230.0)
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A take, whose clip is not read."""
     return read_take(write_synthetic_take(tmp_path_factory.mktemp("character") / "take", 4))
 
 
 def box(place: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> CharacterFigure:
-    """A red box that stands on the floor."""
     return CharacterFigure(CORNERS + np.array(place), OUTWARD, np.tile(np.array(RED), (len(OUTWARD), 1)))
 
 
 def red(picture: Image) -> Image:
-    """Which pixels are red."""
     return (picture[..., 2].astype(int) - picture[..., 0] > 60) & (picture[..., 1] < 90)
 
 
 def test_only_what_faces_the_eye_is_drawn() -> None:
-    """A box seen from the front shows its front; turned inside out, its back."""
-
     def project(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return np.stack([50.0 + 50.0 * points[:, 0], 90.0 - 50.0 * points[:, 2]], axis=-1), points[:, 1]
 
@@ -62,7 +57,6 @@ def test_only_what_faces_the_eye_is_drawn() -> None:
 
 
 def test_a_row_with_footage_only_where_there_is_some(take: Take) -> None:
-    """Footage, camera and side; without pictures of the footage two rows."""
     figures = {0: box(), 3: box((0.3, 0.0, 0.0))}
     images = {frame: np.full((SIZE[1], SIZE[0], 3), 90, dtype=np.uint8) for frame in figures}
     with_footage = character_sheet("Hero", figures, take.camera, images, 1, 0.0)
@@ -77,7 +71,6 @@ def test_a_row_with_footage_only_where_there_is_some(take: Take) -> None:
 
 
 def test_the_floor_line_lies_under_the_feet(take: Take) -> None:
-    """From the side the box ends where the floor is; lifted, it ends above."""
     lows = []
     for height in (0.0, 0.4):
         sheet = character_sheet("Hero", {0: box((0.0, 0.0, height))}, take.camera, {}, 1, 0.0)

@@ -34,12 +34,10 @@ def alike(image: np.ndarray, color: tuple[int, int, int]) -> np.ndarray:
 
 
 def moved(posture: Posture, offset: tuple[float, float, float]) -> Posture:
-    """The posture, moved."""
     return Posture(posture.skeleton, posture.translation + offset, posture.rotations, posture.angles)
 
 
 def test_a_posture_fills_its_picture_and_left_is_told_from_right() -> None:
-    """Both sides' limbs are there, in about the same amount, and most of the height is used."""
     image = posture_picture(BODY, STANDING)
     assert image.shape == (SIZE, SIZE, 3) and image.dtype == np.uint8
     left, right = alike(image, LEFT), alike(image, RIGHT)
@@ -50,7 +48,6 @@ def test_a_posture_fills_its_picture_and_left_is_told_from_right() -> None:
 
 
 def test_the_eye_stands_where_the_view_says() -> None:
-    """From the front the performer's left is at the right of the picture, from behind at the left."""
     paper = np.full((200, 200, 3), 250, dtype=np.uint8)
     for turn, side in ((0.0, 1.0), (np.pi, -1.0)):
         image = draw_mannequin(paper, mannequin(BODY, STANDING), View(turn, 0.1, 90.0, (100.0, 180.0)))
@@ -60,7 +57,6 @@ def test_the_eye_stands_where_the_view_says() -> None:
 
 
 def test_a_limb_in_front_hides_what_is_behind() -> None:
-    """Seen from its left, a standing person's right leg hardly shows."""
     paper = np.full((200, 200, 3), 250, dtype=np.uint8)
     image = draw_mannequin(paper, mannequin(BODY, STANDING), View(0.5 * np.pi, 0.0, 90.0, (100.0, 180.0)))
     assert alike(image, LEFT).sum() > 20 * alike(image, RIGHT).sum()
@@ -68,7 +64,6 @@ def test_a_limb_in_front_hides_what_is_behind() -> None:
 
 @pytest.mark.parametrize("offset", [(0.0, 0.0, 0.3), (3.0, -2.0, 0.0)])
 def test_the_picture_follows_a_leap_but_not_a_walk(offset: tuple[float, float, float]) -> None:
-    """A leaping figure is above the floor; one that has walked away is centered nevertheless."""
     here, there = (posture_picture(BODY, posture) for posture in (STANDING, moved(STANDING, offset)))
     lowest = [np.flatnonzero((alike(im, LEFT) | alike(im, RIGHT)).any(axis=1))[-1] for im in (here, there)]
     if offset[2]:
@@ -91,7 +86,6 @@ def crouching(knee: float) -> Posture:
 
 @pytest.mark.parametrize("knee", [0.2, 0.6, 1.2])
 def test_feet_lie_on_the_floor_where_they_would_dip(knee: float) -> None:
-    """The rigid foot of a leaning shin dips; drawn, it does not, and a foot in the air keeps its rotation."""
     posture = crouching(knee)
     assert sole_heights_m(BODY, BODY.pose(posture)).max() < -0.01
     assert mannequin(BODY, posture).points[:, 2].min() > -1e-3
@@ -100,7 +94,6 @@ def test_feet_lie_on_the_floor_where_they_would_dip(knee: float) -> None:
 
 
 def test_the_skin_lies_around_the_bones_and_faces_outwards() -> None:
-    """Each joint is within the body; the volume by the triangles' winding is a person's, and positive."""
     figure = mannequin(BODY, STANDING)
     corners = figure.points[figure.triangles]
     volume_m3 = np.einsum("ti,ti->t", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6.0
@@ -110,7 +103,6 @@ def test_the_skin_lies_around_the_bones_and_faces_outwards() -> None:
 
 
 def test_every_posture_is_on_the_sheet() -> None:
-    """A figure for each posture, row by row; any letters are accepted."""
     library = small_library()
     many = tuple(replace(library.postures[0], name=f"ö {n} 歩く" * 20) for n in range(COLUMNS + 2))
     sheets = [

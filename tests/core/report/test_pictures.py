@@ -11,6 +11,7 @@ from _synthetic_take import BODY, CAMERA, SIZE, true_postures, write_synthetic_t
 from keymark.core.evidence.contours import ContourModel
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.pipeline.result import PICTURES
 from keymark.core.report.canvas import INK, LEFT, RIGHT, Canvas, write_png
 from keymark.core.report.overlay_sheet import (
     CELL_WIDTH,
@@ -20,7 +21,7 @@ from keymark.core.report.overlay_sheet import (
     evenly_spaced_frames,
     overlay_sheet,
 )
-from keymark.core.report.pictures import PICTURES, side_sheet, write_pictures
+from keymark.core.report.pictures import side_sheet, write_pictures
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
@@ -31,13 +32,11 @@ CAMERA_AHEAD = Camera.from_dict(CAMERA)
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A take with a clip."""
     return read_take(write_synthetic_take(tmp_path_factory.mktemp("report") / "take", FRAMES))
 
 
 @pytest.fixture
 def motion() -> Motion:
-    """The true motion of that take."""
     posture = true_postures(FRAMES)
     points = BODY.points(BODY.pose(posture))
     unknown = np.full((FRAMES, 13, 3, 3), np.nan)
@@ -57,12 +56,10 @@ def tracks() -> RegionTracks:
 
 
 def count(image: np.ndarray, color: tuple[int, int, int], tolerance: int = 12) -> int:
-    """Number of pixels of about this color."""
     return int((np.abs(image.astype(int) - color).max(axis=-1) <= tolerance).sum())
 
 
 def test_all_pictures_are_written(take: Take, motion: Motion, tracks: RegionTracks, tmp_path: Path) -> None:
-    """Every named file is a readable picture that is not blank."""
     files = write_pictures(tmp_path / "report", take, motion, tracks)
     assert [file.name for file in files] == list(PICTURES)
     for file in files:
@@ -73,7 +70,6 @@ def test_all_pictures_are_written(take: Take, motion: Motion, tracks: RegionTrac
 def test_large_frames_are_kept_no_larger_than_drawn(
     take: Take, motion: Motion, tracks: RegionTracks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of a clip in 5K the sheet gets frames of twice its cells' width, in the clip's proportions."""
     images = tmp_path / "images"
     images.mkdir()
     for index in range(2):
@@ -90,7 +86,6 @@ def test_large_frames_are_kept_no_larger_than_drawn(
 
 
 def test_the_skeleton_lies_on_the_projected_joints(take: Take, motion: Motion, tracks: RegionTracks) -> None:
-    """In the sheet's first cell the left elbow has the left's color where the camera projects it."""
     plain = np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8)
     image = overlay_sheet(take, motion, tracks, {0: plain})
     scale = CELL_WIDTH / SIZE[0]
@@ -107,7 +102,6 @@ def test_the_skeleton_lies_on_the_projected_joints(take: Take, motion: Motion, t
 def test_hidden_markers_and_points_behind_the_camera_draw_nothing(
     take: Take, motion: Motion, tracks: RegionTracks
 ) -> None:
-    """A performer behind the camera and a hidden marker leave the footage as it is."""
     plain = np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8)
     behind = replace(
         motion,
@@ -121,7 +115,6 @@ def test_hidden_markers_and_points_behind_the_camera_draw_nothing(
 
 
 def test_keypoints_lie_where_they_were_seen(take: Take, motion: Motion, tracks: RegionTracks) -> None:
-    """A cross in its source's color, a ring where the motion puts it; another color if not believed."""
     plain = np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8)
     keypoints = made_up_keypoints(FRAMES)
     keypoints.seen[:, :, 0] += 40.0  # away from the figure
@@ -145,7 +138,6 @@ def test_keypoints_lie_where_they_were_seen(take: Take, motion: Motion, tracks: 
 def test_contours_are_drawn_only_where_there_are_no_markers(
     take: Take, motion: Motion, tracks: RegionTracks
 ) -> None:
-    """Beside the limbs, in their own color."""
     plain = np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8)
     contours = ContourModel.average(BODY, take.camera)
     bare = RegionTracks.unmarked(tracks.time_s, SIZE)
@@ -157,7 +149,6 @@ def test_contours_are_drawn_only_where_there_are_no_markers(
 
 
 def test_the_side_shows_depth(motion: Motion) -> None:
-    """An arm stretched away from the camera is wide, one stretched across the picture is not."""
     names = BODY.skeleton.dof_names
     spans = {}
     for turn in (-np.pi / 2, 0.0):
@@ -175,7 +166,6 @@ def test_the_side_shows_depth(motion: Motion) -> None:
 
 @pytest.mark.parametrize("pitch", [-90.0, 90.0])
 def test_a_camera_that_looks_straight_down_or_up_is_seen_from_the_side(motion: Motion, pitch: float) -> None:
-    """Where the camera has no level direction, the picture's upper edge is ahead."""
     turn = np.radians(90.0 + pitch)
     matrix = np.eye(4)
     matrix[1:3, 1:3] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
@@ -185,14 +175,12 @@ def test_a_camera_that_looks_straight_down_or_up_is_seen_from_the_side(motion: M
 
 @pytest.mark.parametrize(("frame_count", "shown"), [(1, 1), (2, 2), (12, 12), (118, 12)])
 def test_frames_shown_are_spread_from_first_to_last(frame_count: int, shown: int) -> None:
-    """At most twelve frames, with both ends, without repetition."""
     frames = evenly_spaced_frames(frame_count)
     assert len(frames) == shown and frames[0] == 0 and frames[-1] == frame_count - 1
     assert len(set(np.diff(frames))) <= 2
 
 
 def test_a_line_breaks_at_what_is_not_finite_and_stays_on_the_canvas() -> None:
-    """NaN points leave a gap; points far outside do not wrap around."""
     canvas = Canvas(60, 20)
     canvas.line([[0, 10], [20, 10], [np.nan, 10], [40, 10], [60, 10]], INK, 2.0)
     image = canvas.image()
@@ -203,6 +191,5 @@ def test_a_line_breaks_at_what_is_not_finite_and_stays_on_the_canvas() -> None:
 
 
 def test_a_picture_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
-    """A missing folder is an error, which OpenCV itself ignores."""
     with pytest.raises(OSError, match="none"):
         write_png(str(tmp_path / "none" / "x.png"), Canvas(4, 4).image())

@@ -93,7 +93,6 @@ def look(page: Path, profile: Path, width: int) -> dict[str, Any]:
 
 @pytest.mark.skipif(BROWSER is None, reason="no Chromium is installed")
 def test_a_browser_shows_everything_and_searches_and_sorts(page: Path, tmp_path: Path) -> None:
-    """In a wide window: every row and picture, no warning; search and order change the rows."""
     seen = look(page, tmp_path, 1400)
     assert len(seen["all"]) == TAKES + 4 and seen["shown"] and seen["styled"] == "3px" and seen["wide"] <= 0
     assert seen["images"] == [WIDTH] * (TAKES + 1)
@@ -108,6 +107,5 @@ def test_a_browser_shows_everything_and_searches_and_sorts(page: Path, tmp_path:
 
 @pytest.mark.skipif(BROWSER is None, reason="no Chromium is installed")
 def test_a_narrow_window_needs_no_scrolling_sideways(page: Path, tmp_path: Path) -> None:
-    """With names and notes of any length, and with nothing lost."""
     seen = look(page, tmp_path, 500)
     assert seen["wide"] <= 0 and len(seen["all"]) == TAKES + 4

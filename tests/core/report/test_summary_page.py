@@ -16,7 +16,7 @@ from keymark.core.report.summary.page import STYLE, summary_page
 from keymark.core.report.summary.row import LONGEST, Verdict, duration, percent, sections, verdict, visible
 from keymark.core.shoot.outcomes import Outcome, Status
 from keymark.core.take.conversion_record import ConversionRecord
-from keymark.core.take.evidence_kinds import UsedEvidence, UsedKeypoints
+from keymark.core.take.evidence import UsedEvidence, UsedKeypoints
 
 OUTPUT = Path("results").absolute()
 LETTERS = st.characters(exclude_categories=(), exclude_characters="/")
@@ -30,7 +30,6 @@ NAMES = TEXTS.filter(lambda text: text not in (".", "..") and "\0" not in text)
 
 
 def page(*outcomes: Outcome) -> Page:
-    """The page of a shoot."""
     return Page(summary_page("shoot", outcomes, OUTPUT))
 
 
@@ -58,7 +57,6 @@ def hostile(name: str, text: str) -> tuple[Outcome, Outcome]:
 @settings(max_examples=60, deadline=None)
 @given(NAMES, TEXTS, TEXTS)
 def test_takes_can_say_anything_and_change_nothing_but_text(name: str, text: str, title: str) -> None:
-    """The strings come back as text; elements and attributes are those of a harmless shoot."""
     found = Page(summary_page(title, hostile(name, text), OUTPUT))
     assert found.shape() == page(*hostile("x", "y")).shape()
     assert found.all("h1")[0].text == visible(title)
@@ -88,12 +86,10 @@ def test_takes_can_say_anything_and_change_nothing_but_text(name: str, text: str
     ],
 )
 def test_what_cannot_be_seen_is_spelt_out(text: str, shown: str) -> None:
-    """Letters of every script stay; control characters, direction marks and surrogates are spelt out."""
     assert visible(text) == shown and shown.encode("utf-8")
 
 
 def test_links_lead_to_the_files(tmp_path: Path) -> None:
-    """Names with characters that are special in URLs still lead to their files."""
     name = "day 1/50% #2?x=1&y;\"'\\ ż:\u202e"
     folder = tmp_path / name
     for file in RECORD.files:
@@ -110,7 +106,6 @@ def test_links_lead_to_the_files(tmp_path: Path) -> None:
 
 
 def test_the_page_allows_its_own_style_and_script_and_nothing_else() -> None:
-    """The policy has the digests of the page's style and script; nothing is remote or inline."""
     found = page(converted(OUTPUT, "walk"))
     policy = found.all("meta")[1].attributes["content"]
     rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
@@ -125,7 +120,6 @@ def test_the_page_allows_its_own_style_and_script_and_nothing_else() -> None:
 
 
 def test_everyone_can_read_the_page() -> None:
-    """Headers have scopes, pictures alternative texts, and the page a language."""
     found = page(converted(OUTPUT, "walk"), failed(OUTPUT, "fall", "no clip"), waiting(OUTPUT, "jump"))
     assert found.all("html")[0].attributes["lang"] == "en"
     assert {th.attributes["scope"] for th in found.all("th")} == {"col", "row", "rowgroup"}
@@ -145,8 +139,6 @@ LIGHT, DARK = (dict(re.findall(r"--(\w+):(#\w{6});", line)) for line in STYLE.sp
 
 @pytest.mark.parametrize("colors", [LIGHT, DARK], ids=["light", "dark"])
 def test_words_stand_out_from_what_is_below_them(colors: dict[str, str]) -> None:
-    """Every color of words has a contrast of 4.5 (WCAG 2.2, 1.4.3), bars one of 3 to their track."""
-
     def luminance(color: str) -> float:
         shares = [int(color[index : index + 2], 16) / 255 for index in (1, 3, 5)]
         linear = [share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4 for share in shares]
@@ -176,7 +168,6 @@ def test_words_stand_out_from_what_is_below_them(colors: dict[str, str]) -> None
     ],
 )
 def test_confidence_in_a_word(confidence: float | None, weakest: float | None, expected: Verdict) -> None:
-    """The thresholds are those that the page explains; a rounded percentage never reaches one it misses."""
     outcome = converted(OUTPUT, "walk", confidence=confidence, weakest=weakest)
     assert verdict(outcome) is expected
     (row,) = page(outcome).rows()
@@ -188,7 +179,6 @@ def test_confidence_in_a_word(confidence: float | None, weakest: float | None, e
 
 
 def test_takes_that_need_a_person_come_first() -> None:
-    """Failures first, then by confidence, also within a section; waiting takes last."""
     outcomes = [
         converted(OUTPUT, "a good"),
         waiting(OUTPUT, "a waits"),
@@ -211,7 +201,6 @@ def test_takes_that_need_a_person_come_first() -> None:
 
 
 def test_more_rows_than_a_browser_shows_are_left_to_programs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The most urgent takes are shown; each section says how many are left out."""
     monkeypatch.setattr("keymark.core.report.summary.page.MOST_ROWS", 3)
     fair = [converted(OUTPUT, f"fair {number}", confidence=0.6) for number in range(4)]
     found = page(*fair, failed(OUTPUT, "z", "no clip"), converted(OUTPUT, "good"))
@@ -222,7 +211,6 @@ def test_more_rows_than_a_browser_shows_are_left_to_programs(monkeypatch: pytest
 
 
 def test_a_reason_that_failures_share_is_said_once_above() -> None:
-    """A reason that several takes share is in the head, with their number."""
     same = [failed(OUTPUT, f"take {number}", "shoot.json: no actor") for number in range(5)]
     head = page(*same, failed(OUTPUT, "other", "no clip")).all("ul")[0].text
     assert head.startswith(
@@ -232,7 +220,6 @@ def test_a_reason_that_failures_share_is_said_once_above() -> None:
 
 
 def test_the_head_counts_what_was_converted_now_or_before() -> None:
-    """Footage of failed takes does not count, even where an earlier result is still there."""
     found = page(
         converted(OUTPUT, "a"),
         Outcome("b", OUTPUT / "b", Status.UNCHANGED, RECORD),
@@ -254,7 +241,6 @@ def test_the_head_counts_what_was_converted_now_or_before() -> None:
 
 
 def test_what_a_take_was_made_from_is_said() -> None:
-    """Posed and found keyframes are told apart; frames to pose are listed the best first."""
     (row,) = page(converted(OUTPUT, "walk", matched=(60,), library="walking")).rows()
     assert "2 posed and 1 found keyframes, library walking, method map" in row.text
     doubted = {"matched": (1, 60, 120), "library": "composed", "doubtful": (60,)}
@@ -266,7 +252,6 @@ def test_what_a_take_was_made_from_is_said() -> None:
 
 
 def test_a_row_tells_what_the_motion_was_held_against() -> None:
-    """Kinds of evidence, and whose keypoints; records of before it was noted tell nothing."""
     (row,) = page(converted(OUTPUT, "walk")).rows()
     assert "2 markers, 2 keypoints (keypoints: a detector); 3 posed keyframes" in row.text
     many = tuple(UsedKeypoints(f"source {n}", ("nose",), 1.0) for n in range(5))
@@ -283,5 +268,4 @@ def test_a_row_tells_what_the_motion_was_held_against() -> None:
     [(0.0, "0.0 s"), (59.94, "59.9 s"), (59.96, "1 min 0 s"), (3599.6, "1 h 0 min"), (7830.0, "2 h 10 min")],
 )
 def test_times_are_said_as_people_do(seconds: float, said: str) -> None:
-    """No unit overflows."""
     assert duration(seconds) == said

@@ -12,9 +12,8 @@ from keymark.core.progress import run
 from keymark.core.review.compared_keypoints import ComparedKeypoints
 from keymark.core.review.frame_evidence import contour_sight, used_evidence
 from keymark.core.review.review import Review, review
-from keymark.core.take.evidence import with_evidence
 from keymark.core.take.motion import Motion
-from keymark.core.take.take import Take
+from keymark.core.take.take import Take, with_evidence
 from keymark.core.take.take_file import read_take
 
 ASIDE = 0.04 * np.eye(34)[0]

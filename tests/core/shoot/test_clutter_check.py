@@ -1,4 +1,4 @@
-"""A wall panel of a sleeve's color: the check names the field that leaves it out, and with it all is well."""
+"""Checks of a shoot: clutter in the markers' colors, outliers among takes, the cost of a conversion."""
 
 import json
 import re
@@ -10,6 +10,7 @@ from _panelled_take import PANEL, SLEEVE, panelled_take
 from keymark.core.progress import run
 from keymark.core.shoot.check.evidence_check import Findings
 from keymark.core.shoot.check.footage_check import check_footage
+from keymark.core.shoot.check.take_check import TakeCheck, estimate_cost, flag_outliers
 from keymark.core.take.clip_check import open_clip
 from keymark.core.take.read_footage import read_footage
 from keymark.core.take.take import Take
@@ -20,13 +21,11 @@ PROPOSAL = re.compile(r"still areas have the color of (.*); they are left out wh
 
 @pytest.fixture(scope="module")
 def folder(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The demonstration with the panel."""
     demo = repository / "presets" / "demo" / "aerobic"
     return panelled_take(demo, tmp_path_factory.mktemp("panelled") / "take")
 
 
 def warnings(take: Take) -> tuple[str, ...]:
-    """What the check says of the footage."""
     findings, clip = Findings(), open_clip(take)
     check_footage(take, clip, clip.frame_count, findings)
     assert not findings.problems
@@ -34,7 +33,6 @@ def warnings(take: Take) -> tuple[str, ...]:
 
 
 def said(take: Take) -> dict[str, object]:
-    """The fields that the check proposes."""
     (proposal,) = (sentence for sentence in warnings(take) if "they are left out" in sentence)
     names, field = PROPOSAL.match(proposal).groups()  # type: ignore[union-attr]
     assert names == SLEEVE
@@ -42,7 +40,6 @@ def said(take: Take) -> dict[str, object]:
 
 
 def test_the_check_names_what_take_json_must_say(folder: Path) -> None:
-    """With those words in it, the warnings of clutter are gone, and what it had said is kept."""
     proposed = said(read_take(folder))
     ((region,),) = proposed.values()
     np.testing.assert_allclose(region["box"], PANEL, atol=4.0)
@@ -59,7 +56,6 @@ def test_the_check_names_what_take_json_must_say(folder: Path) -> None:
 
 
 def test_a_sleeve_is_followed_as_if_there_were_no_panel(folder: Path, repository: Path) -> None:
-    """Its path and quality are those of the clip without one."""
     plain = run(read_footage(read_take(repository / "presets" / "demo" / "aerobic"))).tracks
     file = folder / "take.json"
     fields = json.loads(file.read_text(encoding="utf-8"))
@@ -71,3 +67,30 @@ def test_a_sleeve_is_followed_as_if_there_were_no_panel(folder: Path, repository
     assert both.sum() >= plain.visible[:, row].sum() - 2
     apart = np.linalg.norm(plain.centroid[both, row] - left_out.centroid[both, row], axis=1)
     assert np.median(apart) < 0.2 and np.quantile(apart, 0.95) < 1.0
+
+
+def check(width: int | None, fps: float = 25.0) -> TakeCheck:
+    return TakeCheck("take", (), (), None if width is None else (width, 240), fps)
+
+
+def test_an_outlier_among_many_is_flagged() -> None:
+    warned = flag_outliers([check(320), check(320), check(640), check(320), check(320, 30.0), check(None)])
+    assert [len(one.warnings) for one in warned] == [0, 0, 1, 0, 1, 0]
+    assert "640 x 240 pixels" in warned[2].warnings[0] and "25 frames per second" in warned[4].warnings[0]
+
+
+@pytest.mark.parametrize("widths", [(320, 320, 320, 640), (320, 320, 320, 640, 640, 640)])
+def test_without_a_usual_value_there_is_no_outlier(widths: tuple[int, ...]) -> None:
+    assert all(one.warnings == () for one in flag_outliers([check(width) for width in widths]))
+
+
+def test_longer_and_larger_clips_cost_more() -> None:
+    small = estimate_cost(100, (320, 240), "map", None)
+    assert estimate_cost(200, (320, 240), "map", None).seconds > small.seconds
+    assert estimate_cost(100, (1920, 1080), "map", None).seconds > small.seconds
+    named, every = (
+        estimate_cost(100, (320, 240), "map", "walking"),
+        estimate_cost(100, (320, 240), "map", "auto"),
+    )
+    assert small.seconds < named.seconds == every.seconds
+    assert estimate_cost(200, (320, 240), "map", None).size_bytes > small.size_bytes

@@ -13,7 +13,7 @@ from keymark.core.shoot.discovery import open_shoot
 from keymark.core.take.conversion_digest import conversion_digest
 from keymark.core.take.conversion_settings import NO_SETTINGS, ConversionSettings
 from keymark.core.take.description import Description, describe, effective_settings
-from keymark.core.take.evidence import evidence_of
+from keymark.core.take.take import evidence_of
 from keymark.core.take.take_file import read_described, read_take
 from keymark.operators.cli.batch.worker_process import Job
 
@@ -34,12 +34,10 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def shoot(pristine: Path, tmp_path: Path) -> Path:
-    """A copy for the test."""
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 
 def edit(path: Path, **fields: Any) -> None:
-    """Set fields of a JSON file, which may be new."""
     value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     write_json(path, {**value, **fields})
 
@@ -57,13 +55,11 @@ def names(shoot: Path, defaults: ConversionSettings = NO_SETTINGS) -> list[list[
 
 
 def test_sidecars_of_clips_are_found(shoot: Path) -> None:
-    """`NAME.keypoints.json` beside the clip NAME, `keypoints.json` in a folder."""
     own = ["day1/take01.keypoints.json", "day1/take02.keypoints.json", "day1/take03/keypoints.json"]
     assert names(shoot) == [[name] for name in own]
 
 
 def test_a_shoot_names_the_file_of_every_take(shoot: Path) -> None:
-    """So does an option of the command line, which counts where no file says it."""
     others = ["day1/take01.pose.json", "day1/take02.pose.json", "day1/take03/pose.json"]
     assert names(shoot, ConversionSettings(keypoints=(Path("pose.json"),))) == [[name] for name in others]
     edit(shoot / "shoot.json", keypoints=["pose.json", "keypoints.json"])
@@ -76,7 +72,6 @@ def test_a_shoot_names_the_file_of_every_take(shoot: Path) -> None:
 
 
 def test_a_take_without_the_file_is_refused(shoot: Path) -> None:
-    """The sentence names the file that this take should have."""
     (shoot / "day1" / "take02.pose.json").unlink()
     edit(shoot / "shoot.json", keypoints="pose.json")
     assert len(read_take(shoot / "day1" / "take01.mp4").keypoints) == 1
@@ -85,7 +80,6 @@ def test_a_take_without_the_file_is_refused(shoot: Path) -> None:
 
 
 def test_evidence_is_inherited(shoot: Path) -> None:
-    """A clip may have other evidence than its shoot, or no markers; a line of a list counts first."""
     edit(shoot / "shoot.json", evidence=["markers"])
     edit(shoot / "day1" / "take02.take.json", markers=None, evidence=None)
     kinds = [evidence_of(read_take(take.path)) for take in open_shoot(shoot).takes]
@@ -98,7 +92,6 @@ def test_evidence_is_inherited(shoot: Path) -> None:
 
 
 def test_a_worker_gets_the_settings(shoot: Path) -> None:
-    """Keypoints and evidence survive the way to another process."""
     defaults = ConversionSettings(keypoints=(Path("a.json"), Path("b")), evidence=("keypoints", "contours"))
     job = Job(open_shoot(shoot).takes[0], shoot / "out", defaults)
     assert Job.from_line(job.to_line()).defaults == defaults
@@ -106,13 +99,11 @@ def test_a_worker_gets_the_settings(shoot: Path) -> None:
 
 
 def digest(described: Description, **chosen: Any) -> str:
-    """The digest of a conversion of a take."""
     settings = effective_settings(described, ConversionSettings(**chosen))
     return conversion_digest(described, settings, (), described.folder / "out", "1")
 
 
 def test_the_digest_follows_content_and_choice(shoot: Path) -> None:
-    """Not the path that names a file, and no file that is left aside."""
     clip = shoot / "day1" / "take01.mp4"
     digests = [digest(describe(clip))]
     digests += [digest(describe(clip), evidence=kinds) for kinds in (("markers",), ("keypoints",))]
@@ -126,7 +117,6 @@ def test_the_digest_follows_content_and_choice(shoot: Path) -> None:
 
 
 def test_a_take_without_keypoints_has_the_digest_it_had(tmp_path: Path) -> None:
-    """What nobody said anything of is not converted anew."""
     clip = write_shoot(tmp_path / "shoot", 1, FRAMES) / "day1" / "take01.mp4"
     before = digest(describe(clip))
     assert digest(describe(clip), keypoints=None, evidence=None) == before
@@ -135,7 +125,6 @@ def test_a_take_without_keypoints_has_the_digest_it_had(tmp_path: Path) -> None:
 
 
 def test_the_files_of_a_folder_count(shoot: Path) -> None:
-    """As of detectors that write a file a frame."""
     clip, folder = shoot / "day1" / "take01.mp4", shoot / "day1" / "take01.openpose"
     folder.mkdir()
     for frame in range(FRAMES):

@@ -14,14 +14,12 @@ from keymark.core.take.conversion_record import write_record
 
 
 def add(folder: Path) -> Path:
-    """Write a record."""
     folder.mkdir(parents=True)
     write_record(folder, replace(RECORD, take=folder.name.encode(errors="replace").decode()))
     return folder
 
 
 def test_results_are_named_by_their_path_and_other_folders_skipped(tmp_path: Path) -> None:
-    """Hidden folders, folders without a record, and folders below a result are skipped."""
     for name in ("b", "a/two", "a/one", ".keymark/x", "a/one/inner", "a/.one-1f"):
         add(tmp_path / name)
     (tmp_path / "half").mkdir()
@@ -32,12 +30,10 @@ def test_results_are_named_by_their_path_and_other_folders_skipped(tmp_path: Pat
 
 
 def test_a_single_result_is_named_after_its_folder(tmp_path: Path) -> None:
-    """As `convert` writes it."""
     assert [result.name for result in find_results(add(tmp_path / "walk")).sound] == ["walk"]
 
 
 def test_links_to_folders_are_not_followed(tmp_path: Path) -> None:
-    """They may form a cycle."""
     add(tmp_path / "a")
     (tmp_path / "again").symlink_to(tmp_path, target_is_directory=True)
     assert [result.name for result in find_results(tmp_path).sound] == ["a"]
@@ -45,13 +41,11 @@ def test_links_to_folders_are_not_followed(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere names of files are valid text")
 def test_names_that_are_no_text_are_escaped(tmp_path: Path) -> None:
-    """Else no file could name them."""
     add(Path(os.fsdecode(os.fsencode(tmp_path) + b"/na\xefve")))
     assert [result.name for result in find_results(tmp_path).sound] == ["na\\udcefve"]
 
 
 def test_folders_that_cannot_be_read_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One below counts as damaged; the searched folder itself is refused."""
     add(tmp_path / "a")
     (tmp_path / "shut").mkdir()
     through = Path.iterdir

@@ -23,7 +23,6 @@ def make(folder: Path, *paths: str) -> Path:
 
 
 def names(folder: Path, without: Path | None = None) -> list[str]:
-    """The names of the takes that are found."""
     return [take.name for take in find_takes(folder, without).takes]
 
 
@@ -53,18 +52,15 @@ def names(folder: Path, without: Path | None = None) -> list[str]:
     ],
 )
 def test_takes_are_found(paths: list[str], found: list[str], tmp_path: Path) -> None:
-    """Named by their paths from the folder, in order, without a clip's ending."""
     assert names(make(tmp_path / "shoot", *paths)) == found
 
 
 def test_the_results_are_left_out(tmp_path: Path) -> None:
-    """With all files in their folder, under any name of the folder."""
     shoot = make(tmp_path / "shoot", "shoot.json", "x.mp4", "out/y.mp4", "out/z/take.json")
     assert names(shoot, shoot / "day" / ".." / "out") == ["x"]
 
 
 def test_links_to_folders_are_not_followed(tmp_path: Path) -> None:
-    """A circle of links ends."""
     shoot = make(tmp_path / "shoot", "a/take.json", "b/")
     (shoot / "b" / "circle").symlink_to(shoot, target_is_directory=True)
     assert names(shoot) == ["a"]
@@ -84,7 +80,6 @@ def test_links_to_folders_are_not_followed(tmp_path: Path) -> None:
     ids=["endings", "folder", "case", "accents", "below", "summary", "none"],
 )
 def test_takes_that_cannot_be_told_apart_are_refused(paths: list[str], sentence: str, tmp_path: Path) -> None:
-    """On every file system, with or without case and accents; the sentence names both."""
     if len({path.casefold() for path in paths}) < len(paths):
         pytest.skip("this file system cannot hold both")
     with pytest.raises(InputError, match=sentence):
@@ -93,7 +88,6 @@ def test_takes_that_cannot_be_told_apart_are_refused(paths: list[str], sentence:
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="nothing is closed to root")
 def test_a_folder_that_cannot_be_read_is_a_take_that_will_fail(tmp_path: Path) -> None:
-    """It may hold takes, so it is not skipped."""
     shoot = make(tmp_path / "shoot", "a/take.json", "closed/take.json")
     (shoot / "closed").chmod(0)
     try:
@@ -103,7 +97,6 @@ def test_a_folder_that_cannot_be_read_is_a_take_that_will_fail(tmp_path: Path) -
 
 
 def test_an_error_of_reading_names_the_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The shoot's own folder must be readable; one below becomes a take that will fail."""
     shoot = make(tmp_path / "shoot", "a/take.json", "closed/take.json")
     listing = Path.iterdir
 
@@ -121,7 +114,6 @@ def test_an_error_of_reading_names_the_folder(tmp_path: Path, monkeypatch: pytes
 
 
 def test_depth_and_number_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One sentence instead of a long search."""
     shoot = make(tmp_path / "shoot", "/".join(["d"] * 6) + "/take.json", "a/take.json", "b/take.json")
     monkeypatch.setattr(discovery, "DEEPEST", 4)
     with pytest.raises(InputError, match="more than 4 folders deep"):
@@ -133,7 +125,6 @@ def test_depth_and_number_are_bounded(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_one_clip_is_a_shoot_of_one(tmp_path: Path) -> None:
-    """Its results have a folder of their own."""
     shoot = make(tmp_path / "shoot", "shoot.json", "day/x.mp4", "day/y.mp4")
     (take,) = open_shoot(shoot / "day" / "x.mp4").takes
     assert (take.name, take.path) == ("x", shoot / "day" / "x.mp4")
@@ -151,7 +142,6 @@ def test_one_clip_is_a_shoot_of_one(tmp_path: Path) -> None:
     ],
 )
 def test_results_may_not_lie_over_takes(output: str, sentence: str | None, tmp_path: Path) -> None:
-    """Beside the takes or below them; a folder that holds takes is refused."""
     folder = make(tmp_path / "shoot", "day/x/take.json", "x/take.json")
     make(tmp_path, "file")
     shoot = find_takes(folder)
@@ -163,14 +153,12 @@ def test_results_may_not_lie_over_takes(output: str, sentence: str | None, tmp_p
 
 
 def write_list(path: Path, *lines: object) -> Path:
-    """Write a list, objects as JSON."""
     text = "\n".join(line if isinstance(line, str) else json.dumps(line) for line in lines)
     path.write_text(text, encoding="utf-8")
     return path
 
 
 def test_a_list_names_takes_and_overrides_their_fields(tmp_path: Path) -> None:
-    """In the order of names; each with its overrides and their location."""
     make(tmp_path, "shoot.json", "day/x.mp4", "a/take.json")
     listed = write_list(
         tmp_path / "night.jsonl", {"take": "day/x.mp4", "method": "ekf", "//": "\u2028"}, "", {"take": "a"}
@@ -201,13 +189,11 @@ def test_a_list_names_takes_and_overrides_their_fields(tmp_path: Path) -> None:
     ],
 )
 def test_a_damaged_list_is_one_sentence(lines: list[object], sentence: str, tmp_path: Path) -> None:
-    """It names the list, the line, the field and the value."""
     with pytest.raises(InputError, match=f"night.jsonl.*{sentence}|^{sentence}"):
         open_shoot(write_list(tmp_path / "night.jsonl", *lines))
 
 
 def test_a_list_is_bounded_and_must_be_text(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Too long a list, too long a line, too many takes, no UTF-8, no file."""
     listed = write_list(tmp_path / "night.jsonl", {"take": "a"}, {"take": "b"})
     for name, value, sentence in (
         ("LARGEST_BYTES", 20, "is longer than"),

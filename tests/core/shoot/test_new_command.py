@@ -30,23 +30,19 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(pristine: Path, tmp_path: Path) -> Path:
-    """A copy for the test."""
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 
 def new(*words: object) -> int:
-    """Run `keymark new`."""
     return main(["new", *map(str, words)])
 
 
 def written(folder: Path) -> dict[str, Any]:
-    """The fields of the new `shoot.json`."""
     value: dict[str, Any] = json.loads((folder / "shoot.json").read_text(encoding="utf-8"))
     return value
 
 
 def fill_in(folder: Path) -> None:
-    """Fill in the fields that only a person knows."""
     fields, known = written(folder), shoot_fields()
     fields["camera"] |= PLACED | {"lens_mm": 40.0}
     for name, marker in fields["markers"].items():
@@ -59,7 +55,6 @@ def fill_in(folder: Path) -> None:
 
 @pytest.mark.usefixtures("no_blender")
 def test_from_clips_to_motions(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`new` and `check` name each unfilled field once; when they are filled in, all takes convert."""
     assert new(folder) == 0
     said = capsys.readouterr().out
     open_fields = re.findall(r"^  (\S+)$", said, flags=re.MULTILINE)
@@ -79,7 +74,6 @@ def test_from_clips_to_motions(folder: Path, tmp_path: Path, capsys: pytest.Capt
 
 
 def test_what_clips_share_is_filled_in(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Rate and size; a take with its own file is named; where all are posed, nothing is to be found."""
     own = (folder / "day1" / "take03" / "take.json").read_bytes()
     assert new(folder, "--json") == 0
     said = json.loads(capsys.readouterr().out)
@@ -97,7 +91,6 @@ def test_what_clips_share_is_filled_in(folder: Path, capsys: pytest.CaptureFixtu
 def test_where_clips_differ_they_tell_themselves(
     folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    """The outlier and the unreadable clip are named; without keyframes these are to be found."""
     larger = [image.repeat(2, axis=0).repeat(2, axis=1) for image in drawn_frames(true_postures(3))]
     write_frames(folder / "larger.mp4", larger)
     (folder / "text.mp4").write_text("no video", encoding="utf-8")
@@ -113,14 +106,12 @@ def test_where_clips_differ_they_tell_themselves(
 
 
 def gray(images: Iterable[np.ndarray]) -> list[np.ndarray]:
-    """The pictures without any color."""
     return [cv2.cvtColor(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR) for image in images]
 
 
 def test_what_a_motion_can_be_held_against_is_said_of_each_clip(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Strong colors, keypoints beside the clip, or neither; markers are asked for, and may be left out."""
     write_frames(folder / "plain.mp4", gray(drawn_frames(true_postures(FRAMES))))
     write_frames(folder / "seen.mp4", gray(drawn_frames(true_postures(FRAMES))))
     write_keypoints(folder / "seen.keypoints.json", true_postures(FRAMES))
@@ -138,7 +129,6 @@ def test_what_a_motion_can_be_held_against_is_said_of_each_clip(
 def test_a_shoot_of_plain_clothes_is_asked_for_no_marker(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Camera and height are all that is to be filled in, and the clips are then ready."""
     folder = tmp_path / "plain"
     folder.mkdir()
     posture = true_postures(FRAMES)
@@ -160,7 +150,6 @@ def test_a_shoot_of_plain_clothes_is_asked_for_no_marker(
 
 
 def test_images_alone_cannot_tell_their_rate(folder: Path) -> None:
-    """The rate is left null; below another shoot's folder `root` is left out."""
     below = folder / "day1" / "take03"
     (below / "take.json").unlink()
     (folder / "shoot.json").write_text("{}", encoding="utf-8")
@@ -172,7 +161,6 @@ def test_images_alone_cannot_tell_their_rate(folder: Path) -> None:
 def test_no_file_is_replaced_and_a_folder_without_clips_is_refused(
     folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    """One sentence and status 2."""
     (folder / "shoot.json").write_text("mine", encoding="utf-8")
     empty, taken = tmp_path / "empty", folder / "day1" / "take03"
     empty.mkdir()

@@ -17,23 +17,18 @@ Change = Callable[[dict[str, Any], list[dict[str, Any]]], object]
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not change."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES, 4)
 
 
 def camera(**fields: Any) -> Change:
-    """Change fields of the camera."""
     return lambda take, _: take["camera"].update(fields)
 
 
 def camera_at(y_m: float) -> list[list[float]]:
-    """Move the camera along its viewing axis."""
     return [MATRIX_WORLD[0], [*MATRIX_WORLD[1][:3], y_m], *MATRIX_WORLD[2:]]
 
 
 def moved(meters: float) -> Change:
-    """Move all keyframes."""
-
     def change(_: dict[str, Any], rows: list[dict[str, Any]]) -> None:
         for row in rows:
             row["points"] = {name: [x + meters, y, z] for name, (x, y, z) in row["points"].items()}
@@ -42,13 +37,10 @@ def moved(meters: float) -> Change:
 
 
 def lengths(meters: float) -> Change:
-    """An actor of equal lengths."""
     return lambda take, _: take["actor"].update(segments_m=dict.fromkeys(take["actor"]["segments_m"], meters))
 
 
 def many_keyframes(count: int) -> Change:
-    """Give a frame count."""
-
     def change(take: dict[str, Any], rows: list[dict[str, Any]]) -> None:
         take.pop("frame_count")
         rows[:] = [{"frame": frame + 1, "points": rows[0]["points"]} for frame in range(count)]
@@ -57,13 +49,11 @@ def many_keyframes(count: int) -> Change:
 
 
 def all_equal(_: dict[str, Any], rows: list[dict[str, Any]]) -> None:
-    """The same posture in every keyframe."""
     for row in rows[1:]:
         row["points"] = rows[0]["points"]
 
 
 def far_keyframe(take: dict[str, Any], rows: list[dict[str, Any]]) -> None:
-    """A keyframe at the millionth frame."""
     take.pop("frame_count")
     rows.append({"frame": 10**6, "points": rows[0]["points"]})
 
@@ -114,7 +104,6 @@ def convert(pristine: Path, folder: Path, change: Change, method: str) -> int:
 def test_contradictory_takes_are_refused(
     kind: str, pristine: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """One line says what does not fit; no file is made."""
     change, sentence = REFUSED[kind]
     assert convert(pristine, tmp_path, change, "interpolation") == 2
     said = capsys.readouterr().err
@@ -128,6 +117,5 @@ def test_contradictory_takes_are_refused(
 def test_unusual_takes_convert(
     kind: str, method: str, pristine: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With every method, to finite numbers."""
     assert convert(pristine, tmp_path, CONVERTED[kind], method) == 0, capsys.readouterr().err
     assert (tmp_path / "out" / "motion.json").is_file()

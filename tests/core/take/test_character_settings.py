@@ -24,7 +24,6 @@ from keymark.core.take.description import describe
     ],
 )
 def test_a_character_is_named_by_file_and_object(text: str, path: str, name: str | None) -> None:
-    """The colon of a drive or in a folder separates nothing."""
     found = CharacterFile.parse(text)
     assert str(found.path) == path and found.object == name and str(found) == text
 
@@ -33,13 +32,11 @@ def test_a_character_is_named_by_file_and_object(text: str, path: str, name: str
     "text", ["", "anna", "anna.obj", "anna.blend:", "rig:anna.json", ":rig", "anna.blend1"]
 )
 def test_what_names_no_character_is_refused(text: str) -> None:
-    """With the endings that are read."""
     with pytest.raises(InputError, match="names no character.*.blend, .fbx, .glb, .gltf, .vrm"):
         CharacterFile.parse(text)
 
 
 def test_words_are_those_of_the_options() -> None:
-    """Each choice of a file is one of the solver, with hyphens for underscores."""
     for words, kind in (
         (character_words.ROOT_MOTIONS, RootMotion),
         (character_words.PLACEMENTS, Placement),
@@ -57,7 +54,6 @@ def take(tmp_path: Path) -> Path:
 
 
 def test_a_take_inherits_the_character_field_by_field(take: Path, tmp_path: Path) -> None:
-    """Paths are relative to the file that gives them; what is nearer counts; null takes it away."""
     settings = describe(take).settings.character
     assert settings is not None and settings.options == CharacterOptions()
     assert settings.file == CharacterFile(tmp_path / "cast" / "anna.blend", "rig")
@@ -87,7 +83,6 @@ def test_a_take_inherits_the_character_field_by_field(take: Path, tmp_path: Path
     ],
 )
 def test_every_mistake_is_named(take: Path, tmp_path: Path, field: str, value: object, said: str) -> None:
-    """With the file that makes it."""
     day = tmp_path / "day" / "shoot.json"
     write_json(day, {"character": {field: value}})
     with pytest.raises(InputError, match=said) as caught:
@@ -96,7 +91,6 @@ def test_every_mistake_is_named(take: Path, tmp_path: Path, field: str, value: o
 
 
 def test_a_character_outside_of_the_shoot_is_refused(take: Path, tmp_path: Path) -> None:
-    """Also where a link leads there."""
     outside = tmp_path.parent / f"{tmp_path.name} outside.blend"
     outside.write_bytes(b"")
     (tmp_path / "cast").mkdir()

@@ -16,13 +16,11 @@ from keymark.core.take.description import describe, effective_settings
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A shoot of one clip that tests must not change."""
     return write_shoot(tmp_path_factory.mktemp("digests") / "shoot", takes=1, frames=3)
 
 
 @pytest.fixture
 def shoot(pristine: Path, tmp_path: Path) -> Path:
-    """A shoot of the test's own."""
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 
@@ -33,7 +31,6 @@ def digest(
     maps: tuple[str, ...] = (),
     **chosen: Any,
 ) -> str:
-    """The digest for the shoot's clip."""
     description = describe(shoot / "day1" / "take01.mp4")
     settings = effective_settings(description, ConversionSettings(**chosen))
     return conversion_digest(description, settings, libraries, shoot.parent / "out", version, maps)
@@ -51,7 +48,6 @@ def edit(name: str, **fields: Any) -> Callable[[Path], None]:
 
 
 def lengthen(shoot: Path) -> None:
-    """Append a byte to the footage."""
     with (shoot / "day1" / "take01.mp4").open("ab") as clip:
         clip.write(b"\0")
 
@@ -78,14 +74,12 @@ def _turned_round(shoot: Path) -> dict[str, Any]:
     ],
 )
 def test_a_changed_input_changes_the_digest(change: Callable[[Path], Any], shoot: Path) -> None:
-    """Every file that describes the take counts."""
     before = digest(shoot)
     change(shoot)
     assert digest(shoot) != before
 
 
 def test_settings_libraries_and_version_change_the_digest(shoot: Path) -> None:
-    """Each makes a digest of its own."""
     digests = [
         digest(shoot),
         digest(shoot, version="2"),
@@ -99,7 +93,6 @@ def test_settings_libraries_and_version_change_the_digest(shoot: Path) -> None:
 
 
 def test_times_comments_and_other_files_do_not_change_it(shoot: Path) -> None:
-    """A copy with other times is the same take."""
     before = digest(shoot)
     for file in shoot.rglob("*.*"):
         os.utime(file, (1e9, 1e9))
@@ -109,7 +102,6 @@ def test_times_comments_and_other_files_do_not_change_it(shoot: Path) -> None:
 
 
 def test_fields_without_effect_do_not_change_it(shoot: Path) -> None:
-    """Defaults that are given, a floor without a library, a schema for the editor."""
     edit("shoot.json", method=None, pictures=None)(shoot)
     before = digest(shoot)
     assert digest(shoot, method="map", pictures=True, floor_m=0.1) == before
@@ -119,7 +111,6 @@ def test_fields_without_effect_do_not_change_it(shoot: Path) -> None:
 
 
 def test_a_character_counts_by_content_map_and_options(shoot: Path) -> None:
-    """Each makes a digest of its own; a map without a character has no effect, nor have defaults."""
     before = digest(shoot)
     assert digest(shoot, maps=("a",)) == before
     (shoot / "anna.blend").write_bytes(b"BLENDER")
@@ -142,7 +133,6 @@ def test_a_character_counts_by_content_map_and_options(shoot: Path) -> None:
 
 
 def test_the_buffers_of_a_gltf_count(shoot: Path) -> None:
-    """They lie in files beside it; what it names elsewhere, or embeds, is no file of its own."""
     uris = ["anna.bin", "data:application/octet-stream;base64,AAAA", "../out.bin", 3]
     gltf = {"asset": {"version": "2.0"}, "buffers": [{"uri": uri} for uri in uris]}
     (shoot / "anna.gltf").write_text(json.dumps(gltf), encoding="utf-8")

@@ -15,7 +15,7 @@ from keymark.core.take.conversion_record import (
     read_record,
     write_record,
 )
-from keymark.core.take.evidence_kinds import UsedEvidence, UsedKeypoints
+from keymark.core.take.evidence import UsedEvidence, UsedKeypoints
 
 RECORD = ConversionRecord(
     digest="ab" * 16,
@@ -42,7 +42,6 @@ RECORD = ConversionRecord(
 
 
 def made(folder: Path, record: ConversionRecord = RECORD) -> Path:
-    """A folder with a record and its files."""
     for name in record.files:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).touch()
@@ -51,7 +50,6 @@ def made(folder: Path, record: ConversionRecord = RECORD) -> Path:
 
 
 def test_a_record_is_read_back_as_it_was_written(tmp_path: Path) -> None:
-    """Every field, and the same bytes the second time."""
     made(tmp_path)
     assert read_record(tmp_path) == RECORD
     before = (tmp_path / RECORD_FILE).read_bytes()
@@ -60,7 +58,6 @@ def test_a_record_is_read_back_as_it_was_written(tmp_path: Path) -> None:
 
 
 def test_a_result_is_up_to_date_with_its_digest_and_all_its_files(tmp_path: Path) -> None:
-    """Not with another digest, a missing file, or no record."""
     made(tmp_path)
     assert is_up_to_date(tmp_path, RECORD.digest)
     assert not is_up_to_date(tmp_path, "cd" * 16)
@@ -71,17 +68,13 @@ def test_a_result_is_up_to_date_with_its_digest_and_all_its_files(tmp_path: Path
 
 @pytest.mark.parametrize("content", [b"", b"{", b"[]", b"\xff", b'{"schema_version": 1}'])
 def test_a_result_with_a_damaged_record_is_not_up_to_date(content: bytes, tmp_path: Path) -> None:
-    """The take is converted anew."""
     made(tmp_path)
     (tmp_path / RECORD_FILE).write_bytes(content)
     assert not is_up_to_date(tmp_path, RECORD.digest)
 
 
 MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
-    (
-        lambda v: v.update(schema_version=2),
-        "version is 2, made by a newer Keymark; this one reads up to 1",
-    ),
+    (lambda v: v.update(schema_version=2), "version is 2, made by a newer Keymark; this one reads up to 1"),
     (lambda v: v.pop("digest"), "digest is missing"),
     (lambda v: v.update(take="x" * 2000), "take is 'xxx"),
     (lambda v: v.update(frames=0), "frames is 0"),
@@ -128,7 +121,6 @@ MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
 
 @pytest.mark.parametrize(("change", "said"), MISTAKES)
 def test_a_mistake_is_named(change: Callable[[dict[str, Any]], object], said: str, tmp_path: Path) -> None:
-    """With file, field and value."""
     made(tmp_path)
     value = json.loads((tmp_path / RECORD_FILE).read_text(encoding="utf-8"))
     change(value)
@@ -139,7 +131,6 @@ def test_a_mistake_is_named(change: Callable[[dict[str, Any]], object], said: st
 
 
 def test_a_record_of_an_earlier_keymark_can_be_read(tmp_path: Path) -> None:
-    """It says neither which libraries took part nor what is doubtful."""
     made(tmp_path)
     value = json.loads((tmp_path / RECORD_FILE).read_text(encoding="utf-8"))
     del value["libraries"], value["doubtful"]
@@ -148,7 +139,6 @@ def test_a_record_of_an_earlier_keymark_can_be_read(tmp_path: Path) -> None:
 
 
 def test_what_is_written_can_be_read(tmp_path: Path) -> None:
-    """Also without confidence, library and evidence."""
     bare = replace(RECORD, library=None, confidence=None, notes=(), files={}, keyframes=(), matched=())
     for evidence in (UsedEvidence(), None):
         record = replace(bare, evidence=evidence)
@@ -156,7 +146,6 @@ def test_what_is_written_can_be_read(tmp_path: Path) -> None:
 
 
 def test_evidence_is_told_in_words() -> None:
-    """Counted by kind; without any it is the keyframes alone."""
     sources = (UsedKeypoints("a", ("nose",), 1.0), UsedKeypoints("b", ("nose", "wrist.L"), 0.5))
     assert (
         UsedEvidence(("trunk",), sources, True, True).words == "1 marker, 3 keypoints, depth hints, contours"

@@ -11,8 +11,7 @@ from keymark.core.body.human import HUMAN
 from keymark.core.footage.camera import Camera
 from keymark.core.review.score import read_truth
 from keymark.core.take.clip_check import open_clip
-from keymark.core.take.evidence import evidence_of
-from keymark.core.take.take import Take
+from keymark.core.take.take import Take, evidence_of
 from keymark.core.take.take_file import read_take
 
 LARGEST_FOLDER_BYTES = {"aerobic": 500_000, "greeting": 400_000}
@@ -31,19 +30,16 @@ WHOLE_SHARE = 0.85
 
 @pytest.fixture(scope="module")
 def folder(repository: Path, request: pytest.FixtureRequest) -> Path:
-    """The take's folder."""
     return repository / "presets" / "demo" / getattr(request, "param", "aerobic")
 
 
 @pytest.fixture(scope="module")
 def take(folder: Path) -> Take:
-    """The take as the product reads it."""
     return read_take(folder)
 
 
 @pytest.fixture(scope="module")
 def truth(folder: Path, take: Take) -> Array:
-    """(F, 13, 3) the true points."""
     assert take.frame_count is not None
     return read_truth(folder / "truth.json", take.frame_start, take.frame_count)
 
@@ -63,19 +59,16 @@ def _posed_points(take: Take) -> Array:
 
 @each_example
 def test_the_folder_is_small(folder: Path) -> None:
-    """Every clone and package carries all its files."""
     assert sum(file.stat().st_size for file in folder.iterdir()) < LARGEST_FOLDER_BYTES[folder.name]
 
 
 @each_example
 def test_the_folder_says_what_is_allowed(folder: Path) -> None:
-    """Its footage is as free as the program."""
     assert "GPL-3.0-or-later" in (folder / "LICENSE.txt").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("folder", ["greeting"], indirect=True)
 def test_in_plain_clothes_there_are_keypoints_and_contours(folder: Path) -> None:
-    """The clip is as long as the take says, nobody wears a marker, and the detector saw the performer."""
     take = read_take(folder, whole=True)
     clip = open_clip(take)
     assert (clip.frame_count, clip.size, clip.fps) == (132, (320, 240), 30.0)
@@ -86,7 +79,6 @@ def test_in_plain_clothes_there_are_keypoints_and_contours(folder: Path) -> None
 
 
 def test_the_clip_is_what_the_take_says(take: Take) -> None:
-    """The clip decodes to 118 frames of 320x240 at 30 frames per second, as in the paper's example."""
     clip = open_clip(take)
     assert (clip.frame_count, clip.size, clip.fps) == (118, (320, 240), 30.0)
     assert len(take.markers) == 5
@@ -94,7 +86,6 @@ def test_the_clip_is_what_the_take_says(take: Take) -> None:
 
 
 def test_the_side_view_has_the_same_frames(folder: Path) -> None:
-    """The second camera's clip runs as long, in the size its description says."""
     side = json.loads((folder / "side.json").read_text(encoding="utf-8"))
     camera = Camera.from_dict(side["camera"], "side.json: camera")
     capture = cv2.VideoCapture(str(folder / side["clip"]))
@@ -109,7 +100,6 @@ def test_the_side_view_has_the_same_frames(folder: Path) -> None:
 
 @pytest.mark.parametrize("marker", MARKER_ENDS)
 def test_the_regions_lie_on_the_true_segments(folder: Path, take: Take, truth: Array, marker: str) -> None:
-    """While a marker is whole, its centroid lies on its projected segment, within a limb's half-width."""
     visible = json.loads((folder / "visibility.json").read_text(encoding="utf-8"))[marker]
     pixels = np.array(visible["pixels"])
     centroid = np.array([place or [np.nan, np.nan] for place in visible["centroid"]], dtype=np.float64)
@@ -129,7 +119,6 @@ def test_the_regions_lie_on_the_true_segments(folder: Path, take: Take, truth: A
 
 
 def test_the_footage_shows_each_color_where_it_is_said_to_be(folder: Path, take: Take) -> None:
-    """Around a marker's true centroid the footage has the color of take.json, in nearly all frames."""
     visibility = json.loads((folder / "visibility.json").read_text(encoding="utf-8"))
     images = [image for _, _, image in open_clip(take).frames()]
     for style in take.markers:
@@ -145,7 +134,6 @@ def test_the_footage_shows_each_color_where_it_is_said_to_be(folder: Path, take:
 
 @each_example
 def test_planted_feet_stand_still(truth: Array) -> None:
-    """Both ankles stand exactly still at ankle height for a good part of the clip, and never go below it."""
     for name in ("ankle.L", "ankle.R"):
         ankle = truth[:, HUMAN.point_names.index(name)]
         still = np.linalg.norm(np.diff(ankle, axis=0), axis=-1) < 1e-5
@@ -154,21 +142,18 @@ def test_planted_feet_stand_still(truth: Array) -> None:
 
 
 def test_nothing_moves_faster_than_people_do(take: Take, truth: Array) -> None:
-    """No point exceeds 5 m/s or 60 m/s², which brisk exercise stays below."""
     assert np.linalg.norm(np.diff(truth, axis=0), axis=-1).max() * take.fps < 5.0
     assert np.linalg.norm(np.diff(truth, 2, axis=0), axis=-1).max() * take.fps**2 < 60.0
 
 
 @each_example
 def test_exact_keyframes_are_the_truth(take: Take, truth: Array) -> None:
-    """The postures of keyframes.json put all points where truth.json has them, to 0.01 mm."""
     indices = [keyframe.index for keyframe in take.keyframes]
     assert np.abs(_posed_points(take) - truth[indices]).max() < 1e-5
 
 
 @each_example
 def test_hand_posed_keyframes_err_as_people_do(folder: Path, take: Take, truth: Array) -> None:
-    """keyframes_noisy.json is 25 mm RMS off, more in depth than across, in the same frames, lengths kept."""
     by_hand = read_take(folder, folder / "keyframes_noisy.json")
     indices = [keyframe.index for keyframe in by_hand.keyframes]
     assert indices == [keyframe.index for keyframe in take.keyframes]

@@ -42,7 +42,6 @@ def settings_of(path: Path, **overrides: Any) -> ConversionSettings:
 
 
 def test_the_nearest_file_counts(shoot: Path) -> None:
-    """A list before the take, the take before its shoot, a shoot before that above."""
     write_json(
         shoot / "shoot.json", {"root": True, "method": "map", "floor_m": 1.0, "pictures": True, "fps": 24}
     )
@@ -58,7 +57,6 @@ def test_the_nearest_file_counts(shoot: Path) -> None:
 
 
 def test_nothing_is_inherited_from_above_a_root(shoot: Path) -> None:
-    """Nor from sibling folders."""
     write_json(shoot / "shoot.json", {"root": True, "fps": 24, "method": "ekf"})
     (shoot / "day").mkdir()
     write_json(shoot / "day" / "shoot.json", {"root": True})
@@ -67,7 +65,6 @@ def test_nothing_is_inherited_from_above_a_root(shoot: Path) -> None:
 
 
 def test_a_path_with_dots_inherits_from_no_other_shoot(shoot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The folder that `../day2` starts in is no parent of `day2`."""
     (shoot / "day1").mkdir()
     write_json(shoot / "day1" / "shoot.json", {"method": "ekf"})
     take = take_in(shoot / "day2" / "take")
@@ -82,7 +79,6 @@ def test_a_path_with_dots_inherits_from_no_other_shoot(shoot: Path, monkeypatch:
 
 
 def test_a_shoot_file_that_is_no_file_is_refused(shoot: Path) -> None:
-    """Without its fields the takes would convert otherwise than meant."""
     take = take_in(shoot / "day" / "take")
     (shoot / "day" / "shoot.json").mkdir()
     with pytest.raises(InputError, match=r"shoot\.json: is a folder, no file"):
@@ -90,14 +86,12 @@ def test_a_shoot_file_that_is_no_file_is_refused(shoot: Path) -> None:
 
 
 def test_options_of_the_command_line_are_defaults_in_a_batch(shoot: Path) -> None:
-    """They count for settings that no file gives."""
     take = take_in(shoot / "take", method="ekf")
     chosen = effective_settings(describe(take), ConversionSettings(method="map", floor_m=0.5))
     assert chosen == ConversionSettings(method="ekf", floor_m=0.5)
 
 
 def test_a_library_is_used_beside_existing_keyframes(shoot: Path) -> None:
-    """And alone without them."""
     take = take_in(shoot / "take", library="walking")
     assert effective_settings(describe(take)).keyframes is None
     write_json(take / "keyframes.json", {"keyframes": []})
@@ -105,7 +99,6 @@ def test_a_library_is_used_beside_existing_keyframes(shoot: Path) -> None:
 
 
 def test_auto_keyframes_are_the_same_as_the_library_auto(shoot: Path) -> None:
-    """Beside keyframes in the usual file, or in one that is named nearer or farther."""
     plain = settings_of(take_in(shoot / "plain"), library="auto")
     auto = describe(take_in(shoot / "auto", keyframes="auto"))
     assert auto.settings == plain == ConversionSettings(library="auto")
@@ -120,7 +113,6 @@ def test_auto_keyframes_are_the_same_as_the_library_auto(shoot: Path) -> None:
 
 
 def test_the_nearer_of_library_and_auto_keyframes_counts(shoot: Path) -> None:
-    """And null for either ends what auto began."""
     write_json(shoot / "shoot.json", {"root": True, "keyframes": "auto"})
     assert settings_of(take_in(shoot / "walk", library="walking")).library == "walking"
     assert settings_of(take_in(shoot / "all")).library == "auto"
@@ -132,7 +124,6 @@ def test_the_nearer_of_library_and_auto_keyframes_counts(shoot: Path) -> None:
 
 
 def test_auto_keyframes_and_a_library_in_one_file_are_refused(shoot: Path) -> None:
-    """As are keyframe files for a whole shoot; each sentence names the file."""
     take = take_in(shoot / "take", keyframes="auto", library="walking")
     with pytest.raises(InputError, match=r"take\.json: keyframes is 'auto' and library is 'walking'; the"):
         describe(take)
@@ -143,7 +134,6 @@ def test_auto_keyframes_and_a_library_in_one_file_are_refused(shoot: Path) -> No
 
 
 def test_paths_are_relative_to_the_file_that_gives_them(shoot: Path) -> None:
-    """A library of the shoot lies in the shoot's folder, a take's in its own, a list's in the take's."""
     write_json(shoot / "shoot.json", {"root": True, "library": "ours.json"})
     take = take_in(shoot / "take")
     assert settings_of(take).library == str(shoot / "ours.json")
@@ -169,7 +159,6 @@ def test_paths_are_relative_to_the_file_that_gives_them(shoot: Path) -> None:
     ],
 )
 def test_a_wrong_setting_is_named_with_its_file(fields: dict[str, Any], said: str, shoot: Path) -> None:
-    """Before any file of the take is opened."""
     take = take_in(shoot / "take", **fields)
     with pytest.raises(InputError, match=said) as caught:
         describe(take)
@@ -179,7 +168,6 @@ def test_a_wrong_setting_is_named_with_its_file(fields: dict[str, Any], said: st
 
 
 def test_null_removes_an_inherited_setting(shoot: Path) -> None:
-    """A take of a shoot with a library may be converted without."""
     write_json(shoot / "shoot.json", {"root": True, "library": "walking", "method": "ekf"})
     assert settings_of(take_in(shoot / "take", library=None)) == ConversionSettings(method="ekf")
 
@@ -195,7 +183,6 @@ def test_null_removes_an_inherited_setting(shoot: Path) -> None:
     ],
 )
 def test_a_mistake_in_a_shoot_file_is_named(content: dict[str, Any], said: str, tmp_path: Path) -> None:
-    """It is not ignored in silence."""
     write_json(tmp_path / "shoot.json", content)
     with pytest.raises(InputError, match=said) as caught:
         shoot_fields(*find_shoot_files(tmp_path).popitem())
@@ -203,19 +190,16 @@ def test_a_mistake_in_a_shoot_file_is_named(content: dict[str, Any], said: str, 
 
 
 def test_fields_about_a_shoot_file_itself_are_not_inherited(tmp_path: Path) -> None:
-    """Version, root, and the schema for editors."""
     said = {"$schema": "shoot.schema.json", "schema_version": 1, "root": True, "fps": 24}
     write_json(tmp_path / "shoot.json", said)
     assert shoot_fields(*find_shoot_files(tmp_path).popitem()) == {"fps": 24}
 
 
 def described(folder: Path, name: str) -> Description:
-    """A take of a small shoot."""
     return describe(folder / "day1" / name)
 
 
 def test_a_bare_clip_is_described_by_its_shoot_and_its_sidecar_files(tmp_path: Path) -> None:
-    """Rate and size come from the clip; `NAME.take.json` overrides, but for `clip`."""
     folder = write_shoot(tmp_path / "shoot", 1, FRAMES)
     beside = folder / "day1" / "take01.take.json"
     write_json(beside, {"actor": {"height_m": 1.6}, "clip": "other.mp4"})
@@ -229,7 +213,6 @@ def test_a_bare_clip_is_described_by_its_shoot_and_its_sidecar_files(tmp_path: P
 
 
 def test_a_clip_that_nothing_describes_is_refused(tmp_path: Path) -> None:
-    """The sentence names the files that could."""
     write_json(tmp_path / "shoot.json", {"root": True})
     (tmp_path / "clip.mp4").touch()
     (tmp_path / "shoot.json").unlink()
@@ -243,13 +226,11 @@ def test_a_clip_that_nothing_describes_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("path", ["none", "none/deeper", "x" * 300, "a\0b"])
 def test_an_impossible_path_is_refused(path: str, shoot: Path) -> None:
-    """In one sentence."""
     with pytest.raises(InputError, match=r"a take is a folder that holds take\.json"):
         describe(shoot / path)
 
 
 def test_links_may_lead_anywhere_in_the_shoot_but_not_out_of_it(tmp_path: Path) -> None:
-    """Clip, keyframes, library, the description itself, and images."""
     folder = tmp_path / "shoot"
     folder.mkdir()
     write_json(folder / "shoot.json", {"root": True, "library": "ours.json"})
@@ -278,7 +259,6 @@ def test_links_may_lead_anywhere_in_the_shoot_but_not_out_of_it(tmp_path: Path) 
 
 
 def test_what_the_camera_lacks_is_missing_in_the_file_that_describes_it(tmp_path: Path) -> None:
-    """Also where the clip gives the camera's resolution."""
     shoot = write_shoot(tmp_path / "shoot", takes=1)
     fields = usual_fields()
     del fields["camera"]["lens_mm"]
@@ -289,7 +269,6 @@ def test_what_the_camera_lacks_is_missing_in_the_file_that_describes_it(tmp_path
 
 
 def test_a_named_keyframe_file_that_is_missing_is_told_with_the_file_that_names_it(shoot: Path) -> None:
-    """The path alone would not say where to correct it."""
     take = write_synthetic_take(shoot / "take", 8)
     fields = json.loads((take / "take.json").read_text(encoding="utf-8"))
     write_json(take / "take.json", {**fields, "keyframes": "walking"})

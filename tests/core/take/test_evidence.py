@@ -12,9 +12,8 @@ from keymark.core.estimate.reconstruct import check_method
 from keymark.core.take.clip_check import check_frame_count, open_clip
 from keymark.core.take.conversion_settings import MOST_KEYPOINT_FILES
 from keymark.core.take.description import describe
-from keymark.core.take.evidence import evidence_of
-from keymark.core.take.evidence_kinds import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
-from keymark.core.take.take import Take
+from keymark.core.take.evidence import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
+from keymark.core.take.take import Take, evidence_of
 from keymark.core.take.take_file import read_take, write_take
 
 FRAMES = 16
@@ -23,13 +22,11 @@ MOVING = {"matrix_world": None, "matrix_world_frames": FRAMES * [MATRIX_WORLD]}
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not change."""
     return write_synthetic_take(tmp_path_factory.mktemp("evidence") / "pristine", FRAMES)
 
 
 @pytest.fixture
 def folder(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own."""
     return Path(shutil.copytree(pristine, tmp_path / "take"))
 
 
@@ -45,19 +42,16 @@ def edit(folder: Path, **fields: Any) -> None:
 
 
 def hinted(folder: Path, name: str = "keypoints.json") -> Path:
-    """A file of keypoints with a depth for each."""
     path = write_keypoints(folder / name, true_postures(FRAMES))
     points = len(json.loads(path.read_text(encoding="utf-8"))["names"])
     return write_keypoints(path, true_postures(FRAMES), world=FRAMES * [points * [[0.1, 0.2, 0.3]]])
 
 
 def marked(take: Take) -> bool:
-    """Whether all five markers are there."""
     return len(take.markers) == 5
 
 
 def test_a_take_has_markers_and_contours_as_ever(folder: Path) -> None:
-    """Where nothing is said of evidence and no file of keypoints is there."""
     take = read_take(folder)
     assert marked(take) and take.keypoints == () and take.contours
     assert evidence_of(take) == (MARKERS, CONTOURS)
@@ -65,14 +59,12 @@ def test_a_take_has_markers_and_contours_as_ever(folder: Path) -> None:
 
 @pytest.mark.parametrize("markers", [None, {}])
 def test_markers_may_be_missing(folder: Path, markers: object) -> None:
-    """The field is absent or empty: any clothes are worn, and the contours are left."""
     edit(folder, markers=None)
     edit(folder, **({} if markers is None else {"markers": markers}))
     assert evidence_of(read_take(folder)) == (CONTOURS,)
 
 
 def test_keypoints_beside_are_found(folder: Path) -> None:
-    """`keypoints.json` of the folder, as `keyframes.json`; the clip's frames and pixels are its own."""
     hinted(folder)
     take = read_take(folder)
     assert evidence_of(take) == EVIDENCE
@@ -81,7 +73,6 @@ def test_keypoints_beside_are_found(folder: Path) -> None:
 
 
 def test_a_missing_clip_that_keypoints_need_is_told_with_the_takes_file(folder: Path) -> None:
-    """Where the take does not say how many frames there are, they are those of the clip."""
     hinted(folder)
     edit(folder, frame_count=None, clip="elsewhere.mp4")
     with pytest.raises(
@@ -91,7 +82,6 @@ def test_a_missing_clip_that_keypoints_need_is_told_with_the_takes_file(folder: 
 
 
 def test_keypoints_may_be_several_files(folder: Path) -> None:
-    """In their order; one that is named takes the place of the usual one."""
     write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
     for name in ("one", "two"):
         write_keypoints(folder / f"{name}.json", true_postures(FRAMES), detector=name)
@@ -102,7 +92,6 @@ def test_keypoints_may_be_several_files(folder: Path) -> None:
 
 
 def test_evidence_names_what_is_used(folder: Path) -> None:
-    """The rest is left aside, and read as well where a take is opened whole."""
     hinted(folder)
     edit(folder, evidence=["contours", "keypoints"])
     take = read_take(folder)
@@ -116,7 +105,6 @@ def test_evidence_names_what_is_used(folder: Path) -> None:
 
 
 def test_a_camera_that_moves_has_no_contours(folder: Path) -> None:
-    """So markers or keypoints must be there; opened whole, a take may have nothing yet."""
     edit(folder, camera=MOVING)
     assert evidence_of(read_take(folder)) == (MARKERS,)
     edit(folder, markers=None)
@@ -158,7 +146,6 @@ def test_a_camera_that_moves_has_no_contours(folder: Path) -> None:
     ],
 )
 def test_a_mistake_in_the_evidence_is_one_sentence(folder: Path, fields: Any, sentence: str) -> None:
-    """With the file that says it."""
     edit(folder, **fields)
     with pytest.raises(InputError, match=sentence) as caught:
         read_take(folder)
@@ -166,7 +153,6 @@ def test_a_mistake_in_the_evidence_is_one_sentence(folder: Path, fields: Any, se
 
 
 def test_hints_that_no_file_has_are_missed(folder: Path) -> None:
-    """Evidence that is asked for by name must be there."""
     write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
     edit(folder, evidence=["keypoints", "depth_hints"])
     with pytest.raises(
@@ -193,7 +179,6 @@ def _nobody(value: dict[str, Any]) -> None:
     ids=["layout", "size", "rate", "count", "empty", "points", "nobody"],
 )
 def test_keypoints_of_another_clip_are_one_sentence(folder: Path, change: Any, sentence: str) -> None:
-    """Which names the file."""
     path = write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
     value = json.loads(path.read_text(encoding="utf-8"))
     change(value)
@@ -205,7 +190,6 @@ def test_keypoints_of_another_clip_are_one_sentence(folder: Path, change: Any, s
 
 @pytest.mark.parametrize("content", [b'{"layout": "own", "frames": [[[1', b'{"layout": NaN}', b""])
 def test_keypoints_that_are_no_json_are_one_sentence(folder: Path, content: bytes) -> None:
-    """Cut off, not a number, and nothing at all."""
     (folder / "keypoints.json").write_bytes(content)
     with pytest.raises(InputError, match=r"keypoints\.json: ") as caught:
         read_take(folder)
@@ -213,7 +197,6 @@ def test_keypoints_that_are_no_json_are_one_sentence(folder: Path, content: byte
 
 
 def test_a_clip_without_a_count_is_counted_for_its_keypoints(folder: Path) -> None:
-    """A file of another number of frames is refused on reading, with or without `frame_count`."""
     edit(folder, frame_count=None)
     write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
     assert open_clip(read_take(folder)).frame_count == FRAMES
@@ -223,7 +206,6 @@ def test_a_clip_without_a_count_is_counted_for_its_keypoints(folder: Path) -> No
 
 
 def test_a_clip_that_is_shorter_than_it_claims_has_other_keypoints(folder: Path) -> None:
-    """The true count, once it is known, is held against the keypoints too."""
     write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
     edit(folder, frame_count=None)
     take = read_take(folder)
@@ -233,7 +215,6 @@ def test_a_clip_that_is_shorter_than_it_claims_has_other_keypoints(folder: Path)
 
 
 def test_keypoints_may_not_leave_the_folder_by_a_link(folder: Path, tmp_path: Path) -> None:
-    """Neither a file, nor a link in a folder of files."""
     outside = write_keypoints(tmp_path / "outside.json", true_postures(FRAMES))
     (folder / "keypoints.json").symlink_to(outside)
     with pytest.raises(InputError, match=r"keypoints\.json: leads by a link"):
@@ -247,7 +228,6 @@ def test_keypoints_may_not_leave_the_folder_by_a_link(folder: Path, tmp_path: Pa
 
 
 def test_the_papers_filter_needs_markers(folder: Path) -> None:
-    """One sentence says what is valid instead."""
     take = read_take(folder)
     check_method(take, "ekf")
     edit(folder, markers=None)
@@ -259,7 +239,6 @@ def test_the_papers_filter_needs_markers(folder: Path) -> None:
 
 
 def test_a_written_take_has_its_evidence(folder: Path, tmp_path: Path) -> None:
-    """Markers or none, every source of keypoints, and the kinds that are used."""
     hinted(folder)
     write_keypoints(folder / "other.json", true_postures(FRAMES), detector="other")
     edit(folder, keypoints=["other.json", "keypoints.json"], markers=None)

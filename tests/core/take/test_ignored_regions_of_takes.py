@@ -1,7 +1,8 @@
-"""The field `ignored_regions` of take.json and shoot.json: read, inherited, written, refused in sentences."""
+"""Regions of the picture: those ignored in a take, and those where its markers are expected."""
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,10 @@ from _shoot import write_shoot
 from _synthetic_take import SIZE, write_json, write_synthetic_take
 from keymark.core.errors import InputError
 from keymark.core.footage.ignored_regions import MOST_POINTS, MOST_REGIONS, IgnoredRegion
+from keymark.core.prior.keyframes import interpolate
 from keymark.core.progress import run
-from keymark.core.take.read_footage import read_footage
+from keymark.core.take.read_footage import average_model, expected_regions, read_footage
+from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take, write_take
 
 FRAMES = 16
@@ -22,25 +25,21 @@ STROKE = {"stroke": [[5, 5], [9.5, 7]], "radius_px": 4, "frames": [11, 13]}
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not change."""
     return write_synthetic_take(tmp_path_factory.mktemp("ignored") / "pristine", FRAMES)
 
 
 @pytest.fixture
 def folder(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own."""
     return Path(shutil.copytree(pristine, tmp_path / "take"))
 
 
 def ignoring(folder: Path, value: Any) -> Path:
-    """A take with the field."""
     said = json.loads((folder / "take.json").read_text(encoding="utf-8"))
     write_json(folder / "take.json", {**said, "ignored_regions": value})
     return folder
 
 
 def test_a_take_says_what_is_never_a_marker_and_is_written_back(folder: Path, tmp_path: Path) -> None:
-    """Frames are those of the scene in the file, and counted from the clip's first in core."""
     assert read_take(folder).ignored_regions == ()
     said = json.loads((folder / "take.json").read_text(encoding="utf-8"))
     keyframes = json.loads((folder / "keyframes.json").read_text(encoding="utf-8"))
@@ -60,13 +59,11 @@ def test_a_take_says_what_is_never_a_marker_and_is_written_back(folder: Path, tm
 
 
 def test_a_take_without_them_is_written_as_ever(folder: Path, tmp_path: Path) -> None:
-    """Not even an empty field."""
     write_take(read_take(ignoring(folder, None)), tmp_path / "copy")
     assert "ignored_regions" not in json.loads((tmp_path / "copy" / "take.json").read_text(encoding="utf-8"))
 
 
 def test_a_shoot_says_it_for_all_its_takes(tmp_path: Path) -> None:
-    """A camera that stands sees the same wall in every take; a take may see nothing of it."""
     shoot = write_shoot(tmp_path / "shoot", takes=2, frames=3)
     file = shoot / "shoot.json"
     write_json(file, {**json.loads(file.read_text(encoding="utf-8")), "ignored_regions": [BOX]})
@@ -80,7 +77,6 @@ def test_a_shoot_says_it_for_all_its_takes(tmp_path: Path) -> None:
 
 
 def test_a_marker_under_an_ignored_region_is_not_seen(folder: Path) -> None:
-    """The whole way from the file to the tracks."""
     plain = run(read_footage(read_take(folder))).tracks
     center = plain.centroid[0, 0]
     left, top = (center - 1.0).tolist()
@@ -126,7 +122,50 @@ def test_a_marker_under_an_ignored_region_is_not_seen(folder: Path) -> None:
     ],
 )
 def test_a_mistake_is_one_sentence(folder: Path, value: Any, sentence: str) -> None:
-    """File, field, value and what would be valid."""
     with pytest.raises(InputError, match=sentence) as error:
         read_take(ignoring(folder, value))
     assert "\n" not in str(error.value) and "take.json" in str(error.value)
+
+
+FRAMES, AFTER = 60, 11
+"""Frames of the clip, and how many of them follow the last keyframe."""
+
+
+@pytest.fixture(scope="module")
+def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
+    return read_take(write_synthetic_take(tmp_path_factory.mktemp("expected") / "take", FRAMES - AFTER, 24))
+
+
+def radius_m(take: Take) -> np.ndarray:
+    """(F,) the radius at the performer's distance, alike for all markers [m]."""
+    radius = expected_regions(take, FRAMES).radius
+    assert radius.shape == (FRAMES, 5) and (np.ptp(radius, axis=1) == 0.0).all()
+    prior = interpolate(take.keyframes, FRAMES)
+    depth = take.camera.depth(prior.translation, np.arange(FRAMES))
+    return np.asarray(radius[:, 0] * depth / take.camera.focal_px)
+
+
+def test_near_a_keyframe_markers_are_searched_within_0_45_m(take: Take) -> None:
+    assert take.keyframe_indices == (0, 24, 48)
+    near = [*range(7), *range(18, 31), *range(42, 55)]
+    np.testing.assert_allclose(radius_m(take)[near], 0.45, atol=1e-3)
+
+
+def test_farther_from_it_the_radius_grows_with_a_limb_s_speed(take: Take) -> None:
+    found = radius_m(take)
+    np.testing.assert_allclose(found[[9, 15]], 0.45 + 3.0 * 0.1, atol=1e-3)
+    np.testing.assert_allclose(found[[12, 36]], 0.45 + 3.0 * 0.2, atol=1e-3)
+    np.testing.assert_allclose(np.diff(found[54:]), 0.1, atol=1e-3)
+
+
+def test_time_counts_and_not_frames(take: Take) -> None:
+    np.testing.assert_allclose(radius_m(replace(take, fps=60.0))[12], 0.45, atol=1e-3)
+
+
+def test_markers_are_expected_where_the_interpolated_keyframes_have_them(take: Take) -> None:
+    center = expected_regions(take, FRAMES).center
+    prior = interpolate(take.keyframes, FRAMES)
+    model = average_model(take)
+    expected = model.evaluate(take.body.pose(prior), np.arange(FRAMES)).centroid
+    assert np.abs(center - expected).max() <= 1.0 / 128.0
+    np.testing.assert_array_equal(center[49:], np.broadcast_to(center[48], center[49:].shape))

@@ -38,7 +38,6 @@ def motion() -> Motion:
 
 
 def test_a_motion_is_read_back(motion: Motion, tmp_path: Path) -> None:
-    """Everything survives: values to a millionth, covariances to six digits, gaps as gaps."""
     write_motion(motion, tmp_path / "motion.json")
     back = read_motion(tmp_path / "motion.json")
     assert (back.fps, back.frame_start, back.method) == (29.97, 101, "map")
@@ -53,8 +52,6 @@ def test_a_motion_is_read_back(motion: Motion, tmp_path: Path) -> None:
 
 
 def test_the_file_is_what_other_programs_expect(motion: Motion, tmp_path: Path) -> None:
-    """Points, sigma and posture are lists over the frames by name, in strict JSON."""
-
     def refuse(name: str) -> None:
         raise AssertionError(f"{name} is no JSON")
 
@@ -73,7 +70,6 @@ def test_the_file_is_what_other_programs_expect(motion: Motion, tmp_path: Path) 
 
 
 def test_the_same_motion_gives_the_same_bytes(motion: Motion, tmp_path: Path) -> None:
-    """The file depends on the motion alone, not on when or how often it is written."""
     write_motion(motion, tmp_path / "a.json")
     write_motion(motion, tmp_path / "b.json")
     write_motion(motion, tmp_path / "b.json")
@@ -82,7 +78,6 @@ def test_the_same_motion_gives_the_same_bytes(motion: Motion, tmp_path: Path) ->
 
 
 def test_without_a_covariance_no_sigma_is_claimed(motion: Motion, tmp_path: Path) -> None:
-    """A method that knows no uncertainty writes none, and none is read."""
     unknown = replace(motion, point_covariance=np.full((FRAMES, 13, 3, 3), np.nan))
     write_motion(unknown, tmp_path / "motion.json")
     assert "sigma_m" not in json.loads((tmp_path / "motion.json").read_text(encoding="utf-8"))
@@ -90,7 +85,6 @@ def test_without_a_covariance_no_sigma_is_claimed(motion: Motion, tmp_path: Path
 
 
 def test_a_motion_with_gaps_is_not_written(motion: Motion, tmp_path: Path) -> None:
-    """A frame without a finite place is a failure with its number, and no file appears."""
     points = motion.points.copy()
     points[6, 2, 1] = np.nan
     with pytest.raises(ConversionError, match="frame 107"):
@@ -115,7 +109,6 @@ def test_a_motion_with_gaps_is_not_written(motion: Motion, tmp_path: Path) -> No
 def test_a_damaged_motion_file_is_named(
     motion: Motion, tmp_path: Path, change: Callable[[dict[str, Any]], object], sentence: str
 ) -> None:
-    """One sentence names the file and the field."""
     path = tmp_path / "motion.json"
     write_motion(motion, path)
     value = json.loads(path.read_text(encoding="utf-8"))

@@ -21,7 +21,6 @@ SHIFT = np.array([45.0, 4.0])
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A take with keyframes."""
     return read_take(write_synthetic_take(tmp_path_factory.mktemp("takes") / "take", FRAMES, 4))
 
 
@@ -47,13 +46,11 @@ def two_people(take: Take, by_hand: bool = False) -> tuple[People, list[int]]:
 
 
 def assert_shows(found: Keypoints, people: People, truth: list[int]) -> None:
-    """In every frame the person with this index."""
     for index, (frame, row) in enumerate(zip(people.frames, truth, strict=True)):
         np.testing.assert_array_equal(found.pixel[index], frame.pixel[row])
 
 
 def test_keyframes_say_who_the_performer_is(take: Take) -> None:
-    """And a note tells it."""
     people, truth = two_people(take)
     found = performer_keypoints(replace(take, keypoints=(people,)), interpolate(take.keyframes, FRAMES))
     assert_shows(found, people, truth)
@@ -64,7 +61,6 @@ def test_keyframes_say_who_the_performer_is(take: Take) -> None:
 
 
 def test_keyframes_count_in_their_own_frames_before_there_is_a_prior(take: Take) -> None:
-    """A library is matched beside a single posed keyframe; one that was matched says nothing."""
     people, truth = two_people(take)
     one = replace(take, keyframes=take.keyframes[1:2], keypoints=(people,))
     found = performer_keypoints(one, None)
@@ -76,7 +72,6 @@ def test_keyframes_count_in_their_own_frames_before_there_is_a_prior(take: Take)
 
 @pytest.mark.parametrize("twin", [False, True])
 def test_a_click_says_it_before_there_are_keyframes(take: Take, twin: bool) -> None:
-    """One point in one frame is enough, and it stays a source of its own."""
     people, truth = two_people(take)
     nobody = SeenPeople(np.zeros((0, 1, 2)), np.zeros((0, 1)), np.zeros((0, 1, 3)))
     place = performer_pixels(take)[7, people.names.index("hip.L")] + twin * SHIFT
@@ -94,7 +89,6 @@ def test_a_click_says_it_before_there_are_keyframes(take: Take, twin: bool) -> N
 
 @pytest.mark.parametrize("twin", [False, True])
 def test_markers_say_it_without_keyframes(take: Take, twin: bool) -> None:
-    """The person whose forearms are where the forearms' markers are."""
     people, truth = two_people(take)
     names = people.names
     pixel = performer_pixels(take)
@@ -120,7 +114,6 @@ def test_markers_say_it_without_keyframes(take: Take, twin: bool) -> None:
 
 
 def test_nothing_says_it(take: Take) -> None:
-    """Somebody is followed throughout, and a note asks for a click."""
     people, truth = two_people(take)
     found = performer_keypoints(replace(take, keyframes=(), keypoints=(people,)), None)
     same = [
@@ -131,7 +124,6 @@ def test_nothing_says_it(take: Take) -> None:
 
 
 def test_somebody_else_is_left_out_and_noted(take: Take) -> None:
-    """A detector of one person that was somewhere else for a while."""
     pixel = performer_pixels(take)
     pixel[10:16] += 8 * SHIFT
     none = np.full((1, 13, 3), np.nan)
@@ -145,7 +137,6 @@ def test_somebody_else_is_left_out_and_noted(take: Take) -> None:
 
 
 def test_a_detector_of_another_clip_is_left_out(take: Take) -> None:
-    """Where most keyframes show nobody near the performer, the rest is chance."""
     pixel = performer_pixels(take)
     keyed = [keyframe.index for keyframe in take.keyframes]
     pixel[keyed[1:]] += 8 * SHIFT
@@ -159,7 +150,6 @@ def test_a_detector_of_another_clip_is_left_out(take: Take) -> None:
 
 
 def test_what_a_person_placed_is_taken_as_it_is(take: Take) -> None:
-    """Also where it is far from the keyframes; frames that the clip does not have are left."""
     far = np.full((1, 1, 2), 3.0)
     frame = SeenPeople(far, np.ones((1, 1)), np.full((1, 1, 3), np.nan))
     people = People(("head",), "tracks", take.camera.resolution, (frame,) * (FRAMES - 4), by_hand=True)
@@ -169,6 +159,5 @@ def test_what_a_person_placed_is_taken_as_it_is(take: Take) -> None:
 
 
 def test_a_take_without_keypoints(take: Take, tmp_path: Path) -> None:
-    """Has none of the performer."""
     found = performer_keypoints(take, interpolate(take.keyframes, FRAMES))
     assert found.names == () and found.frame_count == FRAMES

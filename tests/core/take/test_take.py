@@ -19,25 +19,21 @@ FRAMES = 24
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take that tests must not change."""
     return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES)
 
 
 @pytest.fixture
 def folder(pristine: Path, tmp_path: Path) -> Path:
-    """A take of the test's own."""
     return Path(shutil.copytree(pristine, tmp_path / "take"))
 
 
 def changed(folder: Path, name: str, change: Callable[[Any], object]) -> None:
-    """Change one of the take's JSON files in place."""
     value = json.loads((folder / name).read_text(encoding="utf-8"))
     change(value)
     write_json(folder / name, value)
 
 
 def test_a_take_is_read_with_everything_in_it(folder: Path) -> None:
-    """Rate, frames, camera, actor, markers and keyframes are those of the files."""
     take = read_take(folder)
     assert (take.fps, take.frame_start, take.frame_count) == (30.0, 1, FRAMES)
     assert take.camera.resolution == SIZE
@@ -55,7 +51,6 @@ def test_a_take_is_read_with_everything_in_it(folder: Path) -> None:
 
 
 def test_points_are_fitted_to_a_posture_that_reaches_them(folder: Path) -> None:
-    """Points of the actor's own body are reached to within a millimeter."""
     take = read_take(folder)
     truth = BODY.points(BODY.pose(true_postures(FRAMES)))
     for keyframe in take.keyframes:
@@ -65,8 +60,6 @@ def test_points_are_fitted_to_a_posture_that_reaches_them(folder: Path) -> None:
 
 
 def test_frames_count_from_frame_start_and_any_order_is_sorted(folder: Path) -> None:
-    """Index 0 is the frame `frame_start`; keyframes come in the order of their frames."""
-
     def shift(value: dict[str, Any]) -> None:
         for row in value["keyframes"]:
             row["frame"] += 100
@@ -78,7 +71,6 @@ def test_frames_count_from_frame_start_and_any_order_is_sorted(folder: Path) -> 
 
 
 def test_a_posture_by_name_is_taken_as_it_is(folder: Path) -> None:
-    """A keyframe that names every degree of freedom is that posture, and its points are not needed."""
     vector = true_postures(FRAMES).to_vector()[8]
     posture = dict(zip(BODY.skeleton.dof_names, vector.tolist(), strict=True))
     changed(
@@ -88,8 +80,6 @@ def test_a_posture_by_name_is_taken_as_it_is(folder: Path) -> None:
 
 
 def test_points_that_no_posture_reaches_are_noted(folder: Path) -> None:
-    """Points of a performer of another size are usable, but a sentence says how far off they are."""
-
     def stretch(value: dict[str, Any]) -> None:
         points = value["keyframes"][1]["points"]
         value["keyframes"][1]["points"] = {name: (1.5 * np.array(p)).tolist() for name, p in points.items()}
@@ -100,7 +90,6 @@ def test_points_that_no_posture_reaches_are_noted(folder: Path) -> None:
 
 
 def test_a_written_take_is_read_back_the_same(folder: Path, tmp_path: Path) -> None:
-    """Camera, markers, sizes and postures survive; the clip lies in the new folder as well."""
     take = read_take(folder)
     write_take(take, tmp_path / "copy")
     back = read_take(tmp_path / "copy")
@@ -113,14 +102,12 @@ def test_a_written_take_is_read_back_the_same(folder: Path, tmp_path: Path) -> N
 
 
 def test_writing_into_its_own_folder_leaves_the_clip_alone(folder: Path) -> None:
-    """A take written where it was read from keeps its clip, and no second copy appears."""
     before = sorted(path.name for path in folder.iterdir())
     write_take(read_take(folder), folder)
     assert sorted(path.name for path in folder.iterdir()) == before
 
 
 def test_a_take_may_lack_keyframes_where_they_are_not_required(folder: Path) -> None:
-    """Without the file, reading fails unless keyframes are not required; a file that is named must exist."""
     (folder / "keyframes.json").unlink()
     with pytest.raises(InputError, match=r"keyframes\.json"):
         read_take(folder)
@@ -130,14 +117,11 @@ def test_a_take_may_lack_keyframes_where_they_are_not_required(folder: Path) -> 
 
 
 def test_an_actor_may_be_given_by_height(folder: Path) -> None:
-    """Without lengths, the height makes an actor of average proportions."""
     changed(folder, "take.json", lambda value: value.update(actor={"height_m": 1.75}))
     assert read_take(folder).body.actor.segments_m["thigh.L"] == pytest.approx(0.245 * 1.75)
 
 
 def test_markers_may_have_names_of_their_own(folder: Path) -> None:
-    """A marker called otherwise names its segment."""
-
     def rename(value: dict[str, Any]) -> None:
         value["markers"]["left sleeve"] = {**value["markers"].pop("forearm.L"), "segment": "forearm.L"}
 
@@ -194,7 +178,6 @@ MISTAKES: list[tuple[str, Callable[[dict[str, Any]], object], str]] = [
 def test_a_mistake_in_take_json_is_named(
     folder: Path, change: Callable[[dict[str, Any]], object], sentence: str
 ) -> None:
-    """One sentence names the file, the field and what is wrong with it."""
     changed(folder, "take.json", change)
     with pytest.raises(InputError, match=sentence) as caught:
         read_take(folder)
@@ -202,7 +185,6 @@ def test_a_mistake_in_take_json_is_named(
 
 
 def keyframe_change(**fields: Any) -> Callable[[dict[str, Any]], object]:
-    """A change of the second keyframe's fields."""
     return lambda value: value["keyframes"][1].update(fields)
 
 
@@ -231,7 +213,6 @@ POSING_MISTAKES: list[tuple[str, Callable[[dict[str, Any]], object], str]] = [
 def test_a_mistake_in_keyframes_json_is_named(
     folder: Path, change: Callable[[dict[str, Any]], object], sentence: str
 ) -> None:
-    """One sentence names the file, the keyframe and what is wrong with it."""
     changed(folder, "keyframes.json", change)
     with pytest.raises(InputError, match=sentence) as caught:
         read_take(folder)
@@ -254,7 +235,6 @@ def test_a_mistake_in_keyframes_json_is_named(
     ids=["cut off", "NaN", "infinite", "too large", "digits", "twice", "list", "empty", "deep"],
 )
 def test_a_damaged_file_is_named(folder: Path, text: str, sentence: str) -> None:
-    """Anything but a strict JSON object is refused with the file's name."""
     (folder / "take.json").write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match=sentence) as caught:
         read_take(folder)
@@ -262,14 +242,12 @@ def test_a_damaged_file_is_named(folder: Path, text: str, sentence: str) -> None
 
 
 def test_bytes_that_are_no_text_are_named(folder: Path) -> None:
-    """A file of another kind under the right name is refused, not decoded by guess."""
     (folder / "take.json").write_bytes(b"\xff\xfe\x00\x01")
     with pytest.raises(InputError, match="UTF-8"):
         read_take(folder)
 
 
 def test_a_clip_that_does_not_fit_is_named(folder: Path) -> None:
-    """Size, frame count and keyframes are checked against the clip."""
     fits = read_take(folder)
     assert open_clip(fits).size == SIZE
     changed(folder, "take.json", lambda value: value["camera"].update(resolution=[320, 240]))
@@ -283,7 +261,6 @@ def test_a_clip_that_does_not_fit_is_named(folder: Path) -> None:
 
 
 def test_the_clip_decides_where_take_json_does_not_count(folder: Path) -> None:
-    """Without frame_count, a keyframe past the clip's end is found when the clip is opened."""
     changed(folder, "take.json", lambda value: value.pop("frame_count"))
     changed(folder, "keyframes.json", keyframe_change(frame=60))
     take = read_take(folder)
@@ -292,7 +269,6 @@ def test_the_clip_decides_where_take_json_does_not_count(folder: Path) -> None:
 
 
 def test_a_rate_unlike_the_clips_is_noted(folder: Path) -> None:
-    """A video that plays at another rate than take.json says is noted, and an agreeing one is not."""
     writer = cv2.VideoWriter(str(folder / "clip.avi"), cv2.VideoWriter.fourcc(*"MJPG"), 15.0, SIZE)
     for _ in range(FRAMES):
         writer.write(np.full((SIZE[1], SIZE[0], 3), 90, dtype=np.uint8))
@@ -307,7 +283,6 @@ def test_a_rate_unlike_the_clips_is_noted(folder: Path) -> None:
 
 
 def test_the_shared_takes_are_read(take_folder: Callable[[str], Path]) -> None:
-    """Takes with real and rendered footage pass every check."""
     for name in ("walk", "reach", "aerobic", "real_balance"):
         take = read_take(take_folder(name), take_folder(name) / "keyframes_noisy.json")
         assert open_clip(take).frame_count == take.frame_count

@@ -22,12 +22,10 @@ TRUTH = true_postures(FRAMES)
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A small take with exact keyframes."""
     return read_take(write_synthetic_take(cast(Path, tmp_path_factory.mktemp("takes")) / "wave", FRAMES))
 
 
 def said(confidence: float = 0.9) -> Matched:
-    """The match of a keyframe."""
     return Matched("waving", "wave", False, confidence)
 
 
@@ -39,13 +37,11 @@ def unposed(take: Take, confidence: float = 0.9) -> Take:
 
 
 def found(frames: list[int], library: str = "waving") -> FoundPoses:
-    """The true postures, found at some frames."""
     known = tuple(MatchedFrame(i, (Candidate(TRUTH[i], "wave", False, 0.8),)) for i in frames)
     return FoundPoses(known, TRUTH, 0.9, 0.0, "it is", library=library)
 
 
 def test_the_notes_say_that_all_keyframes_are_matched_and_with_which_library(take: Take) -> None:
-    """They name the library, and an uncertain frame as one to pose."""
     sure, unsure = found_notes(unposed(take)), found_notes(unposed(take, 0.2))
     assert len(sure) == 1 and "no keyframe was posed" in sure[0] and "waving" in sure[0]
     assert len(unsure) == 2
@@ -53,7 +49,6 @@ def test_the_notes_say_that_all_keyframes_are_matched_and_with_which_library(tak
 
 
 def test_posed_keyframes_alone_need_no_note_and_both_kinds_are_counted(take: Take) -> None:
-    """Posed keyframes are the usual way."""
     assert found_notes(take) == ()
     first, *others = take.keyframes
     both = replace(take, keyframes=(first, *(replace(one, matched=said()) for one in others)))
@@ -61,7 +56,6 @@ def test_posed_keyframes_alone_need_no_note_and_both_kinds_are_counted(take: Tak
 
 
 def test_the_notes_name_keyframes_left_out_and_the_limits_of_the_filter(take: Take) -> None:
-    """Some matched keyframes or all of them; no note where none is left out."""
     every = unposed(take)
     assert left_out_notes(every, 0) == () == filter_notes(take)
     assert left_out_notes(every, len(take.keyframes))[0].startswith(f"{len(take.keyframes)} of ")
@@ -70,7 +64,6 @@ def test_the_notes_name_keyframes_left_out_and_the_limits_of_the_filter(take: Ta
 
 
 def test_a_reconstruction_has_these_notes_and_a_larger_depth_variance(take: Take) -> None:
-    """With the same postures, matched ones are stated to be farther off; posed ones as ever."""
     posed = run(reconstruct(take))
     matched = run(reconstruct(unposed(take), reading=posed.reading))
     assert any("no keyframe was posed" in note for note in matched.notes)
@@ -79,7 +72,6 @@ def test_a_reconstruction_has_these_notes_and_a_larger_depth_variance(take: Take
 
 
 def test_matched_keyframes_move_beside_posed_ones(take: Take) -> None:
-    """The posed one stays; the matched one takes the match's posture of its new frame."""
     posed = replace(take, keyframes=(Keyframe(0, TRUTH[0]), Keyframe(12, TRUTH[12])))
     keyframes = with_found(posed, found([0, 6, 11, 23])).keyframes
     mixed = {keyframe.index: keyframe for keyframe in keyframes}

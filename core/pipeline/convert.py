@@ -1,4 +1,4 @@
-"""A take as it is read where keyframes are to be found: with those that a person posed, or with none."""
+"""From a described take to its motion: keyframes that are posed or found, then the estimate."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -24,18 +24,12 @@ def take_to_pose(
 
     Keyframes that an earlier run has found are left out, since they are found anew. `settings` say which
     keypoints are read and which evidence is used, by default the take's own.
-
-    Raises:
-        InputError: The take or the keyframe file is unusable.
     """
     fewest = 0 if keyframes is None else 1
     take = read_described(
         description, keyframes, keyframes_required=False, fewest_keyframes=fewest, settings=settings
     )
     return replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None))
-
-
-# --- Reconstruction of a take whose keyframes are posed, found in the footage, or both
 
 
 READ, POSED = 0.2, 0.7
@@ -47,18 +41,13 @@ class FoundReconstruction:
     """A motion, and the keyframes it was reconstructed from."""
 
     take: Take
-    """With its found keyframes, if any."""
     reconstruction: Reconstruction
     found: FoundPoses | None = None
     """What was found; None where that was not asked for."""
 
 
 def take_to_convert(description: Description, settings: ConversionSettings) -> Take:
-    """A described take with its posed keyframes, which may lack where others are found.
-
-    Raises:
-        InputError: A file is unusable, or all keyframes are posed and there are too few.
-    """
+    """A described take with its posed keyframes, which may lack where others are found."""
     if settings.library is None:
         return read_described(description, settings.keyframes, settings=settings)
     return take_to_pose(description, settings.keyframes, settings)
@@ -68,12 +57,6 @@ def find_and_reconstruct(
     take: Take, libraries: Sequence[Library] | None, method: str, floor_m: float | None = None
 ) -> Job[FoundReconstruction]:
     """Reconstruct a motion, after finding keyframes where that is asked for; the footage is read once.
-
-    Args:
-        take: The take, with posed keyframes or, where they are found, without.
-        libraries: What is known of postures where keyframes are found; None where all are posed.
-        method: As for `reconstruct`.
-        floor_m: Height of the floor where it is known [m].
 
     Raises:
         InputError: The clip cannot be used, or there is no library with a posture.

@@ -1,8 +1,9 @@
-"""Control characters: invisible ones, which names and sentences may not hold."""
+"""Paths and names that can be trusted: absolute ones, regular files, and no control characters."""
 
 import os
 import stat
 import unicodedata
+from collections.abc import Iterable
 from pathlib import Path
 
 from ..errors import InputError
@@ -24,9 +25,6 @@ def escape_control_characters(text: str) -> str:
     return "".join(ascii(char)[1:-1] if is_control_character(char) else char for char in text)
 
 
-# --- Absolute paths, with and without their symbolic links
-
-
 def absolute_path(path: Path) -> Path:
     """An absolute path without `..`: that of `/day1/../day2` has no parent `day1`."""
     return Path(os.path.realpath(path)) if ".." in path.parts else path.absolute()
@@ -38,18 +36,12 @@ def real_path(path: Path) -> Path:
     return Path("/" + real.lstrip("/") if real.startswith("//") else real)
 
 
-# --- Regular files, told from devices and pipes, which may have no end, or never begin
-
-
 def regular_file_size(path: Path, valid: str) -> int:
     """The size of a regular file in bytes; the file is not opened, which alone could wait for ever.
 
     Args:
         path: The file.
         valid: What it must be, to follow `it must be`.
-
-    Raises:
-        InputError: It is missing, a folder, a device, a pipe or a socket, or cannot be looked at.
     """
     try:
         state = path.stat()
@@ -62,3 +54,12 @@ def regular_file_size(path: Path, valid: str) -> int:
         kind = "a folder" if stat.S_ISDIR(state.st_mode) else "a device, a pipe or a socket"
         raise InputError(f"{path}: is {kind}, no file; it must be {valid}")
     return state.st_size
+
+
+def check_symlinks(paths: Iterable[Path], folders: Iterable[Path]) -> None:
+    """Refuse paths that leave their folders by a symbolic link; a missing file is left to its reader."""
+    roots = [os.path.realpath(folder) for folder in folders]
+    for path in paths:
+        real = os.path.realpath(path)
+        if not any(Path(real).is_relative_to(root) for root in roots):
+            raise InputError(f"{path}: leads by a link to {real}; it must stay inside {roots[0]}")
