@@ -176,5 +176,7 @@ def _gap_notes(take: Take, tracks: RegionTracks) -> tuple[str, ...]:
     if len(intervals) < 2 or intervals.max() < LONGEST_INTERVAL * np.median(intervals):
         return ()
     before = int(intervals.argmax())
-    gap = f"{intervals[before]:.2f} s are missing after frame {before + take.frame_start}"
-    return (f"{gap}; check the keyframes after it",)
+    return (
+        f"{intervals[before]:.2f} s are missing after frame {before + take.frame_start}; check the keyframes "
+        "after it",
+    )

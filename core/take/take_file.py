@@ -39,7 +39,10 @@ from .take import Take, check_evidence, with_evidence
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 """What a marker may be bound to: a segment of the skeleton, or all between hips and shoulders."""
 MOST_FRAMES = 10**6
-MARKER_NAME = Text(200, "one line of at most 200 visible characters", one_line=True)
+MOST_MARKERS, LONGEST_MARKER_NAME = 64, 200
+MARKER_NAME = Text(
+    LONGEST_MARKER_NAME, f"one line of at most {LONGEST_MARKER_NAME} visible characters", one_line=True
+)
 
 
 FRAME_RATE = Number(1.0, 1000.0, "frames per second")
@@ -114,7 +117,9 @@ class TakeFields(Record):
     """The camera that saw the performance."""
     actor: ActorFields
     """The performer's size."""
-    markers: Annotated[Mapping[str, MarkerFields], ByName("markers", 64, key=MARKER_NAME)] | None = None
+    markers: (
+        Annotated[Mapping[str, MarkerFields], ByName("markers", MOST_MARKERS, key=MARKER_NAME)] | None
+    ) = None
     """The performer's colored markers, by name; none where any clothes are worn."""
     ignored_regions: Annotated[tuple[RegionFields, ...], Items("regions", 0, MOST_REGIONS)] | None = None
     """Regions of the picture that are never a marker, as a wall panel of a marker's color: boxes and strokes

@@ -145,14 +145,18 @@ def _lone_hand(figure: Figure, forearm: int) -> int | None:
 def _side_doubts(facing: Facing) -> list[str]:
     against = facing.by_names * facing.by_shape < 0.0 and abs(facing.by_shape) > 1.0
     if against and facing.by_names < 0.0:
-        doubt = "left and right are taken from the shape, against the names of the bones: feet and knees "
-        return [doubt + "point the other way"]
+        return [
+            "left and right are taken from the shape, against the names of the bones: feet and knees point "
+            "the other way"
+        ]
     if against:
         return ["left and right are taken from the names of the bones, although the feet point the other way"]
     # Confidence from which left and right are not doubted.
     if facing.confidence < 0.9:
-        doubt = "left and right may be swapped for all roles of a side: names, feet, knees and elbows hardly "
-        return [doubt + "tell where the character faces"]
+        return [
+            "left and right may be swapped for all roles of a side: names, feet, knees and elbows hardly tell "
+            "where the character faces"
+        ]
     return []
 
 
