@@ -154,8 +154,8 @@ def _side_doubts(facing: Facing) -> list[str]:
     # Confidence from which left and right are not doubted.
     if facing.confidence < 0.9:
         return [
-            "left and right may be swapped for all roles of a side: names, feet, knees and elbows hardly tell "
-            "where the character faces"
+            "left and right may be swapped for all roles of a side: names, feet, knees and elbows hardly "
+            "tell where the character faces"
         ]
     return []
 
