@@ -126,7 +126,6 @@ def keys_by_type(curve: bpy.types.FCurve) -> dict[str, int]:
 
 
 def test_every_property_has_its_value(saved: Saved, scene: bpy.types.Scene) -> None:
-    """Takes, markers, matches, reviews, libraries, overlays: every property of then has its value."""
     expected = saved.held["properties"]
     assert expected["keymark.takes.len"] == 2 and expected["keymark.takes[0].matching.matches.len"] >= 3
     differing = [
@@ -138,7 +137,6 @@ def test_every_property_has_its_value(saved: Saved, scene: bpy.types.Scene) -> N
 
 
 def test_the_scene_is_set_up_as_it_was(saved: Saved, scene: bpy.types.Scene) -> None:
-    """Range, rate and size, objects, bones; the clip is found by its relative path."""
     expected = saved.held["scene"]
     assert [scene.frame_start, scene.frame_end, scene.frame_current] == expected["range"]
     assert scene.render.fps / scene.render.fps_base == pytest.approx(expected["rate"])
@@ -151,7 +149,6 @@ def test_the_scene_is_set_up_as_it_was(saved: Saved, scene: bpy.types.Scene) -> 
 
 
 def test_every_action_has_its_curves(saved: Saved, scene: bpy.types.Scene) -> None:
-    """Keys of each type, values on and between frames, slots, and what an asset browser is told."""
     frames = saved.held["curves_at"]
     assert {action.name for action in bpy.data.actions} == set(saved.held["actions"])
     for name, expected in saved.held["actions"].items():
@@ -168,7 +165,6 @@ def test_every_action_has_its_curves(saved: Saved, scene: bpy.types.Scene) -> No
 
 
 def test_what_was_found_of_the_markers_still_holds(saved: Saved, scene: bpy.types.Scene) -> None:
-    """The clip is recognized; results do not hold for another file under its name."""
     take = active_take(scene)
     assert len(take.markers) == 5 and all(marker.has_readout(take) for marker in take.markers)
     os.utime(saved.take / "clip.mp4")
@@ -178,7 +174,6 @@ def test_what_was_found_of_the_markers_still_holds(saved: Saved, scene: bpy.type
 
 
 def test_the_motion_is_reconstructed_and_finished_anew(saved: Saved, scene: bpy.types.Scene) -> None:
-    """Posed and matched keyframes are told apart as before, and both results come into their Actions."""
     before = set(bpy.data.actions)
     matched = saved.property("matching.matches.len")
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
@@ -195,7 +190,6 @@ def test_the_motion_is_reconstructed_and_finished_anew(saved: Saved, scene: bpy.
 
 
 def test_matches_are_accepted_and_others_chosen(saved: Saved, scene: bpy.types.Scene) -> None:
-    """An accepted match has the animator's keys from then on; another posture is keyed as matched."""
     action = active_take(scene).keyframe_action
     (path,) = {path for path, _ in curves(action) if path.endswith('["pelvis"].location')}
     matched = saved.property("matching.matches.len")
@@ -214,7 +208,6 @@ def test_matches_are_accepted_and_others_chosen(saved: Saved, scene: bpy.types.S
 
 
 def test_footage_is_matched_again_beside_what_is_posed(saved: Saved, scene: bpy.types.Scene) -> None:
-    """The library is asked for by the name that the file remembers; posed keyframes stay."""
     take = active_take(scene)
     poses = {key.co.x: key.co.y for key in keyed(take) if key.type == "KEYFRAME"}
     assert bpy.ops.keymark.pose_all(library=take.matching.library_name) == {"FINISHED"}
@@ -230,7 +223,6 @@ def keyed(take: bpy.types.PropertyGroup) -> list[bpy.types.Keyframe]:
 
 
 def test_the_review_leads_to_its_weak_frames(saved: Saved, scene: bpy.types.Scene) -> None:
-    """The worst first, and there the reconstructed pose becomes a keyframe."""
     count = saved.property("review.weak_frames.len")
     assert count >= 1
     for frame in [saved.property(f"review.weak_frames[{row}].frame") for row in range(count)]:
@@ -243,7 +235,6 @@ def test_the_review_leads_to_its_weak_frames(saved: Saved, scene: bpy.types.Scen
 
 
 def test_the_library_in_the_file_is_in_its_pose_assets(saved: Saved, scene: bpy.types.Scene) -> None:
-    """Saved, it is the file of then."""
     written = json.loads((saved.folder / "shoot" / "gestures.json").read_text(encoding="utf-8"))
     path = saved.folder / "saved.json"
     assert bpy.ops.keymark.export_library(filepath=str(path), source="ASSETS") == {"FINISHED"}
@@ -251,14 +242,12 @@ def test_the_library_in_the_file_is_in_its_pose_assets(saved: Saved, scene: bpy.
 
 
 def test_the_motion_is_exported(saved: Saved, scene: bpy.types.Scene) -> None:
-    """Every frame of the final Action."""
     path = saved.folder / "motion.bvh"
     assert bpy.ops.keymark.export_motion(format="BVH", filepath=str(path)) == {"FINISHED"}
     assert f"Frames: {scene.frame_end}" in path.read_text(encoding="utf-8")
 
 
 def test_the_take_opens_from_its_folder(saved: Saved) -> None:
-    """With its markers, its actor and the keyframes that were saved."""
     assert bpy.ops.keymark.open_take(filepath=str(saved.take)) == {"FINISHED"}
     take = active_take(bpy.context.scene)
     assert [marker.name for marker in take.markers] == [
@@ -270,7 +259,6 @@ def test_the_take_opens_from_its_folder(saved: Saved) -> None:
 
 
 def test_a_library_file_reads_the_same(saved: Saved) -> None:
-    """Nothing is lost, and nothing is written differently."""
     path = saved.folder / "shoot" / "gestures.json"
     written = json.loads(path.read_text(encoding="utf-8"))
     assert read_library(path).to_json() == written
@@ -278,7 +266,6 @@ def test_a_library_file_reads_the_same(saved: Saved) -> None:
 
 
 def test_a_batch_converts_anew_what_an_earlier_version_has_converted(saved: Saved) -> None:
-    """Its record is read and its files are what it says, but the same input gives more today."""
     results = saved.folder / "results" / "take"
     record = read_record(results)
     assert record.keymark in VERSIONS and record.library == "gestures"

@@ -35,7 +35,6 @@ def test_the_documented_session_leads_to_an_asset_and_a_file(
     repository: Path,
     shown_points: Callable[[bpy.types.Object], np.ndarray],
 ) -> None:
-    """Every step leaves what it promises, and the armature ends near the true points."""
     scene = bpy.context.scene
     take = script.session(scene, tmp_path)
     assert scene.frame_end == FRAMES

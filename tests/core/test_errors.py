@@ -4,6 +4,5 @@ from keymark.core.errors import pluralize
 
 
 def test_one_is_not_several() -> None:
-    """A number goes with words for one or for more."""
     assert [pluralize(count, "take") for count in (0, 1, 2)] == ["0 takes", "1 take", "2 takes"]
     assert pluralize(3, "person", "people") == "3 people"

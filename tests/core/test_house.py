@@ -70,7 +70,6 @@ def wrong_imports(name: str, is_package: bool, source: str, known: set[str]) -> 
 
 
 def test_imports_run_in_one_direction_and_core_knows_no_blender(repository: Path) -> None:
-    """No room imports one beside or above itself, and no module of core imports Blender."""
     known = modules(repository, "core", "operators")
     assert "core.errors" in known
     wrong = []
@@ -99,7 +98,6 @@ def import_graph(sources: dict[str, tuple[bool, str]]) -> dict[str, set[str]]:
 
 
 def test_no_modules_import_each_other_in_a_circle(repository: Path) -> None:
-    """Not even where an import stands in a function or for types alone."""
     known = modules(repository, "core", "operators")
     sources = {
         name: (file.name == "__init__.py", file.read_text(encoding="utf-8")) for name, file in known.items()
@@ -113,7 +111,6 @@ def test_no_modules_import_each_other_in_a_circle(repository: Path) -> None:
 
 
 def test_a_circle_is_found() -> None:
-    """Two modules that import each other cannot be put in an order."""
     sources = {
         "core.review.score": (False, "from ..take.motion import x"),
         "core.take.motion": (False, "def late():\n    from ..review import score"),
@@ -123,13 +120,11 @@ def test_a_circle_is_found() -> None:
 
 
 def test_every_room_has_a_height(repository: Path) -> None:
-    """A new folder is put into the list above before anything imports it."""
     rooms = {room_of(name) for name in modules(repository, "core", "operators")} - {None}
     assert rooms == set(HEIGHTS)
 
 
 def test_the_rooms_themselves_form_no_circle(repository: Path) -> None:
-    """The tops of core and operators import nothing before they are registered."""
     known = modules(repository, "core", "operators")
     for top in ("core", "operators"):
         assert not list(relative_imports(known[top], top, set(known)))
@@ -163,7 +158,6 @@ def relative_imports(file: Path, name: str, known: set[str]) -> Iterator[str]:
     ],
 )
 def test_a_wrong_import_is_found(name: str, source: str) -> None:
-    """The check above can fail: each of these imports breaks a rule and is named."""
     known = {"core.report", "core.body.skeleton", "core.footage.camera", "operators.bridge", "core.errors"}
     assert len(wrong_imports(name, False, source, known)) == 1
 
@@ -185,31 +179,26 @@ def test_a_wrong_import_is_found(name: str, source: str) -> None:
     ],
 )
 def test_a_right_import_passes(name: str, source: str) -> None:
-    """Imports that run downhill, inside a room, or out of the house are let through."""
     known = {"core.footage.camera", "core.body.skeleton", "core.body.rotations", "core.take.motion"}
     assert wrong_imports(name, False, source, known) == []
 
 
 def test_no_file_is_longer_than_four_hundred_lines(repository: Path) -> None:
-    """A file holds one idea; one that outgrows 400 lines is split."""
     files = modules(repository, "core", "operators", "tests", "benchmarks", "tools").values()
     long = {str(file): len(file.read_text(encoding="utf-8").splitlines()) for file in files}
     assert {file: lines for file, lines in long.items() if lines > LINES_AT_MOST} == {}
 
 
 def test_every_folder_of_the_package_is_a_package(repository: Path) -> None:
-    """A folder of modules without `__init__.py` would be missing from the installed package."""
     folders = {file.parent for file in modules(repository, "core", "operators").values()}
     assert [str(folder) for folder in folders if not (folder / "__init__.py").is_file()] == []
 
 
 def test_nothing_below_tests_is_a_package(repository: Path) -> None:
-    """Tests are imported by file (importlib mode), so that two may share a name."""
     assert list((repository / "tests").rglob("__init__.py")) == []
 
 
 def test_manifest_and_pyproject_agree(repository: Path) -> None:
-    """One version, one license, one name, and the Python of the oldest Blender named."""
     manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
     settings = tomllib.loads((repository / "pyproject.toml").read_text(encoding="utf-8"))
     project = settings["project"]
@@ -221,21 +210,18 @@ def test_manifest_and_pyproject_agree(repository: Path) -> None:
 
 
 def test_the_changelog_has_the_version(repository: Path) -> None:
-    """The manifest's version is a heading of CHANGELOG.md."""
     manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
     changelog = (repository / "CHANGELOG.md").read_text(encoding="utf-8")
     assert manifest["version"] in re.findall(r"^## \[([^\]]+)\]", changelog, flags=re.MULTILINE)
 
 
 def test_the_citation_has_the_version(repository: Path) -> None:
-    """CITATION.cff names the manifest's version."""
     manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
     citation = (repository / "CITATION.cff").read_text(encoding="utf-8")
     assert re.findall(r"^version: (.*)$", citation, flags=re.MULTILINE) == [manifest["version"]]
 
 
 def test_every_tool_a_target_calls_is_there(repository: Path) -> None:
-    """The Makefile and the continuous integration name no script that is missing."""
     scripts = "".join((repository / name).read_text(encoding="utf-8") for name in ("Makefile", ".ci/run"))
     named = set(re.findall(r"tools/\w+\.(?:py|sh)", scripts))
     assert named

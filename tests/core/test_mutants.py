@@ -19,7 +19,6 @@ def f(x: "float" = 1, *, on: bool = True):
 
 
 def test_every_mutant_is_one_change_of_what_is_calculated() -> None:
-    """Numbers, operators and returns change, and nothing in texts, types or errors."""
     found = list(mutants(Path("a.py"), SOURCE))
     assert {(one.line, one.before, one.after) for one in found} == {
         (2, "0.5", "(1.0)"),
@@ -40,7 +39,6 @@ def test_every_mutant_is_one_change_of_what_is_calculated() -> None:
 
 
 def test_a_seed_decides_what_is_drawn() -> None:
-    """Of the rooms that are named, and of all by default."""
     assert drawn(["body"], 5, 1) == drawn(["body"], 5, 1) != drawn(["body"], 5, 2)
     assert {one.file.parts[:2] for one in drawn(["body"], 5, 1)} == {("core", "body")}
     assert len({one.file.parts[1] for one in drawn(list(ROOMS), 40, 1)}) > 3

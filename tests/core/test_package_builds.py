@@ -31,17 +31,14 @@ def fits(series: Series, version: tuple[int, ...], python: str) -> bool:
 
 @pytest.mark.parametrize(("version", "python"), BLENDERS)
 def test_every_blender_has_one_zip(version: tuple[int, ...], python: str) -> None:
-    """Exactly one series fits."""
     assert sum(fits(series, version, python) for series in SERIES) == 1
 
 
 def test_official_blenders_have_one_on_every_platform() -> None:
-    """All but the series of distributions come for all three."""
     assert [series.python for series in SERIES if series.platforms == EVERYWHERE] == ["3.11", "3.13"]
 
 
 def test_zips_are_chosen_by_python_and_platform() -> None:
-    """None named means all; names are told apart by both."""
     names = [build.name("1.2.3") for build in chosen((), ())]
     assert len(set(names)) == len(names) == 7
     (only,) = chosen(("3.13",), ("windows-x64",))
@@ -50,13 +47,11 @@ def test_zips_are_chosen_by_python_and_platform() -> None:
 
 
 def test_every_wheel_is_pinned_and_every_platform_known() -> None:
-    """What is downloaded is what the project's settings name."""
     assert set(BINARY_INTERFACES) <= set(pins())
     assert set(TAGS) == set(EVERYWHERE)
 
 
 def test_a_zips_manifest_differs_in_its_fields_alone(repository: Path) -> None:
-    """Given fields replace those there are or are added; tables and all others stay as they were."""
     text = (repository / "blender_manifest.toml").read_text(encoding="utf-8")
     given: dict[str, str | list[str]] = {
         "version": "9.8.7",

@@ -23,7 +23,6 @@ def golden(repository: Path) -> ModuleType:
 
 
 def test_the_demonstration_moves_as_it_did(golden: ModuleType) -> None:
-    """Twice the same to the last bit, and the golden file's motion on every version that is supported."""
     first, again = golden.demo_points(), golden.demo_points()
     assert first.tobytes() == again.tobytes()
     difference = np.abs(first - golden.golden_points()).max()

@@ -44,7 +44,6 @@ def _points(performance: Performance) -> Array:
 def test_the_examples_are_still_composed_as_they_were(
     performances: dict[str, Performance], repository: Path, name: str
 ) -> None:
-    """The committed truth comes out again, to the decimals it is written with."""
     points = _points(performances[name])
     truth = read_truth(repository / "presets" / "demo" / name / "truth.json", 1, len(points))
     assert np.abs(points - truth).max() < 1e-6
@@ -52,7 +51,6 @@ def test_the_examples_are_still_composed_as_they_were(
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_joints_stay_in_their_range(performances: dict[str, Performance], name: str) -> None:
-    """No degree of freedom leaves the skeleton's range of motion by more than some degrees."""
     performance = performances[name]
     values = performance.postures[performance.middles].to_vector()
     for joint in HUMAN.joints:
@@ -67,7 +65,6 @@ def test_joints_stay_in_their_range(performances: dict[str, Performance], name: 
 def test_nothing_is_faster_than_people_or_below_the_floor(
     performances: dict[str, Performance], name: str
 ) -> None:
-    """Points keep to the speed of athletes, and soles to the floor."""
     performance = performances[name]
     points = _points(performance)
     assert np.linalg.norm(np.diff(points, axis=0), axis=-1).max() * performance.fps < FASTEST_MPS
@@ -80,7 +77,6 @@ def test_nothing_is_faster_than_people_or_below_the_floor(
 def test_keyframes_joined_by_constant_velocity_miss_the_motion(
     performances: dict[str, Performance], name: str
 ) -> None:
-    """Between its keyframes every take does what they do not tell, by 3 cm a point and more on average."""
     performance, described = performances[name], TAKES[name]
     points = _points(performance)
     posed = described.posed_frames(len(points))
@@ -93,7 +89,6 @@ def test_keyframes_joined_by_constant_velocity_miss_the_motion(
 
 @pytest.mark.parametrize("name", TAKES)
 def test_the_camera_sees_the_performer(performances: dict[str, Performance], name: str) -> None:
-    """Nearly all points of nearly all frames project into the image."""
     camera = TAKES[name].camera
     pixels, depth = camera.project(_points(performances[name]))
     inside = np.all((pixels > 0.0) & (pixels < np.array(camera.resolution)), axis=-1) & (depth > 0.0)
@@ -102,7 +97,6 @@ def test_the_camera_sees_the_performer(performances: dict[str, Performance], nam
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_a_seed_decides_a_performance(performances: dict[str, Performance], name: str) -> None:
-    """The same seed gives the same motion, another seed another one."""
     again = TAKES[name].perform(TAKES[name].seed)
     other = TAKES[name].perform(TAKES[name].seed + 1)
     assert np.array_equal(_points(again), _points(performances[name]))
@@ -110,7 +104,6 @@ def test_a_seed_decides_a_performance(performances: dict[str, Performance], name
 
 
 def test_takes_differ_from_each_other() -> None:
-    """No two takes share colors, camera or seed, and there are two sizes of image at least."""
     described = list(TAKES.values())
     colors = {tuple(take.look.painted[marker] for marker in MARKERS) for take in described}
     assert len(colors) == len({take.seed for take in described}) == len(described)
@@ -120,7 +113,6 @@ def test_takes_differ_from_each_other() -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_posed_frames_are_spread_as_people_spread_them(seed: int) -> None:
-    """About ten of a hundred, both ends among them, neither evenly nor in heaps."""
     frames = posed_frames(110, np.random.default_rng(seed))
     gaps = np.diff(frames)
     assert (frames[0], frames[-1], len(frames)) == (0, 109, 12)
@@ -128,14 +120,12 @@ def test_posed_frames_are_spread_as_people_spread_them(seed: int) -> None:
 
 
 def test_a_demonstration_without_its_own_keyframes_would_get_chosen_ones() -> None:
-    """Given keyframes win over those that the seed would choose."""
     assert DEMONSTRATION.posed_frames(118)[:3] == (0, 8, 15)
     chosen: Described = dataclasses.replace(DEMONSTRATION, keyframes=())
     assert chosen.posed_frames(118) != DEMONSTRATION.keyframes
 
 
 def test_a_fast_take_has_its_own_frame_rate(performances: dict[str, Performance]) -> None:
-    """At sixty frames per second neighbors are half as far apart; a take that says nothing has thirty."""
     throws = performances["throw60"]
     assert (throws.fps, performances["throw"].fps) == (60, FPS)
     slow = dataclasses.replace(throws, frame_count=throws.frame_count // 2, times=throws.times / 2.0, fps=30)
@@ -144,7 +134,6 @@ def test_a_fast_take_has_its_own_frame_rate(performances: dict[str, Performance]
 
 
 def test_a_build_moves_joints_but_no_feet(performances: dict[str, Performance]) -> None:
-    """A performer's own joints lie a centimeter or two beside the skeleton's, as far as limbs allow."""
     performance = performances["martial"]
     assert performance.build is not None and performances["kick"].build is None
     pose = performance.body.pose(performance.postures[performance.middles])
@@ -163,7 +152,6 @@ def test_a_build_moves_joints_but_no_feet(performances: dict[str, Performance]) 
 
 
 def test_no_posture_reaches_a_build(performances: dict[str, Performance]) -> None:
-    """The posture that comes nearest to the performer's points is still millimeters off."""
     performance = performances["martial"]
     residual = fit_posture(performance.body, _points(performance)[::20]).residual_m
     assert residual.mean(axis=-1).min() > 0.002
@@ -171,7 +159,6 @@ def test_no_posture_reaches_a_build(performances: dict[str, Performance]) -> Non
 
 
 def test_a_mesh_follows_its_build(performances: dict[str, Performance]) -> None:
-    """Thighs and shins of the mesh join the performer's own hip, knee and ankle."""
     performance = performances["martial"]
     body, build = performance.body, performance.build
     assert build is not None
@@ -187,7 +174,6 @@ def test_a_mesh_follows_its_build(performances: dict[str, Performance]) -> None:
 
 
 def test_flight_falls_as_bodies_fall() -> None:
-    """In the air the height's second difference is gravity's, before and after there is none."""
     times = np.arange(0.0, 1.0, 0.01)
     height = curves.flight(times, 0.2, 0.7)
     inside = (times > 0.215) & (times < 0.685)
@@ -197,7 +183,6 @@ def test_flight_falls_as_bodies_fall() -> None:
 
 
 def test_a_spring_is_late_overshoots_and_settles() -> None:
-    """A step is followed late, beyond its end, and at last exactly."""
     times = np.arange(0.0, 3.0, 1.0 / 240.0)
     followed = curves.sprung((times > 0.5).astype(float), times, 4.0, 0.5)
     assert followed[times < 0.5].max() < 1e-9
@@ -207,7 +192,6 @@ def test_a_spring_is_late_overshoots_and_settles() -> None:
 
 
 def test_uneven_cycles_keep_their_mean_length() -> None:
-    """Phases rise all the time, one cycle a period on average, and no two cycles are alike."""
     times = np.arange(0.0, 20.0, 0.01)
     phases = curves.uneven_phases(times, 0.5, 0.1, np.random.default_rng(3))
     assert np.diff(phases).min() > 0.0

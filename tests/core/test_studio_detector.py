@@ -52,7 +52,6 @@ def errors(performance: Performance, people: People) -> tuple[Array, Array]:
 
 
 def test_it_errs_as_networks_do(performance: Performance) -> None:
-    """In the median two or three pixels of 320; constant and slow for the most part; some frames far off."""
     across, depth = errors(performance, seen_by(performance, DEMONSTRATION.seed))
     away = np.linalg.norm(across, axis=-1)
     assert 1.5 < np.nanmedian(away) < 4.0
@@ -64,7 +63,6 @@ def test_it_errs_as_networks_do(performance: Performance) -> None:
 
 
 def test_left_and_right_are_mistaken_and_frames_are_lost(performance: Performance) -> None:
-    """Both in some frames and in no more than one of ten; all is seeded."""
     people = seen_by(performance, DEMONSTRATION.seed)
     across, _ = errors(performance, people)
     lost = [len(frame.pixel) == 0 for frame in people.frames]
@@ -79,7 +77,6 @@ def test_left_and_right_are_mistaken_and_frames_are_lost(performance: Performanc
 
 
 def test_hidden_points_have_low_scores() -> None:
-    """Of a kick filmed from the side, many points; and they are farther off."""
     described = TAKES["kick"]
     performance = described.perform(described.seed)
     people = detect(performance, described.camera, np.random.default_rng(0))
@@ -92,7 +89,6 @@ def test_hidden_points_have_low_scores() -> None:
 def test_the_demonstration_has_what_the_detector_sees(
     performance: Performance, repository: Path, tmp_path: Path
 ) -> None:
-    """The file in the presets comes out again; the take is held against markers and contours all the same."""
     folder = repository / "presets" / "demo" / "aerobic"
     made = seen_by(performance, DEMONSTRATION.seed)
     write_keypoints(tmp_path / "made.json", made, 1, 30)

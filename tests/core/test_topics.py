@@ -40,7 +40,6 @@ def topic_of(name: str) -> str:
 
 
 def test_every_module_that_registers_is_listed_by_its_topic_once(repository: Path) -> None:
-    """A new operator or panel that nobody lists would be missing in Blender without a word."""
     known = modules(repository, "operators")
     sources = {name: file.read_text(encoding="utf-8") for name, file in known.items()}
     topics = sorted({topic_of(name) for name in known} - {"operators"})
@@ -80,7 +79,6 @@ def is_import(node: ast.AST) -> bool:
 
 
 def test_no_topic_imports_the_private_parts_of_another(repository: Path) -> None:
-    """Operators and panels are a topic's own; functions beside them may be shared."""
     known = modules(repository, "core", "operators")
     sources = {name: file.read_text(encoding="utf-8") for name, file in known.items()}
     private = {name for name, source in sources.items() if is_private(source)}
@@ -103,13 +101,11 @@ def test_no_topic_imports_the_private_parts_of_another(repository: Path) -> None
     ],
 )
 def test_a_trespass_is_found(name: str, source: str) -> None:
-    """The check above can fail: each of these imports what is another's own."""
     known = {"operators.follow", "operators.follow.marker_panel", "core.take.clip_check"}
     assert len(list(trespasses(name, False, source, known, {"operators.follow.marker_panel"}))) == 1
 
 
 def test_an_import_within_a_topic_is_none() -> None:
-    """An operator may use another of its own topic, and anybody the shell."""
     known = {"operators.follow.marker_panel", "operators.shell.base_operator"}
     source = "from . import panel\nfrom ..shell.messages import say"
     assert (

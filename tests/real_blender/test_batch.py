@@ -63,7 +63,6 @@ def undisturbed(blender: Blender, shoot: Path, tmp_path_factory: pytest.TempPath
 
 
 def test_every_take_is_there_and_summed_up(undisturbed: Path) -> None:
-    """Each lies under its name with the files of `convert`, and the summary has a row for each."""
     for name in NAMES:
         files = {file.name for file in (undisturbed / name).iterdir()}
         assert {"motion.json", "motion.blend", "motion.bvh", "conversion.json"} <= files
@@ -74,7 +73,6 @@ def test_every_take_is_there_and_summed_up(undisturbed: Path) -> None:
 
 
 def test_a_result_opens_with_its_clip(undisturbed: Path, blender: Blender) -> None:
-    """The motion lasts as long as the clip, which the file finds from where it lies."""
     done = blender.run(
         "-b", undisturbed / NAMES[0] / "motion.blend", "--python-exit-code", "1", "--python-expr", OPENED
     )
@@ -85,7 +83,6 @@ def test_a_result_opens_with_its_clip(undisturbed: Path, blender: Blender) -> No
 def test_a_killed_worker_costs_nothing(
     blender: Blender, shoot: Path, undisturbed: Path, tmp_path: Path
 ) -> None:
-    """Both of two Blenders are killed once a take is there; results are as of an undisturbed run."""
     words = [*blender.command, "--command", "keymark", "batch", str(shoot), "--output", str(tmp_path / "out")]
     own = {
         "BLENDER_USER_RESOURCES": str(blender.user),
@@ -121,7 +118,6 @@ def test_a_killed_worker_costs_nothing(
 
 
 def test_again_nothing_is_done_and_nothing_lost(blender: Blender, shoot: Path, undisturbed: Path) -> None:
-    """Every file of every take is as it was."""
     before = results(undisturbed)
     done = blender.run("--command", "keymark", "batch", shoot, "--output", undisturbed, "--jobs", "2")
     assert done.returncode == 0, done.stdout + done.stderr
@@ -130,7 +126,6 @@ def test_again_nothing_is_done_and_nothing_lost(blender: Blender, shoot: Path, u
 
 
 def test_a_failure_is_said_and_no_shoot_refused(blender: Blender, tmp_path: Path) -> None:
-    """A damaged clip ends with 1 and its sentence, the other take is there; no shoot at all ends with 2."""
     shoot = write_shoot(tmp_path / "shoot", takes=2)
     (shoot / "day1" / "take01.mp4").write_bytes(b"no film")
     output = tmp_path / "out"
@@ -144,7 +139,6 @@ def test_a_failure_is_said_and_no_shoot_refused(blender: Blender, tmp_path: Path
 
 
 def test_motions_are_gathered(blender: Blender, undisturbed: Path, tmp_path: Path) -> None:
-    """`merge` writes one .blend with an asset for each take, and their catalogs."""
     library = tmp_path / "library.blend"
     done = blender.run("--command", "keymark", "merge", undisturbed, "--output", library, "--name", "Shoot")
     assert done.returncode == 0, done.stdout + done.stderr
@@ -155,7 +149,6 @@ def test_motions_are_gathered(blender: Blender, undisturbed: Path, tmp_path: Pat
 
 
 def test_a_shoot_is_checked(blender: Blender, shoot: Path) -> None:
-    """`check` finds that every take would convert, and writes nothing."""
     before = sorted(shoot.rglob("*"))
     done = blender.run("--command", "keymark", "check", shoot)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -49,7 +49,6 @@ def whole(output: Path, library: str) -> bool:
 
 @pytest.mark.skipif(NODE is None, reason="there is no Node, in which the job type is compiled")
 def test_the_tasks_of_flamenco_run(blender: Blender, repository: Path, shoot: Path, tmp_path: Path) -> None:
-    """One after the other, as a worker runs them once it has filled in the variable."""
     output = tmp_path / "out"
     settings = {
         "shoot": str(shoot),
@@ -84,7 +83,6 @@ def test_the_tasks_of_flamenco_run(blender: Blender, repository: Path, shoot: Pa
 def test_the_job_of_open_job_description_runs(
     blender: Blender, repository: Path, shoot: Path, tmp_path: Path
 ) -> None:
-    """With the path of a Blender as its program."""
     program = tmp_path / "blender"
     setting = f"BLENDER_USER_RESOURCES={shlex.quote(str(blender.user))}"
     program.write_text(f'#!/bin/sh\n{setting} exec {shlex.join(blender.command)} "$@"\n', encoding="utf-8")

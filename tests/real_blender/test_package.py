@@ -23,7 +23,6 @@ def converted(blender: Blender, demo_take: Path, tmp_path_factory: pytest.TempPa
 
 
 def test_the_zip_installs_without_a_complaint(bare_blender: Blender, package: Path) -> None:
-    """Installing and enabling ends with 0 and reports no incompatible Python and no traceback."""
     done = bare_blender.install(package)
     assert done.returncode == 0
     assert "incompatible" not in done.stdout + done.stderr
@@ -32,7 +31,6 @@ def test_the_zip_installs_without_a_complaint(bare_blender: Blender, package: Pa
 
 
 def test_the_zip_holds_no_workshop(blender: Blender) -> None:
-    """What only developers need stays out of the user's Blender."""
     installed = {item.name for item in (blender.user / "extensions" / "user_default" / "keymark").iterdir()}
     assert {"__init__.py", "blender_manifest.toml", "core", "operators", "presets", "LICENSE"} <= installed
     workshop = {"tests", "tools", "docs", "benchmarks", "Makefile", "pyproject.toml", "setup.py", "out"}
@@ -41,7 +39,6 @@ def test_the_zip_holds_no_workshop(blender: Blender) -> None:
 
 
 def test_the_libraries_are_those_of_the_zip(blender: Blender, repository: Path) -> None:
-    """OpenCV and scipy come from the wheels, in the pinned versions, whatever the system has."""
     done = blender.run("-b", "--python-exit-code", "1", "--python-expr", QUESTION)
     (answer,) = [line for line in done.stdout.splitlines() if line.startswith("ANSWER")]
     _, opencv, scipy, *files = answer.split(" ")
@@ -53,14 +50,12 @@ def test_the_libraries_are_those_of_the_zip(blender: Blender, repository: Path) 
 
 
 def test_the_command_explains_itself(blender: Blender) -> None:
-    """`blender --command keymark --help` names its subcommands and ends with 0."""
     done = blender.run("--command", "keymark", "--help")
     assert done.returncode == 0, done.stderr
     assert "convert" in done.stdout
 
 
 def test_a_take_is_converted(converted: Path, demo_take: Path) -> None:
-    """Every frame has 13 finite points with positive uncertainties."""
     motion = json.loads((converted / "motion.json").read_text(encoding="utf-8"))
     take = json.loads((demo_take / "take.json").read_text(encoding="utf-8"))
     assert motion["fps"] == pytest.approx(take["fps"])
@@ -73,7 +68,6 @@ def test_a_take_is_converted(converted: Path, demo_take: Path) -> None:
 
 
 def test_the_motion_opens_in_blender(converted: Path, demo_take: Path, blender: Blender) -> None:
-    """The .blend holds an armature whose action moves over the clip's frames, and a camera with the clip."""
     script = (
         "import bpy; rig = next(o for o in bpy.data.objects if o.type == 'ARMATURE'); "
         "camera = bpy.context.scene.camera; "
@@ -89,7 +83,6 @@ def test_the_motion_opens_in_blender(converted: Path, demo_take: Path, blender: 
 
 
 def test_the_bvh_has_every_frame(converted: Path, demo_take: Path) -> None:
-    """The BVH file is one, and as long as the clip."""
     lines = (converted / "motion.bvh").read_text(encoding="utf-8").splitlines()
     take = json.loads((demo_take / "take.json").read_text(encoding="utf-8"))
     assert lines[0] == "HIERARCHY"
@@ -101,7 +94,6 @@ def test_the_bvh_has_every_frame(converted: Path, demo_take: Path) -> None:
 def test_a_take_without_a_clip_is_refused_in_one_line(
     blender: Blender, demo_take: Path, tmp_path: Path
 ) -> None:
-    """Unusable input ends with 2, one line on standard error, and no output folder."""
     take, output = tmp_path / "take", tmp_path / "out"
     take.mkdir()
     for name in ("take.json", "keyframes.json"):
@@ -114,7 +106,6 @@ def test_a_take_without_a_clip_is_refused_in_one_line(
 
 
 def test_removing_leaves_nothing_behind(bare_blender: Blender, package: Path) -> None:
-    """After `extension remove` neither its files nor its libraries are left."""
     assert bare_blender.install(package).returncode == 0
     done = bare_blender.run("--command", "extension", "remove", "keymark")
     assert done.returncode == 0, done.stdout + done.stderr
@@ -124,7 +115,6 @@ def test_removing_leaves_nothing_behind(bare_blender: Blender, package: Path) ->
 
 
 def test_the_shipped_libraries_come_with_it(blender: Blender, repository: Path) -> None:
-    """Every keyframe library of the repository can be named, and none of them is broken."""
     done = blender.run("--command", "keymark", "library", "list", "--json")
     assert done.returncode == 0, done.stdout + done.stderr
     listed = {row["identifier"]: row for row in json.loads(done.stdout)["libraries"]}
@@ -134,6 +124,5 @@ def test_the_shipped_libraries_come_with_it(blender: Blender, repository: Path) 
 
 
 def test_nothing_is_written_into_its_own_folder(blender: Blender, converted: Path, package: Path) -> None:
-    """After converting a take it holds what the zip holds, byte for byte, but for Python's own cache."""
     assert (converted / "motion.json").is_file()
     assert blender.changed_files(package) == set()

@@ -43,7 +43,6 @@ def version(words: object) -> tuple[int, ...]:
 
 
 def test_blenders_own_validator_accepts_it(bare_blender: Blender, package: Path) -> None:
-    """`extension validate` ends with 0 and finds no fault."""
     done = bare_blender.run("--command", "extension", "validate", package)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "Success" in done.stdout and "rror" not in done.stdout + done.stderr
@@ -52,7 +51,6 @@ def test_blenders_own_validator_accepts_it(bare_blender: Blender, package: Path)
 def test_it_is_for_this_blender_and_ends_before_another(
     bare_blender: Blender, manifest: dict[str, object], package: Path
 ) -> None:
-    """The range of versions holds this Blender's, and its end lies beyond; the platform is a single one."""
     done = bare_blender.run("-b", "--factory-startup", "--python-expr", VERSION)
     (answer,) = [line for line in done.stdout.splitlines() if line.startswith("ANSWER")]
     this = tuple(map(int, answer.split(" ")[1:]))
@@ -65,7 +63,6 @@ def test_it_is_for_this_blender_and_ends_before_another(
 def test_no_wheel_of_another_python_or_platform_is_inside(
     python_of_blender: str, manifest: dict[str, object], wheels: list[str]
 ) -> None:
-    """Each compiled one is for this Python alone or for all; the manifest lists just those that are there."""
     assert sorted(str(path).removeprefix("./") for path in manifest["wheels"]) == wheels  # type: ignore[attr-defined]
     parts = [Path(name).stem.split("-") for name in wheels]
     assert [part[0] for part in parts] == ["opencv_python_headless", "scipy", "threadpoolctl"]
@@ -78,13 +75,11 @@ def test_no_wheel_of_another_python_or_platform_is_inside(
 
 
 def test_it_is_as_small_as_promised(manifest: dict[str, object], package: Path) -> None:
-    """The zip stays below the limit of its platform."""
     (platform,) = manifest["platforms"]  # type: ignore[misc]
     assert package.stat().st_size / 1e6 <= LIMITS_MB[platform]
 
 
 def test_the_wheels_are_as_the_index_has_them(zipped: ZipFile, wheels: list[str]) -> None:
-    """Every file that a wheel's own record names is in it, unchanged, and there is no other."""
     for name in wheels:
         with ZipFile(io.BytesIO(zipped.read(name))) as wheel:
             files = {item for item in wheel.namelist() if not item.endswith("/")}
@@ -98,7 +93,6 @@ def test_the_wheels_are_as_the_index_has_them(zipped: ZipFile, wheels: list[str]
 
 
 def test_code_can_be_read(zipped: ZipFile) -> None:
-    """Outside the wheels there is neither byte code nor a compiled library nor an archive."""
     kinds = {Path(name).suffix for name in zipped.namelist() if not name.startswith("wheels/")}
     assert kinds & {".pyc", ".pyo", ".pyd", ".so", ".dll", ".dylib", ".exe", ".zip", ".whl", ".gz"} == set()
 
@@ -106,7 +100,6 @@ def test_code_can_be_read(zipped: ZipFile) -> None:
 def test_the_zip_of_another_blender_is_refused_in_a_sentence(
     bare_blender: Blender, built_package: Callable[[str], Path], python_of_blender: str
 ) -> None:
-    """Nothing is installed, and Blender says which of its versions the zip is for."""
     other = built_package("3.13" if python_of_blender == "3.11" else "3.11")
     done = bare_blender.install(other)
     said = done.stdout + done.stderr

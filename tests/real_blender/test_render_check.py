@@ -36,7 +36,6 @@ def rendered(
 def test_the_body_covers_its_markers(
     rendered: dict[str, RegionTracks], demo_take: Path, view: render_check.View
 ) -> None:
-    """From the front and from the side, extracted centroids agree within the view's tolerance."""
     render_check.assert_agreement(rendered[view.name], demo_take, view)
 
 
@@ -44,5 +43,4 @@ def test_the_body_covers_its_markers(
 def test_a_late_motion_is_noticed(
     rendered: dict[str, RegionTracks], demo_take: Path, view: render_check.View
 ) -> None:
-    """The same motion ten frames late is outside the tolerance."""
     render_check.assert_lateness_fails(rendered[view.name], demo_take, view)

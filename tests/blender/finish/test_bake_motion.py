@@ -128,7 +128,6 @@ def test_handles_give_the_cubic_that_was_checked(take: bpy.types.PropertyGroup) 
 
 
 def test_every_frame_keeps_everything(take: bpy.types.PropertyGroup, shown_points: ShownPoints) -> None:
-    """The animator's correction in the motion is in the final Action; the motion itself is untouched."""
     correction = curves(take, take.motion_action)['pose.bones["forearm.R"].rotation_euler', 0]
     correction.keyframe_points.insert(25.0, 2.0).type = "KEYFRAME"
     wanted = places(take, take.motion_action, shown_points)
@@ -146,7 +145,6 @@ def test_every_frame_keeps_everything(take: bpy.types.PropertyGroup, shown_point
 def test_planted_feet_stand_still_in_blender(
     take: bpy.types.PropertyGroup, shown_points: ShownPoints, wave_posture: Callable[[np.ndarray], Posture]
 ) -> None:
-    """Ankles that stray while they rest are held at one place, with every frame keyed and with few keys."""
     body = read_body(take.armature, HUMAN)
     time = np.arange(FRAMES) / 30.0
     sway = np.zeros((FRAMES, HUMAN.dof_count))
@@ -195,7 +193,6 @@ def test_other_curves_of_the_motion_come_along(take: bpy.types.PropertyGroup) ->
 
 
 def test_what_judges_the_motion_stays_behind(take: bpy.types.PropertyGroup) -> None:
-    """The final Action holds the motion and the animator's own properties, not how far to believe frames."""
     channelbag = existing_channelbag(take.motion_action, take.armature)
     for path in (curve_path("Confidence"), '["mood"]'):
         channelbag.fcurves.new(path, index=0).keyframe_points.insert(4.0, 0.5)
@@ -205,7 +202,6 @@ def test_what_judges_the_motion_stays_behind(take: bpy.types.PropertyGroup) -> N
 
 
 def test_the_rig_shows_what_blender_shows(take: bpy.types.PropertyGroup, shown_points: ShownPoints) -> None:
-    """Core's forward kinematics of channels equals Blender's: rotation modes, location and scale included."""
     armature_object, action = take.armature, take.motion_action
     body = read_body(armature_object, HUMAN)
     rig = read_rig(armature_object, body)

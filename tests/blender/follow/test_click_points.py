@@ -71,7 +71,6 @@ def test_a_click_outside_the_picture_is_refused(plain: bpy.types.Scene) -> None:
 def test_a_click_says_who_the_performer_is(
     plain: bpy.types.Scene, keypoint_file: Path, plain_take: Take, wave_motion: Motion, seen_by: Callable
 ) -> None:
-    """The nearest joint of anyone is vouched for, at its own place; a frame without anyone is refused."""
     people = seen_by(plain_take, wave_motion, others=1)
     write_keypoints(keypoint_file, people, 1, plain_take.fps)
     with pytest.raises(RuntimeError, match="Load keypoints first"):

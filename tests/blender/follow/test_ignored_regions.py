@@ -143,7 +143,6 @@ def test_regions_go_into_the_take_and_come_back(
 
 
 def test_a_scenes_take_has_its_regions_while_markers_are_followed(opened: bpy.types.Scene) -> None:
-    """As the reconstruction reads it; without markers there is nothing that they could be taken for."""
     take = active_take(opened)
     add_ignored_regions(take, (IgnoredRegion(box=(1.0, 2.5, 30.0, 40.0)),))
     footage = footage_of(opened, take)
@@ -166,7 +165,6 @@ def test_proposals_read_the_clip_anew_where_something_is_ignored(cluttered: bpy.
 
 
 def test_a_brush_keeps_what_can_be_seen_of_a_path() -> None:
-    """Points much nearer than its size are left out, a long stroke goes on as another, sizes have bounds."""
     tool = Brush(200)
     assert tool.radius_px == 6.0
     tool.press((10.0, 10.0))

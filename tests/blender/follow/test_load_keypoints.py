@@ -94,7 +94,6 @@ def test_what_is_seen_is_said(plain: bpy.types.Scene, keypoint_file: Path) -> No
 def test_a_file_is_listed_once_and_removed_again(
     plain: bpy.types.Scene, keypoint_file: Path, plain_take: Take, wave_motion: Motion, tmp_path: Path
 ) -> None:
-    """Loading it again chooses it; the one before becomes the chosen one when another is removed."""
     load(keypoint_file)
     folder = openpose_folder(tmp_path / "openpose", wave_motion, plain_take)
     take = load(next(folder.iterdir()))
@@ -157,7 +156,6 @@ def test_a_file_that_was_written_again_is_said_and_used(
 def test_the_blend_file_remembers_where_keypoints_are(
     plain: bpy.types.Scene, keypoint_file: Path, tmp_path: Path
 ) -> None:
-    """Relative to it where the folder moves as a whole, from the root where it is saved elsewhere alone."""
     project = keypoint_file.parent
     bpy.ops.wm.save_as_mainfile(filepath=str(project / "work.blend"))
     take = load(keypoint_file)
@@ -198,7 +196,6 @@ def test_another_performer_has_the_same_files_and_no_clicks(
 
 
 def test_what_is_missing_is_said(plain: bpy.types.Scene, keypoint_file: Path) -> None:
-    """Contours alone let a take go on, but not to matching; a camera that moves needs something else."""
     take = active_take(plain)
     assert contours_label(take) == "Camera stands still"
     with pytest.raises(RuntimeError, match="needs more than contours"):

@@ -76,7 +76,6 @@ def test_a_pick_gives_the_active_marker_its_color_and_leaves_the_others(
 def test_the_eyedropper_beside_a_row_picks_that_marker_alone(
     opened: bpy.types.Scene, tiny_take: Take
 ) -> None:
-    """Whatever row is active, and it never adds a marker: without a list there is nothing to pick."""
     take = active_take(opened)
     before = [tuple(marker.color) for marker in take.markers]
     take.markers[1].color, take.active_marker = (0.0, 0.0, 0.0), 4
@@ -194,7 +193,6 @@ def test_names_move_up_past_those_that_are_there() -> None:
 
 
 def test_what_was_looked_for_is_stored_with_the_markers_it_was_looked_for(opened: bpy.types.Scene) -> None:
-    """Another take may have come forward meanwhile; markers that were changed keep what they have."""
     job = SimpleNamespace(pixel=(80.0, 60.0), report=lambda *_: None)
     operator = KEYMARK_OT_check_markers
     first = active_take(opened).identifier
@@ -250,7 +248,6 @@ def test_masks_follow_a_clip_that_is_moved_in_time(opened: bpy.types.Scene) -> N
 
 
 def test_another_clip_leaves_nothing_of_the_one_before(opened: bpy.types.Scene, tmp_path: Path) -> None:
-    """What was read and reviewed of one is not drawn over the other; the same one again loses nothing."""
     take = active_take(opened)
     bpy.ops.keymark.propose_keyframes()
     take.method = "interpolation"

@@ -56,7 +56,6 @@ def test_a_track_is_seen_where_it_has_an_enabled_marker(plain: bpy.types.Scene) 
 
 
 def test_the_offset_of_a_track_counts_and_its_weight_is_the_score(plain: bpy.types.Scene) -> None:
-    """A pattern beside the point is followed in its place; a track of weight 0 is not believed at all."""
     clip = active_take(plain).clip
     track = add_track(clip, "knee.R", {4: (80.0, 60.0)})
     track.offset, track.weight = (0.1, -0.05), 0.4
@@ -130,7 +129,6 @@ def test_the_switch_takes_all_tracks_away(plain: bpy.types.Scene) -> None:
 def test_the_motion_follows_the_tracks(
     plain: bpy.types.Scene, plain_take: Take, wave_motion: Motion, shown_points: Callable
 ) -> None:
-    """Tracks of an arm that is waved between the keyframes draw the reconstructed arm after them."""
     take = active_take(plain)
     names, waved = plain_take.body.skeleton.point_names, ("elbow.L", "wrist.L")
     pixel, _ = plain_take.camera.project(wave_motion.points)

@@ -19,7 +19,6 @@ def matrix(camera: bpy.types.Object) -> np.ndarray:
 
 
 def test_fields_are_the_cameras_own(loaded: bpy.types.PropertyGroup) -> None:
-    """They write the object and read it, whoever moved it; place on the floor, heading and size stay."""
     camera = loaded.camera
     camera.location, camera.rotation_euler = (2.0, -3.0, 1.7), Euler((1.4, 0.0, 0.6))
     camera.scale = (2.0, 2.0, 2.0)

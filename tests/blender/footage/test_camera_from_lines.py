@@ -141,7 +141,6 @@ def test_two_clicks_draw_a_line_as_well() -> None:
 
 
 def test_an_end_is_dragged_and_a_line_removed() -> None:
-    """An end near the mouse is taken instead of a new line; with none under it the last line goes."""
     drawing = Drawing(VERTICAL, False)
     drag(drawing, (10.0, 10.0), (10.0, 200.0))
     drag(drawing, (90.0, 10.0), (90.0, 200.0))

@@ -21,7 +21,6 @@ def region(kind: str, x: int, y: int, width: int, height: int) -> SimpleNamespac
 
 
 def test_panels_take_their_room() -> None:
-    """A sidebar right, tools left, headers on top or below; one that is folded or beside takes none."""
     window = region("WINDOW", 100, 50, *REGION)
     sidebar, tools = region("UI", 850, 50, 250, 600), region("TOOLS", 100, 50, 40, 600)
     header, beside = region("HEADER", 100, 620, 1000, 30), region("UI", 1100, 50, 200, 600)
@@ -51,7 +50,6 @@ def test_the_picture_fills_the_free_part(picture: tuple[float, float], sensor_fi
 
 
 def test_a_view_that_a_person_has_moved_stays() -> None:
-    """One that was fitted, or that Blender has centered, does not; single precision makes no difference."""
     fitted = (15.333744, 0.0502002, 0.0191536)
     assert may_move((15.3337440490, 0.0502002276, 0.0191536434), fitted)
     assert may_move((0.0, 0.0, 0.0), None) and may_move((8.0, 0.0, 0.0), fitted)

@@ -86,7 +86,6 @@ def test_choosing_a_camera_puts_the_clip_behind_it(loaded: bpy.types.PropertyGro
 
 
 def test_a_camera_that_was_deleted_is_replaced(loaded: bpy.types.PropertyGroup) -> None:
-    """Blender keeps a deleted object while something points to it; the scene looks through another."""
     deleted = loaded.camera
     bpy.context.scene.collection.objects.unlink(deleted)
     bpy.ops.keymark.use_clip(clip=loaded.clip.name)
@@ -216,7 +215,6 @@ def test_a_clip_of_this_file_that_cannot_be_decoded_stays(tmp_path: Path) -> Non
 
 
 def test_nothing_chosen_is_said_and_the_folder_kept(tiny_take: Take, tmp_path: Path) -> None:
-    """The browser's button without a file in it: one sentence, no take, and the same folder the next time."""
     with pytest.raises(RuntimeError, match="No file is chosen; choose a video"):
         bpy.ops.keymark.load_footage(filepath="")
     with pytest.raises(RuntimeError, match=f"No file is chosen in {tmp_path}; choose a video"):

@@ -29,7 +29,6 @@ def alone(found: Group) -> None:
 
 
 def test_another_posture_is_chosen_by_one_click(found: Group, wave_motion: Motion) -> None:
-    """It is keyed as found, nothing is in doubt any more, and choosing the first again brings that back."""
     found.matching.shown_match = 0
     bpy.ops.keymark.replace_match(candidate=1)
     match = found.matching.matches[0]
@@ -70,7 +69,6 @@ def test_all_found_are_removed_but_what_the_animator_decided_on(found: Group) ->
 
 
 def test_the_most_doubtful_is_gone_to_first(found: Group) -> None:
-    """From wherever the animator is; then the next, around the end; decided ones are gone to no more."""
     for match, confidence in zip(found.matching.matches, (0.2, 0.4, 0.1), strict=True):
         match.candidates[0].confidence = confidence
     scene = bpy.context.scene
@@ -156,7 +154,6 @@ def test_found_keyframes_come_back_with_the_file(found: Group, tmp_path: Path) -
 
 
 def test_a_candidate_is_named_by_what_tells_it_from_the_first(found: Group, wave_motion: Motion) -> None:
-    """The limbs of a composed posture, whose name is often the same; a library's own name; a turn before."""
     last = found.matching.matches[2]
     first, other = last.candidates
     assert candidate_title(last, first) == "As found"

@@ -25,7 +25,6 @@ FPS = 25.0
 
 
 def test_storing_a_keyframe_improves_the_found_ones_around_it(found: Group, given: SimpleNamespace) -> None:
-    """In one step of undo: those around are found anew, between what holds, on the floor found before."""
     scene = bpy.context.scene
     scene.frame_set(7)
     bpy.ops.ed.undo_push(message="Opened")
@@ -81,7 +80,6 @@ def test_it_is_left_out_where_that_is_wished_or_nothing_is_known(
 
 
 def test_regions_that_are_no_marker_are_part_of_what_was_read(unposed: Group, given: SimpleNamespace) -> None:
-    """With them found and improved alike; with one more since, the footage was read as it is not followed."""
     add_ignored_regions(unposed, (IgnoredRegion(box=(1.0, 1.0, 4.0, 4.0)),))
     bpy.ops.keymark.pose_all()
     take = active_take(bpy.context.scene)

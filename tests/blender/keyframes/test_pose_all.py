@@ -62,7 +62,6 @@ def test_doubtful_ones_are_said_and_shown(
 
 
 def test_what_contradicts_is_doubtful_and_shown_first(unposed: Group, given: SimpleNamespace) -> None:
-    """However sure the posture is; it is said at its frame, and there alone, until that is decided on."""
     given.contradictions = {12: ("shin.L",)}
     bpy.ops.keymark.pose_all()
     take = active_take(bpy.context.scene)
@@ -88,7 +87,6 @@ def test_frames_are_proposed_where_there_are_none(unposed: Group, given: SimpleN
 
 
 def test_what_is_posed_stays_and_is_handed_on(found: Group, given: SimpleNamespace) -> None:
-    """A found keyframe that was corrected is the animator's: it is not found again, and tells of others."""
     scene = bpy.context.scene
     scene.frame_set(7)
     bone = found.armature.pose.bones["forearm.L"]

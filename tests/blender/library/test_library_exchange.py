@@ -191,7 +191,6 @@ def test_a_library_is_edited_as_pose_assets(own: Path, library: Library, tmp_pat
 def test_pose_assets_that_blender_made_of_the_actor_join_the_library(
     own: Path, library: Library, body: Body, random_posture: RandomPosture, tmp_path: Path
 ) -> None:
-    """On the library's proportions, leveled; a motion that is an asset does not, nor another rig's pose."""
     take = add_take(bpy.context.scene, "Take")
     take.armature = build_armature(bpy.context.scene, body)
     mine = bpy.data.actions.new("Raised")
@@ -224,7 +223,6 @@ def test_pose_assets_that_blender_made_of_the_actor_join_the_library(
 def test_of_several_libraries_among_the_pose_assets_one_is_chosen(
     own: Path, library: Library, tmp_path: Path
 ) -> None:
-    """By its identifier; without it the sentence names them; without any there is nothing to save."""
     with pytest.raises(RuntimeError, match="no pose assets of a library"):
         bpy.ops.keymark.export_library(filepath=str(tmp_path / "c.json"), source="ASSETS")
     for identifier in ("small", "other"):
@@ -237,7 +235,6 @@ def test_of_several_libraries_among_the_pose_assets_one_is_chosen(
 def test_what_was_posed_becomes_a_library(
     own: Path, body: Body, random_posture: RandomPosture, tmp_path: Path
 ) -> None:
-    """Each keyframe a posture, at its time in the motion; the floor is under the lowest sole of all."""
     scene = bpy.context.scene
     scene.render.fps = 20
     take = add_take(scene, "Bow")
@@ -279,7 +276,6 @@ def test_the_open_file_is_not_replaced_by_a_library(own: Path, library: Library,
 
 
 def test_catalogs_lie_at_the_root_of_an_asset_library(own: Path, library: Library, tmp_path: Path) -> None:
-    """Saved anywhere in it the pose assets are found; a damaged file of catalogs is named and left alone."""
     imported(library, tmp_path)
     root = tmp_path / "assets"
     (root / "mine").mkdir(parents=True)

@@ -166,7 +166,6 @@ def test_going_through_weak_frames(take: bpy.types.PropertyGroup) -> None:
 def test_the_reconstructed_pose_becomes_a_keyframe(
     take: bpy.types.PropertyGroup, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
-    """At the chosen weak frame, which is then shown with the keyframes; the others stay as they were."""
     scene = bpy.context.scene
     before = keyed_frames(take.armature, take.keyframe_action, HUMAN)
     scene.frame_set(1)

@@ -25,7 +25,6 @@ def files(folder: Path) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("name", KEYFRAMES)
 def test_an_example_is_ready_to_reconstruct(name: str) -> None:
-    """Footage, camera, actor, what is followed and keyframes are there; nothing was written or saved."""
     before = files(SHIPPED)
     assert bpy.ops.keymark.open_example(example=name) == {"FINISHED"}
     take = active_take(bpy.context.scene)
@@ -63,7 +62,6 @@ def test_the_keyframes_are_those_of_a_person() -> None:
 
 
 def test_a_copy_is_a_take_of_its_own(tmp_path: Path) -> None:
-    """The clip in the scene is the copy's; the folder opens again as any take, with the same keyframes."""
     assert bpy.ops.keymark.open_example(example=GREETING, copy=True, directory=str(tmp_path)) == {"FINISHED"}
     copy = tmp_path / "greeting"
     assert {file.name for file in copy.iterdir()} == set(COPIED.values())
@@ -103,7 +101,6 @@ def test_where_nothing_can_be_written_nothing_changes(tmp_path: Path) -> None:
 
 
 def test_a_copy_that_fails_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The last of the files cannot be read: the others are gone again, and the scene is as it was."""
     monkeypatch.setattr(examples, "COPIED", {**COPIED, "missing.json": "missing.json"})
     scene = scene_state()
     with pytest.raises(RuntimeError, match=r"missing\.json|cannot be written"):

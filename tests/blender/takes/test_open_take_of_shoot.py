@@ -24,7 +24,6 @@ def clip(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("chosen", ["take01.mp4", "take01.take.json"])
 def test_a_clip_of_a_shoot_opens_and_is_saved_to_stand_alone(clip: Path, chosen: str, tmp_path: Path) -> None:
-    """Called as its results are; what it inherited is in the saved folder, which needs no shoot.json."""
     bpy.ops.keymark.open_take(filepath=str(clip.with_name(chosen)))
     take = active_take(bpy.context.scene)
     assert (take.name, len(take.markers), take.stature) == ("take01", 5, pytest.approx(1.76, abs=0.01))

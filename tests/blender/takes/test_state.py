@@ -102,7 +102,6 @@ def test_a_linked_rig_asks_for_an_override(rig_file: Path, tiny_take: Take) -> N
 
 
 def test_a_library_override_is_an_actor(rig_file: Path, tiny_take: Take, tmp_path: Path) -> None:
-    """Keyframes, motion, and both after the file is opened again; the library's file stays untouched."""
     with bpy.data.libraries.load(str(rig_file), link=True) as (_source, target):
         target.objects = [RIG]
     before = rig_file.read_bytes()

@@ -21,7 +21,6 @@ def takes(repository: Path) -> ModuleType:
 def test_folders_named_in_the_environment_are_found(
     takes: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each folder of KEYMARK_TAKES adds its takes with truth, and only those."""
     for name in ("first/hop", "second/skip", "second/untrue"):
         (tmp_path / name).mkdir(parents=True)
         if "untrue" not in name:
@@ -36,6 +35,5 @@ def test_folders_named_in_the_environment_are_found(
 
 
 def test_takes_without_markers_come_on_request(takes: ModuleType) -> None:
-    """Not every method can use them."""
     assert "demo/greeting" not in takes.take_names()
     assert {"demo/greeting", "demo/aerobic"} <= set(takes.take_names(plain=True))

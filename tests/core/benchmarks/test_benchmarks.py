@@ -34,7 +34,6 @@ def trial(tmp_path_factory: pytest.TempPathFactory) -> Trial:
 
 
 def test_the_needed_density_is_where_the_curve_crosses_the_limit() -> None:
-    """Linear over the logarithm between measured densities, after the last one beyond the limit."""
     assert needed_for(40.0, [4.0, 8.0, 16.0], [60.0, 50.0, 30.0]) == pytest.approx(np.sqrt(8.0 * 16.0))
     assert needed_for(40.0, [4.0, 8.0, 16.0], [60.0, 35.0, 45.0]) is None
     assert needed_for(40.0, [4.0, 8.0, 16.0], [39.0, 30.0, 20.0]) == 4.0
@@ -42,7 +41,6 @@ def test_the_needed_density_is_where_the_curve_crosses_the_limit() -> None:
 
 
 def test_generated_keyframes_match_the_truth(trial: Trial) -> None:
-    """Exact ones within a millimeter; hand-posed ones with the given error, the same in every run."""
     frames = spread_frames(trial, 5)
     assert frames[0] == 0 and frames[-1] == FRAMES - 1 and set(np.diff(frames)) <= {5, 6}
     body, exact = trial.take.body, exact_postures(trial)
@@ -58,20 +56,17 @@ def test_generated_keyframes_match_the_truth(trial: Trial) -> None:
 
 
 def test_the_best_interpolation_has_the_smallest_error(trial: Trial) -> None:
-    """It has the smallest error of all interpolations tried."""
     every = [trial.score(points).mpjpe for points in trial.interpolated().values()]
     assert len(every) == 3 and trial.best_interpolation().mpjpe == min(every) < max(every)
 
 
 def test_shifted_frames_stay_in_the_clip_and_in_order() -> None:
-    """Each moves as far as possible; neighbors that would meet stay apart."""
     assert shifted([0, 8, 16, 23], [2, -2, 1, -1], FRAMES).tolist() == [2, 6, 17, 22]
     assert shifted([0, 8, 16, 23], [-2, 2, 2, 2], FRAMES).tolist() == [0, 10, 18, 23]
     assert shifted([0, 1, 22, 23], [2, -2, 2, 1], FRAMES).tolist() == [2, 3, 22, 23]
 
 
 def test_mistimed_keyframes_keep_their_postures_and_the_frames_that_are_scored(trial: Trial) -> None:
-    """Only the frames of the postures change."""
     late = mistimed(trial, [1, 1, 1, 1])
     assert late.take.keyframe_indices == (1, 9, 17, 23) and late.unscored == (0, 8, 16, 23)
     for before, after in zip(trial.take.keyframes, late.take.keyframes, strict=True):
@@ -80,7 +75,6 @@ def test_mistimed_keyframes_keep_their_postures_and_the_frames_that_are_scored(t
 
 
 def test_keyframes_posed_over_a_wrong_lens_look_the_same_in_the_picture(trial: Trial) -> None:
-    """The hips of keyframes and of the truth are as much deeper as the lens is longer."""
     other = posed_through_lens(trial, 1.1)
     index = list(trial.take.keyframe_indices)
     posed = other.take.body.points(other.take.body.pose(other.take.keyframes[1].posture))
@@ -92,7 +86,6 @@ def test_keyframes_posed_over_a_wrong_lens_look_the_same_in_the_picture(trial: T
 
 
 def test_other_segments_nearly_keep_the_posed_points(trial: Trial) -> None:
-    """Lengths are scaled, and no point of a keyframe moves further than lengths force it to."""
     other = with_segments(trial, {"forearm.L": 1.05})
     lengths = [one.take.body.actor.segments_m for one in (trial, other)]
     assert lengths[1]["forearm.L"] == pytest.approx(1.05 * lengths[0]["forearm.L"])
@@ -104,14 +97,12 @@ def test_other_segments_nearly_keep_the_posed_points(trial: Trial) -> None:
 
 
 def test_only_the_hidden_marker_disappears(trial: Trial) -> None:
-    """It is invisible in the hidden frames only."""
     gone = hidden(trial, 1, slice(4, 9)).tracks
     assert not gone.visible[4:9, 1].any() and not gone.quality[4:9, 1].any()
     assert np.array_equal(gone.visible[:4], trial.tracks.visible[:4]) and gone.visible[5, 2]
 
 
 def test_doubled_speed_has_half_the_frames_in_half_the_time(trial: Trial) -> None:
-    """Keyframes have the true postures of the remaining frames."""
     fast = doubled_speed(trial)
     assert len(fast.truth) == fast.tracks.frame_count == fast.take.frame_count == FRAMES // 2
     assert fast.tracks.time_s[-1] == pytest.approx(11 / 30.0)
@@ -122,7 +113,6 @@ def test_doubled_speed_has_half_the_frames_in_half_the_time(trial: Trial) -> Non
 
 
 def test_takes_are_named_by_folder_too(trial: Trial, capsys: pytest.CaptureFixture[str]) -> None:
-    """A folder with truth is a take; any other unknown name is refused with a sentence."""
     folder = str(trial.take.folder)
     assert chosen_takes([folder]) == {"take": trial.take.folder}
     with pytest.raises(SystemExit):
@@ -131,7 +121,6 @@ def test_takes_are_named_by_folder_too(trial: Trial, capsys: pytest.CaptureFixtu
 
 
 def test_the_mean_of_the_points_errors_is_the_score(trial: Trial) -> None:
-    """The errors of the points have the score as their mean, and the table has a row a method."""
     found = measure(trial)
     for one in found.values():
         assert np.mean(list(one.points_mm.values())) == pytest.approx(one.score.mpjpe, abs=1e-3)

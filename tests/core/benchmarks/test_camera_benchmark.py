@@ -26,7 +26,6 @@ def trial(tmp_path_factory: pytest.TempPathFactory) -> Trial:
 
 
 def test_keyframes_through_another_camera_look_the_same(trial: Trial) -> None:
-    """Turned with it to the pixel; farther away with a longer lens, about as large."""
     body, true = trial.take.body, trial.take.camera
     index = np.array(trial.take.keyframe_indices)
     seen, _ = true.project(trial.truth[index])
@@ -42,7 +41,6 @@ def test_keyframes_through_another_camera_look_the_same(trial: Trial) -> None:
 def test_without_a_hands_errors_a_room_gives_its_camera(
     trial: Trial, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """Its lines are truly plumb and level, and its clicks on the body's height."""
     monkeypatch.setattr(camera_room, "HAND_PX", 0.0)
     found = cameras_of(tmp_path, trial.take, trial.truth, True)
     assert len(found[PUT]) == 1 and set(found[PUT][0].kept) == {"height", "tilt", "roll", "lens"}

@@ -16,7 +16,6 @@ FAST = ConversionSettings(method="interpolation", pictures=False)
 
 @pytest.mark.usefixtures("no_blender")
 def test_file_times_do_not_matter(tmp_path: Path) -> None:
-    """A finished take stays finished at any file times; only a changed byte converts it anew."""
     take = write_synthetic_take(tmp_path / "take", 8, 4)
     out = tmp_path / "out"
     console = Console(quiet=True, as_json=False)

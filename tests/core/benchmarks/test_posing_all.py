@@ -41,7 +41,6 @@ def found() -> FoundPoses:
 
 
 def test_a_limb_on_the_wrong_side_counts_where_it_leans(trial: Trial) -> None:
-    """A forearm that leans 30 cm toward the camera, found 30 cm behind its elbow, in five frames."""
     points, wrist, elbow = (
         np.array(trial.truth),
         *(HUMAN.point_names.index(name) for name in ("wrist.L", "elbow.L")),
@@ -62,7 +61,6 @@ def test_a_limb_on_the_wrong_side_counts_where_it_leans(trial: Trial) -> None:
 def test_a_take_is_posed_as_a_whole_between_two_frames_and_by_its_own_library(
     trial: Trial, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nothing is posed for the first; the two frames are for the second; other takes have no library."""
     asked: list[dict[str, Any]] = []
 
     def pose(

@@ -31,7 +31,6 @@ def large(tmp_path_factory: pytest.TempPathFactory) -> Take:
 
 
 def test_an_enlarged_take_shows_the_same_performer_larger(large: Take) -> None:
-    """What was seen at a pixel is seen where the enlargement and its margins put it."""
     small = read_take(waiting.DEMO)
     points = small.body.points(small.body.pose(small.keyframes[2].posture))
     factor, margin = fit(small.camera.resolution, SIZE)
@@ -41,7 +40,6 @@ def test_an_enlarged_take_shows_the_same_performer_larger(large: Take) -> None:
 
 
 def test_an_enlarged_clip_has_the_pictures_of_the_take(large: Take) -> None:
-    """Forward and then backward, between margins that repeat the edges."""
     images = [image for _, _, image in Clip.open(large.clip).frames()]
     originals = [image for _, _, image in Clip.open(waiting.DEMO / "clip.mp4").frames()]
     assert len(images) == large.frame_count == FRAMES
@@ -55,7 +53,6 @@ def test_an_enlarged_clip_has_the_pictures_of_the_take(large: Take) -> None:
 
 
 def test_keyframes_and_keypoints_come_along(large: Take) -> None:
-    """Each with the frame that shows it, backward too."""
     small = read_take(waiting.DEMO)
     before = {keyframe.index: keyframe.posture for keyframe in small.keyframes}
     for keyframe in large.keyframes:
@@ -73,7 +70,6 @@ def test_keyframes_and_keypoints_come_along(large: Take) -> None:
 
 
 def test_the_table_has_a_row_a_step_and_a_column_a_clip() -> None:
-    """Minutes where seconds would be many, what a take of a batch costs, and its clips an hour."""
     slow = waiting.Cell(200.0, 300.0, 1000.0)
     batch = waiting.Cell(20.0, 40.0, 500.0, takes=4)
     small = {**dict.fromkeys(waiting.ROWS, CELL), waiting.BATCH: batch, waiting.BY_HAND: "0 s"}
@@ -88,7 +84,6 @@ def test_the_table_has_a_row_a_step_and_a_column_a_clip() -> None:
 
 
 def test_every_row_is_measured_by_something() -> None:
-    """A step that only the table knows would fail after minutes."""
     import waiting_steps
 
     others = {waiting.DETECT, waiting.BY_HAND, waiting.CONVERT, waiting.BATCH}
@@ -96,7 +91,6 @@ def test_every_row_is_measured_by_something() -> None:
 
 
 def test_a_step_that_fails_leaves_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its cell says so."""
 
     def run_step(step: str, *words: object) -> dict[str, float]:
         if step == "bake":
@@ -113,7 +107,6 @@ def test_a_step_that_fails_leaves_the_others(tmp_path: Path, monkeypatch: pytest
 
 
 def test_decoding_is_measured_in_a_process_of_its_own(tmp_path: Path) -> None:
-    """Its peak of memory is not that of this one."""
     (tmp_path / "clip.mp4").write_bytes((waiting.DEMO / "clip.mp4").read_bytes())
     cell = waiting.measured("decode", waiting.CLIPS["small"], tmp_path)
     assert isinstance(cell, waiting.Cell)
@@ -121,7 +114,6 @@ def test_decoding_is_measured_in_a_process_of_its_own(tmp_path: Path) -> None:
 
 
 def test_the_table_takes_its_place_in_the_page() -> None:
-    """Between its two marks alone, of which the page has both."""
     page = waiting.PAGE.read_text(encoding="utf-8")
     once = waiting.placed(page, "a table")
     assert f"{waiting.BEGIN}\na table\n{waiting.END}" in once

@@ -24,7 +24,6 @@ def trial(tmp_path_factory: pytest.TempPathFactory) -> Trial:
 
 
 def test_a_tighter_tolerance_costs_more_keys(trial: Trial) -> None:
-    """A looser tolerance needs fewer keys; keys within a tolerance keep the error within it."""
     row = finishing.finished(trial, exact_postures(trial))
     assert row["keyframes"] <= row["reduced 20"] <= row["reduced 5"]
     assert row["keyframes"] <= row["even 20"] <= row["even 5"]
@@ -38,6 +37,5 @@ def test_a_tighter_tolerance_costs_more_keys(trial: Trial) -> None:
 
 
 def test_takes_are_grouped_by_folder(trial: Trial) -> None:
-    """The demonstration belongs to the takes with which methods are tuned."""
     assert group_of(ROOT / "presets" / "demo" / "aerobic") == "given"
     assert group_of(trial.take.folder) == "studio"

@@ -42,7 +42,6 @@ def log_errors(found: Body, body: Body) -> np.ndarray:
 
 
 def test_height_is_kept_and_lengths_are_no_worse_than_average_proportions() -> None:
-    """Over several people with their arms out: nearer on the whole, the place right to some centimeters."""
     rng = np.random.default_rng(2)
     before, after = [], []
     for _ in range(5):
@@ -97,7 +96,6 @@ def measured_by_keypoints(body: Body, posture: Posture, noise_px: float) -> Meas
 
 
 def test_keypoints_measure_lengths_without_any_marker() -> None:
-    """Over several people with their arms out: clearly nearer than average proportions, the height kept."""
     rng = np.random.default_rng(2)
     before, after = [], []
     for _ in range(4):

@@ -45,7 +45,6 @@ def solve(pictures: Album | None) -> Posture:
 
 
 def test_edges_follow_the_true_contours_and_not_the_predicted_ones() -> None:
-    """From a thigh that wobbles by up to 4 cm, edges are found that do not wobble with it."""
     step = np.zeros((FRAMES, HUMAN.dof_count))
     step[:, HUMAN.dof_names.index("hip.R.rotation_y")] = 0.1 * np.sin(0.9 * FRAME)
     step[POSED] = 0.0
@@ -63,7 +62,6 @@ def test_edges_follow_the_true_contours_and_not_the_predicted_ones() -> None:
 
 
 def test_contours_bring_the_estimate_nearer_to_the_truth() -> None:
-    """The pictures take error away even where the markers' model is perfect and much background is hidden."""
     without = point_error_m(solve(None), TRUTH).mean()
     assert point_error_m(solve(album()), TRUTH).mean() < 0.95 * without
 

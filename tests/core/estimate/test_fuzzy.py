@@ -41,7 +41,6 @@ def nearness(
 
 
 def test_distance_counts_in_half_gaps() -> None:
-    """Keyframes 2, 6 and 12 in 15 frames, by hand."""
     expected = [1, 0.5, 0, 0.5, 1, 0.5, 0, 1 / 3, 2 / 3, 1, 2 / 3, 1 / 3, 0, 1 / 3, 2 / 3]
     np.testing.assert_allclose(keyframe_distance(15, [2, 6, 12]), expected, rtol=1e-12)
 
@@ -63,21 +62,18 @@ def test_input_sets_that_leave_a_distance_out_are_refused(ends: tuple[float, flo
 
 
 def test_one_rule_alone_is_its_own_triangle() -> None:
-    """A full triangle of half-width s has the variance s²/6."""
     mean, variance = aggregate(output(2.0, 0.6, 1.0), output(9.0, 5.0, 0.0))
     assert mean[0] == pytest.approx(2.0, abs=1e-14)
     assert variance[0] == pytest.approx(0.06, rel=1e-12)
 
 
 def test_a_triangle_clipped_at_one_half_is_a_trapezoid() -> None:
-    """Base 2, top 1, height 1/2 about 0: area 3/4, second moment 5/32, variance 5/24."""
     mean, variance = aggregate(output(0.0, 1.0, 0.5), output(0.0, 1.0, 0.0))
     assert mean[0] == pytest.approx(0.0, abs=1e-14)
     assert variance[0] == pytest.approx(5.0 / 24.0, rel=1e-12)
 
 
 def test_two_sets_apart_mix_by_their_areas() -> None:
-    """Degrees 1 and 1/2 have the areas 1 and 3/4; the centers 0 and 7 then have the mean 3."""
     mean, variance = aggregate(output(0.0, 1.0, 1.0), output(7.0, 1.0, 0.5))
     assert mean[0] == pytest.approx(3.0, rel=1e-12)
     between = (4.0 / 7.0) * 9.0 + (3.0 / 7.0) * 16.0
@@ -129,7 +125,6 @@ def test_the_compact_form_agrees_with_the_rules(
 
 
 def test_the_compact_form_by_hand_and_at_its_ends() -> None:
-    """Degrees 1/2 and 1: areas 3/4 and 1; on a keyframe the deviation ends, far from one it stays."""
     assert nearness(0.5, 1.0, 1.0, 1.0) == pytest.approx(3.0 / 7.0)
     assert nearness(1.0, 0.0, 0.3, 0.3) == 1.0
     assert nearness(0.0, 1.0, 0.3, 0.3) == 0.0

@@ -88,7 +88,6 @@ def shown_depths(problem: FuzzyKalmanFilter, truth: np.ndarray, axes: np.ndarray
 
 
 def test_on_a_linear_problem_the_filter_is_the_kalman_filter_and_least_squares() -> None:
-    """The last frame's mean and covariance equal those of all observations and steps solved at once."""
     body, camera, prior, axes = linear_problem()
     frames, size = len(axes), 3
     options = FilterOptions(memberships=ALWAYS_FAR, initial_std=1.0, far_width=0.4)
@@ -140,7 +139,6 @@ SHARP = FilterOptions(
 
 
 def test_noise_free_characteristics_are_met_from_a_wrong_start(line_ends: LineEnds, see: See) -> None:
-    """A held posture that differs in all degrees of freedom is found as far as the picture tells."""
     rng = np.random.default_rng(11)
     prior = Posture.rest(line_ends.body.skeleton, (25,)).plus(rng.normal(0.0, 0.15, 34))
     tracks = see(prior.plus(0.4 * prior.skeleton.deviations * rng.normal(size=34)))
@@ -153,7 +151,6 @@ def test_noise_free_characteristics_are_met_from_a_wrong_start(line_ends: LineEn
 
 @pytest.mark.parametrize("seed", range(4))
 def test_a_posture_that_the_picture_shows_is_recovered(line_ends: LineEnds, see: See, seed: int) -> None:
-    """Posture to characteristics and back: a small deviation along what they show comes back whole."""
     rng = np.random.default_rng(seed)
     prior = Posture.rest(line_ends.body.skeleton, (25,)).plus(rng.normal(0.0, 0.15, 34))
     deviations = prior.skeleton.deviations
@@ -181,7 +178,6 @@ def test_the_filter_comes_closer_than_the_prior(line_ends: LineEnds, see: See) -
 
 
 def test_a_keyframe_is_predicted_from_itself(line_ends: LineEnds, see: See) -> None:
-    """On a keyframe only the near rule holds: the step leads to the a priori posture exactly."""
     prior, truth = drifting(line_ends, 9)
     estimator = FuzzyKalmanFilter(line_ends, prior, [0, 4, 8])
     state = estimator.predict(State(truth[3], np.eye(34)), *estimator.step(truth[3], 4))
@@ -212,7 +208,6 @@ def test_prediction_adds_the_process_noise_and_turns_the_axes(line_ends: LineEnd
 
 
 def test_hidden_markers_bring_no_rows_and_more_uncertainty(line_ends: LineEnds, see: See) -> None:
-    """A forearm hidden for some frames is estimated still, and less surely; all hidden leaves the depths."""
     prior, truth = drifting(line_ends, 15)
     visible = np.ones((15, 5), dtype=bool)
     visible[5:10, 1] = False
@@ -231,7 +226,6 @@ def test_hidden_markers_bring_no_rows_and_more_uncertainty(line_ends: LineEnds, 
 
 
 def test_a_doubtful_region_counts_for_less(line_ends: LineEnds, see: See) -> None:
-    """Quality 0.2 moves the estimate less than quality 1 does."""
     prior, truth = drifting(line_ends, 15)
     estimator = FuzzyKalmanFilter(line_ends, prior, [0, 14])
     observed = observed_characteristics(see(truth))[7]
@@ -244,7 +238,6 @@ def test_a_doubtful_region_counts_for_less(line_ends: LineEnds, see: See) -> Non
 
 
 def test_a_region_that_cannot_be_the_marker_pulls_little(line_ends: LineEnds, see: See) -> None:
-    """A region 100 px off is past its gate: it moves the estimate far less than if it were believed."""
     prior, truth = drifting(line_ends, 15)
     tracks = see(truth)
     centroid = tracks.centroid.copy()
@@ -260,7 +253,6 @@ def test_a_region_that_cannot_be_the_marker_pulls_little(line_ends: LineEnds, se
 
 
 def test_a_lost_limb_is_called_back(line_ends: LineEnds, see: See) -> None:
-    """Where the prior is so wrong that markers are past their gates for frames, they win in the end."""
     prior, truth = drifting(line_ends, 20)
     lost = np.zeros(34)
     lost[prior.skeleton.dof_names.index("shoulder.L.rotation_y")] = 1.2
@@ -276,7 +268,6 @@ def test_a_lost_limb_is_called_back(line_ends: LineEnds, see: See) -> None:
 
 
 def test_every_covariance_is_symmetric_and_positive(line_ends: LineEnds, see: See) -> None:
-    """Also where noise-free pixels meet directions that nothing shows."""
     prior, truth = drifting(line_ends, 15)
     options = FilterOptions(centroid_std_px=1e-3, centroid_std_widths=1e-5, angle_std_rad=1e-4)
     options = replace(options, gate_probability=1.0 - 1e-15)
@@ -320,7 +311,6 @@ def test_impossible_options_are_refused_by_name(wrong: dict[str, float]) -> None
 
 
 def test_the_a_priori_depths_are_those_of_the_prior(line_ends: LineEnds) -> None:
-    """Equation 9 observes the prior's own depths."""
     prior, _ = drifting(line_ends, 5)
     estimator = FuzzyKalmanFilter(line_ends, prior, [0, 4])
     expected = depths.evaluate(line_ends.body, line_ends.camera, line_ends.body.pose(prior[2]))
@@ -336,7 +326,6 @@ ILL_CONDITIONED = (
 
 
 def test_the_gain_agrees_with_the_information_form() -> None:
-    """Paper, eqs. 15 and 16, in their other form: P⁻¹ = M⁻¹ + Hᵀ H and K = P Hᵀ."""
     rng = np.random.default_rng(0)
     root, H, innovation = rng.normal(size=(6, 6)), rng.normal(size=(9, 6)), rng.normal(size=9)
     M = root @ root.T + np.eye(6)
@@ -352,7 +341,6 @@ def test_the_gain_agrees_with_the_information_form() -> None:
 
 
 def test_a_scalar_measurement_by_hand() -> None:
-    """Variance 3 seen with variance 1: gain 3/4, variance 3/4, an innovation of 2 scores 4/4."""
     result = update(np.array([[3.0]]), np.array([[1.0]]), np.array([2.0]))
     np.testing.assert_allclose([*result.step, *result.covariance[0]], [1.5, 0.75])
     assert result.normalized_innovation_squared == pytest.approx(1.0)
@@ -368,7 +356,6 @@ def test_nothing_seen_changes_nothing() -> None:
 
 @pytest.mark.parametrize("M", ILL_CONDITIONED)
 def test_ill_conditioned_covariances_stay_symmetric_and_positive(M: np.ndarray) -> None:
-    """Two hundred updates with rows of very unlike size leave no negative variance in any direction."""
     rng = np.random.default_rng(1)
     P = M
     for _ in range(200):
@@ -381,7 +368,6 @@ def test_ill_conditioned_covariances_stay_symmetric_and_positive(M: np.ndarray) 
 
 
 def test_the_order_of_measurements_does_not_matter() -> None:
-    """One update with all rows equals one update a row."""
     rng = np.random.default_rng(2)
     M, H, seen = np.diag([1.0, 4.0, 9.0]), rng.normal(size=(5, 3)), rng.normal(size=5)
     together = update(M, H, seen)

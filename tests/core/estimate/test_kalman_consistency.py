@@ -18,7 +18,6 @@ from keymark.core.take.take_file import read_take
 
 
 def test_normalized_squares_by_hand() -> None:
-    """Two standard deviations along one axis and one along the other: 4 + 1; correlation is taken out."""
     assert normalized_squared([4.0, 3.0], np.diag([4.0, 9.0])) == pytest.approx(5.0)
     assert normalized_squared([1.0, 1.0], [[2.0, 1.0], [1.0, 2.0]]) == pytest.approx(2.0 / 3.0)
 
@@ -35,7 +34,6 @@ def test_a_covariance_that_is_none_is_an_error() -> None:
 
 
 def test_chi_square_bounds_are_the_tables() -> None:
-    """10 degrees of freedom in one sample: 3.247 and 20.483 enclose 95 %."""
     interval = chi_square_average([10.0], 10)
     assert interval.average == 10.0
     assert interval.low == pytest.approx(3.247, abs=5e-4)
@@ -43,7 +41,6 @@ def test_chi_square_bounds_are_the_tables() -> None:
 
 
 def test_the_average_tells_honest_from_overconfident_and_timid() -> None:
-    """Errors drawn with their covariance lie within; with covariances half and twice as large they do not."""
     errors = np.random.default_rng(3).normal(size=(50, 6))
     for scale, verdict in ((1.0, "honest"), (0.5, "overconfident"), (2.0, "timid")):
         values = normalized_squared(errors, np.eye(6) * scale)
@@ -53,21 +50,18 @@ def test_the_average_tells_honest_from_overconfident_and_timid() -> None:
 
 
 def test_degrees_of_freedom_may_differ_between_frames() -> None:
-    """Hidden markers bring fewer rows: 2 + 4 + 6 degrees in three frames are 4 on the average."""
     interval = chi_square_average([2.0, 4.0, 6.0], [2, 4, 6])
     assert interval.low < 4.0 < interval.high
     assert interval == chi_square_average([4.0, 4.0, 4.0], 4)
 
 
 def test_coverage_by_hand() -> None:
-    """Three of four within 1.96; what has no error or no sigma is left out."""
     error, sigma = [1.0, -1.9, 2.0, 1.0, 9.0, np.nan], [1.0, 1.0, 1.0, 1.0, np.nan, 1.0]
     assert coverage(error, sigma) == 0.75
     assert np.isnan(coverage([np.nan], [1.0]))
 
 
 def test_the_interval_of_a_mean_is_students() -> None:
-    """1, 2, 3: mean 2, standard error 1/√3, t of 2 degrees of freedom 4.303."""
     interval = mean_interval([1.0, 2.0, 3.0])
     assert interval.average == pytest.approx(2.0)
     assert interval.high - 2.0 == pytest.approx(4.303 / np.sqrt(3.0), abs=1e-3)
@@ -136,7 +130,6 @@ def averages(line_ends: LineEnds, assumed: FilterOptions) -> tuple[list[str], st
 
 
 def test_errors_and_innovations_fit_their_covariances(line_ends: LineEnds) -> None:
-    """NEES of 12 runs at four frames and NIS of all lie within 99 % of χ²."""
     nees, nis = averages(line_ends, OPTIONS)
     assert nees == ["honest"] * 4
     assert nis == "honest"
@@ -164,7 +157,6 @@ def test_wrong_noise_is_told_by_the_same_measure(line_ends: LineEnds, scale: flo
 def test_the_filter_beats_interpolation_and_knows_its_errors(
     take_folder: Callable[[str], Path], name: str, keyframes: str
 ) -> None:
-    """On frames between keyframes it is at least a tenth closer, with an honest covariance in every frame."""
     folder = take_folder(name)
     take = read_take(folder, folder / keyframes)
     truth = json.loads((folder / "truth.json").read_text())["points"]

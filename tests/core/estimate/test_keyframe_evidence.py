@@ -54,7 +54,6 @@ def worn() -> RegionTracks:
 
 
 def test_known_postures_tell_where_the_color_begins_and_how_thick_the_limb_is(worn: RegionTracks) -> None:
-    """With exact keyframes the placements come back, and predict far better than average ones."""
     found = read(MOTION[POSED], worn).model
     for ours, true in zip(found.placements, TRUE, strict=True):
         assert ours.first == pytest.approx(true.first, abs=0.06)

@@ -44,7 +44,6 @@ def test_a_library_of_the_motion_is_used_between_posed_keyframes_that_are_far_ap
 
 
 def test_posed_keyframes_near_each_other_need_no_library() -> None:
-    """What they leave open is less than what the library gets wrong; elsewhere it is used."""
     posed, matched = used([*range(0, 43, 3), 90], alike())
     assert posed == [*range(0, 43, 3), 90]
     assert not set(matched) & set(range(43)) and {55, 65, 75, 85} <= set(matched)
@@ -73,7 +72,6 @@ def test_a_clip_in_which_nothing_is_seen_keeps_a_library_that_agrees() -> None:
 
 
 def test_keypoints_alone_judge_as_markers_do() -> None:
-    """A detector that jitters, takes left for right in a fifth of the frames and is far off at times."""
     rng = np.random.default_rng(6)
     pixel, _ = MODEL.camera.project(BODY.points(BODY.pose(TRUTH)), np.arange(FRAMES)[:, None])
     pixel = pixel + rng.normal(0.0, 1.0, pixel.shape) + np.array([2.0, -1.0])

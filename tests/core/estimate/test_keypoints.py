@@ -79,7 +79,6 @@ def test_keypoints_alone_beat_interpolation_by_far() -> None:
 
 
 def test_places_and_errors_are_found_at_keyframes() -> None:
-    """A detector that has every point elsewhere and errs little is known as such."""
     exact = detect(TRUTH, error_m=0.004, place_error_m=0.02, seed=3)
     found = estimate(exact).evidence.keypoints
     usual = KeypointModel.usual(BODY, CAMERA, LAYOUT)
@@ -177,7 +176,6 @@ def test_legs_alone_may_be_exchanged() -> None:
 
 
 def test_points_near_a_change_of_sides_count_for_little() -> None:
-    """A detector slides from one limb to the other there; where it was sure of, it stays."""
     time_s = np.arange(FRAMES) / 30.0
     legs = np.array([name.startswith(("hip", "knee", "ankle")) for name in LAYOUT])
     swapped = np.zeros((FRAMES, len(LAYOUT)), dtype=bool)
@@ -195,7 +193,6 @@ def test_points_near_a_change_of_sides_count_for_little() -> None:
 
 
 def test_hints_of_depth_help_and_wrong_ones_do_no_harm() -> None:
-    """A fair guess brings the depths nearer; one that has nothing to do with them is not believed."""
     hinted = detect(TRUTH, hint_error_m=0.03)
     error = error_mm(estimate(hinted))
     assert error < 0.9 * error_mm(with_good())
@@ -239,7 +236,6 @@ def test_matched_keyframes_calibrate_nothing() -> None:
 
 
 def test_errors_are_within_their_interval() -> None:
-    """0.90 to 0.99 of them, over several detectors."""
     inside = []
     for seed in range(3):
         result = estimate(detect(TRUTH, seed=seed))
@@ -281,7 +277,6 @@ def test_drift_is_the_likelihood_of_a_first_order_process() -> None:
 
 
 def test_the_cost_of_errors_that_last_is_that_of_their_changes() -> None:
-    """An error that stays costs little more than its first frame; an outlier costs by itself."""
     used, kept = np.ones((20, 1), dtype=bool), np.full((19, 1), 0.95)
     steady = np.full((20, 1, 1), 0.5)
     jumping = steady * np.where(np.arange(20) % 2, 1.0, -1.0)[:, None, None]

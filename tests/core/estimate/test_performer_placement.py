@@ -53,7 +53,6 @@ def test_the_floor_helps_where_the_camera_looks_down_on_it() -> None:
 
 
 def test_one_who_bends_down_is_not_taken_to_be_far_away() -> None:
-    """Bent forward, the trunk looks small and near the shins; the shins still tell the distance."""
     true = standing_posture(BODY, np.zeros(3))
     bent = np.zeros(BODY.skeleton.dof_count)
     bent[BODY.skeleton.dof_names.index("waist.rotation_x")] = 1.3
@@ -118,7 +117,6 @@ def test_pixels_that_cannot_be_a_person_are_refused() -> None:
 
 @pytest.mark.parametrize("share", [0.25, 0.5])
 def test_a_trunk_that_is_hidden_in_part_does_not_send_the_body_away(share: float) -> None:
-    """A table hides most of it; the sleeves and how far apart things are still tell the distance."""
     true = standing_posture(BODY)
     tracks = seen(true)
     area = np.array(tracks.area)

@@ -52,7 +52,6 @@ def sloppy(size_m: float) -> Posture:
 
 
 def test_five_markers_are_looked_around_narrowly_and_fewer_are_not() -> None:
-    """Trunk, arms and legs have to be located; a marker on either part of a limb does that."""
     assert contour_schedule(BODY, CAMERA, 1, SEGMENTS, TRUTH) is BY_MARKERS
     assert all_located(BODY, ("chest", "upper_arm.L", "hand.R", "thigh.L", "foot.R"))
     assert not all_located(BODY, ("trunk", "forearm.L", "upper_arm.L", "shin.L", "shin.R"))
@@ -60,7 +59,6 @@ def test_five_markers_are_looked_around_narrowly_and_fewer_are_not() -> None:
 
 
 def test_looks_narrow_down_to_the_markers_own() -> None:
-    """Each look is no wider than the one before, the last as with markers; near performers take wide ones."""
     looks = contour_schedule(BODY, CAMERA, 1, (), TRUTH).looks
     assert looks[-1] == NARROW
     assert [look.reach for look in looks] == sorted((look.reach for look in looks), reverse=True)
@@ -83,7 +81,6 @@ def test_keypoints_of_all_limbs_spare_the_widest_looks() -> None:
 
 
 def test_shifts_along_a_limb_are_found_where_its_colors_end() -> None:
-    """A performer who is predicted 6 cm too high is seen too low along what hangs down."""
     step = np.zeros((FRAMES, HUMAN.dof_count))
     step[:, 2] = 0.06
     contours = learned()
@@ -103,7 +100,6 @@ def test_shifts_along_a_limb_are_found_where_its_colors_end() -> None:
 
 
 def test_contours_alone_bring_the_estimate_nearer_to_the_truth() -> None:
-    """Without markers the pictures take most of the interpolation's error away, and say what they saw."""
     found = solve(album())
     between = np.setdiff1d(FRAME, POSED)
     alone, before = (point_error_m(one.posture, TRUTH)[between].mean() for one in (found, interpolated()))
@@ -139,7 +135,6 @@ def flickering() -> ContourEvidence | None:
 
 
 def test_the_rows_at_keyframes_follow_posture_and_lens() -> None:
-    """Their derivatives agree with what the edges' distances become for a slightly different posture."""
     contours = learned()
     rows = contour_rows(contours, TRUTH[POSED], POSED)
     count = len(contours.model.parts.segments) * ROWS

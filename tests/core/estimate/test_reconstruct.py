@@ -33,7 +33,6 @@ def mapped(take: Take) -> Reconstruction:
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method_gives_every_frame_a_finite_posture(take: Take, method: str) -> None:
-    """From the same take, with progress that only rises from zero to one."""
     seen: list[Progress] = []
     result = run(reconstruct(take, method), seen.append)
     motion = result.motion
@@ -72,7 +71,6 @@ def test_a_misstated_lens_is_told_and_made_good(take: Take, mapped: Reconstructi
 
 
 def test_linear_algebra_keeps_to_one_thread_while_the_job_runs_and_only_then(take: Take) -> None:
-    """A guest in somebody's Blender changes nothing for good, not even when it is closed midway."""
 
     def threads() -> set[int]:
         return {library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas"}
@@ -106,7 +104,6 @@ def test_an_unknown_method_and_too_few_keyframes_are_refused_in_a_sentence(take:
 def test_a_clip_that_is_cut_off_is_converted_as_far_as_it_goes_and_said_so(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """Where take.json claims no number of frames; only the note says so, nothing on standard error."""
     folder = write_synthetic_take(tmp_path / "take", frames=24, keyframe_every=8)
     images = [cv2.imread(str(file)) for file in sorted((folder / "frames").iterdir())]
     writer = cv2.VideoWriter(str(folder / "clip.avi"), cv2.VideoWriter.fourcc(*"MJPG"), 30.0, SIZE)

@@ -174,7 +174,6 @@ def test_a_result_shows_what_was_found() -> None:
 
 
 def test_the_posture_follows_what_was_found() -> None:
-    """The wrist is much nearer to its true place in the picture in the lost frames than without."""
     assert wrist_error_px(found().posture) < 0.6 * wrist_error_px(without().posture)
 
 

@@ -42,7 +42,6 @@ def error_mm(posture: Posture, frame: int) -> float:
 
 
 def test_the_fit_leads_from_the_keyframe_before_towards_the_truth() -> None:
-    """Ten frames on, over a whole exercise: less than half of what the keyframe is off remains."""
     tracks = film(TRUTH, noise_px=0.3, seed=1)
     before, after = [], []
     for frame in range(10, 45, 5):
@@ -100,7 +99,6 @@ def test_a_marker_that_no_posture_explains_is_named() -> None:
 
 
 def test_the_ground_tells_how_far_away_someone_stands() -> None:
-    """Of two like fits the one that knows where the feet are is nearer to the truth in depth."""
     camera = replace(
         CAMERA,
         matrix_world=np.array([[1.0, 0, 0, 0], [0, 0.5, -0.866, -3.6], [0, 0.866, 0.5, 2.9], [0, 0, 0, 1]]),
@@ -204,7 +202,6 @@ def test_hints_of_depth_help_from_a_standing_body() -> None:
 
 
 def test_left_taken_for_right_is_seen_through() -> None:
-    """The posture is that which the same keypoints give with their sides right."""
     keypoints = detected(1.0)
     mirror = [NAMES.index(mirrored_point(name)) for name in NAMES]
     wrong = replace(keypoints, pixel=keypoints.pixel[:, mirror], score=keypoints.score[:, mirror])
@@ -214,7 +211,6 @@ def test_left_taken_for_right_is_seen_through() -> None:
 
 
 def test_a_keypoint_on_another_thing_is_named_and_does_no_harm() -> None:
-    """A wrist that a detector sees a meter away is left where it is believed, and said."""
     keypoints = detected(1.0)
     pixel = np.array(keypoints.pixel)
     pixel[:, NAMES.index("wrist.L")] += 80.0

@@ -106,7 +106,6 @@ def test_terms_with_a_cost_descend_it_alone_and_together() -> None:
 
 
 def test_terms_of_a_clip_descend_their_cost() -> None:
-    """Depths, rows over several frames and bursts too, of which states of a stretch are chosen between."""
     at = state(seed=7, size=0.02)
     prior = depths.evaluate(BODY, CAMERA, BODY.pose(at.prior), at.frame)
     builder = QuadraticBuilder(FRAMES, DOFS)
@@ -121,7 +120,6 @@ def test_terms_of_a_clip_descend_their_cost() -> None:
 
 
 def test_the_cost_of_a_moving_foot_grows_with_its_way_and_is_bounded() -> None:
-    """A foot that creeps costs half the square of its pull; one that walks no more than one that runs."""
     term = StillnessTerm(CAMERA, (HUMAN.point_names.index("ankle.L"),), np.full(FRAMES - 1, 1.0 / 30.0))
     across = CAMERA.matrix_world[:3, 0]
     held = exercise(1)[np.zeros(FRAMES, dtype=np.intp)]
@@ -149,7 +147,6 @@ def pull(points: tuple[int, ...], step_m: np.ndarray) -> np.ndarray:
 
 
 def test_the_stillness_term_holds_a_slow_foot_and_lets_a_fast_one_go() -> None:
-    """The pull on a foot at walking speed across the view is a small part of that on one that creeps."""
     ankle = HUMAN.point_names.index("ankle.L")
     across = CAMERA.matrix_world[:3, 0]
     creeping, walking = (np.linalg.norm(pull((ankle,), across * v / 30.0)[:3]) for v in (0.06, 1.2))
@@ -158,7 +155,6 @@ def test_the_stillness_term_holds_a_slow_foot_and_lets_a_fast_one_go() -> None:
 
 
 def test_motion_along_the_line_of_sight_alone_does_not_free_a_foot() -> None:
-    """The image would not show it: such a foot is held more strongly than one that moves across the view."""
     ankle = HUMAN.point_names.index("ankle.L")
     along, across = (
         np.linalg.norm(pull((ankle,), CAMERA.matrix_world[:3, axis] * 0.4 / 30.0)[:3]) for axis in (2, 0)
@@ -254,7 +250,6 @@ def test_a_shape_residual_is_the_difference_of_deviations_in_pixels() -> None:
 
 
 def test_student_weights_fall_with_the_residual() -> None:
-    """One at zero, half where the mean square equals the degrees of freedom."""
     weight = student_weight(np.array([0.0, 8.0, 800.0]), 4.0, 2)
     np.testing.assert_allclose(weight, [1.0, 0.5, 4.0 / 404.0])
 

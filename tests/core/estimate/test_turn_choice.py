@@ -62,7 +62,6 @@ def long_turn() -> tuple[Posture, RegionTracks, WholeClipResult]:
 
 @pytest.mark.parametrize(("degrees", "added"), [(-214.0, -1), (146.0, 0), (300.0, 1), (50.0, 0)])
 def test_the_footage_says_which_way_round(degrees: float, added: int) -> None:
-    """Also where the short way would be a small step, and a step that was right is left alone."""
     truth, _, result = turned(degrees)
     turns = result.problem.turns.tolist()
     assert turns.pop(GAP) == added

@@ -58,7 +58,6 @@ def test_footage_corrects_the_interpolation_between_exact_keyframes(exact: Whole
 
 
 def test_exact_keyframes_are_recognized_and_kept(exact: WholeClipResult) -> None:
-    """The size of the posing error is found small, and the keyframes stay where they were posed."""
     assert exact.evidence.posing_scale < 0.3
     kept = point_error_m(exact.posture[np.array(POSED)], TRUTH[np.array(POSED)])
     assert kept.mean() < 0.004
@@ -106,7 +105,6 @@ def test_one_frame_of_a_region_far_off_is_not_believed(exact: WholeClipResult) -
 
 
 def test_footage_without_any_marker_gives_the_prior_back() -> None:
-    """With nothing seen the estimate neither fails nor wanders; only slow feet are steadied a little."""
     tracks = film(TRUTH)
     empty = replace(
         tracks,

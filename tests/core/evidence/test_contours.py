@@ -16,7 +16,6 @@ STEP = 1e-5
 
 @pytest.mark.parametrize("seed", range(4))
 def test_the_jacobian_agrees_with_central_differences(seed: int) -> None:
-    """Along the normals, to first order: of most samples, for limbs seen end on turn their contours too."""
     rng = np.random.default_rng(seed)
     posture = exercise(1).plus(0.1 * rng.normal(size=(1, HUMAN.dof_count)))
     pose = BODY.pose(posture)
@@ -57,7 +56,6 @@ def test_contours_lie_on_either_side_of_the_limb_and_point_outwards() -> None:
 
 
 def test_the_map_shows_the_nearest_part() -> None:
-    """A forearm held before the trunk occludes it, and pixels outside the body have no part."""
     posture = exercise(1)
     vector = posture.to_vector()
     for name, value in (("shoulder.L.rotation_z", -1.4), ("elbow.L.flexion", 1.4)):

@@ -27,7 +27,6 @@ def test_every_body_point_has_a_place_and_principal_points_have_the_skeletons() 
 
 
 def test_places_at_rest_are_where_people_have_them() -> None:
-    """The performer faces -Y: nose before the ears, toes before heels, left at +X, crown on top."""
     rest = type(POSTURE).from_vector(HUMAN, np.zeros((1, HUMAN.dof_count)))
     at = dict(zip(BODY_POINTS, MODEL.world(BODY.pose(rest))[0], strict=True))
     assert at["nose"][1] < at["eye.L"][1] < at["ear.L"][1]
@@ -81,7 +80,6 @@ def test_a_factor_scales_rows_and_leaves_points_out() -> None:
 
 
 def test_links_take_what_a_layout_has() -> None:
-    """Six points of a body give the links between them, and a missing end gives none of a frame."""
     names = ("hip.L", "hip.R", "knee.L", "knee.R", "ankle.L", "ankle.R")
     links = DepthLinks.between(names, ("tracks",) * 6)
     assert sorted(links.names) == ["ankle", "ankle", "hips", "knee", "knee"]
@@ -110,7 +108,6 @@ def camera_in_front(poses: int | None = None) -> Camera:
 
 
 def test_the_rest_posture_stands_at_the_cameras_distance() -> None:
-    """At rest every principal point lies in the plane of the hips, 4 m away."""
     pose = BODY.pose(Posture.rest(HUMAN))
     np.testing.assert_allclose(depths.evaluate(BODY, camera_in_front(), pose), 4.0, atol=1e-12)
 
@@ -122,7 +119,6 @@ def test_a_moving_camera_is_taken_at_its_frame() -> None:
 
 
 def test_the_papers_variance_is_kept_in_meters() -> None:
-    """10⁵ mm² are 0.1 m²."""
     assert depths.DEPTH_VARIANCE_M2 == pytest.approx(1e5 * 1e-6)
 
 

@@ -30,7 +30,6 @@ PIXELS_PER_METER = 40.0 / 36.0 * 320 / 4.0
 
 
 def test_the_rest_posture_gives_values_worked_out_by_hand() -> None:
-    """At rest the trunk stands upright over the hips and the left forearm points to the image's right."""
     seen = LineEnds(BODY, CAMERA, MARKED).evaluate(BODY.pose(Posture.rest(HUMAN)))
     actor = BODY.actor.segments_m
     trunk, forearm = seen[0], seen[1]
@@ -44,7 +43,6 @@ def test_the_rest_posture_gives_values_worked_out_by_hand() -> None:
 
 
 def test_a_segment_seen_end_on_is_round_and_without_direction() -> None:
-    """A forearm stretched towards the lens keeps its centroid, has the ratio 1 and no say on the angle."""
     posture = Posture.rest(HUMAN)
     eye = np.array(CAMERA.matrix_world)
     eye[:3, :3] = [[0.0, 0, 1], [1, 0, 0], [0, 1, 0]]  # from the performer's left along the stretched arms
@@ -108,19 +106,16 @@ def test_a_segment_behind_the_camera_predicts_nothing() -> None:
     [(1.5, -1.5, 3.0 - np.pi), (-1.5, 1.5, np.pi - 3.0), (0.2, 0.1, 0.1), (3.1, 0.0, 3.1 - np.pi)],
 )
 def test_angles_are_compared_modulo_half_a_turn(observed: float, predicted: float, expected: float) -> None:
-    """An axis has no head: 86 and -86 degrees are 8 apart, not 172."""
     first, second = np.zeros(4), np.zeros(4)
     first[ANGLE], second[ANGLE] = observed, predicted
     assert residual(first, second)[ANGLE] == pytest.approx(expected)
 
 
 def test_the_weight_of_an_angle_is_the_regions_elongation() -> None:
-    """(λ1 - λ2) / (λ1 + λ2) by hand: 0 for a round region, 0.6 for a ratio of 4, near 1 for a line."""
     np.testing.assert_allclose(angle_weight(np.log([1.0, 4.0, 1e6])), [0.0, 0.6, 1.0], atol=1e-5)
 
 
 def test_characteristics_of_tracks_are_those_of_their_moments() -> None:
-    """A 6 by 2 region lying at 30 degrees, and a hidden marker."""
     turn = np.array([[np.cos(np.pi / 6), -np.sin(np.pi / 6)], [np.sin(np.pi / 6), np.cos(np.pi / 6)]])
     moment = turn @ np.diag([36.0, 4.0]) @ turn.T
     hidden = np.full((2, 2), np.nan)

@@ -52,7 +52,6 @@ def test_moving_away_shrinks_a_region_with_the_square_of_distance() -> None:
 def test_jacobians_agree_with_central_differences_where_nothing_hides(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """To first order: samples keep the viewing direction (and their visibility, here all of it)."""
     monkeypatch.setattr(regions, "visible_share", lambda pixels, depth, parts, own: np.ones(depth.shape))
     rng = np.random.default_rng(seed)
     posture = standing().plus(0.15 * rng.normal(size=(1, HUMAN.dof_count)))
@@ -147,7 +146,6 @@ def test_the_edge_of_the_picture_cuts_a_region() -> None:
 
 
 def test_slopes_at_the_edge_are_those_of_what_is_left() -> None:
-    """A region that leaves the picture moves less than its limb, as central differences say."""
     posture = standing(shoulder__L__rotation_y=0.2)
     middle = predict(posture).centroid[0, 1, 0]
     model = shifted((middle - CAMERA.resolution[0]) / CAMERA.resolution[0])
@@ -205,7 +203,6 @@ def seen(pieces: PieceStack, posture: Posture, camera: Camera = CAMERA):  # noqa
 
 
 def test_a_cylinder_from_the_front_fills_a_rectangle() -> None:
-    """Area 2wL, and the second moments of a rectangle across and along."""
     samples = seen(upright(), at_camera_height())
     area = samples.area[0, 0]
     assert area.sum() == pytest.approx(2 * WIDE * LENGTH, rel=1e-3)
@@ -229,7 +226,6 @@ def test_a_turned_trunk_shows_the_width_of_its_ellipse(yaw: float) -> None:
 
 
 def test_a_taper_moves_the_centroid_towards_the_thick_end() -> None:
-    """A trapezoid's centroid lies at L/3 · (a + 2b) / (a + b) from the side of length a."""
     samples = seen(upright(0.5, 1.0), at_camera_height())
     weight = samples.area[0, 0] / samples.area[0, 0].sum()
     expected = LENGTH / 3 * (0.5 + 2.0) / 1.5 - LENGTH / 2

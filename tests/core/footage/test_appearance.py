@@ -29,7 +29,6 @@ def walk_by(shake: int = 0, stays: bool = False) -> Appearance:
 
 
 def test_the_background_is_what_shows_when_nobody_is_before_it() -> None:
-    """Every pixel is known although the block crossed most of them, and has its own color."""
     learned = walk_by()
     assert learned.steady
     assert learned.known.all()
@@ -48,7 +47,6 @@ def test_a_shaken_camera_has_no_steady_background(shake: int) -> None:
 
 
 def test_colors_are_likelier_as_what_they_are() -> None:
-    """The block's red is the part's; a background pixel is the background's, in shadow too."""
     learned = walk_by()
     part, row, column = np.array(0), np.array(5), np.array(5)
     red, usual = RED.astype(np.uint8), PLACE[5, 5].astype(np.uint8)

@@ -31,7 +31,6 @@ def fields(**changes: Any) -> dict[str, Any]:
 
 
 def test_projection_agrees_with_a_computation_by_hand() -> None:
-    """At 4 m, half a meter right and a quarter up, a 40 mm lens on 36 mm gives 355.6 px of focal length."""
     camera = Camera(40.0, 36.0, (320, 240), turned(0.0))
     pixel, depth = camera.project([0.5, 0.0, 1.25])
     np.testing.assert_allclose(pixel, [160 + 320 * 40 / 36 * 0.5 / 4, 120 - 320 * 40 / 36 * 0.25 / 4])
@@ -52,7 +51,6 @@ def test_distortion_scales_normalized_coordinates_by_its_polynomial() -> None:
 
 
 def test_points_behind_the_camera_have_no_pixel_but_a_negative_depth() -> None:
-    """Nothing is mirrored through the lens, neither in the projection nor in its Jacobian."""
     camera = Camera(40.0, 36.0, (320, 240), turned(0.0))
     pixel, depth = camera.project([[0.0, -5.0, 1.0], [0.0, 0.0, 1.0]])
     np.testing.assert_allclose(depth, [-1.0, 4.0])
@@ -75,7 +73,6 @@ def test_jacobians_agree_with_central_differences(distortion: tuple[float, float
 
 @pytest.mark.parametrize("distortion", DISTORTIONS)
 def test_rays_lead_back_through_the_pixels_they_came_from(distortion: tuple[float, float, float]) -> None:
-    """A point two meters along any pixel's ray is seen at that pixel, through the distortion and back."""
     camera = Camera(30.0, 36.0, (640, 480), turned(-0.7), 0.02, 0.04, distortion)
     pixels = np.stack(np.meshgrid(np.linspace(0, 640, 9), np.linspace(0, 480, 7)), axis=-1)
     origin, direction = camera.rays(pixels)
@@ -120,7 +117,6 @@ def test_a_camera_survives_its_own_fields(angle: float, scale: float, shift: flo
 
 
 def test_poses_a_frame_are_read_and_written() -> None:
-    """`matrix_world_frames` makes a moving camera, with or without `matrix_world` beside it."""
     poses = [turned(0.0).tolist(), turned(0.2).tolist()]
     camera = Camera.from_dict(fields(matrix_world_frames=poses, matrix_world=None))
     assert camera.is_moving
@@ -177,7 +173,6 @@ PLACED = {"lens_mm": 35.0, "sensor_width_mm": 36.0, "resolution": [200, 100], "h
 
 
 def test_height_tilt_and_roll_do_instead_of_a_matrix() -> None:
-    """The camera faces the world's origin along +Y, or stands above it; it is written as a matrix."""
     above = Camera.from_dict(PLACED)
     assert above.matrix_world[:3, 3] == pytest.approx((0.0, 0.0, 1.5))
     tilted = Camera.from_dict({**PLACED, "tilt_deg": -10.0, "roll_deg": 5.0, "distance_m": 4.0})

@@ -74,7 +74,6 @@ CAMERAS = [
 
 @pytest.mark.parametrize("true", CAMERAS)
 def test_exact_lines_give_the_exact_camera(true: Camera) -> None:
-    """Within a share of what is stated: beliefs still pull a little, since lines could be drawn wrong."""
     fit = fit_camera(usual(), room(true))
     assert fit.kept == () and fit.misfit_px < 0.5
     for name, error in errors(fit, true).items():
@@ -89,7 +88,6 @@ def _three(evidence: CameraEvidence) -> tuple[Array, Array, Array]:
 
 
 def test_drawn_lines_are_as_far_off_as_stated() -> None:
-    """Squared errors in standard deviations have a mean of about one, over cameras and drawings."""
     rng = np.random.default_rng(3)
     squared: dict[str, list[float]] = {name: [] for name in PARAMETERS}
     for true in CAMERAS:
@@ -108,7 +106,6 @@ def test_drawn_lines_are_as_far_off_as_stated() -> None:
 
 @pytest.mark.parametrize("true", CAMERAS)
 def test_people_at_several_places_give_height_tilt_and_roll(true: Camera) -> None:
-    """Where the lens is known; errors of standing and clicking stay within three deviations."""
     rng = np.random.default_rng(8)
     places = np.array([[-1.0, 4.2], [1.0, 5.0], [0.0, 7.0], [-0.5, 5.5]])
     seen = people(true, places)
@@ -138,7 +135,6 @@ def test_nothing_determines_nothing() -> None:
 
 
 def test_lines_too_near_each_other_leave_the_tilt_and_a_level_camera_the_lens() -> None:
-    """Where a vanishing point is uncertain or at infinity the value is kept instead of nonsense."""
     true = camera(50.0, 1.4, -2.0, 0.0)
     near = np.array([[[x, 5.0, 1.0], [x, 5.0, 1.3]] for x in (0.0, 0.03)])
     fit = fit_camera(usual(), CameraEvidence(vertical=lines(true, near)))
@@ -210,7 +206,6 @@ def test_a_walk_finds_height_and_tilt() -> None:
 
 
 def test_who_bends_kneels_or_is_cut_off_is_no_measure() -> None:
-    """Trunk out of line, short legs, feet unseen, points of which the detector is not sure."""
     points = walk()
     names = list(HUMAN.point_names)
     upper = [

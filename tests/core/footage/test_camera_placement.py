@@ -26,7 +26,6 @@ def test_numbers_and_pose_say_the_same(seed: int) -> None:
 
 
 def test_a_level_camera_looks_ahead_and_a_negative_tilt_down() -> None:
-    """Along +Y; a point at the camera's own height is in the middle only where it is level."""
     camera = Camera(36.0, 36.0, (200, 100), CameraPlacement(1.5, 0.0, 0.0).matrix())
     middle, depth = camera.project([0.0, 5.0, 1.5])
     assert middle == pytest.approx((100.0, 50.0)) and depth == pytest.approx(5.0)
@@ -58,7 +57,6 @@ def test_a_phone_held_upright_sees_as_much_as_its_photographs_less_what_steadies
 
 
 def test_a_webcams_height_is_that_of_its_wide_picture() -> None:
-    """Its picture of 4 to 3 is cut from one of 16 to 9 with a diagonal view of 68 degrees."""
     guess = guess_lens((640, 480))
     assert "webcam" in guess.reason
     focal_px = guess.lens_mm / guess.sensor_width_mm * 640
@@ -74,7 +72,6 @@ def test_anything_else_is_a_usual_zoom(size: tuple[int, int]) -> None:
 
 @pytest.mark.parametrize("size", SIZES)
 def test_the_guess_depends_on_the_shape_and_not_on_the_fineness(size: tuple[int, int]) -> None:
-    """Half the resolution is the same camera, but that small pictures of 4 to 3 are webcams'."""
     half = (size[0] // 2, size[1] // 2)
     if size != (1440, 1080):
         assert guess_lens(half) == guess_lens(size)
@@ -82,7 +79,6 @@ def test_the_guess_depends_on_the_shape_and_not_on_the_fineness(size: tuple[int,
 
 @pytest.mark.parametrize("size", SIZES)
 def test_the_performer_is_in_view_from_the_first_stand(size: tuple[int, int]) -> None:
-    """Feet on the floor at the origin, arms stretched sideways: all in the picture, and not tiny."""
     guess = guess_lens(size)
     stand = default_camera_pose(guess.lens_mm, guess.sensor_width_mm, size)
     camera = Camera(guess.lens_mm, guess.sensor_width_mm, size, stand)
@@ -121,7 +117,6 @@ def test_every_piece_lies_on_a_whole_meter_of_the_floor(tilt: float) -> None:
 
 
 def test_the_horizon_is_where_the_view_is_level() -> None:
-    """In the middle of a level camera's picture, above it where the camera looks down, nowhere far down."""
     assert floor_grid(camera(0.0)).horizon[..., 1] == pytest.approx(240.0, abs=0.02)
     assert (floor_grid(camera(-10.0)).horizon[..., 1] < 150.0).all()
     assert len(floor_grid(camera(-60.0)).horizon) == 0

@@ -39,7 +39,6 @@ def test_a_video_yields_its_frames_in_order_with_their_times(tmp_path: Path) -> 
 def test_samples_are_spread_over_the_clip_and_are_the_frames_they_say(
     tmp_path: Path, count: int, frames: int
 ) -> None:
-    """Whether the file is run through or searched, and with more samples asked for than frames exist."""
     path = write_video(tmp_path / "clip.mp4", LEVELS[:frames], 30.0)
     sampled = list(Clip.open(path).sample(count))
     assert len(sampled) == min(count, frames)
@@ -50,7 +49,6 @@ def test_samples_are_spread_over_the_clip_and_are_the_frames_they_say(
 
 
 def test_images_follow_their_numbers(tmp_path: Path) -> None:
-    """img_2 comes before img_10, by folder, by pattern and by any one of them; other files stay out."""
     for number in (10, 2, 1, 33):
         cv2.imwrite(str(tmp_path / f"img_{number}.png"), picture(number))
     (tmp_path / "notes.txt").write_text("no image")
@@ -89,7 +87,6 @@ def test_every_depth_and_channel_count_becomes_eight_bit_color(tmp_path: Path, i
 
 
 def test_unusable_files_are_named_in_one_sentence(tmp_path: Path) -> None:
-    """Missing, empty, of another kind, cut off before the first frame, or a folder without images."""
     empty = tmp_path / "empty.mp4"
     empty.touch()
     text = tmp_path / "text.mp4"

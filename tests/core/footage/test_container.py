@@ -91,7 +91,6 @@ def test_containers_are_known(name: str, code: str, tmp_path: Path) -> None:
     ],
 )
 def test_containers_that_opencv_cannot_write_are_known(beginning: bytes, tmp_path: Path) -> None:
-    """Transport and program streams, MXF and their like; the same bytes further on in a file are none."""
     (tmp_path / "clip").write_bytes(beginning)
     check_container(tmp_path / "clip")
     (tmp_path / "shifted").write_bytes(b"x" + beginning)

@@ -82,7 +82,6 @@ def noticed(clip: Clip) -> tuple[str, ...]:
 def test_ordinary_kinds_give_every_frame_once(
     video: Callable[..., Path], name: str, arguments: tuple[str, ...]
 ) -> None:
-    """In order, evenly in time, with the number of frames known, and with nothing to say of them."""
     clip = Clip.open(video(name, *arguments))
     assert numbers(clip) == list(range(FRAMES))
     assert clip.frame_count == FRAMES and clip.notes == () and noticed(clip) == ()
@@ -96,7 +95,6 @@ def test_ordinary_kinds_give_every_frame_once(
 def test_video_of_phones_is_the_same_in_every_run(
     video: Callable[..., Path], tmp_path: Path, depth: str, turned: int
 ) -> None:
-    """Ten bits in 4:2:0 and a height that is no multiple of 16: OpenCV leaves three rows as they were."""
     flat = video(
         "flat.mp4", "-frames:v", "2", "-vf", "scale=160:106", "-c:v", "libx265", "-preset", "ultrafast",
         "-x265-params", "log-level=none:pools=1", "-pix_fmt", f"yuv420p{depth}le",
@@ -278,7 +276,6 @@ def test_an_image_that_is_missing_keeps_its_place(tmp_path: Path) -> None:
 
 
 def test_what_does_not_belong_to_a_sequence_is_left_out(tmp_path: Path) -> None:
-    """A stray picture with a sentence, what macOS leaves without; two sequences are refused."""
     folder = write_images(tmp_path / "a", ["a1.png", "a2.PNG".lower(), "cover.jpg"])
     (folder / "._a1.png").write_bytes(b"\x00\x05\x16\x07")
     clip = Clip.open(folder)

@@ -25,7 +25,6 @@ def short_stretch(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_comes_after_the_stretch_is_measured_like_what_lies_in_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The same centroids and areas whether the whole clip waits for its colors or a fifth of it."""
     images = film(moving, 42, 1)
     whole = tracked(images)
     monkeypatch.setattr(markers, "STRETCH_BYTES", STRETCH * SIZE[0] * SIZE[1] * 3)
@@ -38,7 +37,6 @@ def test_what_comes_after_the_stretch_is_measured_like_what_lies_in_it(
 
 @pytest.mark.usefixtures("short_stretch")
 def test_a_marker_that_enters_late_is_found_from_its_first_frame_on() -> None:
-    """Red comes after the stretch that was learned from; only its sample is known until then."""
     tracks = tracked(film(lambda index: moving(index)[1 if index < 20 else 0 :], 60, 2))
     np.testing.assert_array_equal(tracks.visible[:, 0], np.arange(60) >= 20)
     truth = np.array([path(index) for index in range(60)])
@@ -90,7 +88,6 @@ def alike(index: int) -> list[tuple[float, float]]:
 
 
 def test_the_expected_places_tell_markers_of_almost_one_color_apart() -> None:
-    """Each keeps its own path, and one note says that their colors do not tell them apart."""
     other = (RED[0] - 6, RED[1] + 4, RED[2] + 3)
     styles = (MarkerStyle("left", "forearm.L", RED), MarkerStyle("right", "forearm.R", other))
     images = film(
@@ -114,7 +111,6 @@ def test_markers_of_different_colors_need_no_note() -> None:
 
 
 def test_a_marker_of_the_walls_color_is_refused_with_the_reason() -> None:
-    """The sentence says that the surroundings have the color, not that it was found nowhere."""
     wall = (200, 190, 176)
     rng = np.random.default_rng(8)
     images = [draw([(wall, (80.0 + 6.0 * i, 90.0), (30.0, 15.0), 0.0)], rng) for i in range(20)]
@@ -146,7 +142,6 @@ def test_boxes_near_each_other_share_a_window_and_no_pixel_is_in_two() -> None:
 
 
 def test_the_share_of_a_border_pixel_is_what_the_region_covers_of_it() -> None:
-    """A disc drawn with known coverage, on a ground of another color and of another light."""
     fine = np.zeros((40 * 16, 60 * 16), dtype=np.uint8)
     cv2.circle(fine, (30 * 16, 20 * 16), 10 * 16, 255, -1)
     share = cv2.resize(fine, (60, 40), interpolation=cv2.INTER_AREA) / 255.0
@@ -165,7 +160,6 @@ def test_the_share_of_a_border_pixel_is_what_the_region_covers_of_it() -> None:
 def test_pictures_of_every_size_are_measured_and_searched_on_like_grids(
     size: tuple[int, int], times: int, factor: int
 ) -> None:
-    """From 320 to 639 columns for measuring, where there are as many; from 160 to 319 for the search."""
     assert halvings(size) == times
     grid = (size[1] >> times, size[0] >> times)
     assert searching_factor(grid) == factor

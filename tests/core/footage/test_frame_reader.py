@@ -18,7 +18,6 @@ def gray(index: int, size: tuple[int, int] = (64, 48)) -> np.ndarray:
 
 
 def test_stepping_forward_decodes_each_frame_once() -> None:
-    """Steps, short jumps, the same frame again and going back all give the frame that was asked for."""
     source = Drawn([gray(index) for index in range(50)], fps=FPS)
     reader = FrameReader(Clip(Path("drawn"), source))
     for index in range(20):
@@ -93,7 +92,6 @@ def watched(album: Album) -> Clip:
 
 
 def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
-    """Frames, times and size pass unchanged; each frame's picture is that frame on half the grid."""
     album = Album()
     clip = watched(album)
     read = list(clip.frames())

@@ -57,7 +57,6 @@ def mask(*regions: IgnoredRegion, frame: int = 0, size: tuple[int, int] = SIZE) 
 
 
 def test_a_box_covers_its_pixels_on_the_measuring_grid() -> None:
-    """Of a picture four times as large each fourth one counts; a box may reach beyond the picture."""
     assert mask() is None
     small = mask(IgnoredRegion(box=(10.0, 20.0, 30.0, 25.0)))
     assert small is not None and small.shape == (240, 320)
@@ -97,7 +96,6 @@ def test_a_region_counts_in_its_frames_alone() -> None:
     ids=["box", "stroke"],
 )
 def test_a_hidden_marker_is_not_taken_for_an_ignored_panel(over: IgnoredRegion) -> None:
-    """While red is hidden the panel of its color would do; brushed away, nothing is left to take."""
     rng = np.random.default_rng(5)
     frames = [with_panel(draw(hidden_red(index), rng)) for index in range(40)]
     plain, brushed = track(frames), track(frames, over)
@@ -118,7 +116,6 @@ def test_a_panel_beside_a_resting_marker_is_told_from_it() -> None:
 
 
 def test_a_wall_that_hides_its_color_teaches_nothing_once_it_is_ignored() -> None:
-    """Over a third of the picture the color counts as background: the marker is found after brushing only."""
     rng = np.random.default_rng(9)
     wall = IgnoredRegion(box=(0.0, 0.0, 130.0, 240.0))
 
@@ -136,7 +133,6 @@ def test_a_wall_that_hides_its_color_teaches_nothing_once_it_is_ignored() -> Non
 
 
 def test_a_region_that_an_ignored_one_cuts_is_seen_in_part() -> None:
-    """Nothing of it lies inside, and it is known to be no whole marker, as at the picture's border."""
     rng = np.random.default_rng(11)
     frames = [draw([(RED, (150.0, 90.0), (30.0, 12.0), 0.0)], rng) for _ in range(20)]
     half = tracked(frames, STYLES[:1], ignored=(IgnoredRegion(box=(0, 0, 150, 240)),))
@@ -148,7 +144,6 @@ def test_a_region_that_an_ignored_one_cuts_is_seen_in_part() -> None:
 
 
 def test_a_region_ignored_in_some_frames_is_searched_in_the_others() -> None:
-    """Red passes through a box that is ignored in its frames; long before and after it is found."""
     frames = film(moving, 60, 13)
     tracks = track(frames, IgnoredRegion(box=(0.0, 0.0, 320.0, 240.0), frames=(20, 29)))
     assert np.flatnonzero(~tracks.visible[:, 0]).tolist() == list(range(20, 30))

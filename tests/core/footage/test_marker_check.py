@@ -64,7 +64,6 @@ def test_clear_colors_are_found_everywhere_with_their_areas() -> None:
 
 
 def test_a_marker_is_found_in_the_frames_that_show_it_and_no_others() -> None:
-    """Red is away for three quarters of the clip; the sentence says in how many frames it is found."""
     images = film(lambda index: moving(index)[index >= 10 :], 40, 2)
     result = check(images)
     red, blue = result.readouts
@@ -132,7 +131,6 @@ def test_markers_of_one_color_are_named_both_and_each_is_found() -> None:
 
 
 def test_colors_that_light_may_make_equal_are_named() -> None:
-    """Two reds that differ by a little more than one sample leaves open, in changing light."""
     rng = np.random.default_rng(8)
     dark = (150, 52, 40)
     images = []
@@ -162,7 +160,6 @@ def test_a_tiny_marker_is_called_small() -> None:
 
 
 def test_previews_show_what_the_extraction_measures() -> None:
-    """The masks' coverage sums to the regions' areas and every mask lies where its marker is."""
     images = film(moving, 12, 10)
     tracks = tracked(images)
     masks = color_masks(images[5], check(images).model)
@@ -206,7 +203,6 @@ def panelled(seed: int = 3) -> list[np.ndarray]:
 
 
 def test_a_panel_is_named_with_its_box_and_gone_once_it_is_ignored() -> None:
-    """The box holds the panel with its blended border and hardly more; blue, at rest, is left alone."""
     images = panelled()
     red, blue = check_ignoring(images).readouts
     (box,) = red.still_boxes
@@ -260,7 +256,6 @@ def test_a_panel_is_not_sure_where_the_marker_is_seldom_seen_beside_it() -> None
 
 
 def test_a_garment_of_somebody_who_sits_is_no_still_area() -> None:
-    """Its outline sways by a few pixels with every breath, while another of its color moves about."""
     rng = np.random.default_rng(12)
 
     def both(index: int) -> list[Ellipse]:

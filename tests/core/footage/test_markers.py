@@ -82,7 +82,6 @@ def test_a_marker_that_rests_is_no_clutter() -> None:
 
 
 def test_the_expected_place_tells_the_marker_from_a_moving_thing_of_its_color() -> None:
-    """A larger red ball crosses the picture; only the expectation can know which of the two it is."""
     balls: list[Ellipse] = [(RED, (300.0 - 3.0 * index, 40.0), (14.0, 14.0), 0.0) for index in range(40)]
     images = film(lambda index: [*moving(index), balls[index]], 40, 6)
     truth = np.array([path(index) for index in range(40)])
@@ -94,7 +93,6 @@ def test_the_expected_place_tells_the_marker_from_a_moving_thing_of_its_color() 
 
 
 def test_a_region_that_an_arm_splits_stays_one() -> None:
-    """A dark bar before the middle of a large region takes its area, not its centroid; its quality sinks."""
     rng = np.random.default_rng(7)
     images = []
     for index in range(30):
@@ -142,7 +140,6 @@ def test_larger_images_are_searched_on_a_reduced_grid_and_measured_on_the_full_o
 
 
 def test_one_sample_off_in_light_still_teaches_the_markers_color() -> None:
-    """A sample from the shaded side, a third darker, finds the same pixels as the true color."""
     images = film(moving, 6, 12)
     dark = (RED[0] * 2 // 3, RED[1] * 2 // 3, RED[2] * 2 // 3)
     right, shaded = (learn_colors(images, [sample, BLUE]).found for sample in (RED, dark))
@@ -151,7 +148,6 @@ def test_one_sample_off_in_light_still_teaches_the_markers_color() -> None:
 
 @pytest.mark.parametrize("gray", [(128, 128, 128), (12, 12, 12), (235, 235, 235)])
 def test_a_marker_without_a_hue_is_told_from_a_colored_wall(gray: tuple[int, int, int]) -> None:
-    """Black and white sleeves: a sample whose three channels are equal is learned and followed."""
     rng = np.random.default_rng(3)
     images = []
     for index in range(20):
@@ -195,7 +191,6 @@ def test_tracks_refuse_shapes_that_disagree() -> None:
 def test_rendered_takes_agree_with_the_exactly_visible_pixels(
     name: str, take_folder: Callable[[str], Path]
 ) -> None:
-    """Median centroid error under 0.8 px for every marker, no region while none is visible, few misses."""
     folder = take_folder(name)
     markers = json.loads((folder / "take.json").read_text())["markers"]
     truth = json.loads((folder / "visibility.json").read_text())

@@ -60,7 +60,6 @@ def test_a_clip_of_few_frames(frames: int) -> None:
 
 
 def test_somebody_who_comes_and_goes_is_seen_meanwhile_alone() -> None:
-    """Frames before and after are empty, and the moment of coming is met backward from where it is looked."""
     there = range(30, 130)
     people: list[People3] = [[(160.0, 120.0, 50.0)] if index in there else [] for index in range(160)]
     assert counts(seen(people)) == [int(index in there) for index in range(160)]

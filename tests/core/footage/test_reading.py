@@ -196,7 +196,6 @@ def test_a_clip_that_has_changed_is_decoded_again(clip: Path, decoded: list[Path
 
 
 def test_a_reading_of_the_clip_knows_its_times(clip: Path, decoded: list[Path]) -> None:
-    """The same to the last digit; a reading of another file, or of other markers, is not asked."""
     opened = Clip.open(clip)
     reading = run(read_clip(opened, (), with_album=False))
     style = MarkerStyle("trunk", "trunk", (70, 106, 213))

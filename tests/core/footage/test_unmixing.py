@@ -53,7 +53,6 @@ def swept(first: float, last: float, color: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("width", [0.0, 6.0, 12.0])
 def test_a_bar_is_found_where_it_was_on_average(width: float) -> None:
-    """Place within half a pixel, area within a sixth, and the sweep in its second moment."""
     found = look(swept(26.0 - width / 2, 26.0 + width / 2, RED))
     assert len(found.gain) == 1 and found.gain[0] > SIGNIFICANT
     centroid, second = centroid_and_second_moment(found.moments)

@@ -19,7 +19,6 @@ def page(repository: Path) -> str:
 
 
 def test_every_option_is_described(page: str) -> None:
-    """All that the two commands take, but for the ones that every command has."""
     for command in (CHARACTER, RETARGET):
         parser = argparse.ArgumentParser()
         for names, settings in command.arguments:
@@ -30,14 +29,12 @@ def test_every_option_is_described(page: str) -> None:
 
 
 def test_every_field_is_described(page: str) -> None:
-    """In the section on shoots."""
     section = page.split("## In a shoot")[1]
     assert [name for name in CharacterFields.ORDER if f"`{name}`" not in section] == []
     assert f"{CharacterOptions().tolerance_mm:g} by default" in section
 
 
 def test_the_example_is_read(page: str, tmp_path: Path) -> None:
-    """A take below it has the character."""
     (example,) = re.findall(r"```json\n(.*?)```", page.split("## In a shoot")[1], flags=re.DOTALL)
     (tmp_path / "shoot.json").write_text(example, encoding="utf-8")
     settings = describe(write_synthetic_take(tmp_path / "take", 3)).settings.character

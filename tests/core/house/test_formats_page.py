@@ -59,12 +59,10 @@ def page(repository: Path) -> str:
 
 @pytest.mark.parametrize(("limit", "what"), LIMITS.items())
 def test_limits_are_those_of_the_readers(page: str, limit: str, what: str) -> None:
-    """Every limit of the page is a constant of a reader."""
     assert f"| {what} | {limit.strip()} |" in page
 
 
 def test_every_schema_has_its_row(page: str, repository: Path) -> None:
-    """The table of files names all schemas and no others."""
     rows = page.split("## What is refused")[0]
     named = set(re.findall(r"\| `([a-z]+)`(?:, each line)? \|", rows))
     there = {
@@ -74,7 +72,6 @@ def test_every_schema_has_its_row(page: str, repository: Path) -> None:
 
 
 def test_editor_settings_name_existing_schemas(page: str, repository: Path) -> None:
-    """Paths in the example lead to files of the repository."""
     (example,) = re.findall(r"```json\n(.*?)```", page, flags=re.DOTALL)
     for entry in json.loads(example)["json.schemas"]:
         assert (repository / entry["url"].removeprefix("./keymark/")).is_file()

@@ -32,32 +32,27 @@ def page(repository: Path) -> str:
 
 
 def test_every_field_is_described(page: str, repository: Path) -> None:
-    """The fields of the schema, and no others."""
     schema = json.loads((repository / "presets/schemas/keypoints.schema.json").read_text(encoding="utf-8"))
     table = page.split("## Keymark's own file")[1].split("Other fields")[0]
     assert set(re.findall(r"^\| `(\w+)` \|", table, flags=re.MULTILINE)) == set(schema["properties"])
 
 
 def test_every_layout_has_its_row(page: str) -> None:
-    """With the number of its points."""
     rows = dict(re.findall(r"^\| `(\w+)` \| (\d+) \|", page, flags=re.MULTILINE))
     assert rows == {name: str(layout.count) for name, layout in LAYOUTS.items()}
 
 
 def test_every_body_point_is_named(page: str) -> None:
-    """By its stem."""
     sentence = page.split("The names are")[1].split("The same name")[0]
     assert set(re.findall(r"`(\w+)`", sentence)) == {name.partition(".")[0] for name in BODY_POINTS}
 
 
 @pytest.mark.parametrize(("what", "limit"), LIMITS.items())
 def test_limits_are_those_of_the_readers(page: str, what: str, limit: str) -> None:
-    """Every limit of the page is a constant of a reader."""
     assert f"| {what} | {limit} |" in page
 
 
 def test_the_example_is_read(page: str, tmp_path: Path) -> None:
-    """Three frames, in the second of which nobody was seen."""
     (example,) = re.findall(r"```json\n(.*?)```", page, flags=re.DOTALL)
     (tmp_path / "keypoints.json").write_text(example, encoding="utf-8")
     people = read_keypoints(tmp_path / "keypoints.json", 3, (1280, 720), 30.0, 1)

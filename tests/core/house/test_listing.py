@@ -36,7 +36,6 @@ def modules(repository: Path) -> Iterator[tuple[Path, ast.Module]]:
 
 
 def test_no_field_is_empty_and_the_version_has_three_numbers(manifest: dict[str, object]) -> None:
-    """The platform takes neither "" nor [], and asks for MAJOR.MINOR.PATCH."""
     assert [name for name, value in manifest.items() if not value] == []
     assert manifest["schema_version"] == "1.0.0" and manifest["type"] == "add-on"
     for name in ("version", "blender_version_min"):
@@ -44,25 +43,21 @@ def test_no_field_is_empty_and_the_version_has_three_numbers(manifest: dict[str,
 
 
 def test_short_texts_are_short_and_end_without_a_stop(manifest: dict[str, object]) -> None:
-    """Tagline and reasons of permissions: Blender's own check is the same."""
     texts = [manifest["tagline"], *manifest["permissions"].values()]  # type: ignore[attr-defined]
     assert all(0 < len(text) <= LONGEST and text[-1].isalnum() for text in texts)
 
 
 def test_the_name_is_our_own(manifest: dict[str, object]) -> None:
-    """Neither name nor tagline says Blender, as if Keymark were its maker's."""
     assert "blender" not in f"{manifest['name']} {manifest['id']} {manifest['tagline']}".lower()
 
 
 def test_the_license_is_blenders_and_whole(repository: Path, manifest: dict[str, object]) -> None:
-    """GPL 3 or later, with its text."""
     assert manifest["license"] == ["SPDX:GPL-3.0-or-later"]
     text = (repository / "LICENSE").read_text(encoding="utf-8")
     assert "GNU GENERAL PUBLIC LICENSE" in text and "END OF TERMS AND CONDITIONS" in text
 
 
 def test_whose_work_is_bundled_is_said(repository: Path, manifest: dict[str, object]) -> None:
-    """Every library that comes as a wheel is named, with years, as Blender wants it."""
     lines = manifest["copyright"]
     assert isinstance(lines, list)
     assert all(re.match(r"\d{4}(-\d{4})? \S", line) for line in lines)
@@ -72,14 +67,12 @@ def test_whose_work_is_bundled_is_said(repository: Path, manifest: dict[str, obj
 
 
 def test_the_icon_has_its_size(repository: Path) -> None:
-    """256 by 256 pixels, as its header says."""
     data = (repository / "docs" / "pictures" / "listing_icon.png").read_bytes()
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     assert struct.unpack(">II", data[16:24]) == (256, 256)
 
 
 def test_the_featured_image_has_its_size(repository: Path) -> None:
-    """1920 by 1080 pixels, as the header of the frame says."""
     data = (repository / "docs" / "pictures" / "listing_featured.jpg").read_bytes()
     frame = re.search(rb"\xff[\xc0\xc2]\x00\x11\x08(....)", data, flags=re.DOTALL)
     assert frame is not None
@@ -87,7 +80,6 @@ def test_the_featured_image_has_its_size(repository: Path) -> None:
 
 
 def test_the_listings_pictures_are_there_and_light(repository: Path, listing: str) -> None:
-    """Icon, featured image and a few more; none is animated or makes the page heavy."""
     pictures = [repository / "docs" / name for name in PICTURE.findall(listing)]
     assert len(pictures) >= 5
     assert {picture.suffix for picture in pictures} <= {".png", ".jpg"}
@@ -96,13 +88,11 @@ def test_the_listings_pictures_are_there_and_light(repository: Path, listing: st
 
 
 def test_the_listing_has_no_surprises(listing: str) -> None:
-    """It tells of files, of the network, and of other programs."""
     for word in ("**Files**", "**Network**: none", "**Other programs**"):
         assert word in listing
 
 
 def test_only_the_command_line_prints(repository: Path) -> None:
-    """In Blender's interface sentences are reports."""
     printing = {
         path.as_posix()
         for path, tree in modules(repository)
@@ -113,7 +103,6 @@ def test_only_the_command_line_prints(repository: Path) -> None:
 
 
 def test_no_place_on_a_machine_is_named(repository: Path) -> None:
-    """No string of the package is a path that exists on one computer alone."""
     found = [
         f"{path}:{node.lineno} {node.value[:60]}"
         for path, tree in modules(repository)
@@ -125,7 +114,6 @@ def test_no_place_on_a_machine_is_named(repository: Path) -> None:
 
 
 def test_the_page_names_every_zip_and_tests_that_exist(repository: Path) -> None:
-    """Each series has its row in docs/releasing.md, and no test that a point is held by is missing."""
     page = (repository / "docs" / "releasing.md").read_text(encoding="utf-8")
     builds = (repository / "tools" / "package" / "builds.py").read_text(encoding="utf-8")
     series = re.findall(r'Series\("([^"]+)"', builds)

@@ -24,7 +24,6 @@ def package_data(repository: Path) -> set[Path]:
 
 
 def test_the_wheel_takes_all_package_data_along(repository: Path, package_data: set[Path]) -> None:
-    """The patterns of setup.py match every file, each from the folder of its package."""
     tree = ast.parse((repository / "setup.py").read_text(encoding="utf-8"))
     words = next(
         node for node in ast.walk(tree) if isinstance(node, ast.keyword) and node.arg == "package_data"
@@ -37,7 +36,6 @@ def test_the_wheel_takes_all_package_data_along(repository: Path, package_data: 
 
 
 def test_the_extension_leaves_no_package_data_out(repository: Path, package_data: set[Path]) -> None:
-    """No pattern of the manifest names a folder above a file, or its kind of file."""
     manifest = tomllib.loads((repository / "blender_manifest.toml").read_text(encoding="utf-8"))
     excluded = [pattern.strip("/") for pattern in manifest["build"]["paths_exclude_pattern"]]
     left_out = {

@@ -25,7 +25,6 @@ def shown_pictures(repository: Path) -> dict[Path, list[str]]:
 
 
 def test_pages_show_what_the_script_makes(repository: Path) -> None:
-    """No page shows a picture that is not in the table, and none is there that no page shows."""
     shown = {file.name for file in shown_pictures(repository)}
     assert len(shown) > 25
     assert shown == set(ALL)
@@ -33,7 +32,6 @@ def test_pages_show_what_the_script_makes(repository: Path) -> None:
 
 
 def test_pictures_are_there_and_small(repository: Path) -> None:
-    """Each file exists where pages look for it; the folder has no others."""
     folder = repository / "docs" / "pictures"
     assert {file.parent for file in shown_pictures(repository)} == {folder}
     assert {file.name for file in folder.iterdir()} == set(ALL)
@@ -43,7 +41,6 @@ def test_pictures_are_there_and_small(repository: Path) -> None:
 
 
 def test_sessions_take_the_screenshots(repository: Path) -> None:
-    """Each screenshot of the table is taken by a session that `make test-ui` runs."""
     scripts = repository / "tests" / "real_blender" / "ui"
     steps = "\n".join(file.read_text(encoding="utf-8") for file in scripts.glob("*.py"))
     for name, screenshot in SCREENSHOTS.items():
@@ -53,7 +50,6 @@ def test_sessions_take_the_screenshots(repository: Path) -> None:
 
 
 def test_a_missing_screenshot_is_one_sentence(tmp_path: Path) -> None:
-    """It names the folder and what takes it; numbers of other steps do not matter."""
     wanted = Screenshot("demo", "review")
     with pytest.raises(
         SystemExit, match=r"demo: the screenshot `review` is missing; `make test-ui` takes it$"

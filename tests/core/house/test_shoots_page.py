@@ -44,7 +44,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory, page: str) -> Path:
 def test_its_commands_run(
     folder: Path, page: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """`new` does not replace the file that is there, and `check` names the one that is missing."""
     monkeypatch.chdir(folder)
     lines = re.findall(r"^keymark (.*)$", page, flags=re.MULTILINE)
     said = {}
@@ -59,7 +58,6 @@ def test_its_commands_run(
 
 
 def test_fields_come_from_the_nearest_file(folder: Path) -> None:
-    """The page's example inherits as the page describes."""
     first = read_take(folder / "shoot" / "day1" / "clip01.mp4")
     moved = read_take(folder / "shoot" / "day2" / "clip01.mp4", keyframes_required=False)
     assert first.camera.matrix_world[0, 3] == 0.0 and moved.camera.matrix_world[0, 3] == 0.2
@@ -72,7 +70,6 @@ def test_fields_come_from_the_nearest_file(folder: Path) -> None:
 
 
 def test_the_table_names_every_field(page: str) -> None:
-    """Those of `shoot.json` by name, and no other ones as its own."""
     from keymark.core.shoot.discovery import KNOWN_FIELDS as LISTED
     from keymark.core.take.description import KNOWN_FIELDS
 

@@ -26,7 +26,6 @@ def british(text: str) -> list[str]:
 
 
 def test_spelling_is_american(repository: Path) -> None:
-    """Two spellings of one word are two words to whoever searches for it."""
     files = [repository / name for name in PAGES]
     for folder in FOLDERS:
         files += [file for file in (repository / folder).rglob("*") if file.suffix in ENDINGS]
@@ -43,6 +42,5 @@ def test_spelling_is_american(repository: Path) -> None:
     "word", ["colo" + "ur", "Cent" + "re", "millimet" + "res", "gr" + "ey", "normali" + "se"]
 )
 def test_a_british_word_is_found(word: str) -> None:
-    """The check above can fail; words that only look alike are none."""
     assert british(f"a {word} here") == [word]
     assert british("our hour, a promise, an exercise, meter, parameter, four, centered") == []

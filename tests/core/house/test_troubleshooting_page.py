@@ -30,23 +30,19 @@ def unsaid(page: str, said: set[str]) -> list[str]:
 
 
 def test_every_sentence_of_the_page_is_said(page: str, repository: Path) -> None:
-    """One that goes takes its row with it."""
     assert unsaid(page, all_sentences(repository)) == []
 
 
 def test_every_row_says_why_and_what_to_do(page: str) -> None:
-    """Three cells, none of them empty."""
     assert [row for row in rows(page) if len(row) != 3 or not all(row)] == []
 
 
 def test_a_sentence_that_nobody_says_is_found() -> None:
-    """The check above can fail."""
     page = "| it says | why | what to do |\n|---|---|---|\n| `{a} of {b}` | x | y |\n| `gone` | x | y |\n"
     assert unsaid(page, set(sentences('f"{first + 1} of {total:.1f}"'))) == ["gone"]
 
 
 def test_links_lead_to_headings(page: str, repository: Path) -> None:
-    """Of this page and of others."""
     found = LINK.findall(page)
     assert len(found) > 5
     for file, anchor in found:

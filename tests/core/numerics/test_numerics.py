@@ -30,7 +30,6 @@ def test_costs_are_those_of_students_t(degrees: float, dimensions: int) -> None:
 
 @pytest.mark.parametrize("count", [1, 3])
 def test_weights_are_slopes_of_costs(count: int) -> None:
-    """The weight is twice the slope of the cost over the squared residual; that of a group is 1 at zero."""
     squared, step = np.linspace(0.1, 30.0, 12), 1e-5
     for cost, weight in (
         (lambda s: student_cost(s, 4.0, count), student_weight(squared, 4.0, count)),
@@ -87,7 +86,6 @@ def test_a_weighted_median_counts_each_value_as_often_as_it_weighs() -> None:
 
 
 def test_levenberg_marquardt_finds_what_scipy_finds() -> None:
-    """Exponential curves with random starts, all at once; a problem at its minimum stays."""
     rng = np.random.default_rng(5)
     at = np.linspace(0.0, 2.0, 15)
     true = rng.uniform(0.5, 2.0, (6, 2))

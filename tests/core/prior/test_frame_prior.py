@@ -76,7 +76,6 @@ def test_keyframes_alike_leave_the_natural_amount() -> None:
 
 
 def test_twice_as_fast_departs_four_times_as_far() -> None:
-    """The keyframes' part scales with the inverse square of the time between them."""
     motion = exercise(49)[FRAMES]
     natural = covariance(motion[:1], np.zeros(1))
     slow, fast = (covariance(motion, FRAMES / rate) - natural for rate in (30.0, 60.0))

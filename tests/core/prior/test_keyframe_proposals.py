@@ -93,7 +93,6 @@ def straight(velocities: list[tuple[float, float]], time: np.ndarray) -> np.ndar
 
 
 def test_speed_is_the_sum_of_the_lengths_of_the_velocities() -> None:
-    """Equation 8 by hand: two markers at 5 and 13 px per frame give 18, not the root of a sum of squares."""
     time = np.arange(12.0)
     speed = marker_speed(tracks_of(straight([(3.0, -4.0), (-5.0, 12.0)], time)))
     np.testing.assert_allclose(speed, 18.0, rtol=1e-12)
@@ -106,7 +105,6 @@ def test_uneven_time_stamps_are_respected() -> None:
 
 
 def test_a_stamp_that_does_not_advance_leaves_the_speed_finite() -> None:
-    """Files with repeated stamps exist; the frame then counts as one of usual duration."""
     centroid = straight([(3.0, 4.0)], np.arange(6.0))
     speed = marker_speed(tracks_of(centroid, np.array([0.0, 0.04, 0.04, 0.08, 0.12, 0.16])), 0.0)
     np.testing.assert_allclose(speed, 5.0, rtol=1e-12)
@@ -188,7 +186,6 @@ def test_a_marker_and_keypoints_of_a_limb_count_as_one() -> None:
 
 
 def test_jitter_and_outliers_leave_the_minima_where_they_are() -> None:
-    """A detector's jitter of two pixels, and every tenth point anywhere, still show where the swing rests."""
     rng = np.random.default_rng(7)
     pixel = swinging() + rng.normal(0.0, 2.0, (FRAMES, len(NAMES), 2))
     wrong = rng.random(pixel.shape[:2]) < 0.1
@@ -200,7 +197,6 @@ def test_jitter_and_outliers_leave_the_minima_where_they_are() -> None:
 
 
 def test_two_sources_of_a_point_are_averaged_by_how_sure_they_are() -> None:
-    """A second detector that sees nothing move halves the speed, and does nothing where it is not sure."""
     once, still = swinging(NAMES[:1]), np.full((FRAMES, 1, 2), 50.0)
     names = NAMES[:1]
     alone = speed_of(keypoints=seen(once, names)).values

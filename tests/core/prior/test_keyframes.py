@@ -46,7 +46,6 @@ def test_the_curve_passes_through_every_keyframe_and_is_held_outside(method) -> 
 
 
 def test_velocity_is_continuous_across_a_keyframe() -> None:
-    """On a fine grid the step before a keyframe equals the step after it."""
     fine = 200
     posed = tuple(Keyframe(k.index * fine, k.posture) for k in keyframes())
     curve = interpolate(posed, INDICES[-1] * fine + 1)
@@ -103,7 +102,6 @@ def short_way() -> Posture:
 
 
 def test_the_other_way_round_passes_through_the_same_keyframes() -> None:
-    """It turns by -214 degrees instead of 146, evenly, and keeps place, joints and what lies farther away."""
     short, long = short_way(), with_turns(short_way(), TURNS_AT, np.array([0, -1, 0]))
     np.testing.assert_allclose(long[TURNS_AT].rotations, short[TURNS_AT].rotations, atol=1e-9)
     heading = np.unwrap(headings_rad(long))
@@ -128,7 +126,6 @@ def test_a_whole_turn_more_is_seen_on_the_way_only() -> None:
 
 
 def test_steps_between_keyframes_are_taken_the_short_way() -> None:
-    """From -180 to 180 degrees, across the cut as well."""
     np.testing.assert_allclose(np.degrees(heading_steps_rad(facing())), [20.0, 146.0, 14.0], atol=1e-6)
     behind = yawed_at(facing(), np.radians(170.0), facing().translation)
     np.testing.assert_allclose(np.degrees(heading_steps_rad(behind)), [20.0, 146.0, 14.0], atol=1e-6)
@@ -182,7 +179,6 @@ def test_without_posed_or_without_matched_ones_nothing_changes() -> None:
 
 
 def test_a_posed_keyframe_far_from_all_matched_ones_says_little() -> None:
-    """The library's posture there is unknown, so the difference does not count as the performer's offset."""
     near = with_offset(in_order(*matched([0, 10], TRUTH), Keyframe(12, TRUTH[60])), FPS)[0]
     far = with_offset(in_order(*matched([0, 10], TRUTH), Keyframe(60, TRUTH[60])), FPS)[0]
     moved = [np.abs(one[1].posture.minus(TRUTH[10])).mean() for one in (near, far)]

@@ -101,7 +101,6 @@ def test_the_average_of_cycles_is_nearer_to_the_truth_than_one() -> None:
 
 
 def test_what_does_not_repeat_itself_stays_whole() -> None:
-    """First and last frame are in, times are the motion's, and postures crowd where much changes."""
     posture, time_s = reaching()
     library = learn_library(BODY, posture, time_s, ABOUT, count=12)
     (motion,) = library.motions

@@ -60,7 +60,6 @@ def test_nothing_is_lost_and_the_second_time_nothing_changes(library: Library) -
 
 
 def test_a_way_too_short_for_the_file_leaves_none() -> None:
-    """Else it would stand there as zeros once, and be gone the next time."""
     library = small_library()
     cycle = next(motion for motion in library.motions if motion.cyclic)
     value = replace(library, motions=(replace(cycle, travel=(1e-12, 0.0, -1e-12)),)).to_json()
@@ -243,6 +242,5 @@ def test_what_could_not_be_read_is_not_written(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="this system has no endless file")
 def test_a_file_without_end_is_not_read_to_its_end() -> None:
-    """A device says that it holds nothing, and then never stops: it is not opened."""
     with pytest.raises(InputError, match="is a device, a pipe or a socket"):
         read_library(Path("/dev/zero"))

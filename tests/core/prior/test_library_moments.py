@@ -37,7 +37,6 @@ def points(posed: Moment) -> dict[str, np.ndarray]:
 
 @pytest.mark.parametrize(("x", "y"), [(0.0, -0.05), (0.06, -0.15), (-0.05, 0.02)])
 def test_balance_puts_the_mass_over_the_place_and_leaves_the_feet(x: float, y: float) -> None:
-    """Both ankles are where they were; only the body between and above them moves."""
     before, posed = points(bowing()), balanced_over(bowing(), x, y)
     after = points(posed)
     assert mass_of(posed)[:2] == pytest.approx([x, y], abs=1e-3)
@@ -93,7 +92,6 @@ def shipped(name: str) -> Library:
 
 
 def test_who_stands_on_one_leg_could_stay_there() -> None:
-    """The mass of the whole body is over the sole that carries, in every held posture of balance."""
     library = shipped("balance")
     held = [posture for posture in library.postures if "one leg" in posture.tags]
     assert len(held) >= 12
@@ -110,7 +108,6 @@ def test_who_stands_on_one_leg_could_stay_there() -> None:
     "name", ["aerobic", "squatting_lifting", "reaching", "waving", "punching", "balance"]
 )
 def test_people_begin_and_end_in_standing(name: str) -> None:
-    """Every library has somebody who stands upright, and a motion that leads there or starts from there."""
     library = shipped(name)
     standing = library.by_name["standing"].posture
     at = dict(zip(BODY.skeleton.point_names, BODY.points(BODY.pose(standing)), strict=True))
@@ -122,7 +119,6 @@ def test_people_begin_and_end_in_standing(name: str) -> None:
 
 
 def test_fists_meet_their_targets_and_come_back() -> None:
-    """A straight punch takes the wrist at least 25 cm further to the front than the guard has it."""
     library = shipped("punching")
     wrist = BODY.skeleton.point_names.index
 

@@ -36,7 +36,6 @@ def test_what_differs_is_named() -> None:
 
 
 def test_different_libraries_never_touch() -> None:
-    """Only equal identifiers are compared or merged."""
     stranger = replace(MINE, identifier="walking")
     for act in (differing_names, merge_versions):
         with pytest.raises(InputError, match="'small_steps' and 'walking' have different identifiers"):
@@ -59,7 +58,6 @@ def test_merging_adds_what_is_new_and_asks_for_the_rest(replaces: bool) -> None:
 
 
 def test_merging_with_a_part_of_itself_changes_nothing() -> None:
-    """The result is one of the two where it equals it."""
     assert merge_versions(MINE, replace(MINE, motions=())) is MINE
     longer = newer(postures=(*MINE.postures, NEW))
     assert merge_versions(MINE, longer) is longer

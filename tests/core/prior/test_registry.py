@@ -32,7 +32,6 @@ def test_the_earliest_folder_counts(folders: list[Path]) -> None:
 
 
 def test_within_a_folder_the_newest_counts(folders: list[Path]) -> None:
-    """A copy of an older version under another file name does not hide the newer one."""
     write_library(folders[0] / "a copy.json", replace(LIBRARY, version=2, title="Newer"))
     assert find_library("small_steps", folders).title == "Newer"
 

@@ -33,7 +33,6 @@ def shipped(name: str) -> Library:
 
 
 def test_every_kind_is_shipped() -> None:
-    """One file each, called as the library is known, and none that the tool does not write."""
     assert set(NAMES) == KINDS
     assert {file.stem for file in SHIPPED.glob("*")} == KINDS
     assert all(shipped(name).identifier == name for name in NAMES)
@@ -63,7 +62,6 @@ def test_joints_stay_in_their_range(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_feet_bear_the_body(name: str) -> None:
-    """Soles neither sink into the floor nor slide over it, and stand on it at some time."""
     library = shipped(name)
     body = Body(library.actor)
     for motion in library.motions:
@@ -75,7 +73,6 @@ def test_feet_bear_the_body(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_nobody_moves_faster_than_people(name: str) -> None:
-    """Kicks and punches of athletes stay below, and arms pass beside the trunk."""
     library = shipped(name)
     body = Body(library.actor)
     for motion in library.motions:
@@ -110,7 +107,6 @@ def test_the_second_step_mirrors_the_first(name: str, motion: str) -> None:
 
 
 def test_knees_bend_as_gait_laboratories_measure() -> None:
-    """Winter (2009), Perry & Burnfield (2010): 18 while loading, then all but straight, 60 in the swing."""
     library = shipped("walking")
     body = Body(library.actor)
     walk = library.motions[0]
@@ -122,7 +118,6 @@ def test_knees_bend_as_gait_laboratories_measure() -> None:
 
 
 def test_runners_fly() -> None:
-    """Between a step and the next both soles are off the floor, when walking never."""
     flies = {}
     for name, index in (("walking", 0), ("running", 0)):
         library = shipped(name)

@@ -36,7 +36,6 @@ def grounded(seed: int, height_m: float) -> Posture:
 
 
 def test_the_same_proportions_get_the_same_posture() -> None:
-    """Not even the last bit changes, whoever has been read from a file in between."""
     posture = random_posture(1)
     nearly = Actor({name: round(length, 9) for name, length in LENGTHS.items()})
     assert transferred(posture, ACTOR, Body(nearly)) is posture
@@ -62,7 +61,6 @@ def test_feet_stay_on_the_floor_or_as_far_above(lengths: dict[str, float], heigh
 
 
 def test_a_child_does_what_an_adult_does() -> None:
-    """With all lengths scaled alike, every point is scaled; there and back again nothing has changed."""
     child = Body(Actor({name: 0.7 * length for name, length in LENGTHS.items()}))
     batch = Posture.stack([grounded(seed, 0.05 * seed) for seed in range(4)])
     small = transferred(batch, ACTOR, child)

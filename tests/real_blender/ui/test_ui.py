@@ -72,7 +72,6 @@ def run_script(
 
 
 def test_the_first_minutes(blender_on_screen: Blender, repository: Path) -> None:
-    """From Blender as it starts to an example on a Rigify character, in few clicks, and all of it undone."""
     folder = repository / "build" / "screenshots" / "first"
     run_script(blender_on_screen, "first_session.py", FIRST_STEPS, None, folder)
     clicks, _, _, keys = (folder / "summary.txt").read_text(encoding="utf-8").split()[:4]
@@ -103,7 +102,6 @@ def test_a_session_leads_to_the_command_lines_motion(
 
 
 def test_keyframes_are_found_and_chosen(blender_on_screen: Blender, repository: Path) -> None:
-    """Matching, removing, Pose All and taking candidates by mouse and keys, each undone and redone."""
     take = repository / "presets" / "demo" / "aerobic"
     folder = repository / "build" / "screenshots" / "library"
     run_script(blender_on_screen, "library_session.py", CHOOSING_STEPS, take, folder, "aerobic")
@@ -112,7 +110,6 @@ def test_keyframes_are_found_and_chosen(blender_on_screen: Blender, repository: 
 def test_few_clicks_lead_from_the_clip_to_a_motion(
     blender_on_screen: Blender, repository: Path, tmp_path: Path
 ) -> None:
-    """Pose All and a few corrections, of a performer who is first seen from the side."""
     take = repository.parent / "shared" / "takes" / "kick"
     if not (take / "take.json").is_file():
         take = profile_take(repository / "presets" / "demo" / "aerobic", tmp_path / "profile")
@@ -126,7 +123,6 @@ def test_few_clicks_lead_from_the_clip_to_a_motion(
 def test_plain_clothes_lead_to_a_motion(
     blender: Blender, blender_on_screen: Blender, repository: Path, tmp_path: Path
 ) -> None:
-    """Keypoints loaded, points clicked on and keyframes posed by hand score as the command line does."""
     take = plain_take(repository / "presets" / "demo" / "aerobic", tmp_path / "plain")
     folder = repository / "build" / "screenshots" / "plain"
     run_script(blender_on_screen, "plain_session.py", PLAIN_STEPS, take, folder)
@@ -140,7 +136,6 @@ def test_plain_clothes_lead_to_a_motion(
 
 
 def test_clutter_is_brushed_away(blender_on_screen: Blender, repository: Path, tmp_path: Path) -> None:
-    """Five clicks with mistakes among them; then a panel of a sleeve's color is left out in both ways."""
     take = panelled_take(repository / "presets" / "demo" / "aerobic", tmp_path / "panelled")
     folder = repository / "build" / "screenshots" / "markers"
     panel = ",".join(map(str, PANEL))
@@ -148,7 +143,6 @@ def test_clutter_is_brushed_away(blender_on_screen: Blender, repository: Path, t
 
 
 def test_libraries_are_seen(blender_on_screen: Blender, repository: Path) -> None:
-    """One that is learned: in the panel, and in the asset browser."""
     take = repository / "presets" / "demo" / "aerobic"
     folder = repository / "build" / "screenshots" / "shelf"
     run_script(blender_on_screen, "shelf_session.py", SHELF_STEPS, take, folder)

@@ -104,7 +104,6 @@ def test_special_files_in_a_folder_do_not_block(tmp_path: Path, kind: str) -> No
 
 
 def test_all_points_together_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In a folder the limit is met while it is read, not after the last of a million files."""
     monkeypatch.setattr(detected_frames, "MOST_POINTS", 5 * BODY25.count)
     folder = write_openpose(tmp_path / "json", moving_person(BODY25))
     (folder / "clip_000000000009_keypoints.json").write_text("never read", encoding="utf-8")

@@ -87,7 +87,6 @@ def test_a_few_frames_more_or_less_are_noted(tmp_path: Path) -> None:
 
 
 def test_hands_of_openpose_follow_the_body(tmp_path: Path) -> None:
-    """Where one was found in some frame; in the others, and on the other side, it is not seen."""
     person, hand = moving_person(BODY25), np.round(moving_person(BODY25, seed=1)[:, :21], 3)
     folder = write_openpose(tmp_path / "json", person)
     for index in (4, 5):
@@ -198,7 +197,6 @@ def test_pixels_of_a_smaller_picture_are_scaled(tmp_path: Path) -> None:
 
 
 def test_points_not_seen(tmp_path: Path) -> None:
-    """Score 0, the corner, and places outside the picture say nothing; a person without points is nobody."""
     person = moving_person(COCO17)
     person[0, 3] = [0.0, 0.0, 0.7]
     person[0, 4, 2] = 0.0
@@ -259,7 +257,6 @@ def test_negative_scores_beside_probabilities_are_not_seen(tmp_path: Path) -> No
 
 
 def test_frame_rate_and_start_of_the_file(tmp_path: Path) -> None:
-    """They are compared with the clip's; with one entry a frame there is nothing to shift."""
     person = moving_person(COCO17)
     path = write(tmp_path / "own.json", own_value(person) | {"fps": 60.0})
     assert any("60 frames per second" in note for note in read(path, fps=30.0).notes)

@@ -128,7 +128,6 @@ def test_a_crowd_is_searched_where_the_performer_is_expected() -> None:
 
 
 def test_size_ignores_points_not_seen() -> None:
-    """The box about the seen points; a person without any has a size too, by which can be divided."""
     points = np.stack([FIGURE, np.full_like(FIGURE, np.nan)])
     points[0, 1:3] = np.nan
     np.testing.assert_allclose(person_size(points), [np.hypot(14.0, 75.0), 1.0])
@@ -145,7 +144,6 @@ def seen(points: dict[str, tuple[float, float]], score: float = 0.9) -> Keypoint
 
 
 def test_the_heads_center_is_halfway_between_the_ears() -> None:
-    """The nose, a decimeter in front of it, counts where the ears are hidden, and for less."""
     face = {"nose": (50.0, 20.0), "ear.L": (60.0, 10.0), "ear.R": (40.0, 12.0)}
     both, nose = principal_keypoints(seen(face)), principal_keypoints(seen({"nose": (50.0, 20.0)}))
     np.testing.assert_allclose(both.pixel[0, HEAD], [50.0, 11.0])
