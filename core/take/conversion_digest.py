@@ -14,7 +14,7 @@ from ..prior.texts import COMPOSED, EVERY_LIBRARY
 from .conversion_settings import METHODS, CharacterSettings, ConversionSettings
 from .description import FILE_FIELDS, SETTING_FIELDS, Description, keypoint_files
 
-FORMAT = 2
+FORMAT = 3
 """Raised whenever the same input gives another result without a new version."""
 
 
