@@ -75,7 +75,13 @@ class PoseNetwork:
         known = [line.split()[0] for line in CHECKSUMS.read_text(encoding="utf-8").splitlines()]
         if hashlib.sha256(weights).hexdigest() not in known:  # OpenCV would crash
             raise InputError(f"{model}: the network that finds keypoints is damaged or another one; {again}")
-        self._net = cv2.dnn.readNetFromTFLite(np.frombuffer(weights, dtype=np.uint8))
+        try:
+            self._net = cv2.dnn.readNetFromTFLite(np.frombuffer(weights, dtype=np.uint8))
+        except cv2.error as error:  # built without FlatBuffers, as Debian's
+            raise InputError(
+                f"{cv2.__file__}: this OpenCV ({cv2.__version__}) cannot read the network that finds "
+                "keypoints; opencv-python-headless, which Keymark's zip brings, can"
+            ) from error
 
     def __call__(self, picture: Image, crop: Crop) -> Pose:
         """The person in a crop of a picture (height, width, 3), blue first."""

@@ -1,9 +1,11 @@
 """People are found in a clip and followed, by a landmark network whose points lie where they are seen."""
 
+import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, cast
 
+import cv2
 import numpy as np
 import pytest
 from _drawn_clip import Drawn
@@ -99,7 +101,10 @@ def test_a_clip_without_anybody_is_one_sentence() -> None:
         run(find_people(clip, cast(Any, FakeNetwork()), 50))
 
 
-needs_model = pytest.mark.skipif(not MODEL.is_file(), reason="tools/fetch_model.py was not run")
+needs_model = pytest.mark.skipif(
+    not MODEL.is_file() or "flatbuffers:" not in cv2.getBuildInformation().lower(),
+    reason="tools/fetch_model.py was not run, or this OpenCV is built without FlatBuffers",
+)
 
 
 def bare() -> PoseNetwork:
@@ -154,6 +159,20 @@ def test_a_missing_or_damaged_file_is_one_sentence(tmp_path: Path) -> None:
     broken.write_bytes(b"TFL3" * 1000)
     with pytest.raises(InputError, match=r"is damaged or another one; install"):
         PoseNetwork(broken)
+
+
+def test_an_opencv_without_networks_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(_: object) -> None:
+        raise cv2.error("Build OpenCV with FlatBuffers")
+
+    weights = tmp_path / "weights.tflite"
+    weights.write_bytes(b"TFL3")
+    listed = tmp_path / "SHA256SUMS"
+    listed.write_text(f"{hashlib.sha256(b'TFL3').hexdigest()}  weights.tflite\n", encoding="utf-8")
+    monkeypatch.setattr("keymark.core.footage.pose_network.CHECKSUMS", listed)
+    monkeypatch.setattr(cv2.dnn, "readNetFromTFLite", refuse)
+    with pytest.raises(InputError, match=r"this OpenCV \(4\..*zip brings"):
+        PoseNetwork(weights)
 
 
 @needs_model
