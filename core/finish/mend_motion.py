@@ -50,6 +50,7 @@ class MendOptions:
     posed: tuple[int, ...] = ()  # frames, from 0, that a person posed and vouches for
     plant_feet: bool = True  # whether resting feet stand still, and the hips go where the feet say
     floor: bool = True  # whether the floor becomes z = 0
+    place_m: float = PLACE_M  # usual error of the hips' place
     ankle_m: float | None = None  # height of a standing ankle above its sole; None for the usual one
 
 
@@ -94,7 +95,7 @@ def mend_motion(points: Array, rate: float, options: MendOptions, frame_start: i
     if not has_place:
         notes.append("The file has the hips in one place; the way over the ground was found by the feet")
     if options.plant_feet:
-        place_m = PLACE_M if has_place else np.inf
+        place_m = options.place_m if has_place else np.inf
         hips = place_by_feet(hips, relative[:, ANKLES], rate, place_m, posed if has_place else None)
     wanted = relative + hips[:, None]
     body = Body(measured_actor(given))
