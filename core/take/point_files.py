@@ -35,7 +35,7 @@ MEDIAPIPE = (
     *("left_foot_index", "right_foot_index"),
 )
 """The points of MediaPipe's pose in its order, which FreeMoCap's npy has without names."""
-HEADS = (("ear.L", "ear.R"), ("headcenter",), ("head", "nose"), ("head",), ("skull",), ("nose",))
+HEADS = (("ear.L", "ear.R"), ("head", "nose"), ("head",), ("skull",), ("nose",))
 """Points whose middle is the head's, the best first: a head alone may be its top."""
 IDLE_WORDS = {"joint", "center", "centre", "study", "body", "mediapipe", "marker", "jc"}
 _WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
