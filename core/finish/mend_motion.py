@@ -1,7 +1,7 @@
-"""A motion from elsewhere mended without footage: jitter, exchanged sides, sliding feet, floor, posed frames.
+"""A motion from elsewhere mended without footage: jitter, exchanged sides, sliding feet, floor, poses.
 
-Thirteen points go in and a motion of the skeleton comes out. Posed frames are exact, and the error beside them
-is what it is there and wanders from it (`core/numerics/wandering`).
+Thirteen points go in and a motion of the skeleton comes out. Posed frames are exact, and the error beside
+them is what it is there and wanders from it (`core/numerics/wandering`).
 """
 
 from dataclasses import dataclass

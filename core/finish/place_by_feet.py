@@ -1,9 +1,9 @@
 """Where a body goes by its feet: what carries it stands, and the hips move as the standing foot says.
 
-A network guesses the posture well and the place badly: its hips drift and its feet slide by centimeters a
-frame. Of each foot and pair of frames the travel over the ground is zero, with an error of heavy tails: a foot
-that swings is far off and counts for nothing. Solved by reweighting, from wide errors to narrow ones, beside
-the place that was given.
+A network guesses the posture well and the place badly: its hips drift and its feet slide by centimeters
+a frame. Of each foot and pair of frames the travel over the ground is zero, with an error of heavy tails:
+a foot that swings is far off and counts for nothing. Solved by reweighting, from wide errors to narrow
+ones, beside the place that was given.
 """
 
 import numpy as np
@@ -33,7 +33,6 @@ def place_by_feet(
     frames stay.
     """
     pins = np.zeros(0, dtype=np.intp) if exact is None else exact
-    frames = len(hips)
     height = feet[..., 2] - feet[..., 2].min(axis=1, keepdims=True)
     low = np.maximum(height[1:], height[:-1])
     may_stand = 1.0 / (1.0 + (low / LOW_M) ** 4)  # (F-1, 2)

@@ -1,4 +1,4 @@
-"""A mended motion back on the armature it came from: bones keep their lengths, twists and whatever has no role.
+"""A mended motion on the armature it came from: bones keep their lengths, and what has no role its motion.
 
 Its bones' own turns are smoothed as the points were (`core/numerics/wandering`), then arms and legs are aimed
 at the mended joints. Poses are of bones in the world: axes of length one as columns, then the head [m].
@@ -81,15 +81,16 @@ def _anchor(body: RestBody, point: str) -> tuple[str, Array]:
 
 
 def mended_poses(points: ArmaturePoints, poses: Poses, mended: Mended, posed: IndexArray) -> dict[str, Array]:
-    """Poses (F, 4, 4) of the bones that play a role, by name, for a mended motion of `points`.
+    """Poses (F, 4, 4) by name of the bones that play a role but the toes', for a mended motion of `points`.
 
     `poses` are those that the motion had; at the frames `posed` a person vouches for them.
     """
     body = points.body
-    turns = {bone.name: _smooth(poses[bone.name][:, :3, :3], mended, posed) for bone in body.bones}
+    moved = [bone for bone in body.bones if not bone.role.startswith("toe")]
+    turns = {bone.name: _smooth(poses[bone.name][:, :3, :3], mended, posed) for bone in moved}
     goals = dict(zip(HUMAN.point_names, np.moveaxis(mended.motion.points, 1, 0), strict=True))
     found: dict[str, Array] = {}
-    for bone in body.bones:
+    for bone in moved:
         pose = np.tile(np.eye(4), (len(mended.exchanged), 1, 1))
         pose[:, :3, :3] = turns[bone.name]
         if bone.carrier >= 0:

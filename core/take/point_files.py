@@ -1,7 +1,7 @@
 """Files of points in space: csv and npy of FreeMoCap, csv of other named points, TRC and C3D.
 
-Points are found by their names, up is the axis along which the head is above the ankles, and where a file does
-not tell its unit it is the one that makes a person of it.
+Points are found by their names, up is the axis along which the head is above the ankles, and where a file
+does not tell its unit it is the one that makes a person of it.
 """
 
 import csv
@@ -100,8 +100,9 @@ def _principal(table: _Table, path: Path) -> Array:
             columns.append(np.mean([table.values[:, known[name]] for name in found], axis=0))
     if missing:
         raise InputError(
-            f"{path}: has no point for {listed(missing, 4)}; it must have both shoulders, elbows, wrists, hips, "
-            f"knees and ankles by name, and a head, ears or a nose; its points are {listed(table.names, 5)}"
+            f"{path}: has no point for {listed(missing, 4)}; it must have both shoulders, elbows, wrists, "
+            "hips, knees and ankles by name, and a head, ears or a nose; its points are "
+            f"{listed(table.names, 5)}"
         )
     return np.stack(columns, axis=1)
 
@@ -133,8 +134,8 @@ def _unit_m(table: _Table, points: Array, path: Path) -> float:
     unit = min(units, key=lambda unit: abs(np.log(max(leg, 1e-12) * unit / 0.85)))
     if not SHORTEST_LEG_M <= leg * unit <= LONGEST_LEG_M:
         raise InputError(
-            f"{path}: its legs are {leg * unit:.3g} m long; a person's are {SHORTEST_LEG_M} to {LONGEST_LEG_M} m, "
-            "so look at its unit and scale"
+            f"{path}: its legs are {leg * unit:.3g} m long; a person's are {SHORTEST_LEG_M} to "
+            f"{LONGEST_LEG_M} m, so look at its unit and scale"
         )
     return unit
 
@@ -205,8 +206,8 @@ def _read_npy(path: Path) -> _Table:
         shape = values.shape
         if values.dtype.kind not in "fiu" or len(shape) != 3 or shape[2] != 3 or shape[1] < len(MEDIAPIPE):
             raise InputError(
-                f"{path}: has the shape {shape}; it must be frames, at least {len(MEDIAPIPE)} points and x, y, z "
-                "as FreeMoCap writes them"
+                f"{path}: has the shape {shape}; it must be frames, at least {len(MEDIAPIPE)} points and "
+                "x, y, z, as FreeMoCap writes them"
             )
         points = np.array(values[: MOST_FRAMES + 1, : len(MEDIAPIPE)], dtype=np.float64)
     except (OSError, ValueError, EOFError, TypeError, SyntaxError) as error:
@@ -239,8 +240,8 @@ def _read_trc(path: Path) -> _Table:
     by_time = _rate_of(values[:, 1])
     if by_time is not None and not abs(by_time - rate) <= 0.02 * by_time:
         raise InputError(
-            f"{path}: DataRate is {shown(head.get('DataRate', ''))}, but its times follow at {by_time:.6g} a second; "
-            "they must agree"
+            f"{path}: DataRate is {shown(head.get('DataRate', ''))}, but its times follow at {by_time:.6g} "
+            "a second; they must agree"
         )
     unit = UNITS_M.get(head.get("Units", "").lower())
     return _Table(tuple(names), values[:, 2:].reshape(len(values), -1, 3), rate, unit)

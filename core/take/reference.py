@@ -42,8 +42,8 @@ def read_reference(path: Path) -> ReferenceMotion:
     ending = path.suffix.lower()
     if ending not in REFERENCE_ENDINGS:
         raise InputError(
-            f"{path}: is no reference motion; it must end in {listed(REFERENCE_ENDINGS)}: points by name, or a "
-            "motion.json"
+            f"{path}: is no reference motion; it must end in {listed(REFERENCE_ENDINGS)}: points by name, "
+            "or a motion.json"
         )
     if ending == ENDING:
         motion = read_motion(path)

@@ -1,19 +1,25 @@
-"""Import an animated armature from a file: its Action at the scene's frames, its rate, and a person's size."""
+"""Import an animated armature from a file: its Action on whole frames, its rate, and a person's size."""
 
 import re
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
 import bpy
 import numpy as np
 
+from ....core.body.skeleton import SIDES
 from ....core.errors import InputError
 from ....core.files.fields import listed
-from ....core.files.paths import regular_file_size
+from ....core.files.paths import real_path, regular_file_size
+from ....core.retarget.character import ARM, LEG
+from ....core.retarget.maps.character_map import CharacterMap, RoleBones
 from ....core.retarget.maps.map_registry import ChosenMap, choose_map
+from ....core.retarget.retarget_record import RECOGNIZED
 from ....core.retarget.solve.rest_body import RestBody
-from ....core.take.conversion_settings import CharacterFile
+from ....core.take.conversion_settings import AUTO, CharacterFile
 from ..actions import assign_action, existing_channelbag
+from ..actor_bones import is_actor
 from ..character.import_character import ImportedCharacter, import_character
 from ..character.read_character import read_character
 from ..keys import mark_generated
@@ -24,12 +30,21 @@ LARGEST_BVH = 2**29
 UNITS = (1.0, 0.01, 0.1, 0.001, 0.0254, 0.3048, 100.0)
 """Meters that a file's unit may have: m, cm, dm, mm, inches, feet; and characters in hundreds of meters."""
 SHORTEST_LEG_M, LONGEST_LEG_M = 0.35, 1.5  # of a child and of a giant
+ACTOR_BONES = {
+    **{"hips": "pelvis", "spine": "chest", "head": "head"},
+    **{
+        f"{role}.{side}": f"{'girdle' if role == 'shoulder' else role}.{side}"
+        for role in (*ARM, *LEG[:3])
+        for side in SIDES
+    },
+}
+"""The bones of Keymark's actor by the role that they play."""
 _RATE = re.compile(r"Frame\s+Time:\s*(\S+)", re.IGNORECASE)
 _FRAMES = re.compile(r"Frames:\s*(\S+)", re.IGNORECASE)
 
 
 def import_motion(
-    file: CharacterFile, scene: bpy.types.Scene, maps: tuple[Path, ...] = ()
+    file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = ()
 ) -> tuple[ImportedCharacter, ChosenMap]:
     """Import an animated armature into a scene, which gets the motion's rate, and recognize its bones.
 
@@ -51,11 +66,12 @@ def import_motion(
         raise InputError(f"{file.path}: its armature '{armature.name}' has no Action, so it has no motion")
     if suffix.startswith(".usd"):
         _set_rate(scene, _usd_rate(file.path))
+    elif suffix == ".blend":
+        _set_rate(scene, _blend_rate(file.path))
     _set_to_keys(scene, armature, action, file.path)
     try:
-        character = read_character(armature)
-        chosen = choose_map(character, "auto", maps)
-        leg_m = RestBody.of(character, chosen.character_map).leg_m
+        chosen = motion_map(armature, maps)
+        leg_m = RestBody.of(read_character(armature), chosen.character_map).leg_m
     except InputError as error:
         raise InputError(f"{file.path}: {error}") from error
     unit = min(UNITS, key=lambda unit: abs(np.log(leg_m * unit / 0.85)))
@@ -71,6 +87,57 @@ def import_motion(
     if bag is not None:
         mark_generated(bag)
     return imported, chosen
+
+
+def motion_map(armature_object: bpy.types.Object, maps: Sequence[Path]) -> ChosenMap:
+    """The roles of an armature's bones: of Keymark's actor by its bones, of any other as a character's.
+
+    Raises:
+        InputError: It is no person's.
+    """
+    if is_actor(armature_object):
+        roles = {role: RoleBones((bone,)) for role, bone in ACTOR_BONES.items()}
+        return ChosenMap(CharacterMap("Actor", roles), RECOGNIZED)
+    return choose_map(read_character(armature_object), AUTO, maps)
+
+
+def load_motion(file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = ()) -> bpy.types.Object:
+    """Bring an animated armature into a scene, which keeps its rate and range; returns the armature object.
+
+    The motion begins at the scene's first frame and takes as long as in the file.
+
+    Raises:
+        InputError: See `import_motion`; nothing is added then.
+    """
+    before = {block.as_pointer() for block in bpy.data.user_map()}
+    meanwhile = bpy.data.scenes.new("Motion")
+    try:
+        imported, _ = import_motion(file, meanwhile, maps)
+        armature = imported.armature
+        action = armature.animation_data.action
+        factor = scene.render.fps / scene.render.fps_base
+        factor /= meanwhile.render.fps / meanwhile.render.fps_base
+        bag = existing_channelbag(action, armature)
+        if bag is not None:
+            _retime(bag, meanwhile.frame_start, factor, scene.frame_start)
+        for collection in list(meanwhile.collection.children):
+            scene.collection.children.link(collection)
+    except BaseException:
+        bpy.data.scenes.remove(meanwhile)
+        made = [block for block in bpy.data.user_map() if block.as_pointer() not in before]
+        bpy.data.batch_remove(made)
+        raise
+    bpy.data.scenes.remove(meanwhile)
+    return armature
+
+
+def _retime(bag: bpy.types.ActionChannelbag, first: float, factor: float, start: float) -> None:
+    """Let keys begin at `start` instead of `first`, and follow at `factor` times their distance."""
+    for curve in bag.fcurves:
+        for key in curve.keyframe_points:
+            for handle in (key.co, key.handle_left, key.handle_right):
+                handle[0] = start + (handle[0] - first) * factor
+        curve.update()
 
 
 def _check_bvh(path: Path) -> None:
@@ -124,6 +191,17 @@ def _usd_rate(path: Path) -> float:
     return 24.0  # USD's own default
 
 
+def _blend_rate(path: Path) -> float:
+    """The rate of the first scene of a .blend."""
+    with bpy.data.libraries.load(str(real_path(path)), link=True) as (inside, wanted):
+        wanted.scenes = list(inside.scenes)[:1]
+    rates = [scene.render.fps / scene.render.fps_base for scene in wanted.scenes if scene is not None]
+    for scene in wanted.scenes:
+        if scene is not None:
+            bpy.data.libraries.remove(scene.library)
+    return rates[0] if rates else 24.0
+
+
 def _set_rate(scene: bpy.types.Scene, rate: float) -> None:
     scene.render.fps = max(1, round(rate))
     scene.render.fps_base = scene.render.fps / rate
@@ -150,11 +228,8 @@ def _set_to_keys(
                 f"{path}: its keys follow at {rate / step:.4g} a second; {SLOWEST:g} to {FASTEST:g} are valid"
             )
         first = float(times[0])
-        for curve in bag.fcurves if bag is not None else ():
-            for key in curve.keyframe_points:
-                for handle in (key.co, key.handle_left, key.handle_right):
-                    handle[0] = 1.0 + (handle[0] - first) / step
-            curve.update()
+        if bag is not None:
+            _retime(bag, first, 1.0 / step, 1.0)
         rate /= step
     # A step of 0.033333 s means 30 frames a second.
     _set_rate(scene, float(round(rate)) if abs(rate - round(rate)) < 5e-4 * rate else rate)

@@ -8,6 +8,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ....core.arrays import Array
+from ....core.body.skeleton import SIDES
 from ....core.errors import InputError
 from ....core.finish.mend_motion import HIPS, PLACE_M, Mended, MendOptions, mend_motion
 from ....core.progress import Job, Progress, run, stretch, within
@@ -26,7 +27,7 @@ SOURCE = "keymark_mended_from"
 SUFFIX = " Mended"
 MENDED_PLACE_M = 0.002  # usual error of a place that was mended: a posed arm moves no hips
 SHOWN_M = 0.01
-"""Farthest that Blender may show a joint from where it was put: else something else than its keys moves it."""
+"""Farthest that Blender may show a joint from where it was put; else not its keys alone move it."""
 LOOKED_AT = 5  # frames in which that is looked at
 
 
@@ -34,7 +35,6 @@ LOOKED_AT = 5  # frames in which that is looked at
 class MendedAction:
     """A mended motion of an armature, not yet written."""
 
-    session_uid: int  # Blender's number of the armature object in this session
     action: bpy.types.Action  # what it was made from
     frames: Array  # (F,) scene frames
     posed: tuple[int, ...]
@@ -42,7 +42,6 @@ class MendedAction:
     poses: Poses  # (F, 4, 4) of the bones that play a role, in the world [m]
     columns: tuple[tuple[str, int, str, Array], ...]
     """Data path, array index, bone and values (F,) of each curve."""
-    roles: tuple[str, ...]  # names of these bones
 
 
 def mend_action(
@@ -76,7 +75,7 @@ def mend_action(
         reading = read_poses(armature_object, action, frames, bones)
         corrected, _ = yield from within("Reading the motion", reading, 0.2, 0.3)
         poses = _corrected(points, poses, corrected, posed)
-    ankle_m = float(np.mean([body.joint(f"foot.{side}")[2] for side in "LR"])) - rest_floor_m(body)
+    ankle_m = float(np.mean([body.joint(f"foot.{side}")[2] for side in SIDES])) - rest_floor_m(body)
     place_m = PLACE_M if source == action else MENDED_PLACE_M
     options = MendOptions(posed, plant_feet, floor, place_m, ankle_m)
     scene = next(iter(armature_object.users_scene), bpy.context.scene)
@@ -86,7 +85,7 @@ def mend_action(
     yield Progress("Turning the bones", 0.8)
     made = mended_poses(points, poses, mended, np.array(posed, dtype=np.intp))
     columns = tuple(_columns(armature_object, poses, made, objects))
-    return MendedAction(armature_object.session_uid, source, frames, posed, mended, made, columns, roles)
+    return MendedAction(source, frames, posed, mended, made, columns)
 
 
 def write_mended(armature_object: bpy.types.Object, found: MendedAction) -> bpy.types.Action:
@@ -108,7 +107,7 @@ def write_mended(armature_object: bpy.types.Object, found: MendedAction) -> bpy.
     elif data.action_slot is None:
         assign_action(armature_object, action)
     channelbag = channelbag_for(action, armature_object)
-    turned = {bone_path(bone, channel) for bone in found.roles for channel in ALL_PATHS}
+    turned = {bone_path(bone, channel) for bone in found.poses for channel in ALL_PATHS}
     written = turned | {path for path, *_ in found.columns}
     for curve in [curve for curve in channelbag.fcurves if curve.data_path in written]:
         channelbag.fcurves.remove(curve)
@@ -225,8 +224,8 @@ def _in_object(into: Array, objects: Array, poses: Array) -> Array:
 def _farthest_m(armature_object: bpy.types.Object, action: bpy.types.Action, found: MendedAction) -> float:
     """How far Blender shows a joint from where it was put, in a few frames [m]."""
     looked = np.unique(np.linspace(0, len(found.frames) - 1, LOOKED_AT).round().astype(int))
-    shown, _ = run(read_poses(armature_object, action, found.frames[looked], found.roles))
+    shown, _ = run(read_poses(armature_object, action, found.frames[looked], tuple(found.poses)))
     return max(
         float(np.linalg.norm(shown[name][:, :3, 3] - found.poses[name][looked, :3, 3], axis=-1).max())
-        for name in found.roles
+        for name in found.poses
     )

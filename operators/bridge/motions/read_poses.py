@@ -31,7 +31,8 @@ def animated_action(armature_object: bpy.types.Object) -> bpy.types.Action:
     action = data.action if data is not None else None
     if action is None:
         raise InputError(
-            f"armature '{armature_object.name}' has no Action; load a motion, or choose the Action that moves it"
+            f"armature '{armature_object.name}' has no Action; load a motion, or choose the Action "
+            "that moves it"
         )
     return action
 
@@ -120,7 +121,7 @@ def read_poses(
     paths = np.array(found)
     if not np.isfinite(paths).all():
         raise InputError(
-            f"Action '{action.name}' gives '{armature_object.name}' poses that are not numbers; delete the keys "
-            "that are no numbers"
+            f"Action '{action.name}' gives '{armature_object.name}' poses that are not numbers; delete the "
+            "keys that are no numbers"
         )
     return {name: paths[:, number] for number, name in enumerate(bones)}, np.array(objects)

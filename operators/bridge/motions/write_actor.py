@@ -1,7 +1,8 @@
-"""A motion as a BVH of Keymark's own armature."""
+"""A motion on Keymark's own armature: in a scene, and as a BVH."""
 
 from pathlib import Path
 
+import bpy
 import numpy as np
 
 from ....core.take.motion import Motion
@@ -23,3 +24,14 @@ def write_actor_bvh(motion: Motion, path: Path) -> None:
         actor = build_armature(scene, motion.body, "Actor")
         write_motion(actor, motion, frames=np.asarray(frames))
         write_bvh(actor, path)
+
+
+def add_actor(
+    scene: bpy.types.Scene, motion: Motion, name: str, first: int | None = None
+) -> bpy.types.Object:
+    """Add an actor with a motion to a scene, which keeps its rate; it begins at `first` or its own frame."""
+    actor = build_armature(scene, motion.body, name)
+    rate = scene.render.fps / scene.render.fps_base
+    frames = (motion.frame_start if first is None else first) + motion.time_s * rate
+    write_motion(actor, motion, frames=np.asarray(frames)).name = f"{name} Motion"
+    return actor

@@ -55,9 +55,10 @@ def mend_command(arguments: argparse.Namespace) -> None:
         raise UsageError(f"--fps is {arguments.fps:g}; 1 to 1000 frames a second are valid")
     with arguments_console(arguments) as console:
         kept: dict[str, str] = {}
+        notes: tuple[str, ...] = ()
         with output_folder(folder, (*FILES, AS_MADE), MOTION, kept) as staging:
             if file.path.suffix.lower() in REFERENCE_ENDINGS:
-                mended, notes = _mend_points(file, posed, arguments, console), ()
+                mended = _mend_points(file, posed, arguments, console)
             else:
                 own = None if settings is not None else (staging, real_path(folder), formats)
                 mended, notes = _mend_armature(file, posed, arguments, console, own)
@@ -203,17 +204,17 @@ def _posed(text: str) -> tuple[int, ...]:
 MEND = Command(
     name="mend",
     description=(
-        "Mends a motion that another program made, without footage: its jitter, exchanged sides, sliding feet "
-        "and floor. DIR then holds motion.json and motion.bvh, and character.blend: the armature of the file "
-        "itself with its fingers, face and toes as they were, or the character that --character names. DIR "
-        "changes only once all files are complete. Needs Blender."
+        "Mends a motion that another program made, without footage: its jitter, exchanged sides, sliding "
+        "feet and floor. DIR then holds motion.json and motion.bvh, and character.blend: the armature of the "
+        "file itself with its fingers, face and toes as they were, or the character that --character names. "
+        "DIR changes only once all files are complete. Needs Blender."
     ),
     arguments=(
         argument(
             "motion",
             metavar="FILE[:OBJECT]",
-            help="an animated armature (.bvh, .fbx, .glb, .vrm, .usd, .blend), and after a colon its name where "
-            "there are several; or points by name (.csv, .npy, .trc), or a motion.json",
+            help="an animated armature (.bvh, .fbx, .glb, .vrm, .usd, .blend), and after a colon its name "
+            "where there are several; or points by name (.csv, .npy, .trc), or a motion.json",
         ),
         *output("DIR", "folder for the result, new or old"),
         argument("--character", "-c", metavar="FILE[:OBJECT]", help=CHARACTER_HELP),
@@ -222,8 +223,8 @@ MEND = Command(
             "--posed",
             metavar="FRAMES",
             default="",
-            help="frames that you have posed, with commas between them; those with keys of their own are found. "
-            "They stay, and the motion beside them follows",
+            help="frames that you have posed, with commas between them; those with keys of their own are "
+            "found. They stay, and the motion beside them follows",
         ),
         argument(
             "--fps",

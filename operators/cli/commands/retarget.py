@@ -192,7 +192,7 @@ RETARGET = Command(
         *output("DIR", "folder for the result, new or old"),
         argument(
             "--format",
-            metavar="bvh,fbx,glb,usd",
+            metavar=",".join(EXPORTS),
             default="",
             help="further files of the character with its motion, separated by commas",
         ),
