@@ -72,7 +72,7 @@ def mend_motion(points: Array, rate: float, options: MendOptions, frame_start: i
         InputError: There are too few frames, too many, or too few with the whole body; no size of a person.
     """
     yield Progress("Looking through the motion", 0.0)
-    given, notes = _checked(points, options)
+    given, notes = _checked(points, options, frame_start)
     posed = np.array(options.posed, dtype=np.intp)
     exchanged = exchanged_frames(given)
     exchanged[posed] = False
@@ -123,7 +123,7 @@ def mend_motion(points: Array, rate: float, options: MendOptions, frame_start: i
     return Mended(motion, contacts, exchanged, sizes, tuple(notes))
 
 
-def _checked(points: Array, options: MendOptions) -> tuple[Array, list[str]]:
+def _checked(points: Array, options: MendOptions, frame_start: int) -> tuple[Array, list[str]]:
     """The points with NaN where a frame is missing or repeats the one before, and notes.
 
     Raises:
@@ -136,7 +136,10 @@ def _checked(points: Array, options: MendOptions) -> tuple[Array, list[str]]:
         )
     wrong = [frame for frame in options.posed if not 0 <= frame < frames]
     if wrong:
-        raise InputError(f"posed frame {wrong[0]} is not in the motion, which has frames 0 to {frames - 1}")
+        raise InputError(
+            f"posed frame {wrong[0] + frame_start} is not in the motion, whose frames are {frame_start} to "
+            f"{frame_start + frames - 1}"
+        )
     given = np.where(np.isfinite(points).all(axis=(1, 2), keepdims=True), points, np.nan)
     repeats = np.zeros(frames, dtype=bool)
     repeats[1:] = np.abs(np.diff(given, axis=0)).max(axis=(1, 2)) < 1e-7

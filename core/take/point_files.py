@@ -6,6 +6,7 @@ does not tell its unit it is the one that makes a person of it.
 
 import csv
 import re
+import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..body.human import HUMAN
-from ..errors import InputError
+from ..errors import InputError, describe_unexpected
 from ..files.fields import listed
 from ..files.json_file import shown, write_atomically
 from ..files.paths import regular_file_size
@@ -247,16 +248,18 @@ def _read_trc(path: Path) -> _Table:
     return _Table(tuple(names), values[:, 2:].reshape(len(values), -1, 3), rate, unit)
 
 
-def write_trc(path: Path, points: Array, rate: float, names: Sequence[str] = HUMAN.point_names) -> None:
+def write_trc(
+    path: Path, points: Array, rate: float, names: Sequence[str] = HUMAN.point_names, title: str = "motion"
+) -> None:
     """Write points (F, N, 3) [m], Z up, as a TRC in millimeters with Y up, whole or not at all."""
     frames, count = points.shape[:2]
     millimeters = 1e3 * np.stack([points[..., 0], points[..., 2], -points[..., 1]], axis=-1)
     axes = [f"{axis}{number}" for number in range(1, count + 1) for axis in "XYZ"]
     lines = [
-        f"PathFileType\t4\t(X/Y/Z)\t{path.name}",
+        f"PathFileType\t4\t(X/Y/Z)\t{title}.trc",
         "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
         f"{rate:.6g}\t{rate:.6g}\t{frames}\t{count}\tmm\t{rate:.6g}\t1\t{frames}",
-        "Frame#\tTime\t" + "\t\t\t".join(_trc_name(name) for name in names) + "\t\t",
+        "Frame#\tTime\t" + "\t\t\t".join(_marker_name(name) for name in names) + "\t\t",
         "\t\t" + "\t".join(axes),
         "",
     ]
@@ -266,11 +269,58 @@ def write_trc(path: Path, points: Array, rate: float, names: Sequence[str] = HUM
     write_atomically(path, lambda beside: beside.write_text("\n".join([*lines, ""]), encoding="utf-8"))
 
 
-def _trc_name(name: str) -> str:
+def _marker_name(name: str) -> str:
     """`elbow.L` is LElbow."""
     stem, _, side = name.partition(".")
     return side + stem.capitalize()
 
 
-_READERS = {".csv": _read_csv, ".npy": _read_npy, ".trc": _read_trc}
+# --- C3D: markers of motion capture, in binary
+
+
+def _read_c3d(path: Path) -> _Table:
+    import c3d
+
+    frames: list[Array] = []
+    try:
+        with path.open("rb") as file, warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            reader = c3d.Reader(file)
+            names = tuple(str(label).strip() for label in reader.point_labels)
+            rate = float(reader.point_rate)
+            unit = reader.get("POINT:UNITS")
+            units = "" if unit is None else str(unit.string_value).strip(" \0").lower()
+            for _, points, _ in reader.read_frames(copy=True, camera_sum=False):
+                frames.append(np.where(points[: len(names), 3:4] < 0.0, np.nan, points[: len(names), :3]))
+                if len(frames) > MOST_FRAMES:
+                    break
+    except Exception as error:  # the library raises whatever a damaged file makes of it
+        raise InputError(f"{path}: cannot be read as a C3D ({describe_unexpected(error)})") from error
+    if not frames or len({len(points) for points in frames}) > 1:
+        raise InputError(f"{path}: has no points; a C3D of markers must have the same ones in every frame")
+    values = np.array(frames, dtype=np.float64)
+    return _Table(names[: values.shape[1]], values, rate, UNITS_M.get(units))
+
+
+def write_c3d(path: Path, points: Array, rate: float, names: Sequence[str] = HUMAN.point_names) -> None:
+    """Write points (F, N, 3) [m] as a C3D in millimeters with Z up, whole or not at all."""
+    import c3d
+
+    writer = c3d.Writer(point_rate=rate, analog_rate=0.0, point_units="mm  ")
+    writer.set_point_labels([_marker_name(name) for name in names])
+    writer.set_screen_axis("+X", "+Z")
+    absent = np.isnan(points).any(axis=-1, keepdims=True)
+    columns = [np.where(absent, 0.0, 1e3 * points), np.where(absent, -1.0, 0.0), np.zeros_like(absent, float)]
+    rows = np.concatenate(columns, axis=-1).astype(np.float32)
+    writer.add_frames([(row, np.zeros((0, 0), np.float32)) for row in rows])
+
+    def write(beside: Path) -> None:
+        with beside.open("wb") as file, warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # it misses forces
+            writer.write(file)
+
+    write_atomically(path, write)
+
+
+_READERS = {".csv": _read_csv, ".npy": _read_npy, ".trc": _read_trc, ".c3d": _read_c3d}
 POINT_ENDINGS = tuple(_READERS)

@@ -85,6 +85,15 @@ def _write_trc(armature_object: bpy.types.Object, path: Path) -> None:
     write_trc(path, points, rate)
 
 
+def _write_c3d(armature_object: bpy.types.Object, path: Path) -> None:
+    """Write the joints of an armature over its scene's frames."""
+    from ...core.take.point_files import write_c3d
+    from .motions.joint_paths import joint_paths
+
+    points, rate = joint_paths(armature_object)
+    write_c3d(path, points, rate)
+
+
 FORMATS = {
     "BVH": ExportFormat(
         "BVH",
@@ -147,6 +156,13 @@ FORMATS = {
         ".trc",
         "Write the places of the joints for biomechanics: OpenSim, Pose2Sim and others",
         _write_trc,
+        built_in=True,
+    ),
+    "C3D": ExportFormat(
+        "C3D",
+        ".c3d",
+        "Write the places of the joints as motion capture's own format has them",
+        _write_c3d,
         built_in=True,
     ),
 }

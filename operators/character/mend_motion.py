@@ -25,7 +25,7 @@ ONTO = (
     ),
     ("ACTOR", "Actor", "A new Keymark actor, whose Action any character can be given in this step"),
 )
-FILTER = "*.bvh;*.fbx;*.glb;*.gltf;*.vrm;*.usd;*.usda;*.usdc;*.usdz;*.blend;*.csv;*.npy;*.trc;*.json"
+FILTER = "*.bvh;*.fbx;*.glb;*.gltf;*.vrm;*.usd;*.usda;*.usdc;*.usdz;*.blend;*.csv;*.npy;*.trc;*.c3d;*.json"
 
 
 def animated(context: bpy.types.Context) -> str | None:

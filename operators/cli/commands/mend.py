@@ -214,7 +214,7 @@ MEND = Command(
             "motion",
             metavar="FILE[:OBJECT]",
             help="an animated armature (.bvh, .fbx, .glb, .vrm, .usd, .blend), and after a colon its name "
-            "where there are several; or points by name (.csv, .npy, .trc), or a motion.json",
+            "where there are several; or points by name (.csv, .npy, .trc, .c3d), or a motion.json",
         ),
         *output("DIR", "folder for the result, new or old"),
         argument("--character", "-c", metavar="FILE[:OBJECT]", help=CHARACTER_HELP),

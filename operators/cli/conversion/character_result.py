@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 EXPORTS = {"bvh": ("BVH", "character.bvh"), "fbx": ("FBX", "character.fbx")}
 EXPORTS |= {"glb": ("GLTF", "character.glb"), "usd": ("USD", "character.usdc")}
-EXPORTS |= {"trc": ("TRC", "character.trc")}
+EXPORTS |= {"trc": ("TRC", "character.trc"), "c3d": ("C3D", "character.c3d")}
 """By the word for it: the format of `bridge/export_formats`, and the file."""
 Result = TypeVar("Result")
 ShowFootage = Callable[["bpy.types.Scene", Motion], "Array"]
