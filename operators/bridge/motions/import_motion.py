@@ -7,16 +7,19 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from ....core.body.skeleton import SIDES
 from ....core.errors import InputError
 from ....core.files.fields import listed
 from ....core.files.paths import real_path, regular_file_size
+from ....core.numerics.vectors import unit
 from ....core.retarget.character import ARM, LEG
 from ....core.retarget.maps.character_map import CharacterMap, RoleBones
 from ....core.retarget.maps.map_registry import ChosenMap, choose_map
 from ....core.retarget.retarget_record import RECOGNIZED
 from ....core.retarget.solve.rest_body import RestBody
+from ....core.retarget.solve.two_bone import smallest_rotation
 from ....core.take.conversion_settings import AUTO, CharacterFile
 from ..actions import assign_action, existing_channelbag
 from ..actor_bones import is_actor
@@ -71,22 +74,35 @@ def import_motion(
     _set_to_keys(scene, armature, action, file.path)
     try:
         chosen = motion_map(armature, maps)
-        leg_m = RestBody.of(read_character(armature), chosen.character_map).leg_m
+        body = RestBody.of(read_character(armature), chosen.character_map)
     except InputError as error:
         raise InputError(f"{file.path}: {error}") from error
-    unit = min(UNITS, key=lambda unit: abs(np.log(leg_m * unit / 0.85)))
-    if not SHORTEST_LEG_M <= leg_m <= LONGEST_LEG_M and unit != 1.0:
-        if not SHORTEST_LEG_M <= leg_m * unit <= LONGEST_LEG_M:
+    if suffix == ".bvh":
+        _stand_up(armature, body)
+    leg_m = body.leg_m
+    meters = min(UNITS, key=lambda meters: abs(np.log(leg_m * meters / 0.85)))
+    if not SHORTEST_LEG_M <= leg_m <= LONGEST_LEG_M and meters != 1.0:
+        if not SHORTEST_LEG_M <= leg_m * meters <= LONGEST_LEG_M:
             raise InputError(
                 f"{file.path}: its legs are {leg_m:.3g} m long, which are no person's in any unit"
             )
-        armature.scale = np.array(armature.scale) * unit
-        armature.location = np.array(armature.location) * unit
+        armature.scale = np.array(armature.scale) * meters
+        armature.location = np.array(armature.location) * meters
         scene.view_layers[0].update()
     bag = existing_channelbag(action, armature)
     if bag is not None:
         mark_generated(bag)
     return imported, chosen
+
+
+def _stand_up(armature: bpy.types.Object, body: RestBody) -> None:
+    """Turn an armature that lies at rest upright: a BVH does not tell which axis is up, Y or as here Z."""
+    turn = np.array(armature.matrix_world, dtype=np.float64)[:3, :3]
+    up = unit(turn @ body.stance.T @ [0.0, 0.0, 1.0])
+    if up[2] < np.cos(np.radians(45.0)):
+        upright = smallest_rotation(up, np.array([0.0, 0.0, 1.0]))
+        armature.matrix_world = Matrix(upright).to_4x4() @ armature.matrix_world
+        bpy.context.view_layer.update()
 
 
 def motion_map(armature_object: bpy.types.Object, maps: Sequence[Path]) -> ChosenMap:
