@@ -38,7 +38,7 @@ MEDIAPIPE = (
 """The points of MediaPipe's pose in its order, which FreeMoCap's npy has without names."""
 HEADS = (("ear.L", "ear.R"), ("head", "nose"), ("head",), ("skull",), ("nose",))
 """Points whose middle is the head's, the best first: a head alone may be its top."""
-IDLE_WORDS = {"joint", "center", "centre", "study", "body", "mediapipe", "marker", "jc"}
+IDLE_WORDS = {"joint", "center", "study", "body", "mediapipe", "marker", "jc"}
 _WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
 _AXIS = re.compile(r"[\s_.:]*(?:3D)?([XYZxyz])$")
 UPRIGHT = {

@@ -140,7 +140,7 @@ def _frames(text: str) -> tuple[int, ...]:
 
 def _map_of(armature_object: bpy.types.Object) -> "CharacterMap":
     """The map of an armature: that of a character that it is in a take, else the one found."""
-    from ..bridge.motions.import_motion import motion_map
+    from ..bridge.motions.read_poses import motion_map
 
     for take in (take for scene in bpy.data.scenes for take in scene.keymark.takes):
         for character in take.characters:

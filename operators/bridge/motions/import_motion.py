@@ -9,23 +9,19 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ....core.body.skeleton import SIDES
 from ....core.errors import InputError
 from ....core.files.fields import listed
 from ....core.files.paths import real_path, regular_file_size
 from ....core.numerics.vectors import unit
-from ....core.retarget.character import ARM, LEG
-from ....core.retarget.maps.character_map import CharacterMap, RoleBones
-from ....core.retarget.maps.map_registry import ChosenMap, choose_map
-from ....core.retarget.retarget_record import RECOGNIZED
+from ....core.retarget.maps.map_registry import ChosenMap
 from ....core.retarget.solve.rest_body import RestBody
 from ....core.retarget.solve.two_bone import smallest_rotation
-from ....core.take.conversion_settings import AUTO, CharacterFile
+from ....core.take.conversion_settings import CharacterFile
 from ..actions import assign_action, existing_channelbag
-from ..actor_bones import is_actor
 from ..character.import_character import ImportedCharacter, import_character
 from ..character.read_character import read_character
 from ..keys import mark_generated
+from .read_poses import motion_map
 
 MOTION_ENDINGS = (".bvh", ".fbx", ".glb", ".gltf", ".vrm", ".usd", ".usda", ".usdc", ".usdz", ".blend")
 SLOWEST, FASTEST = 1.0, 1000.0  # frames a second of a motion
@@ -33,15 +29,6 @@ LARGEST_BVH = 2**29
 UNITS = (1.0, 0.01, 0.1, 0.001, 0.0254, 0.3048, 100.0)
 """Meters that a file's unit may have: m, cm, dm, mm, inches, feet; and characters in hundreds of meters."""
 SHORTEST_LEG_M, LONGEST_LEG_M = 0.35, 1.5  # of a child and of a giant
-ACTOR_BONES = {
-    **{"hips": "pelvis", "spine": "chest", "head": "head"},
-    **{
-        f"{role}.{side}": f"{'girdle' if role == 'shoulder' else role}.{side}"
-        for role in (*ARM, *LEG[:3])
-        for side in SIDES
-    },
-}
-"""The bones of Keymark's actor by the role that they play."""
 _RATE = re.compile(r"Frame\s+Time:\s*(\S+)", re.IGNORECASE)
 _FRAMES = re.compile(r"Frames:\s*(\S+)", re.IGNORECASE)
 
@@ -103,18 +90,6 @@ def _stand_up(armature: bpy.types.Object, body: RestBody) -> None:
         upright = smallest_rotation(up, np.array([0.0, 0.0, 1.0]))
         armature.matrix_world = Matrix(upright).to_4x4() @ armature.matrix_world
         bpy.context.view_layer.update()
-
-
-def motion_map(armature_object: bpy.types.Object, maps: Sequence[Path]) -> ChosenMap:
-    """The roles of an armature's bones: of Keymark's actor by its bones, of any other as a character's.
-
-    Raises:
-        InputError: It is no person's.
-    """
-    if is_actor(armature_object):
-        roles = {role: RoleBones((bone,)) for role, bone in ACTOR_BONES.items()}
-        return ChosenMap(CharacterMap("Actor", roles), RECOGNIZED)
-    return choose_map(read_character(armature_object), AUTO, maps)
 
 
 def load_motion(file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = ()) -> bpy.types.Object:

@@ -11,8 +11,7 @@ from ..actor_bones import is_actor
 from ..character.read_character import read_character
 from ..object_space import joint_places
 from ..scene_frames import at_scene_frame
-from .import_motion import motion_map
-from .read_poses import animated_action, read_poses
+from .read_poses import animated_action, motion_map, read_poses
 
 
 def joint_paths(armature_object: bpy.types.Object) -> tuple[Array, float]:

@@ -1,17 +1,26 @@
-"""The poses that an Action gives any armature, its frames, and which of them a person posed."""
+"""Any armature's bones by role, the poses that an Action gives it, and which of them a person posed."""
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
+from pathlib import Path
 
 import bpy
 import numpy as np
 
 from ....core.arrays import Array
+from ....core.body.skeleton import SIDES
 from ....core.errors import InputError
 from ....core.finish.mend_motion import MOST_FRAMES
 from ....core.progress import Part
+from ....core.retarget.character import ARM, LEG
 from ....core.retarget.controls.control_spaces import unscaled
+from ....core.retarget.maps.character_map import CharacterMap, RoleBones
+from ....core.retarget.maps.map_registry import ChosenMap, choose_map
 from ....core.retarget.mended_armature import Poses
+from ....core.retarget.retarget_record import RECOGNIZED
+from ....core.take.conversion_settings import AUTO
 from ..actions import existing_channelbag
+from ..actor_bones import is_actor
+from ..character.read_character import read_character
 from ..keys import animator_frames, generated_frames
 from ..object_space import evaluated, object_space
 from ..rotation_modes import ALL_PATHS, bone_path
@@ -19,6 +28,28 @@ from ..scene_frames import at_scene_frame, showing_action
 
 FRAMES_A_YIELD = 10  # frames shown between two reports of progress; in between the scene is as it was
 MOST_POSED = 0.5  # share of keyed frames from which keys are a motion's own, not a person's
+
+ACTOR_BONES = {
+    **{"hips": "pelvis", "spine": "chest", "head": "head"},
+    **{
+        f"{role}.{side}": f"{'girdle' if role == 'shoulder' else role}.{side}"
+        for role in (*ARM, *LEG[:3])
+        for side in SIDES
+    },
+}
+"""The bones of Keymark's actor by the role that they play."""
+
+
+def motion_map(armature_object: bpy.types.Object, maps: Sequence[Path]) -> ChosenMap:
+    """The roles of an armature's bones: of Keymark's actor by its bones, of any other as a character's.
+
+    Raises:
+        InputError: It is no person's.
+    """
+    if is_actor(armature_object):
+        roles = {role: RoleBones((bone,)) for role, bone in ACTOR_BONES.items()}
+        return ChosenMap(CharacterMap("Actor", roles), RECOGNIZED)
+    return choose_map(read_character(armature_object), AUTO, maps)
 
 
 def animated_action(armature_object: bpy.types.Object) -> bpy.types.Action:
