@@ -49,6 +49,8 @@ def import_motion(
         raise InputError(f"{file.path}: is no motion of an armature; it must end in {listed(MOTION_ENDINGS)}")
     if suffix == ".bvh":
         _check_bvh(file.path)
+    elif suffix.startswith(".usd") and not bpy.app.build_options.usd:
+        raise InputError(f"{file.path}: this Blender is built without USD; export the motion as BVH or FBX")
     imported = import_character(file, scene, animated=True)
     armature = imported.armature
     action = _action(armature)
