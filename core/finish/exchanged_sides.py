@@ -35,8 +35,8 @@ def exchanged_frames(points: Array) -> BoolArray:
     states = cheapest_path(own, steps).astype(bool)
     if not states.any() or states.all():  # a body that is wrong from end to end is left as it is
         return exchanged
-    nearest = np.abs(np.arange(len(points))[:, None] - known).argmin(axis=1)
-    return np.asarray(states[nearest])
+    halfway = 0.5 * (known[1:] + known[:-1])
+    return np.asarray(states[np.searchsorted(halfway, np.arange(len(points)))])
 
 
 def opposite_points() -> IndexArray:
