@@ -76,9 +76,9 @@ def plan_foot(
     leg: LimbPose,
     lift_m: Array,
 ) -> FootPath:
-    """The path of a foot, from the leg by the performer's directions; the sole is `lift_m` (F,) above."""
+    """The path of a foot, from the leg by the performer's directions, on ground raised by `lift_m` (F,)."""
     point, time_s, ankle = SIDES.index(side), source.time_s, leg.end
-    ground_m = stage.heights(ground.height_m[:, point])
+    ground_m = stage.heights(ground.height_m[:, point]) + lift_m
     turn = _rolled(source, stage, ground, shape, side, ankle[:, 2] - ground_m)
     rests = [rest for rest in ground.rests if rest.point == point]
     stands = [_standing(turn[rest.first : rest.last + 1]) for rest in rests]
@@ -87,7 +87,7 @@ def plan_foot(
         for rest, stand in zip(rests, stands, strict=True)
     ]
     turn = np.asarray(rotations.exponential(faded(turning, time_s)) @ turn)
-    depth_m = sole_depth_m(turn, shape) + lift_m
+    depth_m = sole_depth_m(turn, shape)
     planted = np.zeros(len(time_s), dtype=bool)
     holds = []
     still = _still(source, ground, side)
