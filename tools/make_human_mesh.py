@@ -1,11 +1,12 @@
-"""Write `presets/body/human.npz`: a smooth human body, skinned to parts of a skeleton, made from measurements.
+"""Write `presets/body/human.npz`: a smooth human body from measurements, skinned to parts of a skeleton.
 
-Usage: make_human_mesh.py [--check]   needs Blender's Python module, for its decimation
+Usage: make_human_mesh.py   in a Python that has Blender as a module, whose edge collapse it uses
 
-The body is a signed distance: lofts of superelliptical cross-sections along limbs, trunk, neck and head, with
-masses of muscle, joined by a smooth minimum. Breadths, depths and circumferences are rounded averages of adults
-of both sexes (Gordon et al. 2014, *2012 Anthropometric Survey of U.S. Army Personnel*), scaled to a stature of
-1.75 m; joints are those of Keymark's own skeleton at rest, in a T pose, Z up, facing -Y, hips at the origin.
+The body is a signed distance: lofts of superelliptical cross-sections along limbs, trunk, neck and head,
+with masses of muscle, joined by a smooth minimum. Breadths, depths and circumferences are rounded averages of
+adults of both sexes (Gordon et al. 2014, *2012 Anthropometric Survey of U.S. Army Personnel*), scaled to a
+stature of 1.75 m; joints are those of Keymark's own skeleton at rest, in a T pose, Z up, facing -Y, hips at
+the origin.
 Surface nets (Gibson 1998) make quads of it, which are decimated where it is even and moved onto the surface.
 Weights are the parts of the body, spread along the skin by the heat equation.
 """
@@ -67,6 +68,7 @@ HEAD = (
     (0.690, 0.067, 0.091, -0.001),
     (0.725, 0.072, 0.096, 0.005),
     (0.750, 0.0735, 0.096, 0.008),
+    (0.778, 0.0715, 0.0925, 0.011),
 )
 # Height; half of breadth and depth; the center aside from the body's middle and behind it.
 LEG = (
@@ -130,7 +132,12 @@ FINGERS = (
     ((0.864, 0.0105, 0.000), 0.078, 0.0097),
     ((0.854, 0.0300, -0.002), 0.062, 0.0086),
 )
-THUMB = (((0.790, -0.022, -0.004), 0.0175), ((0.822, -0.049, -0.012), 0.0135), ((0.846, -0.061, -0.015), 0.0115), ((0.868, -0.066, -0.017), 0.0090))
+THUMB = (
+    ((0.790, -0.022, -0.004), 0.0175),
+    ((0.822, -0.049, -0.012), 0.0135),
+    ((0.846, -0.061, -0.015), 0.0115),
+    ((0.868, -0.066, -0.017), 0.0090),
+)
 """Joints and radii of the thumb."""
 TOES = (
     # Aside from the body's middle; where the toe begins and ends ahead of the ankle; its radius.
@@ -145,7 +152,9 @@ TOES = (
 # --- Shapes as signed distances [m], negative inside, of points (N, 3) of the left half
 
 
-def loft(stations: tuple[tuple[float, ...], ...], axis: int, sign: float, power: float) -> tuple[Distance, Array]:
+def loft(
+    stations: tuple[tuple[float, ...], ...], axis: int, sign: float, power: float
+) -> tuple[Distance, Array]:
     """A tube of superelliptical cross-sections, rounded at its ends, and its bounds (2, 3).
 
     Stations have the place along the axis times `sign`, half-widths across it, and the center across it.
@@ -173,7 +182,10 @@ def loft(stations: tuple[tuple[float, ...], ...], axis: int, sign: float, power:
         # A first-order distance: the level set's value over its gradient's length.
         slope = np.maximum(np.sqrt(((offset / half) ** 2).sum(axis=1)), 1e-6) / np.maximum(level, 1e-6)
         steep = np.maximum(level, 1e-6) * slope
-        steep = np.hypot(steep / np.maximum(radius, 1e-6), np.abs(beyond) / (0.6 * half.min(axis=1)) / np.maximum(radius, 1e-6))
+        steep = np.hypot(
+            steep / np.maximum(radius, 1e-6),
+            np.abs(beyond) / (0.6 * half.min(axis=1)) / np.maximum(radius, 1e-6),
+        )
         return np.asarray((radius - 1.0) / np.maximum(steep, 1.0 / half.max(axis=1)))
 
     low, high = np.full(3, -1e9), np.full(3, 1e9)
@@ -186,7 +198,9 @@ def loft(stations: tuple[tuple[float, ...], ...], axis: int, sign: float, power:
     return distance, np.array([low, high])
 
 
-def ellipsoid(center: tuple[float, float, float], radii: tuple[float, float, float]) -> tuple[Distance, Array]:
+def ellipsoid(
+    center: tuple[float, float, float], radii: tuple[float, float, float]
+) -> tuple[Distance, Array]:
     """An ellipsoid along the axes."""
     middle, size = np.array(center), np.array(radii)
 
@@ -223,16 +237,18 @@ def shapes() -> list[Shape]:
     def at_shoulder(stations: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
         return tuple((x, thick, wide, shoulder + z, y) for x, thick, wide, z, y in stations)
 
-    def rod(start: tuple[float, float, float], end: tuple[float, float, float], first: float, last: float) -> tuple[Distance, Array]:
+    def rod(
+        start: tuple[float, float, float], end: tuple[float, float, float], first: float, last: float
+    ) -> tuple[Distance, Array]:
         return capsule(np.array(start), np.array(end), first, last)
 
     found: list[Shape] = [
         (loft(TRUNK, 2, 1.0, 2.35), 0.0),
         (ellipsoid((0.078, 0.078, -0.045), (0.080, 0.056, 0.082)), 0.035),  # buttock
         (loft(LEG, 2, 1.0, 2.0), 0.035),
-        (ellipsoid((0.070, -0.072, 0.385), (0.080, 0.042, 0.058)), 0.040),  # breast
-        (rod((0.060, 0.052, 0.410), (0.118, 0.062, 0.350), 0.050, 0.045), 0.040),  # shoulder blade
-        (rod((0.125, 0.030, 0.350), (0.172, 0.022, 0.440), 0.036, 0.034), 0.050),  # back of the armpit
+        (ellipsoid((0.068, -0.068, 0.388), (0.082, 0.040, 0.062)), 0.060),  # breast
+        (rod((0.070, 0.056, 0.425), (0.096, 0.056, 0.350), 0.052, 0.048), 0.070),  # shoulder blade
+        (rod((0.108, 0.022, 0.270), (0.166, 0.020, 0.440), 0.026, 0.036), 0.070),  # back of the armpit
         (rod((0.100, -0.045, 0.415), (0.178, -0.022, 0.465), 0.034, 0.032), 0.045),  # front of the armpit
         (loft(NECK, 2, 1.0, 2.0), 0.030),
         (rod((0.032, 0.026, 0.560), (0.150, 0.014, 0.508), 0.026, 0.034), 0.050),  # trapezius
@@ -240,25 +256,33 @@ def shapes() -> list[Shape]:
         (ellipsoid((0.185, 0.002, 0.497), (0.062, 0.058, 0.056)), 0.040),  # deltoid
         (loft(at_shoulder(ARM), 0, 1.0, 2.0), 0.030),
         (loft(HEAD, 2, 1.0, 2.15), 0.022),
-        (ellipsoid((0.0, 0.011, 0.741), (0.0755, 0.0975, 0.0890)), 0.030),  # skull
-        (rod((0.0, -0.0945, 0.727), (0.0, -0.1055, 0.697), 0.0065, 0.0110), 0.020),  # nose
-        (ellipsoid((0.030, -0.0790, 0.738), (0.026, 0.016, 0.008)), 0.028),  # brow
-        (ellipsoid((0.031, -0.1020, 0.720), (0.014, 0.014, 0.009)), -0.018),  # eye's hollow
-        (ellipsoid((0.0305, -0.0790, 0.7195), (0.0130, 0.0115, 0.0100)), 0.010),  # eye
+        (ellipsoid((0.0, 0.012, 0.744), (0.0765, 0.0985, 0.0855)), 0.020),  # skull
+        (rod((0.0, -0.0935, 0.729), (0.0, -0.1065, 0.698), 0.0070, 0.0118), 0.018),  # nose
+        (ellipsoid((0.028, -0.0740, 0.739), (0.026, 0.016, 0.007)), 0.026),  # brow
+        (ellipsoid((0.032, -0.1025, 0.721), (0.013, 0.012, 0.008)), -0.016),  # eye's hollow
+        (ellipsoid((0.0315, -0.0785, 0.7205), (0.0135, 0.0125, 0.0095)), 0.006),  # eye
         (ellipsoid((0.0, -0.0875, 0.6620), (0.023, 0.0100, 0.0046)), 0.012),  # upper lip
         (ellipsoid((0.0, -0.0860, 0.6540), (0.019, 0.0100, 0.0050)), 0.012),  # lower lip
         (ellipsoid((0.0, -0.0780, 0.6200), (0.022, 0.0150, 0.0140)), 0.026),  # chin
-        (ellipsoid((0.0765, 0.016, 0.704), (0.0075, 0.017, 0.029)), 0.008),  # ear
+        (ellipsoid((0.0785, 0.018, 0.704), (0.0080, 0.0165, 0.029)), 0.008),  # ear
         (ellipsoid((0.101, -0.050, -0.424), (0.026, 0.015, 0.030)), 0.030),  # knee cap
         (ellipsoid((0.083, 0.040, -0.540), (0.026, 0.032, 0.070)), 0.030),  # calf, inside
         (ellipsoid((0.122, 0.038, -0.530), (0.024, 0.028, 0.065)), 0.030),  # calf, outside
         (ellipsoid((0.072, 0.000, -0.855), (0.010, 0.012, 0.014)), 0.018),  # inner ankle
         (ellipsoid((0.130, 0.008, -0.862), (0.010, 0.012, 0.014)), 0.018),  # outer ankle
-        (loft(tuple((ahead, wide, high, x, SOLE_Z + z) for ahead, wide, high, x, z in FOOT), 1, -1.0, 2.2), 0.020),
+        (
+            loft(tuple((ahead, wide, high, x, SOLE_Z + z) for ahead, wide, high, x, z in FOOT), 1, -1.0, 2.2),
+            0.020,
+        ),
     ]
     for x, start, end, radius in TOES:
         height = SOLE_Z + radius
-        found.append((rod((x, -start, height + 0.004), (x - 0.002, -end + radius, height), radius + 0.002, radius), 0.006))
+        found.append(
+            (
+                rod((x, -start, height + 0.004), (x - 0.002, -end + radius, height), radius + 0.002, radius),
+                0.006,
+            )
+        )
     found.append((loft(at_shoulder(PALM), 0, 1.0, 2.3), 0.012))
     for (x, y, z), length, radius in FINGERS:
         # Fingers are spread a little and bent as a relaxed hand's.
@@ -270,7 +294,9 @@ def shapes() -> list[Shape]:
         radii = radius * np.array([1.0, 0.95, 0.88, 0.78])
         for number in range(3):
             seam = 0.010 if number == 0 else 0.002
-            found.append((capsule(joints[number], joints[number + 1], radii[number], radii[number + 1]), seam))
+            found.append(
+                (capsule(joints[number], joints[number + 1], radii[number], radii[number + 1]), seam)
+            )
     joints = [(np.array(place) + [0.0, 0.0, shoulder], radius) for place, radius in THUMB]
     for number, ((start, first), (end, last)) in enumerate(zip(joints, joints[1:], strict=False)):
         found.append((capsule(start, end, first, last), 0.014 if number == 0 else 0.003))
@@ -302,11 +328,11 @@ def joined(one: Array, other: Array, seam: float) -> Array:
 def surface() -> tuple[Array, NDArray[np.int64]]:
     """Vertices (N, 3) and quads (Q, 4) of the skin, counterclockwise from outside, by surface nets."""
     shape = np.round((HIGH - LOW) / CELL_M).astype(int)
-    shape[0] += shape[0] % 2  # the body's middle lies between cells' planes on both sides alike
+    shape[0] += 1 - shape[0] % 2  # the body's middle goes through cells, whose vertices lie in it
     axes = [LOW[k] + CELL_M * np.arange(shape[k] + 1) for k in range(3)]
     axes[0] = CELL_M * (np.arange(shape[0] + 1) - shape[0] / 2)
     value = np.empty([len(axis) for axis in axes])
-    half = shape[0] // 2
+    half = shape[0] // 2 + 1
     grid_yz = np.stack(np.meshgrid(axes[1], axes[2], indexing="ij"), axis=-1).reshape(-1, 2)
     for first in range(half, shape[0] + 1, 24):
         slab = axes[0][first : first + 24]
@@ -314,10 +340,12 @@ def surface() -> tuple[Array, NDArray[np.int64]]:
             [np.repeat(slab, len(grid_yz))[:, None], np.tile(grid_yz, (len(slab), 1))], axis=1
         )
         value[first : first + 24] = signed_distance(points).reshape(len(slab), len(axes[1]), len(axes[2]))
-    value[:half] = value[: half : -1]
+    value[:half] = value[half:][::-1]
     inside = value < 0.0
     corners = [(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
-    count = sum(inside[i : i + shape[0], j : j + shape[1], k : k + shape[2]].astype(np.int8) for i, j, k in corners)
+    count = sum(
+        inside[i : i + shape[0], j : j + shape[1], k : k + shape[2]].astype(np.int8) for i, j, k in corners
+    )
     cells = np.argwhere((count > 0) & (count < 8))
     number = np.full(shape, -1)
     number[tuple(cells.T)] = np.arange(len(cells))
@@ -365,19 +393,35 @@ def onto_skin(vertices: Array, rounds: int) -> Array:
 
 
 def decimated(vertices: Array, quads: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:
-    """Fewer vertices and triangles, alike on both sides, by Blender's edge collapse."""
+    """Fewer vertices and triangles, by Blender's edge collapse of the left half, which is mirrored."""
+    left = quads[(vertices[quads, 0] > -1e-6).all(axis=1)]
+    used, corners = np.unique(left, return_inverse=True)
     bpy.ops.wm.read_homefile(use_empty=True)
     mesh = bpy.data.meshes.new("Body")
-    mesh.from_pydata(vertices.tolist(), [], quads.tolist())
+    mesh.from_pydata(vertices[used].tolist(), [], corners.reshape(-1, 4).tolist())
     body = bpy.data.objects.new("Body", mesh)
     bpy.context.scene.collection.objects.link(body)
     modifier = body.modifiers.new("Decimate", "DECIMATE")
-    modifier.use_symmetry, modifier.symmetry_axis = True, "X"
-    modifier.ratio = TRIANGLES / (2.0 * len(quads))
+    modifier.ratio = 0.5 * TRIANGLES / (2.0 * len(left))
     shown = body.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
     shown.calc_loop_triangles()
     places = np.array([vertex.co for vertex in shown.vertices], dtype=np.float64)
-    return places, np.array([triangle.vertices for triangle in shown.loop_triangles], dtype=np.int64)
+    triangles = np.array([triangle.vertices for triangle in shown.loop_triangles], dtype=np.int64)
+    rim = np.zeros(len(places), dtype=bool)
+    rim[[index for edge, uses in _edges(triangles) if uses == 1 for index in edge]] = True
+    places[rim, 0] = 0.0
+    other = np.where(rim, np.arange(len(places)), len(places) + np.cumsum(~rim) - 1)
+    mirrored = places[~rim] * [-1.0, 1.0, 1.0]
+    return np.concatenate([places, mirrored]), np.concatenate([triangles, other[triangles[:, ::-1]]])
+
+
+def _edges(triangles: NDArray[np.int64]) -> list[tuple[tuple[int, int], int]]:
+    """Edges as pairs of vertices, with the number of triangles that each has."""
+    edges = np.sort(
+        np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1
+    )
+    pairs, uses = np.unique(edges, axis=0, return_counts=True)
+    return [((int(a), int(b)), int(count)) for (a, b), count in zip(pairs, uses, strict=True)]
 
 
 # --- Which part of the body moves which vertex
@@ -385,23 +429,21 @@ def decimated(vertices: Array, quads: NDArray[np.int64]) -> tuple[Array, NDArray
 MIDDLE_PARTS = ("hips", "waist", "ribs", "chest", "neck", "head")
 SIDE_PARTS = ("shoulder", "upper_arm", "forearm", "hand", "thigh", "shin", "foot", "toe")
 PARTS = (*MIDDLE_PARTS, *(f"{part}.{side}" for side in "LR" for part in SIDE_PARTS))
-ENDS = {
-    "hips": ((0.0, 0.0, 0.0), (0.0, 0.0, 0.1)),
-    "waist": ((0.0, 0.0, 0.1), (0.0, 0.0, 0.2)),
-    "ribs": ((0.0, 0.0, 0.2), (0.0, 0.0, 0.35)),
-    "chest": ((0.0, 0.0, 0.35), (0.0, 0.0, 0.499)),
-    "neck": ((0.0, 0.0, 0.499), (0.0, 0.0, 0.60)),
-    "head": ((0.0, 0.0, 0.60), (0.0, 0.0, 0.83)),
-    "shoulder": ((0.03, 0.0, 0.499), (0.1925, 0.0, 0.499)),
-    "upper_arm": ((0.1925, 0.0, 0.499), (0.518, 0.0, 0.499)),
-    "forearm": ((0.518, 0.0, 0.499), (0.7735, 0.0, 0.499)),
-    "hand": ((0.7735, 0.0, 0.499), (0.9625, 0.0, 0.499)),
-    "thigh": ((0.1006, 0.0, 0.0), (0.1006, 0.0, -0.429)),
-    "shin": ((0.1006, 0.0, -0.429), (0.1006, 0.0, -0.859)),
-    "foot": ((0.1006, 0.0, -0.859), (0.1006, -0.130, -0.910)),
-    "toe": ((0.1006, -0.130, -0.910), (0.1006, -0.195, -0.915)),
+JOINTS = {
+    "neck": (0.0, 0.0, 0.499),
+    "head": (0.0, 0.0, 0.600),
+    "crown": (0.0, 0.0, 0.830),
+    "upper_arm": (0.1925, 0.0, 0.499),
+    "forearm": (0.5180, 0.0, 0.499),
+    "hand": (0.7735, 0.0, 0.499),
+    "hand_end": (0.9625, 0.0, 0.499),
+    "thigh": (0.1006, 0.0, 0.0),
+    "shin": (0.1006, 0.0, -0.429),
+    "foot": (0.1006, 0.0, -0.859),
+    "toe": (0.1006, -0.130, -0.910),
+    "toe_end": (0.1006, -0.195, -0.915),
 }
-"""Where each part begins and ends on the left side, by the skeleton's joints [m]."""
+"""Joints of the left side and the middle, by the skeleton at rest [m]."""
 SPREAD_M = {
     "hips": 0.045,
     "waist": 0.05,
@@ -486,20 +528,24 @@ def strongest(soft: Array) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
     return order.astype(np.uint8), whole.astype(np.uint8)
 
 
-def part_ends() -> Array:
-    """(P, 2, 3) where each part begins and ends [m]."""
-    found = []
-    for name in PARTS:
-        part, _, side = name.partition(".")
-        found.append(np.array(ENDS[part]) * [-1.0 if side == "R" else 1.0, 1.0, 1.0])
-    return np.array(found)
+def joints() -> dict[str, Array]:
+    """(3,) all joints by name [m]."""
+    found = {}
+    for name, place in JOINTS.items():
+        if place[0] == 0.0 and name in ("neck", "head", "crown"):
+            found[name] = np.array(place)
+        else:
+            found |= {f"{name}.L": np.array(place), f"{name}.R": np.array(place) * [-1.0, 1.0, 1.0]}
+    return found
 
 
 def main() -> int:
     """Make the body and write it."""
     dense, quads = surface()
     vertices, triangles = decimated(onto_skin(dense, 1), quads)
+    middle = vertices[:, 0] == 0.0
     vertices = onto_skin(vertices, 3)
+    vertices[middle, 0] = 0.0
     parts, shares = strongest(weights(vertices, triangles))
     FILE.parent.mkdir(exist_ok=True)
     np.savez_compressed(
@@ -509,8 +555,12 @@ def main() -> int:
         parts=parts,
         shares=shares,
         names=np.array(PARTS),
-        ends=part_ends(),
+        joint_names=np.array(list(joints())),
+        joints=np.array(list(joints().values())),
     )
+    holes = sum(uses % 2 for _, uses in _edges(triangles))  # fingers may touch along an edge
+    if holes:
+        raise SystemExit(f"The skin has holes along {holes} edges.")
     print(f"{len(vertices)} vertices, {len(triangles)} triangles, {FILE.stat().st_size} bytes")
     return 0
 

@@ -18,10 +18,6 @@ from .character_motion import CharacterMotion, FootRest
 
 SOLE_M = 0.01
 """Height over its lowest point up to which a foot touches the ground [m], at the performer's size."""
-IN_FLOOR_M = 0.002
-"""Depth from which a foot counts as below the floor [m], at the performer's size: more than key reduction may
-make of it."""
-MOST_RUNS = 3  # stretches of frames that a sentence names
 FULL_SHARE = 0.95  # share from which a hand's goal counts in full
 
 
@@ -197,29 +193,6 @@ def measured(
         hands_floor_mm=_most(floor),
     )
     return Measured(quality, depth_m)
-
-
-def floor_notes(
-    motion: CharacterMotion, depth_m: Mapping[str, Array], frames: Array, name: str
-) -> tuple[str, ...]:
-    """Sentences, without a full stop, on feet that are in the floor: which, how deep, and in which frames."""
-    notes = []
-    for limb, depth in depth_m.items():
-        deep = np.flatnonzero(depth > motion.size * IN_FLOOR_M)
-        if len(deep):
-            runs = np.split(deep, np.flatnonzero(np.diff(deep) > 1) + 1)
-            longest = sorted(runs, key=lambda run: -float(depth[run].max()))[:MOST_RUNS]
-            named = [
-                f"{frames[run[0]]:g}" if len(run) == 1 else f"{frames[run[0]]:g} to {frames[run[-1]]:g}"
-                for run in sorted(longest, key=lambda run: int(run[0]))
-            ]
-            more = f" and {len(runs) - MOST_RUNS} more times" if len(runs) > MOST_RUNS else ""
-            side = "left" if limb.endswith("L") else "right"
-            notes.append(
-                f"The {side} foot of '{name}' is up to {1000.0 * float(depth.max()):.3g} mm below the floor, "
-                f"in frames {', '.join(named)}{more}"
-            )
-    return tuple(notes)
 
 
 def _mean(values: Array) -> float | None:

@@ -17,9 +17,10 @@ from ...body.body_volume import sole_offsets
 from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
-from ...finish.planted_feet import RELEASE_SPEED_M_S, Contact
+from ...finish.contacts import RELEASE_SPEED_M_S, Contact
+from ...finish.foot_ground import smooth_above
 from .foot_shape import FootShape, Ground, is_rigid
-from .hips import Hold, ease, faded, smooth_above, speeds, straightness
+from .hips import Hold, ease, faded, speeds, straightness
 from .stage import Stage
 from .two_bone import LimbPose, smallest_rotation
 

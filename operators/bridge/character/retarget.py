@@ -8,6 +8,7 @@ import bpy
 from ....core.arrays import Array
 from ....core.body.kinematics import SegmentMotion
 from ....core.errors import InputError
+from ....core.finish.foot_ground import IN_FLOOR_M, floor_notes
 from ....core.progress import Job, Progress, run, stretch, within
 from ....core.retarget.character import Character
 from ....core.retarget.character_motion import CharacterMotion, Similarity, find_stance
@@ -19,7 +20,7 @@ from ....core.retarget.controls.reduction import reduce_controls
 from ....core.retarget.maps.character_map import CharacterMap, Setting, Switch
 from ....core.retarget.maps.map_registry import check_map
 from ....core.retarget.options import Placement, RetargetOptions
-from ....core.retarget.quality import IN_FLOOR_M, Measured, Quality, floor_notes
+from ....core.retarget.quality import Measured, Quality
 from ....core.retarget.recognition.facing import find_root
 from ....core.retarget.solve.feet import floor_lifts
 from ....core.retarget.solve.solve_motion import solve_motion
@@ -158,6 +159,7 @@ def retarget(
         yield Progress("Lifting the feet out of the floor", FIRST)
         motion = run(solve_motion(character, character_map, source, options, there, lifts))
         keys, controls, found = yield from stretch(performance.keyed(motion, probed), FIRST, 1.0)
+    sides = {limb[-1]: depth for limb, depth in found.depth_m.items()}
     return Retargeted(
         armature_object.session_uid,
         character,
@@ -170,7 +172,7 @@ def retarget(
             *motion.notes,
             *probed.notes,
             *channel_notes(armature_object, keys.controls, controls, keys.scaled),
-            *floor_notes(motion, found.depth_m, scene_frames, character.name),
+            *floor_notes(sides, scene_frames, f" of '{character.name}'", motion.size),
         ),
     )
 

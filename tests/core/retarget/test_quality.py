@@ -3,13 +3,13 @@
 import numpy as np
 from _characters import plain_character, plain_map
 from _performances import joints, quality, soles, solved, source_joints, steps
+from keymark.core.finish.foot_ground import floor_notes
 from keymark.core.retarget.character_motion import FootRest
 from keymark.core.retarget.quality import (
     Quality,
     depths_m,
     direction_errors_deg,
     farthest_mm,
-    floor_notes,
     hand_distances_mm,
     measured,
     skate_mm,
@@ -53,14 +53,13 @@ def test_depth_is_under_each_foots_own_ground() -> None:
 
 
 def test_a_foot_in_the_floor_is_named_with_its_frames_and_depth() -> None:
-    character = plain_character()
-    motion = solved(character, plain_map(character), steps())
     depth = np.zeros(118)
     depth[[3, 4, 5, 9]] = 0.004, 0.0123, 0.003, 0.0025
     frames = 11.0 + np.arange(118)
     note = "The left foot of 'Anna' is up to 12.3 mm below the floor, in frames 14 to 16, 20"
-    assert floor_notes(motion, {"leg.L": depth, "leg.R": -depth}, frames, "Anna") == (note,)
-    assert floor_notes(motion, {"leg.L": 0.1 * depth}, frames, "Anna") == ()
+    assert floor_notes({"L": depth, "R": -depth}, frames, " of 'Anna'") == (note,)
+    assert floor_notes({"L": 0.1 * depth}, frames) == ()
+    assert floor_notes({"L": 0.1 * depth}, frames, size=0.1) != ()
 
 
 def test_hands_and_limbs_are_compared_where_both_are() -> None:
