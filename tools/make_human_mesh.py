@@ -252,14 +252,13 @@ def shapes() -> list[Shape]:
         (rod((0.100, -0.045, 0.415), (0.178, -0.022, 0.465), 0.034, 0.032), 0.045),  # front of the armpit
         (loft(NECK, 2, 1.0, 2.0), 0.030),
         (rod((0.032, 0.026, 0.560), (0.150, 0.014, 0.508), 0.026, 0.034), 0.050),  # trapezius
-        (rod((0.028, -0.046, 0.486), (0.150, -0.010, 0.516), 0.008, 0.011), 0.036),  # collarbone
         (ellipsoid((0.185, 0.002, 0.497), (0.062, 0.058, 0.056)), 0.040),  # deltoid
         (loft(at_shoulder(ARM), 0, 1.0, 2.0), 0.030),
         (loft(HEAD, 2, 1.0, 2.15), 0.022),
         (ellipsoid((0.0, 0.012, 0.744), (0.0765, 0.0985, 0.0855)), 0.020),  # skull
         (rod((0.0, -0.0935, 0.729), (0.0, -0.1065, 0.698), 0.0070, 0.0118), 0.018),  # nose
-        (ellipsoid((0.028, -0.0740, 0.739), (0.026, 0.016, 0.007)), 0.026),  # brow
-        (ellipsoid((0.032, -0.1025, 0.721), (0.013, 0.012, 0.008)), -0.016),  # eye's hollow
+        (ellipsoid((0.028, -0.0725, 0.739), (0.025, 0.015, 0.006)), 0.030),  # brow
+        (ellipsoid((0.032, -0.1035, 0.721), (0.013, 0.012, 0.008)), -0.016),  # eye's hollow
         (ellipsoid((0.0315, -0.0785, 0.7205), (0.0135, 0.0125, 0.0095)), 0.006),  # eye
         (ellipsoid((0.0, -0.0875, 0.6620), (0.023, 0.0100, 0.0046)), 0.012),  # upper lip
         (ellipsoid((0.0, -0.0860, 0.6540), (0.019, 0.0100, 0.0050)), 0.012),  # lower lip
@@ -441,26 +440,29 @@ JOINTS = {
     "shin": (0.1006, 0.0, -0.429),
     "foot": (0.1006, 0.0, -0.859),
     "toe": (0.1006, -0.130, -0.910),
-    "toe_end": (0.1006, -0.195, -0.915),
+    "toe_end": (0.1006, -0.195, -0.910),
 }
 """Joints of the left side and the middle, by the skeleton at rest [m]."""
 SPREAD_M = {
-    "hips": 0.045,
-    "waist": 0.05,
-    "ribs": 0.05,
-    "chest": 0.04,
+    "hips": 0.055,
+    "waist": 0.055,
+    "ribs": 0.055,
+    "chest": 0.05,
     "neck": 0.03,
     "head": 0.025,
-    "shoulder": 0.032,
-    "upper_arm": 0.027,
-    "forearm": 0.022,
-    "hand": 0.014,
-    "thigh": 0.042,
-    "shin": 0.028,
+    "shoulder": 0.042,
+    "upper_arm": 0.036,
+    "forearm": 0.028,
+    "hand": 0.018,
+    "thigh": 0.055,
+    "shin": 0.036,
     "foot": 0.018,
     "toe": 0.014,
 }
 """How far a part's boundary is spread along the skin."""
+
+
+STEPS = 6  # of implicit time; in one alone what is far away would be moved a little as well
 
 
 def part_of(points: Array) -> NDArray[np.int64]:
@@ -502,8 +504,8 @@ def weights(vertices: Array, triangles: NDArray[np.int64]) -> Array:
         one, other = vertices[first] - vertices[apex], vertices[second] - vertices[apex]
         area = np.linalg.norm(np.cross(one, other), axis=1)
         cotangent = np.clip((one * other).sum(axis=1) / np.maximum(area, 1e-12), 0.02, 10.0)
-        # Half the squared width: heat after that time has spread so far.
-        flow = 0.5 * cotangent * 0.5 * (0.5 * (spread[first] + spread[second])) ** 2
+        # Heat after the time of half the squared width has spread so far.
+        flow = 0.5 * cotangent * 0.5 * (0.5 * (spread[first] + spread[second])) ** 2 / STEPS
         rows += [first, second]
         columns += [second, first]
         values += [flow, flow]
@@ -512,7 +514,7 @@ def weights(vertices: Array, triangles: NDArray[np.int64]) -> Array:
     system = diags(mass + np.asarray(stiffness.sum(axis=1)).ravel()) - stiffness
     solve = splu(system.tocsc())
     soft = hard
-    for _ in range(2):  # two steps are smoother at their ends than one
+    for _ in range(STEPS):
         soft = solve.solve(mass[:, None] * soft)
     return np.asarray(soft)
 
@@ -521,7 +523,7 @@ def strongest(soft: Array) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
     """The four strongest parts (N, 4) of each vertex, and their weights in 255ths, which add up to 255."""
     order = np.argsort(-soft, axis=1, kind="stable")[:, :4]
     kept = np.take_along_axis(soft, order, axis=1)
-    kept[kept < 0.02] = 0.0
+    kept[kept < 0.04] = 0.0
     kept *= 255.0 / kept.sum(axis=1, keepdims=True)
     whole = np.round(kept).astype(int)
     whole[:, 0] += 255 - whole.sum(axis=1)

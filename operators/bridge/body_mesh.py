@@ -106,7 +106,8 @@ def body_joints(body: Body) -> dict[str, Array]:
             found[f"{part}.{side}"] = ends[f"{part}.{side}"][0]
         found[f"hand_end.{side}"] = ends[f"hand.{side}"][1]
         ankle, tip = ends[f"foot.{side}"]
-        found[f"toe.{side}"], found[f"toe_end.{side}"] = ankle + BALL * (tip - ankle), tip
+        ball = ankle + BALL * (tip - ankle)
+        found[f"toe.{side}"], found[f"toe_end.{side}"] = ball, np.array([*tip[:2], ball[2]])
     return found
 
 

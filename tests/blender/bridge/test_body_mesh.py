@@ -9,7 +9,7 @@ import pytest
 from keymark.core.body.actor import Actor
 from keymark.core.body.body_volume import segment_piece, sole_offsets
 from keymark.core.body.human_mesh import FILE
-from keymark.core.body.kinematics import Body
+from keymark.core.body.kinematics import Body, Pose
 from keymark.core.body.posture import Posture
 from keymark.core.footage.region_tracks import MarkerStyle
 from keymark.operators.bridge.armature import build_armature
@@ -21,6 +21,13 @@ def shown(mesh_object: bpy.types.Object) -> np.ndarray:
     """World positions (N, 3) of the vertices, as the armature moves them."""
     evaluated = mesh_object.evaluated_get(bpy.context.evaluated_depsgraph_get())
     return np.array([evaluated.matrix_world @ vertex.co for vertex in evaluated.data.vertices])
+
+
+def at_rest(actor: bpy.types.Object, body: Body) -> Pose:
+    """The body as the armature rests."""
+    vector = np.zeros(body.skeleton.dof_count)
+    vector[:3] = actor.data.bones["pelvis"].head_local
+    return body.pose(Posture.from_vector(body.skeleton, vector))
 
 
 def weights(mesh_object: bpy.types.Object) -> dict[str, np.ndarray]:
@@ -41,15 +48,14 @@ def test_each_bone_carries_its_skin_in_any_posture(
     rest = shown(mesh_object)
     posture = random_posture(seed)
     write_posture(actor, posture)
-    moved, pose = shown(mesh_object), body.pose(posture)
-    still = body.pose(Posture.from_vector(body.skeleton, np.zeros(body.skeleton.dof_count)))
+    moved, pose, still = shown(mesh_object), body.pose(posture), at_rest(actor, body)
     table = weights(mesh_object)
     assert sum(table.values()) == pytest.approx(1.0, abs=2e-3)
     for segment in body.skeleton.segments:
         own = np.flatnonzero(table[segment.name] > 0.999)
         if segment.name.startswith("girdle"):
             continue
-        assert len(own) > 15, segment.name
+        assert len(own) > 5, segment.name
         local = (rest[own] - still.origin[segment.joint]) @ still.rotation[segment.joint]
         wanted = pose.origin[segment.joint] + local @ pose.rotation[segment.joint].T
         np.testing.assert_allclose(moved[own], wanted, atol=2e-4)
@@ -58,7 +64,8 @@ def test_each_bone_carries_its_skin_in_any_posture(
 @pytest.mark.parametrize("stature_m", [1.3, 1.72, 2.0])
 def test_the_skin_is_a_closed_body_of_the_actors_height_on_its_soles(stature_m: float) -> None:
     body = Body(Actor.from_stature(stature_m))
-    mesh_object = build_body_mesh(build_armature(bpy.context.scene, body, "Actor"), body, ())
+    actor = build_armature(bpy.context.scene, body, "Actor")
+    mesh_object = build_body_mesh(actor, body, ())
     mesh = mesh_object.data
     edges = Counter(tuple(sorted(pair)) for face in mesh.polygons for pair in face.edge_keys)
     assert set(edges.values()) <= {2, 4}  # fingers may touch
@@ -67,12 +74,10 @@ def test_the_skin_is_a_closed_body_of_the_actors_height_on_its_soles(stature_m: 
     volume = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6.0
     # An adult of 1.72 m fills 55 to 80 liters.
     assert 0.055 < volume * (1.72 / stature_m) ** 3 < 0.080
-    ankle = body.segment_ends(
-        body.pose(Posture.from_vector(body.skeleton, np.zeros(body.skeleton.dof_count))), "foot.L"
-    )[0]
+    ankle = body.segment_ends(at_rest(actor, body), "foot.L")[0]
     assert places[:, 2].min() == pytest.approx(ankle[2] + sole_offsets(body)[..., 2].min(), abs=0.004)
     assert np.ptp(places[:, 2]) == pytest.approx(stature_m, rel=0.02)
-    left, right = places[places[:, 0] > 0.0], places[places[:, 0] < 0.0]
+    left, right = places[places[:, 0] > 1e-4], places[places[:, 0] < -1e-4]
     assert left.mean(axis=0) == pytest.approx(right.mean(axis=0) * [-1.0, 1.0, 1.0], abs=1e-4)
 
 
@@ -82,7 +87,7 @@ def test_limbs_are_as_thick_as_cores_volume_has_them(
 ) -> None:
     mesh_object = build_body_mesh(actor, body, ())
     piece = segment_piece(body, segment)
-    pose = body.pose(Posture.from_vector(body.skeleton, np.zeros(body.skeleton.dof_count)))
+    pose = at_rest(actor, body)
     start, end = (pose.place(piece.joint, place) for place in (piece.start, piece.end))
     places = shown(mesh_object)
     share = (places - start) @ (end - start) / float((end - start) @ (end - start))
@@ -95,7 +100,7 @@ def test_a_marker_colors_the_skin_from_joint_to_joint(actor: bpy.types.Object, b
     styles = (MarkerStyle("jacket", "trunk", (30, 140, 60)), MarkerStyle("sock", "shin.L", (230, 200, 30)))
     mesh = build_body_mesh(actor, body, styles).data
     assert [material.name.split(".")[0] for material in mesh.materials] == ["Body", "jacket", "sock"]
-    pose = body.pose(Posture.from_vector(body.skeleton, np.zeros(body.skeleton.dof_count)))
+    pose = at_rest(actor, body)
     by_material = {
         number: np.array(
             [
