@@ -7,7 +7,7 @@ from types import MappingProxyType
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from ..arrays import Array, chunks
+from ..arrays import Array, BoolArray, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
@@ -24,6 +24,7 @@ from ..take.clip_check import check_frame_count, check_in_front
 from ..take.conversion_settings import METHODS
 from ..take.motion import Motion
 from ..take.performer_keypoints import performer_keypoints
+from ..take.presence import absence_notes, presence
 from ..take.read_footage import average_model, read_footage
 from ..take.take import Take
 from .fuzzy import Memberships, keyframe_distance
@@ -123,21 +124,26 @@ def _reconstruct(
         _check_tracks(take, reading.tracks)
     tracks = reading.tracks
     keypoints = performer_keypoints(take, interpolate(take.keyframes, tracks.frame_count), tracks)
+    there = presence(take, reading, keypoints)
+    absent = absence_notes(take, there)
+    take = _present(take, there)
     worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps, keypoints)
     left_out = len(take.keyframes) - len(worth)
-    notes += reading.notes + left_out_notes(take, left_out)
+    notes += reading.notes + absent + left_out_notes(take, left_out)
     take = replace(take, keyframes=worth)
     notes += found_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
-    if left_out or match_scale.any():  # else the prior is that of all keyframes
+    if left_out or absent or match_scale.any():  # else the prior is that of all keyframes
         keypoints = performer_keypoints(take, prior, tracks)
     notes += keypoints.notes
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution, seen = baseline, average_model(take), None, tracks
     if method == "map":
         usable = _usable(earlier, reading)
-        solution = yield from _whole_clip(take, reading, keypoints, prior, match_scale, begun, usable)
+        ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
+        given = Seen(tracks, take.marker_segments, keypoints, reading.album, ignored, there)
+        solution = yield from _whole_clip(take, given, prior, match_scale, begun, usable)
         seen = seen_tracks(tracks, solution.problem.observed)
         motion, model = _solved(take, seen, solution, match_scale), solution.evidence.model
         notes += evidence_notes(take, solution.evidence) + keypoint_notes(solution.keypoints)
@@ -148,7 +154,8 @@ def _reconstruct(
     moved = evidence_speed(tracks, take.marker_segments, keypoints, reading.album)
     speed = yield from within("Measuring the speed", moved, 1.0, 1.0)
     yield Progress("Done", 1.0)
-    notes += marker_notes(seen)
+    notes += marker_notes(seen, there)
+    motion, baseline = motion.emptied(there), baseline.emptied(there)
     return Reconstruction(motion, baseline, reading, speed.values, notes, keypoints, model, solution)
 
 
@@ -158,6 +165,16 @@ def _usable(earlier: Reconstruction | None, reading: Reading) -> WholeClipResult
         return None
     known = earlier.reading is reading or of_same_footage(earlier.reading.key, reading.key)
     return earlier.solution if known else None
+
+
+def _present(take: Take, there: BoolArray) -> Take:
+    """The take with the keyframes of frames in which the performer is there."""
+    kept = tuple(key for key in take.keyframes if there[key.index])
+    if len(kept) < 2:
+        raise InputError(
+            f"{take.name} has {len(kept)} keyframes in frames in which somebody is seen; at least 2 are needed"
+        )
+    return replace(take, keyframes=kept)
 
 
 def _check_tracks(take: Take, tracks: RegionTracks) -> None:
@@ -170,15 +187,12 @@ def _check_tracks(take: Take, tracks: RegionTracks) -> None:
 
 def _whole_clip(
     take: Take,
-    reading: Reading,
-    keypoints: Keypoints,
+    seen: Seen,
     prior: Posture,
     match_scale: Array,
     begun: float,
     earlier: WholeClipResult | None,
 ) -> Job[WholeClipResult]:
-    ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
-    seen = Seen(reading.tracks, take.marker_segments, keypoints, reading.album, ignored)
     ankle, index = None, np.array(take.keyframe_indices, dtype=np.intp)
     if _is_composed(take):
         ankle = found_ankle_m(take.body, prior[index], index, prior.batch[0])

@@ -111,7 +111,7 @@ def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[Whol
     return estimate_whole_clip(
         given.body,
         given.camera,
-        Seen(tracks, take.marker_segments, given.keypoints),
+        Seen(tracks, take.marker_segments, given.keypoints, there=given.there),
         Believed(
             interpolate(keyframes, tracks.frame_count),
             tuple(map(int, sampled)),

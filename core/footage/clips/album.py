@@ -131,7 +131,7 @@ def picture_motion(album: Album, frames: int) -> Generator[float, None, Array]:
         if index in album:
             now = cv2.cvtColor(album.picture(index), cv2.COLOR_BGR2GRAY).astype(np.float64)
             if before is not None:
-                changed = _changed(now - before)
+                changed = changed_pixels(now - before)
                 swept[index - 1] = changed.sum()
                 rows = changed.sum(axis=1) + (0.0 if rows is None else rows)
             before = now
@@ -145,7 +145,7 @@ def picture_motion(album: Album, frames: int) -> Generator[float, None, Array]:
     return np.asarray(0.5 * (padded[:-1] + padded[1:]))
 
 
-def _changed(difference: Array) -> BoolArray:
+def changed_pixels(difference: Array) -> BoolArray:
     """Pixels that change, beside noise and the light of the whole picture."""
     difference = np.abs(difference - np.median(difference))
     usual = 1.4826 * float(np.median(difference))
