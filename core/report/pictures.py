@@ -75,7 +75,7 @@ def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
 def _floor_height(motion: Motion) -> float:
     """Height of the ground plane if the feet are near it, else of the lowest ankle [m]."""
     names = motion.body.skeleton.point_names
-    lowest = float(motion.points[:, [names.index("ankle.L"), names.index("ankle.R")], 2].min())
+    lowest = float(np.nanmin(motion.points[:, [names.index("ankle.L"), names.index("ankle.R")], 2]))
     return 0.0 if abs(lowest) < 0.5 else lowest
 
 
@@ -89,7 +89,8 @@ def write_pictures(
 ) -> tuple[Path, ...]:
     """Write the pictures; the frames that they show are decoded in one more pass over the clip."""
     folder.mkdir(parents=True, exist_ok=True)
-    frames = evenly_spaced_frames(len(motion.time_s))
+    known = np.flatnonzero(motion.there)
+    frames = tuple(int(known[frame]) for frame in evenly_spaced_frames(len(known)))
     shown = footage_frames(Clip.open(take.clip, fps=take.fps), frames)
     if not shown:
         raise InputError(f"{take.clip}: can no longer be read; the pictures need it once more")

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.actor import Actor
 from ..body.human import HUMAN
 from ..body.kinematics import Body
@@ -22,7 +22,11 @@ from .evidence import MOST_FRAMES, Frame, FrameCount, FrameRate, Line
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A reconstructed motion of F frames; NaN in those in which the performer is not there."""
+    """A reconstructed motion of F frames.
+
+    In those in which the performer is not there, points and covariance are NaN, and the posture is that of
+    the nearest frame in which he is.
+    """
 
     body: Body
     fps: float
@@ -62,13 +66,11 @@ class Motion:
         """The motion with nothing in frames in which the performer is not there, of F."""
         if there.all():
             return self
-        own = self.posture
-        shown = (own.translation, own.rotations, own.angles)
         return replace(
             self,
-            posture=Posture(own.skeleton, *(_kept(values, there) for values in shown)),
-            points=_kept(self.points, there),
-            point_covariance=_kept(self.point_covariance, there),
+            posture=self.posture[_nearest(there)],
+            points=np.where(there[:, None, None], self.points, np.nan),
+            point_covariance=np.where(there[:, None, None, None], self.point_covariance, np.nan),
             empty=tuple(np.flatnonzero(~there).tolist()),
         )
 
@@ -90,9 +92,14 @@ class Motion:
         )
 
 
-def _kept(values: Array, there: BoolArray) -> Array:
-    """Values (F, ...), NaN in frames in which the performer is not there."""
-    return np.where(there.reshape(-1, *(1,) * (values.ndim - 1)), values, np.nan)
+def _nearest(there: BoolArray) -> IndexArray:
+    """(F,) for each frame the nearest in which the performer is there: itself where he is."""
+    known = np.flatnonzero(there)
+    frame = np.arange(len(there))
+    after = np.minimum(np.searchsorted(known, frame), len(known) - 1)
+    before = np.maximum(after - 1, 0)
+    nearer = np.abs(known[before] - frame) < np.abs(known[after] - frame)
+    return known[np.where(nearer, before, after)]
 
 
 LARGEST_BYTES = 2**29
@@ -171,6 +178,8 @@ class MotionFile(Record):
                     f"{name} is a list of {len(array)}; it must have one entry for each of {self.frame_count}"
                 )
         empty = np.isnan(self.points["head"]).any(axis=-1)
+        if empty.all():
+            return "points is null in every frame; a motion has a place in one frame or more"
         for name in ("points", "posture", "sigma_m", "covariance_mm2"):
             for key, array in getattr(self, name).items():
                 if (np.isnan(array).reshape(len(array), -1).any(axis=1) != empty).any():
@@ -213,18 +222,19 @@ def read_motion(path: Path) -> Motion:
     """Read a motion that `write_motion` wrote."""
     file = MotionFile.from_json(read_json(path, LARGEST_BYTES), str(path))
     body, points = Body(file.actor), np.stack(list(file.points.values()), axis=1)
+    posture, there = np.stack(list(file.posture.values()), axis=1), np.isfinite(points).all(axis=(1, 2))
     return Motion(
         body=body,
         fps=file.fps,
         frame_start=file.frame_start,
         time_s=file.time_s,
-        posture=Posture.from_vector(body.skeleton, np.stack(list(file.posture.values()), axis=1)),
+        posture=Posture.from_vector(body.skeleton, posture[_nearest(there)]),
         points=points,
         point_covariance=_covariance(file),
         keyframe_indices=tuple(frame - file.frame_start for frame in file.keyframes),
         method=file.method,
         diagnostics=MappingProxyType(dict(file.diagnostics)),
-        empty=tuple(np.flatnonzero(np.isnan(points).any(axis=(1, 2))).tolist()),
+        empty=tuple(np.flatnonzero(~there).tolist()),
     )
 
 

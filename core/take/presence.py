@@ -108,9 +108,8 @@ def absence_notes(take: Take, there: BoolArray) -> tuple[str, ...]:
     notes = [f"nobody is seen in frame {listed(named, MOST_NAMED)}: {what}"]
     lost = [k.index + take.frame_start for k in take.keyframes if k.matched is None and not there[k.index]]
     if lost:
-        notes.append(
-            f"keyframe {listed([str(frame) for frame in lost], MOST_NAMED)} is posed where the picture shows "
-            "nobody and is left aside; pose it where he is seen"
-        )
+        named = listed([str(frame) for frame in lost], MOST_NAMED)
+        what = f"keyframe {named} is" if len(lost) == 1 else f"keyframes {named} are"
+        notes.append(f"{what} posed where the picture shows nobody, and left aside; pose where he is seen")
     return tuple(notes)
 

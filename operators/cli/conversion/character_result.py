@@ -119,7 +119,7 @@ def write_character_result(
         from ...bridge.character.retarget import retarget
 
         with blender_silence(debug):
-            frames = show_footage(scene, motion)
+            frames = show_footage(scene, motion)[motion.there]
         character_map, options = opened.chosen.character_map, retarget_options(settings.options)
         armature = opened.imported.armature
         job = retarget(armature, motion_segments(motion), frames, character_map, options)
@@ -176,7 +176,8 @@ def _draw(
 
 
 def motion_segments(motion: Motion) -> SegmentMotion:
-    """The segments of a motion, with natural feet and hands."""
+    """The segments of a motion, with natural feet and hands, in frames in which the performer is there."""
+    motion = motion.without_absence()
     extremities = natural_extremities(motion.body, motion.posture, motion.time_s)
     return segment_motion(motion.body, motion.posture, motion.time_s, extremities)
 
