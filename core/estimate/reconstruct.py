@@ -8,6 +8,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ..arrays import Array, BoolArray, chunks
+from ..body.body_volume import limb_dofs, rested
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
@@ -24,12 +25,12 @@ from ..take.clip_check import check_frame_count, check_in_front
 from ..take.conversion_settings import METHODS
 from ..take.motion import Motion
 from ..take.performer_keypoints import performer_keypoints
-from ..take.presence import absence_notes, presence
+from ..take.presence import absence_notes, presence, unseen_limbs, unseen_notes
 from ..take.read_footage import average_model, read_footage
 from ..take.take import Take
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
-from .keyframe_error import place_depth_std_m, undetermined_covariance, unobserved_variance
+from .keyframe_error import UNOBSERVED, place_depth_std_m, undetermined_covariance, unobserved_variance
 from .keyframe_trust import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
@@ -143,11 +144,12 @@ def _reconstruct(
         usable = _usable(earlier, reading)
         ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
         given = Seen(tracks, take.marker_segments, keypoints, reading.album, ignored, there)
-        solution = yield from _whole_clip(take, given, prior, match_scale, begun, usable)
+        unseen = unseen_limbs(take, tracks, keypoints, there)
+        solution = yield from _whole_clip(take, given, prior, match_scale, unseen, begun, usable)
         seen = seen_tracks(tracks, solution.problem.observed)
-        motion, model = _solved(take, seen, solution, match_scale), solution.evidence.model
+        motion, model = _solved(take, seen, solution, match_scale, unseen), solution.evidence.model
         notes += evidence_notes(take, solution.evidence) + keypoint_notes(solution.keypoints)
-        notes += contour_notes(take, solution.contours is not None)
+        notes += contour_notes(take, solution.contours is not None) + unseen_notes(unseen)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
         notes += filter_notes(take)
@@ -190,13 +192,14 @@ def _whole_clip(
     seen: Seen,
     prior: Posture,
     match_scale: Array,
+    unseen: tuple[str, ...],
     begun: float,
     earlier: WholeClipResult | None,
 ) -> Job[WholeClipResult]:
     ankle, index = None, np.array(take.keyframe_indices, dtype=np.intp)
     if _is_composed(take):
         ankle = found_ankle_m(take.body, prior[index], index, prior.batch[0])
-    believed = Believed(prior, take.keyframe_indices, match_scale, ankle)
+    believed = Believed(prior, take.keyframe_indices, match_scale, ankle, unseen)
     estimate = estimate_whole_clip(take.body, take.camera, seen, believed, earlier=earlier)
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 
@@ -205,7 +208,9 @@ def _is_composed(take: Take) -> bool:
     return all(key.matched is not None and key.matched.is_composed for key in take.keyframes)
 
 
-def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array) -> Motion:
+def _solved(
+    take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array, never: tuple[str, ...]
+) -> Motion:
     fit = result.keypoints
     diagnostics = {
         "residual_px": result.residual_px,
@@ -229,13 +234,16 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
     visible = np.concatenate([tracks.visible, seen], axis=1)
     names = (*take.marker_segments, *points)
     unseen = unobserved_variance(take.body.skeleton, names, visible, index, tracks.time_s)
-    motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
+    for limb in never:
+        unseen[:, limb_dofs(take.body.skeleton, limb)] = UNOBSERVED.limb_std_rad**2
+    posture = rested(take.body, result.posture, never)
+    motion = _motion(take, tracks, posture, result.covariance, "map", diagnostics, unseen)
     if not match_scale.any():
         return motion
     place_std_m: Array | float = 0.0
     if _is_composed(take):
         ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
-        lower = motion.points[:, ankles, 2].min(axis=1)
+        lower = None if {"leg.L", "leg.R"} <= set(never) else motion.points[:, ankles, 2].min(axis=1)
         place_std_m = place_depth_std_m(motion.points, lower, take.camera)
     sure = np.array([1.0 if key.matched is None else key.matched.confidence for key in take.keyframes])
     open_depth = undetermined_covariance(motion.points, take.camera, index, match_scale, sure, place_std_m)

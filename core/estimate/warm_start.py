@@ -88,6 +88,7 @@ def _same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
         and earlier.noise == now.noise
         and np.array_equal(earlier.step_s, now.step_s)
         and np.array_equal(earlier.there, now.there)
+        and earlier.unseen == now.unseen
     )
 
 

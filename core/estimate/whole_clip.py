@@ -74,6 +74,7 @@ class Believed:
     """(K,) size of each matched keyframe's error, relative to a usual difference between performers; 0 for
     posed ones, which all are by default."""
     lower_ankle: Array | None = None  # (F,) where all keyframes are matched [m]; by soles where None
+    unseen: tuple[str, ...] = ()  # limbs that are never seen, whose feet say nothing of the place
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,6 +170,7 @@ def estimate_whole_clip(
         swapped=swapped,
         step_s=np.maximum(np.diff(tracks.time_s), 1e-3),
         there=np.ones(tracks.frame_count, dtype=bool) if seen.there is None else seen.there,
+        unseen=believed.unseen,
     )
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or matched.any()) else None

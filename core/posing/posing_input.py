@@ -20,7 +20,7 @@ from ..prior.keyframe_proposals import evidence_speed, propose_keyframes
 from ..prior.keyframes import Keyframe
 from ..progress import run
 from ..take.performer_keypoints import performer_keypoints
-from ..take.presence import presence
+from ..take.presence import presence, unseen_limbs
 from ..take.take import Take
 from .match_evidence import MatchEvidence
 
@@ -70,6 +70,7 @@ class PosingInput:
     posed: PosedFrames
     keypoints: Keypoints  # all the performer's, in the detector's layout
     there: BoolArray  # (F,) frames in which the performer is there; others have no posture
+    unseen: tuple[str, ...] = ()  # limbs that are never seen
     first: int = 0  # index of the first of these frames in the clip
 
     @cached_property
@@ -122,6 +123,7 @@ def posing_input(take: Take, reading: Reading, keyframe_count: int | None = None
         PosedFrames.of(take.body, posed),
         keypoints,
         there,
+        unseen_limbs(take, tracks, keypoints, there),
     )
 
 

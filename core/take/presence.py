@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.human import LIMBS, limb_of
 from ..files.fields import listed
 from ..footage.clips.album import Album, changed_pixels
 from ..footage.keypoints.keypoints import Keypoints
@@ -28,6 +29,8 @@ ELSEWHERE = 0.25
 """Change of the picture outside of where he was, relative to that inside, from which he may be elsewhere."""
 LEAST_SCORE = 0.05
 """Of a keypoint that counts: what detectors that always answer say of an empty picture."""
+SELDOM = 0.05
+"""Share of frames below which a limb is seldom seen: detectors take other things for one now and then."""
 MOST_NAMED = 3
 
 
@@ -60,6 +63,19 @@ def presence(take: Take, reading: Reading, keypoints: Keypoints) -> BoolArray:
         else:
             there[own] = vouched[own]
     return there
+
+
+def unseen_limbs(take: Take, tracks: RegionTracks, keypoints: Keypoints, there: BoolArray) -> tuple[str, ...]:
+    """Limbs, as in `LIMBS`, that keypoints seldom show though they show the performer, and no marker covers.
+
+    Where anything is posed a person says what is not seen; there are none then. `there` (F,) as `presence`.
+    """
+    if not keypoints.names or any(key.matched is None for key in take.keyframes):
+        return ()
+    names = (*take.marker_segments, *keypoints.names)
+    seen = np.concatenate([tracks.visible, keypoints.seen & (keypoints.score > LEAST_SCORE)], axis=1)[there]
+    own = {limb: [column for column, name in enumerate(names) if limb_of(name) == limb] for limb in LIMBS}
+    return tuple(limb for limb in LIMBS if seen[:, own[limb]].any(axis=1).mean() < SELDOM)
 
 
 def is_empty(album: Album, tracks: RegionTracks, keypoints: Keypoints, run: tuple[int, int]) -> bool:
@@ -113,3 +129,17 @@ def absence_notes(take: Take, there: BoolArray) -> tuple[str, ...]:
         notes.append(f"{what} posed where the picture shows nobody, and left aside; pose where he is seen")
     return tuple(notes)
 
+
+def unseen_notes(limbs: tuple[str, ...]) -> tuple[str, ...]:
+    """A note on limbs that are never seen."""
+    if not limbs:
+        return ()
+    kinds = {kind: [limb for limb in limbs if limb.startswith(kind)] for kind in ("arm", "leg")}
+    sides = {"L": "left", "R": "right"}
+    words = [
+        f"the {kind}s" if len(own) == 2 else f"the {sides[own[0][-1]]} {kind}"
+        for kind, own in kinds.items()
+        if own
+    ]
+    are = "is" if len(limbs) == 1 else "are"
+    return (f"{' and '.join(words)} {are} never seen and stay at rest; pose a keyframe where that is wrong",)
