@@ -27,6 +27,7 @@ from ..take.motion import Motion
 from ..take.performer_keypoints import performer_keypoints
 from ..take.presence import absence_notes, presence, unseen_limbs, unseen_notes
 from ..take.read_footage import average_model, read_footage
+from ..take.steady_camera import camera_notes
 from ..take.take import Take
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
@@ -127,10 +128,11 @@ def _reconstruct(
     keypoints = performer_keypoints(take, interpolate(take.keyframes, tracks.frame_count), tracks)
     there = presence(take, reading, keypoints)
     absent = absence_notes(take, there)
+    shaken = camera_notes(take, reading)
     take = _present(take, there)
     worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps, keypoints)
     left_out = len(take.keyframes) - len(worth)
-    notes += reading.notes + absent + left_out_notes(take, left_out)
+    notes += reading.notes + shaken + absent + left_out_notes(take, left_out)
     take = replace(take, keyframes=worth)
     notes += found_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
@@ -148,7 +150,9 @@ def _reconstruct(
         solution = yield from _whole_clip(take, given, prior, match_scale, unseen, begun, usable)
         seen = seen_tracks(tracks, solution.problem.observed)
         motion, model = _solved(take, seen, solution, match_scale, unseen), solution.evidence.model
-        notes += evidence_notes(take, solution.evidence) + keypoint_notes(solution.keypoints)
+        if not shaken:  # else the camera is what does not fit
+            notes += evidence_notes(take, solution.evidence)
+        notes += keypoint_notes(solution.keypoints)
         notes += contour_notes(take, solution.contours is not None) + unseen_notes(unseen)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
