@@ -22,7 +22,7 @@ MOST_CORNERS, FEWEST_CORNERS = 300, 12
 AGREEING_PX = 1.5
 """Distance of a corner from where the homography has it, within which it agrees [px of the album]."""
 TURNING = 0.7
-"""Share of corners that agree where the camera only turns and zooms; the rest moves by itself."""
+"""Share of corners that agree, in nine frames of ten, where the camera only turns and zooms."""
 LOST = 0.5
 """Share of an anchor's corners below which the next frame becomes the anchor."""
 MARGIN = 0.15
@@ -49,7 +49,7 @@ class CameraMotion:
     @property
     def turns(self) -> bool:
         """Whether the camera only turns and zooms."""
-        return float(np.median(self.agreeing)) >= TURNING
+        return float(np.percentile(self.agreeing, 10.0)) >= TURNING
 
 
 def camera_motion(

@@ -78,10 +78,9 @@ def camera_notes(take: Take, reading: Reading) -> tuple[str, ...]:
     found = background_motion(take, reading)
     if found is None:
         return ()
-    how = "turns or zooms" if found.turns else "moves from its place"
     return (
-        f"the camera {how}, by {found.moved_px:.0f} px of the picture, and is taken to stand still; track it "
-        "with Blender's camera solver and give its pose in every frame, or film from a tripod",
+        f"the camera moves, by {found.moved_px:.0f} px of the picture, and is taken to stand still; the command "
+        "line follows one that only turns or zooms, Blender's camera solver one that walks",
     )
 
 
