@@ -242,6 +242,7 @@ def _solved(
         unseen[:, limb_dofs(take.body.skeleton, limb)] = UNOBSERVED.limb_std_rad**2
     posture = rested(take.body, result.posture, never)
     motion = _motion(take, tracks, posture, result.covariance, "map", diagnostics, unseen)
+    motion = replace(motion, unseen=never)
     if not match_scale.any():
         return motion
     place_std_m: Array | float = 0.0

@@ -10,12 +10,12 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.actor import Actor
-from ..body.human import HUMAN
+from ..body.human import HUMAN, LIMBS
 from ..body.kinematics import Body
 from ..body.posture import Posture, posture_to_json, rounded
 from ..errors import ConversionError
 from ..files.json_file import read_json, shown, write_json
-from ..files.kinds import ByName, Items, Kind, NumberArray, Whole, number_array, refuse
+from ..files.kinds import ByName, Choice, Items, Kind, NumberArray, Whole, number_array, refuse
 from ..files.records import Record
 from .evidence import MOST_FRAMES, Frame, FrameCount, FrameRate, Line
 
@@ -44,6 +44,8 @@ class Motion:
     """Diagnostics of the estimate by name, (F, ...) each."""
     empty: tuple[int, ...] = ()
     """Indices of the frames in which the performer is not there."""
+    unseen: tuple[str, ...] = ()
+    """Limbs that are never seen and rest, as in `LIMBS`."""
 
     @property
     def scene_frames(self) -> Array:
@@ -161,10 +163,14 @@ class MotionFile(Record):
     uncertainty."""
     covariance_mm2: Annotated[Mapping[str, Array], _lists(HUMAN.point_names, 6)] = field(default_factory=dict)
     """Covariance of each point: F times xx, xy, xz, yy, yz, zz [mm²]."""
+    unseen: Annotated[
+        tuple[Annotated[str, Choice(LIMBS)], ...], Items("limbs", 0, len(LIMBS), unique="limb")
+    ] = ()
+    """Limbs that are never seen: they rest, and characters keep their own."""
 
     ORDER = (
         *("fps", "frame_start", "frame_count", "method", "keyframes", "time_s", "points", "sigma_m"),
-        *("covariance_mm2", "posture", "actor", "diagnostics"),
+        *("covariance_mm2", "posture", "actor", "diagnostics", "unseen"),
     )
 
     def mistake(self) -> str:
@@ -213,6 +219,7 @@ def write_motion(motion: Motion, path: Path) -> None:
         posture=dict(zip(posture, _rows(list(posture.values()), empty), strict=True)),
         actor=motion.body.actor,
         diagnostics={name: _significant(rows) for name, rows in sorted(motion.diagnostics.items())},
+        unseen=motion.unseen,
         **(_uncertainty(motion, empty) if _has_covariance(motion) else {}),
     )
     write_json(path, file.to_json())
@@ -235,6 +242,7 @@ def read_motion(path: Path) -> Motion:
         method=file.method,
         diagnostics=MappingProxyType(dict(file.diagnostics)),
         empty=tuple(np.flatnonzero(~there).tolist()),
+        unseen=file.unseen,
     )
 
 

@@ -134,6 +134,11 @@ def unseen_notes(limbs: tuple[str, ...]) -> tuple[str, ...]:
     """A note on limbs that are never seen."""
     if not limbs:
         return ()
+    return (f"{named_limbs(limbs)} never seen, rest, and are little believed; pose a keyframe where that is wrong",)
+
+
+def named_limbs(limbs: tuple[str, ...]) -> str:
+    """Some limbs as the beginning of a sentence, with its verb: `the legs are`."""
     kinds = {kind: [limb for limb in limbs if limb.startswith(kind)] for kind in ("arm", "leg")}
     sides = {"L": "left", "R": "right"}
     words = [
@@ -142,4 +147,4 @@ def unseen_notes(limbs: tuple[str, ...]) -> tuple[str, ...]:
         if own
     ]
     are = "is" if len(limbs) == 1 else "are"
-    return (f"{' and '.join(words)} {are} never seen and stay at rest; pose a keyframe where that is wrong",)
+    return f"{' and '.join(words)} {are}"
