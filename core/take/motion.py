@@ -144,7 +144,7 @@ class MotionFile(Record):
     frame_count: FrameCount
     """Number of frames, F."""
     method: Line
-    """map, ekf or interpolation."""
+    """map, ekf, interpolation, or mend for a motion from elsewhere."""
     keyframes: Annotated[tuple[Annotated[int, Whole(-(10**8), 10**8)], ...], Items("frames", 0, MOST_FRAMES)]
     """Scene frames of the keyframes."""
     time_s: Annotated[Array, NumberArray((-1,), LARGEST_NUMBER)]

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 
 EXPORTS = {"bvh": ("BVH", "character.bvh"), "fbx": ("FBX", "character.fbx")}
 EXPORTS |= {"glb": ("GLTF", "character.glb"), "usd": ("USD", "character.usdc")}
+EXPORTS |= {"trc": ("TRC", "character.trc"), "c3d": ("C3D", "character.c3d")}
 """By the word for it: the format of `bridge/export_formats`, and the file."""
 Result = TypeVar("Result")
 ShowFootage = Callable[["bpy.types.Scene", Motion], "Array"]
@@ -126,7 +127,7 @@ def write_character_result(
         armature = opened.imported.armature
         job = retarget(armature, motion_segments(motion), frames, character_map, options)
         try:
-            retargeted = run(_silenced(job, debug), console.progress)
+            retargeted = run(silenced(job, debug), console.progress)
         except InputError as error:
             raise InputError(f"{settings.file.path}: {error}") from error
         console.stage("Writing the character")
@@ -211,7 +212,7 @@ def keyed_limbs(character_map: CharacterMap, settings: CharacterSettings) -> Map
     return keyed
 
 
-def _silenced(job: Job[Result], debug: bool) -> Job[Result]:
+def silenced(job: Job[Result], debug: bool) -> Job[Result]:
     """A job whose steps let no message of Blender through, while its progress is shown."""
     while True:
         with blender_silence(debug):
