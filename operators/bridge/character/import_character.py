@@ -201,15 +201,39 @@ def _into_collection(scene: bpy.types.Scene, name: str, members: Sequence[bpy.ty
 # --- The meshes of a character
 
 
+CARRIERS = ("CHILD_OF", "COPY_TRANSFORMS", "ARMATURE")
+"""Constraints by which a bone carries an object as a parent does."""
+
+
 def skins(armature_object: bpy.types.Object) -> list[bpy.types.Object]:
     """The rendered meshes that the armature deforms or carries, in its first scene."""
-    found = []
-    for scene in armature_object.users_scene[:1]:
-        for one in scene.objects:
-            if one.type == "MESH" and not one.hide_render:
-                if is_deformed(one, armature_object) or one.parent == armature_object:
-                    found.append(one)
-    return found
+    return [
+        one
+        for scene in armature_object.users_scene[:1]
+        for one in scene.objects
+        if one.type == "MESH"
+        and not one.hide_render
+        and (is_deformed(one, armature_object) or carrying_bone(one, armature_object) is not None)
+    ]
+
+
+def carrying_bone(one: bpy.types.Object, armature_object: bpy.types.Object) -> str | None:
+    """The bone that carries an object, through whatever parents; empty for the armature object itself.
+
+    None where neither carries it.
+    """
+    at: bpy.types.Object | None = one
+    while at is not None and at != armature_object:
+        for constraint in at.constraints:
+            if constraint.type in CARRIERS and not constraint.mute and constraint.influence > 0.0:
+                targets = constraint.targets if constraint.type == "ARMATURE" else [constraint]
+                for target in targets:
+                    if target.target == armature_object and target.subtarget:
+                        return str(target.subtarget)
+        if at.parent == armature_object and at.parent_type == "BONE":
+            return str(at.parent_bone)
+        at = at.parent
+    return None if at is None else ""
 
 
 def is_deformed(mesh_object: bpy.types.Object, armature_object: bpy.types.Object) -> bool:

@@ -3,7 +3,7 @@
 import importlib.util
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -25,6 +25,7 @@ from ....core.retarget.retarget_record import RetargetRecord, UsedCharacter, Use
 from ....core.shoot.discovery import Shoot
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.motion import Motion
+from ....core.take.presence import named_limbs
 from ..blender_silence import blender_silence
 from ..console import Console
 from ..library_search_path import library_folders
@@ -120,8 +121,9 @@ def write_character_result(
         from ...bridge.character.retarget import retarget
 
         with blender_silence(debug):
-            frames = show_footage(scene, motion)
+            frames = show_footage(scene, motion)[motion.there]
         character_map, options = opened.chosen.character_map, retarget_options(settings.options)
+        character_map, note = _without_unseen(character_map, motion.unseen)
         armature = opened.imported.armature
         job = retarget(armature, motion_segments(motion), frames, character_map, options)
         try:
@@ -153,13 +155,30 @@ def write_character_result(
             options=settings.options,
             roles=character_map.roles,
             limbs=keyed_limbs(retargeted.character_map, settings),
-            quality=retargeted.quality.to_dict(),
+            quality={**retargeted.quality.to_dict(), **dict.fromkeys(_unmeasured(motion.unseen))},
             doubts=opened.chosen.doubts,
-            notes=(*opened.imported.notes, *retargeted.notes),
+            notes=(*opened.imported.notes, *note, *retargeted.notes),
             files={CHARACTER_BLEND: curves},
         )
         write_retarget_record(staging_folder, record)
         return record
+
+
+def _without_unseen(
+    character_map: CharacterMap, unseen: tuple[str, ...]
+) -> tuple[CharacterMap, tuple[str, ...]]:
+    """The map with limbs that the motion's footage never shows left alone, and a note on them."""
+    if not unseen:
+        return character_map, ()
+    roles = [role for limb in unseen for role in LIMBS[limb] if role in character_map.roles]
+    alone = tuple(dict.fromkeys((*character_map.left_alone, *roles)))
+    note = f"{named_limbs(unseen)} never seen in the footage, so that the character keeps its own"
+    return replace(character_map, left_alone=alone), (note,)
+
+
+def _unmeasured(unseen: tuple[str, ...]) -> list[str]:
+    """Figures of limbs that are not the performer's."""
+    return [f"{kind}s_deg" for kind in ("arm", "leg") if any(limb.startswith(kind) for limb in unseen)]
 
 
 def _draw(
@@ -177,7 +196,8 @@ def _draw(
 
 
 def motion_segments(motion: Motion) -> SegmentMotion:
-    """The segments of a motion, with natural feet and hands."""
+    """The segments of a motion, with natural feet and hands, in frames in which the performer is there."""
+    motion = motion.without_absence()
     extremities = natural_extremities(motion.body, motion.posture, motion.time_s)
     return segment_motion(motion.body, motion.posture, motion.time_s, extremities)
 
