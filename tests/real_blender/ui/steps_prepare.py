@@ -48,7 +48,8 @@ def opened(person: Person, reconstructed: bool) -> Steps[None]:
 
 def footage(person: Person) -> Steps[None]:
     """Load the clip by the file browser, cancelled once; find the camera, and set it up as it truly stood."""
-    clip = "keymark.load_footage", person.known.clip
+    file = person.known.clip
+    clip = "keymark.load_footage", min(file.iterdir()) if file.is_dir() else file  # the first of many images
     yield from person.changes_nothing("cancelling the file browser", lambda: browse(person, *clip, "ESC"))
     yield from person.undoable("loading the footage", lambda: browse(person, *clip, "RET"))
     take, known = person.take, person.known
