@@ -87,7 +87,7 @@ class Layout:
         for item in settings.bl_rna.properties[name].enum_items:
             settings.written[name] = item.identifier
             if hasattr(operator, "description"):
-                assert operator.description(self._context, settings), f"{idname} {item.identifier} says nothing"
+                assert operator.description(self._context, settings), f"{idname} {item.name} says nothing"
         settings.written.pop(name, None)
         self._show("operator", idname, **words)
         return settings
@@ -102,7 +102,9 @@ class Layout:
         if not hasattr(shown, "poll") or shown.poll(self._context):
             _draw(shown, self._context)
 
-    def template_list(self, kind: str, _: str, data: Any, name: str, chosen: Any, index: str, **__: Any) -> None:
+    def template_list(
+        self, kind: str, _: str, data: Any, name: str, chosen: Any, index: str, **__: Any
+    ) -> None:
         self._show("list", name)
         listed, inside = getattr(bpy.types, kind), Layout(self._context, [])
         assert index in chosen.bl_rna.properties

@@ -28,10 +28,10 @@ def draw_evidence(
     if not followed(take):
         hint = "Any clothes will do: detect or load keypoints. Five strong colors tell most"
         draw_sentence(layout, context, hint, "INFO")
+    layout.use_property_split = False  # a list's rows would be split too
     for kind in KINDS:
         readout, draw_settings = DRAWN[kind]
         header, body = layout.panel_prop(context.window_manager.keymark_steps, kind)
-        header.use_property_split = False
         header.prop(take.follow, f"use_{kind}", text=kind.title())
         draw_readout(header, readout(take))
         if body is not None:

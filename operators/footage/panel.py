@@ -4,7 +4,7 @@ import bpy
 
 from ..bridge.camera_placement import fixed_reason
 from ..bridge.footage_camera import may_move, solver_constraint
-from ..shell.panel import Popover, draw_sentence, side_by_side
+from ..shell.panel import Popover, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, find_take, placement_is_guess
 from .drawn_lines import HEIGHT, VERTICAL
@@ -34,9 +34,9 @@ def _draw_camera(
     else:
         if placement_is_guess(take):
             _draw_guess(column, "Height and tilt are a guess", "keymark.keep_camera")
-        row = side_by_side(column)
-        row.operator("keymark.camera_from_lines", text="From Lines", icon="MOD_EDGESPLIT").kind = VERTICAL
-        row.operator("keymark.camera_from_lines", text="From Performer", icon="USER").kind = HEIGHT
+        found = column.column(align=True)
+        found.operator("keymark.camera_from_lines", text="From Lines", icon="MOD_EDGESPLIT").kind = VERTICAL
+        found.operator("keymark.camera_from_lines", text="From the Performer", icon="USER").kind = HEIGHT
         for index, sentence in enumerate(take.camera_findings.splitlines()):
             draw_sentence(column, context, sentence, "DOT" if index else "CHECKMARK")
 
@@ -126,9 +126,8 @@ def _draw_clip(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy
         return  # Blender knows no size of a missing clip
     facts = column.column(align=True)
     facts.active = False
-    size = f"{clip.size[0]} x {clip.size[1]} px"
-    extent = f"{clip.frame_duration} frames at {state.rate:.5g} fps"
-    draw_sentence(facts, context, f"{size}, {extent}", "INFO")
+    size = f"{clip.size[0]} x {clip.size[1]} px at {state.rate:.5g} fps"
+    draw_sentence(facts, context, size, "INFO")
     if state.variable_rate:
         draw_sentence(column, context, "Variable rate: keys lie between frames", "ERROR")
 

@@ -51,9 +51,7 @@ def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> t
     return ("CHECKMARK", "sure") if match.confidence >= 0.8 else ("DOT", "likely")
 
 
-def draw_found(
-    column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-) -> None:
+def draw_found(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
     """Draw found keyframes, the way to the next doubtful one, and the choice among a frame's candidates."""
     matching = take.matching
     _draw_counts(column, context, take)

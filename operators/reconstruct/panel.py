@@ -33,9 +33,7 @@ class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
         if not draw_progress(row, context, "keymark.reconstruct"):
             row.operator("keymark.reconstruct", icon="ARMATURE_DATA")
         if take.armature is not None and take.motion_action is not None:
-            draw_shown_action(
-                column, take, {"KEYFRAMES": take.keyframe_action, "MOTION": take.motion_action}
-            )
+            draw_shown_action(column, take, {"KEYFRAMES": take.keyframe_action, "MOTION": take.motion_action})
         if len(take.notes):
             text = "1 Note" if len(take.notes) == 1 else f"{len(take.notes)} Notes"
             column.popover("KEYMARK_PT_reconstruct_notes", text=text, icon="INFO", translate=False)

@@ -12,7 +12,7 @@ import bpy
 from .takes import find_take, placement_is_guess, present_actor
 
 _chosen: dict[str, tuple[str, str]] = {}
-"""By a take's identifier: the step that the work had come to when a person chose, and the one that is open."""
+"""By a take's identifier: the step that the work had come to when a person chose, and the one they opened."""
 _kinds: dict[str, str] = {}
 """By a take's identifier, the kind of evidence whose settings are open."""
 

@@ -102,7 +102,8 @@ class KEYMARK_MT_take(bpy.types.Menu):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.operator("keymark.add_performer", icon="USER")
-        layout.operator("keymark.load_footage", text="Load Another Clip", icon="FILE_MOVIE").as_new_take = True
+        another = layout.operator("keymark.load_footage", text="Load Another Clip", icon="FILE_MOVIE")
+        another.as_new_take = True
         layout.menu("KEYMARK_MT_clips", icon="TRACKER")
         layout.operator("keymark.open_take", icon="FILE_FOLDER")
         layout.operator("keymark.open_example", icon="PLAY")
