@@ -26,8 +26,8 @@ class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
         return has_lost_actor(take) or (take.armature is not None and not is_actor(take.armature))
 
     @classmethod
-    def action(cls, take: bpy.types.PropertyGroup) -> str:
-        return "keymark.build_actor" if take.armature is None else ""
+    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+        return ("keymark.build_actor", "Build Actor") if take.armature is None else ("", "")
 
     def draw_step(
         self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup

@@ -179,11 +179,11 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
         return any(each.problem or any(r.outdated for r in each.results) for each in take.characters)
 
     @classmethod
-    def action(cls, take: PropertyGroup) -> str:
+    def action(cls, take: PropertyGroup) -> tuple[str, str]:
         if len(take.characters) or take.motion_action is None:
-            return "keymark.retarget"
+            return "keymark.retarget", "Retarget"
         free = any(may_be_character(each) for each in bpy.context.view_layer.objects)
-        return "keymark.add_character" if free else "keymark.add_rigify_human"
+        return ("keymark.add_character", "Add") if free else ("keymark.add_rigify_human", "Add Human")
 
     def draw_step(self, context: Context, body: UILayout, take: PropertyGroup) -> None:
         character = find_character(context.scene)

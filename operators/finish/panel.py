@@ -27,8 +27,8 @@ class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
         return bool(take.finish.outdated)
 
     @classmethod
-    def action(cls, take: bpy.types.PropertyGroup) -> str:
-        return "keymark.bake_motion"
+    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+        return "keymark.bake_motion", "Bake"
 
     def draw_step(
         self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup

@@ -33,8 +33,8 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
         return f"{len(keyframes_of(take))} keyed" if take.keyframe_action else ""
 
     @classmethod
-    def action(cls, take: bpy.types.PropertyGroup) -> str:
-        return "keymark.pose_all" if take.keyframe_action is None else ""
+    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+        return ("keymark.pose_all", "Pose All") if take.keyframe_action is None else ("", "")
 
     def draw_step(
         self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup

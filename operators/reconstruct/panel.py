@@ -21,8 +21,8 @@ class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
         return f"{100.0 * believed:.0f} %" if believed >= 0.0 else ""
 
     @classmethod
-    def action(cls, take: bpy.types.PropertyGroup) -> str:
-        return "keymark.reconstruct"
+    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+        return "keymark.reconstruct", "Reconstruct"
 
     def draw_step(
         self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup

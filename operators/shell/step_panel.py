@@ -53,13 +53,12 @@ class StepPanel(TakePanel):
         self, header: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
     ) -> None:
         """Draw what is next in a step that is folded, where it can be pressed; or that it runs."""
-        action = self.action(take)
+        action, text = self.action(take)
         if not action or draw_progress(header, context, action):
             return
         group, _, name = action.partition(".")
-        operator = getattr(getattr(bpy.ops, group), name)
-        if operator.poll():
-            header.operator(action, text=None if is_roomy(context) else "", icon="PLAY")
+        if getattr(getattr(bpy.ops, group), name).poll():
+            header.operator(action, text=text if is_roomy(context) else "", icon="PLAY", translate=False)
 
     @abstractmethod
     def draw_step(
@@ -78,6 +77,6 @@ class StepPanel(TakePanel):
         return False
 
     @classmethod
-    def action(cls, take: bpy.types.PropertyGroup) -> str:
-        """The operator that is next while the step is folded; none by default."""
-        return ""
+    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+        """The operator that is next while the step is folded, and a short label; none by default."""
+        return "", ""

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import bpy
 
-from .takes import find_take, placement_is_guess, present_actor
+from .takes import find_take, placement_is_guess, present_actor, redraw_sidebars_soon
 
 _chosen: dict[str, tuple[str, str]] = {}
 """By a take's identifier: the step that the work had come to when a person chose, and the one they opened."""
@@ -80,6 +80,7 @@ def _switch(name: str) -> "bpy.types.AnyType":
         take = find_take(bpy.context.scene)
         if take is not None:
             open_step(take, name, opened)
+            redraw_sidebars_soon()
 
     return bpy.props.BoolProperty(name="Open", description="Show this and fold the others", get=get, set=set_)
 

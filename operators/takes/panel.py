@@ -44,15 +44,13 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
         return "Next: reconstruct the motion"
     if (take.finish.action is None or take.finish.outdated) and is_doubtful(take):
         return _how_to_better(take)
-    if take.finish.action is None:
-        return "Next: review, then finish"
     if take.finish.outdated:
         return "Next: review, then bake again"
     if any(result.outdated for character in take.characters for result in character.results):
         return "Next: retarget the character again"
     if not any(result.action for character in take.characters for result in character.results):
-        return "Next: a character, or export"
-    return "Next: mark as asset, or export"
+        return "Next: review, then a character"
+    return "Next: export, or another take"
 
 
 def is_doubtful(take: bpy.types.PropertyGroup) -> bool:

@@ -245,7 +245,7 @@ def test_a_final_action_of_an_earlier_motion_says_so(tiny_take: Take, tmp_path: 
     take = active_take(bpy.context.scene)
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()
-    assert not take.finish.outdated and next_step(take) == "Next: review, then finish"
+    assert not take.finish.outdated and next_step(take) == "Next: review, then a character"
     bpy.ops.keymark.bake_motion()
     assert not take.finish.outdated
     bpy.ops.keymark.reconstruct()
