@@ -87,9 +87,9 @@ def _write_keymark(armature_object: bpy.types.Object, path: Path) -> None:
 
 FORMATS = {
     "KEYMARK": ExportFormat(
-        "motion.json",
+        "Keymark Motion",
         ".json",
-        "Write the motion as Keymark keeps it, for its command line and programs of your own",
+        "Write motion.json, as Keymark keeps it, for its command line and programs of your own",
         _write_keymark,
         built_in=True,
     ),

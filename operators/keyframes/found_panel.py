@@ -5,7 +5,7 @@ import bpy
 from ...core.prior.texts import COMPOSED
 from ..shell.contradictions import contradictions_at
 from ..shell.keyed_frames import DOUBTFUL, count_found, state_of
-from ..shell.panel import RowList, draw_sentence
+from ..shell.panel import RowList
 from ..shell.takes import active_take
 from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
 
@@ -54,9 +54,9 @@ def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> t
 def draw_found(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
     """Draw found keyframes, the way to the next doubtful one, and the choice among a frame's candidates."""
     matching = take.matching
-    _draw_counts(column, context, take)
+    _draw_counts(column, take)
     column.template_list(
-        "KEYMARK_UL_matches", "", matching, "matches", matching, "shown_match", rows=3, maxrows=5
+        "KEYMARK_UL_matches", "", matching, "matches", matching, "shown_match", rows=3, maxrows=3
     )
     doubtful = count_found(take)[1]
     going = column.row()
@@ -67,15 +67,11 @@ def draw_found(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy
     _draw_candidates(column, context, take)
 
 
-def _draw_counts(
-    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-) -> None:
-    """Draw how many were found, how many of them are in doubt, and the reason that was given."""
+def _draw_counts(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+    """Draw how many were found, and how many of them are in doubt."""
     count, doubtful = count_found(take)
     words = f"{count} found, {doubtful or 'none'} of them doubtful"
     layout.label(text=words, icon="QUESTION" if doubtful else "CHECKMARK", translate=False)
-    if take.matching.reason:
-        draw_sentence(layout, context, take.matching.reason, "BLANK1")
 
 
 def _draw_candidates(

@@ -86,7 +86,7 @@ def _draw_here(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy
     elif any(round(posed) == frame for posed in posed_frames(take)):
         column.label(text=f"Frame {frame} is posed", icon="KEYFRAME_HLT", translate=False)
     elif has_frame(matched_frames(take), frame):
-        column.label(text=f"Frame {frame} is found, not posed", icon="KEYTYPE_GENERATED_VEC", translate=False)
+        pass  # the list of found ones shows it
     elif frame in proposed_frames(take):
         column.label(text=f"Frame {frame} is proposed, not posed yet", icon="KEYFRAME", translate=False)
     else:
@@ -132,6 +132,8 @@ class KEYMARK_PT_keyframes_options(Popover, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         take, column = active_take(context.scene), self.column()
         matching = take.matching
+        if matching.reason:
+            draw_sentence(column, context, matching.reason, "INFO")
         column.prop(matching, "library")
         column.popover("KEYMARK_PT_libraries", icon="ASSET_MANAGER")
         column.separator()

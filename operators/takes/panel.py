@@ -40,7 +40,7 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
         if len(keyframes_of(take)) < 2:
             return "Next: pose and store keyframes"
         if doubtful_matches(take):
-            return "Next: check doubtful ones, reconstruct"
+            return "Next: check the doubtful poses"
         return "Next: reconstruct the motion"
     if (take.finish.action is None or take.finish.outdated) and is_doubtful(take):
         return _how_to_better(take)

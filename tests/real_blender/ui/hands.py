@@ -8,7 +8,7 @@ import bpy
 from _panel import controls
 from driver import Steps, expect, turns, until
 
-ACROSS = (0.5, 0.2, 0.75, 0.35, 0.9, 0.08)
+ACROSS = (0.5, 0.75, 0.2, 0.35, 0.9, 0.08)
 """Where across a region buttons are looked for; most span the middle."""
 STEP_PX = 16  # Buttons are about 20 px high
 NOTCHES = 15
