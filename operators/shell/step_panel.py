@@ -58,7 +58,9 @@ class StepPanel(TakePanel):
             return
         group, _, name = action.partition(".")
         if getattr(getattr(bpy.ops, group), name).poll():
-            header.operator(action, text=text if is_roomy(context) else "", icon="PLAY", translate=False)
+            button = header.row()
+            button.alignment = "RIGHT"  # else it is cut before the rest of the line
+            button.operator(action, text=text if is_roomy(context) else "", icon="PLAY", translate=False)
 
     @abstractmethod
     def draw_step(
