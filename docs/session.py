@@ -83,7 +83,7 @@ def pick_markers(take: bpy.types.PropertyGroup) -> None:
 
 
 def build_actor(take: bpy.types.PropertyGroup) -> None:
-    """Step 2, performer: build it from the height, where the performer stands; then set the measured lengths."""
+    """Step 2, performer: build the actor from the height, where they stand; then set the measured lengths."""
     bpy.ops.keymark.build_actor(stature=HEIGHT_M)
     for name, length in LENGTHS_M.items():
         setattr(take.lengths, name, length)
