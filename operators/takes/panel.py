@@ -164,6 +164,9 @@ def _draw_beginning(layout: bpy.types.UILayout) -> None:
     column.operator("keymark.open_take", icon="FILE_FOLDER")
     column.operator("keymark.open_example", icon="PLAY")
     column.popover("KEYMARK_PT_guide", icon="HELP")
+    elsewhere = layout.row(align=True)
+    elsewhere.operator("keymark.load_motion", icon="IMPORT")
+    elsewhere.operator("keymark.mend_motion", icon="MOD_SMOOTH")
     if bpy.data.movieclips:
         layout.menu("KEYMARK_MT_clips", icon="TRACKER")
 
