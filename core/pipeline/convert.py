@@ -5,16 +5,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ..estimate.reconstruct import Reconstruction, reconstruct
+from ..errors import pluralize
+from ..estimate.reconstruct import Reconstruction, check_method, reconstruct
 from ..posing.found_poses import FoundPoses, with_found
 from ..posing.pose_clip import pose_clip
 from ..prior.library import Library
 from ..progress import Job, stretch
-from ..take.conversion_settings import ConversionSettings
+from ..take.conversion_settings import METHODS, ConversionSettings
 from ..take.description import Description
 from ..take.read_footage import read_footage
 from ..take.take import Take
 from ..take.take_file import read_described
+from .place import is_unplaced, place_take
 
 
 def take_to_pose(
@@ -44,6 +46,10 @@ class FoundReconstruction:
     reconstruction: Reconstruction
     found: FoundPoses | None = None
     """What was found; None where that was not asked for."""
+    findings: tuple[str, ...] = ()
+    """What was assumed and found of a take whose camera nobody has said, a line for each stage."""
+    floor_m: float | None = None
+    """Height of the floor that was found with it [m]."""
 
 
 def take_to_convert(description: Description, settings: ConversionSettings) -> Take:
@@ -51,6 +57,35 @@ def take_to_convert(description: Description, settings: ConversionSettings) -> T
     if settings.library is None:
         return read_described(description, settings.keyframes, settings=settings)
     return take_to_pose(description, settings.keyframes, settings)
+
+
+PLACED = 0.4
+"""Fraction of the whole job after which a camera that nobody has said is found."""
+
+
+def convert(
+    description: Description, settings: ConversionSettings, libraries: Sequence[Library]
+) -> Job[FoundReconstruction]:
+    """The whole way from a described take, or from a clip and the performer's height, to a motion.
+
+    Raises:
+        InputError: The take or its clip cannot be used, or there is no library with a posture.
+        ConversionError: No motion could be computed.
+    """
+    method, searched = settings.method or METHODS[0], None if settings.library is None else libraries
+    if not is_unplaced(description, settings):
+        take = take_to_convert(description, settings)
+        check_method(take, method)
+        return (yield from find_and_reconstruct(take, searched, method, settings.floor_m))
+    placed = yield from stretch(place_take(description, settings), 0.0, PLACED)
+    check_method(placed.take, method)
+    floor_m = placed.floor_m if settings.floor_m is None else settings.floor_m
+    job = find_and_reconstruct(placed.take, searched, method, floor_m)
+    made = yield from stretch(job, PLACED, 1.0)
+    assert made.found is not None
+    doubtful = sum(key.matched is not None and key.matched.is_doubtful for key in made.take.keyframes)
+    poses = f"Poses: {pluralize(len(made.take.keyframes), 'keyframe')} found, {doubtful} of them doubtful"
+    return replace(made, findings=(*placed.findings, poses), floor_m=placed.floor_m)
 
 
 def find_and_reconstruct(

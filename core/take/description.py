@@ -23,6 +23,8 @@ SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**20
 SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "ignored_regions", "actor")
 SETTING_FIELDS = ("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence")
+ASSUMED = "(assumed)"
+"""Location of fields that nobody has said, for sentences."""
 FILE_FIELDS = ("$schema", "schema_version", "root")
 """Fields about the file itself; editors read the first."""
 KEYFRAMES = "keyframes"
@@ -92,7 +94,8 @@ class Description:
     fields: Fields
     settings: ConversionSettings
     inherits: bool
-    """Whether a `shoot.json` describes it; then rate and size may come from the clip itself."""
+    """Whether a `shoot.json` describes it, or it is a bare clip; then rate and size may come from the clip
+    itself."""
 
     def file_called(self, name: Path) -> Path:
         """The take's own file of a name that every take has: in its folder, or beside its bare clip."""
@@ -113,7 +116,7 @@ def describe(
     own_file = _own_file(path)
     folder, is_folder = own_file.parent, own_file.name == TAKE_FILE
     shared = find_shoot_files(folder)
-    if not os.path.isfile(own_file) and not is_folder and not shared:
+    if not os.path.isfile(own_file) and not is_folder and not shared and not overrides:
         raise InputError(
             f"{path}: nothing describes this clip; {own_file.name} beside it, or {SHOOT_FILE} there "
             "or in a folder above, must say what camera and actor it shows, and which markers if any"
@@ -128,7 +131,7 @@ def describe(
     inherited = InheritedFields()
     for location, _, values in layers:
         inherited = inherited.overridden_by(with_auto_as_library(values, inherited, location), location)
-    fields = Fields(inherited, str(files[-1]))
+    fields = Fields(inherited, str(files[-1] if files else path))
     settings = read_settings(fields, {location: base for location, base, _ in layers})
     if is_folder:
         clip = safe_path(fields, "clip", folder, CLIP_VALID) if fields.has("clip") else folder / CLIP_FILE
@@ -155,14 +158,14 @@ def describe(
         path=path,
         name=absolute_path(path).name if is_folder else clip_name(path),
         folder=folder,
-        file=files[-1],
+        file=files[-1] if files else path,
         files=tuple(files),
         clip=clip,
         keyframes=keyframes,
         keypoints=keypoints,
         fields=fields,
         settings=settings,
-        inherits=bool(shared),
+        inherits=bool(shared) or not files,
     )
 
 
