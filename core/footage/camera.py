@@ -240,8 +240,9 @@ def guess_lens(size: tuple[int, int]) -> LensGuess:
 
 
 def lens_of_equivalent(equivalent_mm: float, size: tuple[int, int]) -> tuple[float, float]:
-    """Focal length and sensor width [mm] of a full-frame equivalent, which is one of the diagonal (CIPA
-    DCG-001), for a picture of this size [px].
+    """Focal length and sensor width [mm] of a full-frame equivalent, for a picture of this size [px].
+
+    It is an equivalent by the diagonal (CIPA DCG-001).
     """
     width, height = size
     sensor_mm = FULL_FRAME_MM / max(width, height)

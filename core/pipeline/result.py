@@ -128,7 +128,7 @@ def write_motion_files(folder: Path, made: FoundReconstruction) -> None:
 def own_files(description: Description, output: Path) -> tuple[str, ...]:
     """Names of all files that a conversion into a folder may make or remove.
 
-    Those that make it a take are among them where an earlier conversion has made them, unless it is this take.
+    Those that make it a take are among them where an earlier conversion has made them, but for this take.
     """
     record = find_record(output)
     is_itself = os.path.realpath(description.folder) == os.path.realpath(output)

@@ -90,7 +90,7 @@ class Description:
     """The keyframe file, which may not exist."""
     keypoints: tuple[Path, ...]
     """Files or folders of keypoints: those that are named, else `keypoints.json` or `NAME.keypoints.json`
-    where that is there."""
+    where that is there (`keypoints_beside`)."""
     fields: Fields
     settings: ConversionSettings
     inherits: bool
@@ -144,8 +144,8 @@ def describe(
     if settings.keypoints is not None and said_in in shared:  # names that every take has
         own = (_own_name(folder, bare, file.relative_to(said_in.parent)) for file in settings.keypoints)
         settings = replace(settings, keypoints=tuple(own))
-    usual = _own_name(folder, bare, Path(KEYPOINT_FILE))
-    keypoints = settings.keypoints or ((usual,) if os.path.lexists(usual) else ())
+    usual = _own_name(folder, bare, Path(KEYPOINT_FILE)) if is_folder else keypoints_beside(path)
+    keypoints = settings.keypoints or ((usual,) if usual is not None and os.path.lexists(usual) else ())
     used = [*files, clip, keyframes, *keypoints]
     used += [link for within in (clip, *keypoints) for link in _links(within)]
     if settings.library is not None and settings.library.endswith(".json"):
@@ -167,6 +167,21 @@ def describe(
         settings=settings,
         inherits=bool(shared) or not files,
     )
+
+
+def keypoints_beside(clip: Path) -> Path | None:
+    """The file of a bare clip's keypoints: `NAME.keypoints.json`, or `keypoints.json` of the only clip there.
+
+    None where there is none.
+    """
+    own = sidecar_file(clip, KEYPOINT_FILE)
+    if os.path.lexists(own):
+        return own
+    plain = clip.with_name(KEYPOINT_FILE)
+    if not os.path.lexists(plain):
+        return None
+    others = (file for file in clip.parent.iterdir() if file.suffix.lower() == clip.suffix.lower())
+    return plain if all(file.name == clip.name for file in others) else None
 
 
 def effective_settings(

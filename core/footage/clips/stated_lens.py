@@ -1,7 +1,7 @@
 """The focal length that a phone states in its video: Apple's metadata in the boxes of QuickTime and MP4.
 
 A box begins with its length and its type, four bytes each (ISO/IEC 14496-12). A box `meta`, of the movie or
-of a track, lists names in `keys` and their values, numbered alike, in `ilst` (QuickTime File Format, Metadata).
+of a track, lists names in `keys`, and in `ilst` their values by number (QuickTime File Format, Metadata).
 """
 
 import struct

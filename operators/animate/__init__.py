@@ -1,0 +1,3 @@
+"""The one button: from a clip and the performer's height to a motion, and onto a character."""
+
+MODULES = ("animate",)
