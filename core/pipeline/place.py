@@ -62,19 +62,19 @@ def is_unplaced(description: Description, settings: ConversionSettings) -> bool:
     return searched and followed and not placed and (camera is None or isinstance(camera, Mapping))
 
 
+def is_detected(description: Description, settings: ConversionSettings) -> bool:
+    """Whether a take's conversion detects the performer's keypoints."""
+    return is_unplaced(description, settings) and not keypoint_files(description, settings)
+
+
 def place_take(description: Description, settings: ConversionSettings) -> Job[PlacedTake]:
     """See the performer in the clip, and find the camera by them.
 
     Raises:
         InputError: The clip or the performer's size is missing or unusable, or nobody is seen.
     """
-    fields = description.fields
-    clip = open_footage(description.clip, None)
-    lens = lens_of(clip.path, clip.size, fields.values.get("camera"), fields.source_of("camera"))
+    take, lens = take_to_place(description, settings)
     files = keypoint_files(description, settings)
-    whole = replace(settings, keypoints=files, evidence=None)
-    described = _with_camera(description, lens.put(clip.size))
-    take = read_described(described, fewest_keyframes=0, keyframes_required=False, settings=whole)
     seen = f"read from {listed(file.name for file in files)}"
     if not files:
         job = find_people(open_footage(description.clip, take.fps), PoseNetwork(), LONGEST_FRAMES)
@@ -83,7 +83,7 @@ def place_take(description: Description, settings: ConversionSettings) -> Job[Pl
     yield Progress("Placing the camera", SEEN)
     uprights = standing_keypoints(performer_keypoints(take, None), take.body, take.fps)
     camera, fit = camera_by_performer(take.camera, lens.is_known, uprights)
-    is_assumed = fields.source_of("actor") == ASSUMED
+    is_assumed = description.fields.source_of("actor") == ASSUMED
     findings = (
         f"Keypoints: {seen}",
         f"Camera: {camera_in_words(fit, lens, len(uprights))}",
@@ -93,6 +93,20 @@ def place_take(description: Description, settings: ConversionSettings) -> Job[Pl
     if settings.evidence is not None:
         take = with_evidence(take, settings.evidence)
     return PlacedTake(take, None if fit is None else 0.0, findings)
+
+
+def take_to_place(description: Description, settings: ConversionSettings) -> tuple[Take, "Lens"]:
+    """A take before its camera is found, which is put where cameras usually stand.
+
+    Raises:
+        InputError: The clip or the performer's size is missing or unusable.
+    """
+    fields, clip = description.fields, open_footage(description.clip, None)
+    lens = lens_of(clip.path, clip.size, fields.values.get("camera"), fields.source_of("camera"))
+    described = _with_camera(description, lens.put(clip.size))
+    whole = replace(settings, keypoints=keypoint_files(description, settings), evidence=None)
+    take = read_described(described, fewest_keyframes=0, keyframes_required=False, settings=whole)
+    return take, lens
 
 
 @dataclass(frozen=True)

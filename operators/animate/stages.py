@@ -23,7 +23,7 @@ from ..follow.evidence import has_keypoints
 from ..follow.load_keypoints import detect, follow_file, keep_detected
 from ..footage.found_camera import is_found, write_fit
 from ..footage.take_footage import lens_is_guess
-from ..keyframes.pose_all import keep_poses, pose_all
+from ..keyframes.pose_all import find_poses, keep_poses
 from ..reconstruct.reconstruct import keep_reconstruction, reconstruct_take
 from ..shell.takes import active_take, footage_of
 
@@ -57,7 +57,7 @@ def animate(
     said.append(_build_actor(context, active_take(scene), stature_m))
     matching = active_take(scene).matching
     floor_m = float(matching.floor_height) if matching.floor == "HEIGHT" else None
-    poses = yield from stretch(pose_all(scene, "", floor_m), 0.4, 0.7)
+    poses = yield from stretch(find_poses(scene, "", floor_m), 0.4, 0.7)
     said.append(keep_poses(scene, poses)[0])
     result = yield from stretch(reconstruct_take(scene, lambda _preview: None), 0.7, 0.88)
     said.append(keep_reconstruction(operator, scene, result))

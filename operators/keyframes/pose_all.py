@@ -27,7 +27,7 @@ READ, MEASURED = 0.5, 0.55
 """Shares of the job at which the clip is read, and the speed measured where no frames are proposed yet."""
 
 
-def pose_all(scene: bpy.types.Scene, library: str, floor_m: float | None) -> "Job[FoundResult]":
+def find_poses(scene: bpy.types.Scene, library: str, floor_m: float | None) -> "Job[FoundResult]":
     """Read the active take, propose frames where none are proposed, and find their postures.
 
     `library` is the only one that is used, the panel's where empty; the scene stays as it is.
@@ -87,7 +87,7 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[FoundResult]":
         floor_m = float(self.floor_height) if self.floor == "HEIGHT" else None
-        return (yield from pose_all(scene, self.library, floor_m))
+        return (yield from find_poses(scene, self.library, floor_m))
 
     def finish(self, scene: bpy.types.Scene, result: "FoundResult") -> None:
         said, doubtful = keep_poses(scene, result)
