@@ -80,18 +80,24 @@ def convert(
     placed = yield from stretch(place_take(description, settings), 0.0, PLACED)
     check_method(placed.take, method)
     floor_m = placed.floor_m if settings.floor_m is None else settings.floor_m
-    job = find_and_reconstruct(placed.take, searched, method, floor_m)
+    job = find_and_reconstruct(placed.take, searched, method, floor_m, onto_floor=floor_m is None)
     made = yield from stretch(job, PLACED, 1.0)
     assert made.found is not None
     doubtful = sum(key.matched is not None and key.matched.is_doubtful for key in made.take.keyframes)
     poses = f"Poses: {pluralize(len(made.take.keyframes), 'keyframe')} found, {doubtful} of them doubtful"
-    return replace(made, findings=(*placed.findings, poses), floor_m=placed.floor_m)
+    return replace(made, findings=(*placed.findings, poses), floor_m=0.0 if floor_m is None else floor_m)
 
 
 def find_and_reconstruct(
-    take: Take, libraries: Sequence[Library] | None, method: str, floor_m: float | None = None
+    take: Take,
+    libraries: Sequence[Library] | None,
+    method: str,
+    floor_m: float | None = None,
+    onto_floor: bool = False,
 ) -> Job[FoundReconstruction]:
     """Reconstruct a motion, after finding keyframes where that is asked for; the footage is read once.
+
+    `onto_floor`: the world is moved so that the floor that is found with them is z = 0.
 
     Raises:
         InputError: The clip cannot be used, or there is no library with a posture.
@@ -102,8 +108,20 @@ def find_and_reconstruct(
     reading = yield from stretch(read_footage(take), 0.0, READ)
     found = yield from stretch(pose_clip(take, reading, libraries, floor_m), READ, POSED)
     take = with_found(take, found)
+    take = lowered(take, found.floor_m) if onto_floor else take
     result = yield from stretch(reconstruct(take, method, reading), POSED, 1.0)
     return FoundReconstruction(take, result, found)
+
+
+def lowered(take: Take, by_m: float) -> Take:
+    """The take with its camera and its keyframes so much lower."""
+    pose = take.camera.matrix_world.copy()
+    pose[..., 2, 3] -= by_m
+    keyframes = tuple(
+        replace(each, posture=replace(each.posture, translation=each.posture.translation - [0.0, 0.0, by_m]))
+        for each in take.keyframes
+    )
+    return replace(take, camera=replace(take.camera, matrix_world=pose), keyframes=keyframes)
 
 
 def found_summary(take: Take, found: FoundPoses) -> dict[str, Any]:

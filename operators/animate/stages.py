@@ -9,6 +9,7 @@ import numpy as np
 from mathutils import Vector
 
 from ...core.errors import InputError
+from ...core.files.fields import listed
 from ...core.progress import Job, Progress, stretch
 from ...core.take.conversion_settings import CharacterFile
 from ..actor.take_actor import size_actor
@@ -19,7 +20,7 @@ from ..character.characters import add_character
 from ..character.retarget import keep_retargeted, retarget_take
 from ..finish.bake_motion import bake, keep_baked
 from ..follow.camera_from_lines import standing_performer
-from ..follow.evidence import has_keypoints
+from ..follow.evidence import has_keypoints, keypoint_path
 from ..follow.load_keypoints import detect, follow_file, keep_detected
 from ..footage.found_camera import is_found, write_fit
 from ..footage.take_footage import lens_is_guess
@@ -49,7 +50,11 @@ def animate(
     context = bpy.context
     take = active_take(scene)
     take.stature = stature_m
-    if not has_keypoints(take):
+    if has_keypoints(take):
+        said.append(
+            f"The keypoints are read from {listed(keypoint_path(one).name for one in take.follow.files)}"
+        )
+    else:
         found = yield from stretch(detect(scene), 0.0, 0.4)
         said.append(keep_detected(scene, found))
     yield Progress("Placing the camera", 0.4)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ....core.errors import InputError
+from ....core.prior.texts import EVERY_LIBRARY
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.description import ASSUMED, describe
 from ....core.take.take_file import SHORTEST_M, TALLEST_M, USUAL_HEIGHT_M
@@ -27,6 +28,11 @@ from .convert import conversion_summary, conversion_text
 HEIGHT = "--height"
 
 
+def bare_clip_fields(height_m: float) -> dict[str, object]:
+    """The fields of a take of which nothing but the performer's height is known."""
+    return {"actor": {"height_m": height_m}, "keyframes": EVERY_LIBRARY}
+
+
 def animate_command(arguments: argparse.Namespace) -> None:
     """Animate the clip that the command line names, and list what was assumed, found and made."""
     height_m = arguments.height
@@ -39,7 +45,7 @@ def animate_command(arguments: argparse.Namespace) -> None:
     if formats and arguments.character is None:
         raise UsageError("--format is given without --character, of which it writes further files")
     with arguments_console(arguments) as console:
-        said = {"actor": {"height_m": USUAL_HEIGHT_M if height_m is None else height_m}, "keyframes": "auto"}
+        said = bare_clip_fields(USUAL_HEIGHT_M if height_m is None else height_m)
         clip: Path = arguments.clip
         if clip.is_dir() and (clip / "take.json").is_file():
             raise InputError(f"{clip}: is a take, which keymark convert is for; name a clip")

@@ -9,14 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _shoot import write_frames, write_video
+from _shoot import gliding, write_frames, write_video
 from _synthetic_take import BODY, drawn_frames, true_postures, write_json, write_keypoints
-from keymark.core.body.body_volume import standing_posture
-from keymark.core.body.posture import Posture
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints
 from keymark.core.pipeline import place
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.prior.library import write_library
+from keymark.core.shoot.discovery import find_takes
 from keymark.core.take.motion import read_motion
 from keymark.core.take.take_file import read_take
 from keymark.operators.cli.conversion import convert_take
@@ -27,21 +26,12 @@ FRAMES = 40
 pytestmark = pytest.mark.usefixtures("no_blender")
 
 
-def walking() -> Posture:
-    """Somebody glides toward the camera, upright."""
-    places = [
-        np.array([x, y, 0.0])
-        for x, y in zip(np.linspace(-0.2, 0.3, FRAMES), np.linspace(0.9, -0.2, FRAMES), strict=True)
-    ]
-    return Posture.stack([standing_posture(BODY, place) for place in places])
-
-
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with one bare clip and its keypoints."""
     folder = tmp_path_factory.mktemp("bare")
-    write_video(folder / "hall.mp4", walking())
-    write_keypoints(folder / "hall.keypoints.json", walking())
+    write_video(folder / "hall.mp4", gliding(FRAMES))
+    write_keypoints(folder / "hall.keypoints.json", gliding(FRAMES))
     return folder
 
 
@@ -196,3 +186,6 @@ def test_a_shoot_of_bare_clips_needs_nothing_but_heights(
     assert main(["convert", str(clip), "--output", str(tmp_path / "out"), "--no-report", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["notes"][1].startswith("Camera: ")
     assert read_take(tmp_path / "out").keypoints
+    shutil.move(tmp_path / "out", folder / "earlier")
+    assert [take.name for take in find_takes(folder).takes] == ["hall"]
+    assert [take.name for take in find_takes(folder / "earlier").takes] == ["."]
