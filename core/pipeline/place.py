@@ -26,7 +26,7 @@ from ..footage.camera_fit import LENS, PARAMETERS, CameraFit, fit_camera
 from ..footage.clips.stated_lens import stated_lens_mm
 from ..footage.keypoints.keypoints import People
 from ..footage.pose_network import PoseNetwork
-from ..footage.pose_tracking import find_people
+from ..footage.pose_tracking import find_people, refuse_picture
 from ..footage.standing_moments import standing_keypoints
 from ..progress import Job, Progress, stretch
 from ..take.clip_check import LONGEST_FRAMES, open_footage
@@ -102,6 +102,7 @@ def take_to_place(description: Description, settings: ConversionSettings) -> tup
         InputError: The clip or the performer's size is missing or unusable.
     """
     fields, clip = description.fields, open_footage(description.clip, None)
+    refuse_picture(clip)
     lens = lens_of(clip.path, clip.size, fields.values.get("camera"), fields.source_of("camera"))
     described = _with_camera(description, lens.put(clip.size))
     whole = replace(settings, keypoints=keypoint_files(description, settings), evidence=None)

@@ -101,6 +101,8 @@ class KEYMARK_OT_animate(Stature, JobOperator, bpy.types.Operator):
         layout = self.layout
         layout.use_property_split = True
         layout.prop(self, "stature")
+        if not self.properties.is_property_set("stature"):
+            layout.label(text="Assumed; enter the performer's", icon="INFO")
         layout.prop(self, "character")
 
     def start(self, scene: bpy.types.Scene) -> "Job[list[str]]":

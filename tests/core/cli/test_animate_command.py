@@ -151,7 +151,7 @@ def nothing(folder: Path, _monkeypatch: pytest.MonkeyPatch) -> Path:
     ("make", "sentence"),
     [
         (damaged, "is damaged or another one"),
-        (picture, "photo.png"),
+        (picture, "photo.png: is a single picture; it must be a video"),
         (take, "is a take, which keymark convert is for"),
         (nothing, "none.mp4"),
     ],
