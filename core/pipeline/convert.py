@@ -7,6 +7,7 @@ from typing import Any
 
 from ..errors import pluralize
 from ..estimate.reconstruct import Reconstruction, check_method, reconstruct
+from ..footage.keypoints.keypoints import People
 from ..posing.found_poses import FoundPoses, with_found
 from ..posing.pose_clip import pose_clip
 from ..prior.library import Library
@@ -14,6 +15,7 @@ from ..progress import Job, stretch
 from ..take.conversion_settings import METHODS, ConversionSettings
 from ..take.description import Description
 from ..take.read_footage import read_footage
+from ..take.steady_camera import steadied
 from ..take.take import Take
 from ..take.take_file import read_described
 from .place import is_unplaced, place_take
@@ -50,6 +52,8 @@ class FoundReconstruction:
     """What was assumed and found of a take whose camera nobody has said, a line for each stage."""
     floor_m: float | None = None
     """Height of the floor that was found with it [m]."""
+    keypoints: tuple[People, ...] = ()
+    """Those of such a take as the clip shows them: the motion's are those that a steady camera would see."""
 
 
 def take_to_convert(description: Description, settings: ConversionSettings) -> Take:
@@ -85,7 +89,8 @@ def convert(
     assert made.found is not None
     doubtful = sum(key.matched is not None and key.matched.is_doubtful for key in made.take.keyframes)
     poses = f"Poses: {pluralize(len(made.take.keyframes), 'keyframe')} found, {doubtful} of them doubtful"
-    return replace(made, findings=(*placed.findings, poses), floor_m=0.0 if floor_m is None else floor_m)
+    said, floor_m = (*placed.findings, poses), 0.0 if floor_m is None else floor_m
+    return replace(made, findings=said, floor_m=floor_m, keypoints=placed.take.keypoints)
 
 
 def find_and_reconstruct(
@@ -103,9 +108,11 @@ def find_and_reconstruct(
         InputError: The clip cannot be used, or there is no library with a posture.
         ConversionError: No motion could be computed.
     """
-    if libraries is None:
-        return FoundReconstruction(take, (yield from reconstruct(take, method)))
     reading = yield from stretch(read_footage(take), 0.0, READ)
+    take, reading = yield from stretch(steadied(take, reading), READ, READ)
+    if libraries is None:
+        result = yield from stretch(reconstruct(take, method, reading), READ, 1.0)
+        return FoundReconstruction(take, result)
     found = yield from stretch(pose_clip(take, reading, libraries, floor_m), READ, POSED)
     take = with_found(take, found)
     take = lowered(take, found.floor_m) if onto_floor else take

@@ -141,7 +141,7 @@ def write_take_files(folder: Path, made: FoundReconstruction, evidence: Sequence
 
     The clip is another name of the same file, where the disk has such names, and a copy elsewhere.
     """
-    take = made.take
+    take = replace(made.take, keypoints=made.keypoints)
     clip = folder / take.clip.name
     if take.clip.is_file():
         with suppress(OSError):

@@ -159,12 +159,6 @@ RETARGET_OPTIONS = (
     ),
 )
 """How a motion is put onto a character."""
-FORMAT = argument(
-    "--format",
-    metavar="bvh,fbx,glb,usd",
-    default="",
-    help="further files of the character with its motion, separated by commas",
-)
 
 
 def character_options(arguments: argparse.Namespace) -> CharacterOptions:

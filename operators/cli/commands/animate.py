@@ -10,11 +10,10 @@ from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.description import ASSUMED, describe
 from ....core.take.take_file import SHORTEST_M, TALLEST_M, USUAL_HEIGHT_M
 from ..console import arguments_console
-from ..conversion.character_result import check_exporters, export_formats
+from ..conversion.character_result import FORMAT, check_exporters, export_formats
 from ..conversion.convert_take import convert_take
 from ..options import (
     CHARACTER_HELP,
-    FORMAT,
     KEYPOINT_FILES,
     MAP_HELP,
     RETARGET_OPTIONS,

@@ -24,8 +24,14 @@ from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.motion import read_motion
 from ..console import Console, arguments_console
 from ..conversion.blender_files import refuse_unsupported_output
-from ..conversion.character_result import EXPORTS, check_exporters, export_formats, write_character_result
-from ..options import CHARACTER_HELP, FORMAT, MAP_HELP, RETARGET_OPTIONS, character_options, output
+from ..conversion.character_result import (
+    EXPORTS,
+    FORMAT,
+    check_exporters,
+    export_formats,
+    write_character_result,
+)
+from ..options import CHARACTER_HELP, MAP_HELP, RETARGET_OPTIONS, character_options, output
 from ..parser import Command, argument, require_blender
 
 RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
