@@ -14,7 +14,7 @@ from ..shell.job_operator import JobOperator
 from ..shell.requirements import bones_editable, idle
 from ..shell.results import EXTENSION
 from ..shell.takes import find_take
-from .stages import FILE, NOTHING, RIGIFY, animate, follow_found_file
+from . import FILE, NOTHING, RIGIFY
 
 if TYPE_CHECKING:
     from ...core.progress import Job
@@ -107,6 +107,8 @@ class KEYMARK_OT_animate(Stature, JobOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[list[str]]":
         """Load the clip, and go on; what is complete stays in the scene where the job ends early."""
+        from .stages import animate, follow_found_file
+
         path = chosen_file(self, "a video, or one image of a numbered sequence")
         there = find_take(scene)
         take = load_into_take(bpy.context, path, there is not None and there.clip is not None)

@@ -27,12 +27,11 @@ from ..footage.take_footage import lens_is_guess
 from ..keyframes.pose_all import find_poses, keep_poses
 from ..reconstruct.reconstruct import keep_reconstruction, reconstruct_take
 from ..shell.takes import active_take, footage_of
+from . import FILE, NOTHING, RIGIFY
 
 if TYPE_CHECKING:
     pass
 
-NOTHING, RIGIFY, FILE = "NONE", "RIGIFY", "FILE"
-"""Characters beside those that stand in the scene, which are called by their names."""
 SEEN_SHARES = np.linspace(0.0, 1.0, 9)
 """Moments of the clip at which nothing may stand before the performer."""
 MOST_HIDDEN = 1000

@@ -84,7 +84,8 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
         return (yield from retarget_take(scene))
 
     def finish(self, scene: bpy.types.Scene, result: tuple[Any, ...]) -> None:
-        self.report({"INFO"}, keep_retargeted(self, scene, result))
+        said = keep_retargeted(self, scene, result)
+        self.report({"INFO"}, said)
 
 
 def options_of(group: bpy.types.PropertyGroup) -> RetargetOptions:

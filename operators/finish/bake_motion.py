@@ -110,7 +110,8 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         return (yield from bake(scene))
 
     def finish(self, scene: bpy.types.Scene, result: FinishedTake) -> None:
-        self.report({"INFO"}, keep_baked(self, scene, result))
+        said = keep_baked(self, scene, result)
+        self.report({"INFO"}, said)
 
 
 class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):

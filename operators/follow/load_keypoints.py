@@ -167,7 +167,8 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
         return (yield from detect(scene))
 
     def finish(self, scene: bpy.types.Scene, result: Detected) -> None:
-        self.report({"INFO"}, keep_detected(scene, result))
+        said = keep_detected(scene, result)
+        self.report({"INFO"}, said)
 
 
 def _output(take: bpy.types.PropertyGroup, clip: Path) -> Path:

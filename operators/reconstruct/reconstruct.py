@@ -83,10 +83,10 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     """The running `LivePreview`; not named as type, since Blender evaluates annotations of its classes."""
 
     def start(self, scene: bpy.types.Scene) -> "Job[ReconstructionResult]":
-        return (yield from reconstruct_take(scene, self._show_live))
+        def keep(preview: "LivePreview") -> None:
+            self.preview = preview
 
-    def _show_live(self, preview: "LivePreview") -> None:
-        self.preview = preview
+        return (yield from reconstruct_take(scene, keep))
 
     def watch(self, progress: "Progress") -> None:
         if self.preview is not None and progress.preview is not None:
@@ -98,7 +98,8 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             self.preview = None
 
     def finish(self, scene: bpy.types.Scene, result: "ReconstructionResult") -> None:
-        self.report({"INFO"}, keep_reconstruction(self, scene, result))
+        said = keep_reconstruction(self, scene, result)
+        self.report({"INFO"}, said)
 
 
 def _check_enough(count: int, notes: tuple[str, ...]) -> None:

@@ -12,7 +12,8 @@ from _synthetic_take import BODY, true_postures, write_keypoints
 from bpy.types import Object, PropertyGroup
 from keymark.core.footage.camera_fields import CameraPlacement
 from keymark.core.prior.learning import LibraryMetadata, learn_library
-from keymark.operators.animate.stages import NOTHING, animate, follow_found_file
+from keymark.operators.animate import NOTHING
+from keymark.operators.animate.stages import animate, follow_found_file
 from keymark.operators.bridge.camera_placement import read_placement
 from keymark.operators.follow.evidence import keypoint_path
 from keymark.operators.footage.load_footage import load_into_take
