@@ -158,6 +158,9 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
 
 def _draw_beginning(layout: bpy.types.UILayout) -> None:
     """Draw what to begin with in an empty scene."""
+    row = layout.row()
+    row.scale_y = 2.4
+    row.operator("keymark.animate", icon="PLAY")
     column = layout.column()
     column.scale_y = 1.6
     column.operator("keymark.load_footage", icon="FILE_MOVIE")
