@@ -79,7 +79,7 @@ def _written_by(exporter: str, **options: object) -> Callable[[bpy.types.Object,
 def _write_trc(armature_object: bpy.types.Object, path: Path) -> None:
     """Write the joints of an armature over its scene's frames."""
     from ...core.take.point_files import write_trc
-    from .motions.joint_paths import joint_paths
+    from .motions.read_poses import joint_paths
 
     points, rate = joint_paths(armature_object)
     write_trc(path, points, rate)
@@ -88,7 +88,7 @@ def _write_trc(armature_object: bpy.types.Object, path: Path) -> None:
 def _write_c3d(armature_object: bpy.types.Object, path: Path) -> None:
     """Write the joints of an armature over its scene's frames."""
     from ...core.take.point_files import write_c3d
-    from .motions.joint_paths import joint_paths
+    from .motions.read_poses import joint_paths
 
     points, rate = joint_paths(armature_object)
     write_c3d(path, points, rate)
