@@ -178,7 +178,7 @@ def _present(take: Take, there: BoolArray) -> Take:
     kept = tuple(key for key in take.keyframes if there[key.index])
     if len(kept) < 2:
         raise InputError(
-            f"{take.name} has {len(kept)} keyframes in frames in which somebody is seen; at least 2 are needed"
+            f"{take.name} has {len(kept)} keyframes in frames that show somebody; at least 2 are needed"
         )
     return replace(take, keyframes=kept)
 

@@ -115,11 +115,7 @@ def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, b
     Raises:
         InputError: It has fewer than two.
     """
-    channelbag = existing_channelbag(action, armature_object)
-    wanted = set(moved_paths(armature_object, body.skeleton))
-    curves = channelbag.fcurves if channelbag is not None else ()
-    keyed = [curve for curve in curves if curve.data_path in wanted and not curve.is_empty]
-    ranges = [curve.range() for curve in keyed]
+    ranges = [curve.range() for curve in _keyed(armature_object, action, body)]
     first = int(
         np.ceil(min((r[0] for r in ranges), default=0.0) - 1e-3)
     )  # keys as near as this lie on the frame
@@ -130,6 +126,36 @@ def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, b
             "reconstruct the motion first"
         )
     return np.arange(first, last + 1, dtype=np.float64)
+
+
+def _keyed(armature_object: bpy.types.Object, action: bpy.types.Action, body: Body) -> list[bpy.types.FCurve]:
+    channelbag = existing_channelbag(action, armature_object)
+    wanted = set(moved_paths(armature_object, body.skeleton))
+    curves = channelbag.fcurves if channelbag is not None else ()
+    return [curve for curve in curves if curve.data_path in wanted and not curve.is_empty]
+
+
+def present_frames(
+    armature_object: bpy.types.Object, action: bpy.types.Action, body: Body, longest: float
+) -> Array:
+    """(F,) the frames of `motion_frames` without those between two stretches of a motion.
+
+    Such a stretch has keys on every frame, so that a gap of more than `longest` frames is one in which the
+    performer is not there; an Action of few keys has no stretches.
+    """
+    frames = motion_frames(armature_object, action, body)
+    keys = []
+    for curve in _keyed(armature_object, action, body):
+        places = np.empty(2 * len(curve.keyframe_points))
+        curve.keyframe_points.foreach_get("co", places)
+        keys.append(places[::2])
+    times = np.unique(np.concatenate(keys))
+    steps = np.diff(times)
+    if np.median(steps) > 1.5:
+        return frames
+    after = np.clip(np.searchsorted(times, frames - 1e-3), 1, len(times) - 1)
+    on_key = np.abs(frames[:, None] - times[[after - 1, after]].T).min(axis=1) < 1e-3
+    return frames[on_key | (steps[after - 1] <= longest)]
 
 
 def read_values(
