@@ -1,5 +1,6 @@
 """What a detector saw, held against the clip: frames, picture size, scores, and what was seen at all."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from ...errors import InputError
 from .detected_frames import DetectedFrames, DetectedPerson, check_points
 from .frame_folder import MOST_FRAMES, Alignment, align_listed, align_numbered
 from .keypoints import People, SeenPeople, confidences
+from .stated_frames import numbers_by_time
 
 
 def held_against_clip(
@@ -31,6 +33,11 @@ def held_against_clip(
             f"{detected.where}: nobody is seen in any of its {len(detected.people)} frames; "
             "it must show a person"
         )
+    if detected.time_s is not None and not detected.numbered:
+        numbers = numbers_by_time(detected.time_s, fps, frame_count)
+        if numbers is not None:
+            people = dict(zip(numbers, detected.people.values(), strict=True))
+            detected = replace(detected, people=people, numbered=True)
     aligned = _aligned(detected, frame_count, fps, frame_start)
     everyone, notes = _everyone(detected, size)
     points, first = len(detected.layout.numbers), 0
@@ -77,7 +84,10 @@ def _aligned(
 ) -> Alignment:
     where = detected.where
     if detected.numbered:
-        aligned = align_numbered(detected.people, frame_count, frame_start, where, detected.complete)
+        first = None
+        if detected.time_s is not None and fps is not None:  # times count from the clip's first frame
+            first = round(float(np.median(np.array(list(detected.people)) - fps * detected.time_s)))
+        aligned = align_numbered(detected.people, frame_count, frame_start, where, detected.complete, first)
     else:
         rates, why = None, ""
         if fps is not None and detected.fps is not None and abs(detected.fps - fps) > 0.01 * fps:
@@ -112,12 +122,12 @@ def _aligned(
 
 def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tuple[Array, tuple[str, ...]]:
     """(2,) clip pixels per unit of the places; only whole pictures are scaled."""
-    known = place[np.isfinite(place)]
+    known = place[np.isfinite(place) & place.any(axis=-1, keepdims=True)]
     # Guesses outside 0 to 1 are the exception.
-    if detected.shares and (not len(known) or np.median(np.abs(known)) <= 2.0):
-        return np.array(size, dtype=np.float64), ()
+    shares = detected.shares and (not len(known) or np.median(np.abs(known)) <= 2.0)
+    unit = np.array(size, dtype=np.float64) if shares else np.ones(2)
     if detected.size in (None, size):
-        return np.ones(2), ()
+        return unit, ()
     assert detected.size is not None
     (width, height), (clip_width, clip_height) = detected.size, size
     # The height that fits the other's width may differ by the rounding of both.
@@ -128,6 +138,8 @@ def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tup
             f"{detected.where}: size is {[width, height]}, that of the clip is {list(size)}{turned}; the "
             "proportions must be the same, so the keypoints must be found again in this clip"
         )
+    if shares:
+        return unit, ()
     note = (
         f"{detected.where}: was found in pictures of {width} x {height}; scaled to the clip's "
         f"{clip_width} x {clip_height}"
