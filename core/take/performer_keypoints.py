@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
 from ..errors import pluralize
+from ..footage.keypoints.continuity import same_person
 from ..footage.keypoints.keypoints import FACE, Keypoints, People
 from ..footage.keypoints.performer import NOBODY, Expected, Sightings, choose_performer, person_size
 from ..footage.region_tracks import RegionTracks
@@ -63,6 +64,12 @@ def performer_keypoints(take: Take, prior: Posture | None, tracks: RegionTracks 
                     notes += (_elsewhere(people.source),)
                 else:
                     notes += _notes(people, chosen, _said_by(take, prior, tracks, hand))
+            if expected is None:
+                jumped = ~same_person(_of_one(people, chosen, (), frames).pixel, take.fps, people.doubted)
+                jumped[: len(people.frames)] &= [len(frame.pixel) > 0 for frame in people.frames[:frames]]
+                if jumped[: len(people.frames)].any():
+                    notes += (_jumped(people.source, int(jumped[: len(people.frames)].sum())),)
+                chosen[jumped] = NOBODY
         parts.append(_of_one(people, chosen, notes, frames))
     return Keypoints.side_by_side(parts, frames)
 
@@ -208,6 +215,13 @@ def _elsewhere(source: str) -> str:
     return (
         f"{source}: nobody in it is where most of the posed keyframes have the performer, so it is left "
         "out; it must be of this clip"
+    )
+
+
+def _jumped(source: str, frames: int) -> str:
+    return (
+        f"{source}: jumps to somebody else and back, by more than a person can move; the {frames} frames in "
+        "between are left out"
     )
 
 

@@ -2,7 +2,7 @@
 
 import re
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -147,6 +147,7 @@ class FrameFindings:
     blank: tuple[int, ...] = ()  # indices of blank frames, in order
     cuts: tuple[int, ...] = ()  # indices of frames after a cut
     interlaced: bool = False  # whether each picture consists of two fields
+    repeated: tuple[int, ...] = ()  # indices of frames whose picture is that of the frame before
 
     def notes(self, first: int) -> tuple[str, ...]:
         """The findings as sentences; the clip's first frame has the number `first`."""
@@ -161,6 +162,12 @@ class FrameFindings:
                 "the clip is interlaced: each picture shows two moments, so that moving things are "
                 "torn and keyframes are less exact; convert it first, as with ffmpeg -i CLIP -vf "
                 "bwdif=mode=send_frame"
+            )
+        if self.repeated:
+            notes.append(
+                f"{len(self.repeated)} of {self.frames} pictures repeat the one before "
+                f"({_ranges(self.repeated, first)}), as where a clip was saved at a higher frame rate; each "
+                "counts once, and the motion goes on in between"
             )
         if self.cuts:
             notes.append(
@@ -183,6 +190,7 @@ class FrameChecks:
         self._combed: list[tuple[float, float]] = []
         self._last: Image | None = None
         self._changes: dict[int, float] = {}
+        self._moved: dict[int, float] = {}
 
     def add(self, index: int, image: Image) -> bool:
         """Look at a frame (rows, columns, 3); tell whether anything is to be seen in it."""
@@ -196,7 +204,9 @@ class FrameChecks:
         if index % 15 == 0:
             self._combed.append(combed_shares(image))
         if self._last is not None:
-            self._changes[index] = float(np.median(cv2.absdiff(small, self._last)))
+            change = cv2.absdiff(small, self._last)
+            self._changes[index] = float(np.median(change))
+            self._moved[index] = float(change.mean())
         self._last = small
         return True
 
@@ -208,7 +218,7 @@ class FrameChecks:
         rows, columns = np.mean(self._combed, axis=0) if self._combed else (0.0, 0.0)
         # Sixteen progressive clips stay below 1.2e-4 and a ratio of three, three interlaced ones have 1e-2.
         interlaced = bool(rows > 5e-4 and rows > 10.0 * columns)
-        return FrameFindings(self._frames, tuple(self._blank), cuts, interlaced)
+        return FrameFindings(self._frames, tuple(self._blank), cuts, interlaced, _repeated(self._moved))
 
     def nothing_seen(self) -> str | None:
         """The reason why no marker can be found in the clip; None without one."""
@@ -217,6 +227,28 @@ class FrameChecks:
         if self._color < 10:  # levels, after compression
             return "the clip has no colors, by which markers are found; it must be filmed in color"
         return None
+
+
+STOPS = 6.0
+"""How many times smaller the change of a repeated picture is than those before and after it: it is what
+compression leaves. Whoever comes to rest slows down over several frames."""
+LEAST_CHANGE = 0.15  # levels, in the mean of the picture, from which anything moves
+
+
+def _repeated(moved: Mapping[int, float]) -> tuple[int, ...]:
+    """Frames in which nothing moves all at once, between such in which it does."""
+    found: list[int] = []
+    run: list[int] = []
+    before = 0.0  # change of the last frame that was none of the run's
+    for index, change in moved.items():
+        if run and change > STOPS * max(moved[one] for one in run):
+            found += run if change > LEAST_CHANGE else []
+            run, before = [], change
+        elif change * STOPS < before and (run or before > LEAST_CHANGE):
+            run.append(index)
+        else:
+            run, before = [], change
+    return tuple(found)
 
 
 def _colorfulness(image: Image) -> int:

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...arrays import Array, BoolArray
 from ...errors import InputError
+from .continuity import repeated_results
 from .detected_frames import DetectedFrames, DetectedPerson, check_points
 from .frame_folder import MOST_FRAMES, Alignment, align_listed, align_numbered
 from .keypoints import People, SeenPeople, confidences
@@ -52,11 +53,32 @@ def held_against_clip(
             frames[index] = SeenPeople(everyone.pixel[rows], everyone.score[rows], everyone.hint_m[rows])
     if not any(len(frame.pixel) for frame in frames):
         raise InputError(f"{detected.where}: nobody is seen in any frame of the clip; it must show a person")
+    again = [] if detected.by_hand else repeated_results(frames)
+    for index in again:
+        frames[index] = nobody
+    notes += _repeat_notes(detected.where, frames, len(again))
     # The file's name alone: notes go into results, which are the same in any folder.
     name = Path(detected.where).name or detected.where
     notes = tuple(note.replace(detected.where, name) for note in aligned.notes + notes)
     seen = (detected.layout.names, detected.source, size, tuple(frames))
     return People(*seen, file=detected.where, by_hand=detected.by_hand, notes=notes)
+
+
+def _repeat_notes(where: str, frames: list[SeenPeople], repeated: int) -> tuple[str, ...]:
+    """A sentence on results that repeat the one before; one result alone is no motion."""
+    if not repeated:
+        return ()
+    there = sum(len(frame.pixel) > 0 for frame in frames)
+    if there == 1:
+        raise InputError(
+            f"{where}: has the same result in each of its {repeated + 1} frames with people, as of a program "
+            "that is stuck; it must have one for every frame"
+        )
+    note = (
+        f"{where}: {repeated} of {there + repeated} results repeat the one before, as of a program that looks "
+        "at some frames only; each counts once"
+    )
+    return (note,)
 
 
 def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeople, tuple[str, ...]]:

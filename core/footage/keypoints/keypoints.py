@@ -157,6 +157,7 @@ class People:
     by_hand: bool = False
     """Whether a person placed the points: clicks and Blender's tracks, which are all the performer's."""
     notes: tuple[str, ...] = ()  # sentences on what was taken for granted or mended
+    doubted: tuple[int, ...] = ()  # frames in which the picture shows nobody where these people are
 
     @property
     def most_people(self) -> int:
