@@ -5,8 +5,8 @@ network looks at some pictures where the file has somebody. Where it sees him th
 Elsewhere it looks for people by itself, and what would put the file's where they are is found out.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -31,18 +31,20 @@ MOST_SCANNED = 6  # pictures in which people are looked for
 SURE, LIKELY = (0.9, 0.5), (0.5, 0.3)  # presence and mean score from which the network sees somebody
 PEOPLE = 2  # of a file, in a picture
 SCALES = np.geomspace(0.1, 10.0, 185)  # steps of 2.5 %
+LEAST_SCALE = 0.03  # logarithm of a scale that is one
 ROUND_SHARE = 0.015  # scales are those of pictures' sizes: ratios of small numbers, if one is so near
 LONGEST_SHIFT_S = 3.0
 RATES = (0.25, 1.0 / 3.0, 0.4, 0.5, 2.0 / 3.0, 0.8, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class PictureFinding:
     """What the pictures say of a file of keypoints."""
 
     scale: tuple[float, float] = (1.0, 1.0)  # by which its places must be multiplied
     mirrored: bool = False  # whether left and right of its pictures are exchanged
-    elsewhere: tuple[int, ...] = ()  # frames in which nobody of it is where the network sees people
+    looked: Mapping[int, bool] = field(default_factory=dict)
+    """Frames that were looked at, and whether the network sees somebody there whom the file has."""
     refusal: str = ""  # why it cannot be used, to follow the file's name
 
 
@@ -87,9 +89,7 @@ def check_by_pictures(
             "must be of this clip"
         )
     good = [look for (look, _), fits in zip(looks, fitting, strict=True) if fits]
-    return check.explained(good) or PictureFinding(
-        elsewhere=tuple(frame for frame, fits in zip(frames, fitting, strict=True) if not fits)
-    )
+    return check.explained(good) or PictureFinding(looked=dict(zip(frames, fitting, strict=True)))
 
 
 class _Check:
@@ -110,7 +110,8 @@ class _Check:
         people = self.people.frames[frame]
         order = np.argsort(-person_size(people.pixel) * people.score.mean(axis=1), kind="stable")
         poses = []
-        for row in order[:PEOPLE]:
+        seen = np.isfinite(people.pixel[:, self._own]).all(axis=-1).sum(axis=1) >= FEWEST_POINTS
+        for row in order[seen[order]][:PEOPLE]:
             pose = network(picture, _crop(people.pixel[row] / factor, self.people.names))
             if not _sees(pose, SURE) or self.distance(self.seen(frame, [pose], factor), people) >= FITS:
                 pose = network(picture, pose.crop)  # somebody may be there, in another place of the crop
@@ -148,7 +149,7 @@ class _Check:
         return best
 
     def explained(self, looks: Sequence[_Look]) -> PictureFinding | None:
-        """What would put the file's people where the network sees them; None if they are there as they are."""
+        """What would put the file's people where the network sees them; None if they are there."""
         if len(looks) < FEWEST_FRAMES:
             return None
         frames = self.people.frames
@@ -158,35 +159,40 @@ class _Check:
                 np.mean([self.distance(look, frames[look.frame], changed, either_side) for look in looks])
             )
 
-        now, sided = cost(), cost(either_side=False)
-        wanted = min(FITS, BETTER * now) if now > LEAST_OFF else 0.0
+        sided, now = cost(either_side=False), cost()
+        if sided < LEAST_OFF:
+            return None
         flip = partial(_flipped, width=float(self.people.size[0]), swap=self._swap)
-        if cost(flip, either_side=False) < min(FITS, BETTER * sided) and sided > LEAST_OFF:
+        if cost(flip, either_side=False) < min(FITS, BETTER * sided):
             return PictureFinding(mirrored=True)
-        costs = np.array([cost(partial(np.multiply, scale)) for scale in SCALES]) if wanted else np.zeros(0)
-        if len(costs) and costs.min() < min(wanted, FITS):
-            scale = self._fitted_scale(looks, float(SCALES[costs.argmin()]))
-            if cost(partial(np.multiply, np.array(scale))) < wanted and abs(np.log(scale)).max() > 0.03:
-                return PictureFinding(scale=scale)
+        if now < LEAST_OFF:
+            return None
+        wanted = min(FITS, BETTER * now)
+        costs = [cost(partial(np.multiply, scale)) for scale in SCALES]
+        near = SCALES[int(np.argmin(costs))]
+        if min(costs) < FARTHEST / 2:
+            scale = self._fitted_scale(looks, np.full(2, near))
+            if cost(partial(np.multiply, scale)) < wanted and abs(np.log(scale)).max() > LEAST_SCALE:
+                return PictureFinding(scale=(float(scale[0]), float(scale[1])))
         late = self._late(looks, wanted)
         return PictureFinding(refusal=late) if late else None
 
-    def _fitted_scale(self, looks: Sequence[_Look], scale: float) -> tuple[float, float]:
-        """Scales of both axes by all points that are near the network's at a scale."""
-        own, seen = [], []
-        for look in looks:
-            for pixel in self.people.frames[look.frame].pixel[:, self._own]:
-                for pose in look.poses:
-                    apart = np.linalg.norm(scale * pixel - pose, axis=-1)
-                    near = apart < 2.0 * FITS * float(person_size(pose))
-                    own.append(pixel[near])
-                    seen.append(pose[near])
-        places, wanted = np.concatenate(own), np.concatenate(seen)
-        each = np.median(wanted / np.maximum(places, 1e-6), axis=0)
-        both = float(np.exp(np.log(each).mean()))
-        if abs(np.log(each / both)).max() < ROUND_SHARE:
-            each = np.full(2, both)
-        return _rounded(float(each[0])), _rounded(float(each[1]))
+    def _fitted_scale(self, looks: Sequence[_Look], scale: Array) -> Array:
+        """(2,) scales of both axes by all points that are near the network's at a scale."""
+        for reach in (FARTHEST / 2, 2.0 * FITS, 2.0 * FITS):
+            ratios = [np.ones((0, 2))]
+            for look in looks:
+                for pixel in self.people.frames[look.frame].pixel[:, self._own]:
+                    for pose in look.poses:
+                        apart = np.linalg.norm(scale * pixel - pose, axis=-1)
+                        near = apart < reach * float(person_size(pose))
+                        ratios.append(pose[near] / np.maximum(pixel[near], 1e-6))
+            found = np.concatenate(ratios)
+            scale = np.median(found, axis=0) if len(found) else scale
+        both = float(np.exp(np.log(scale).mean()))
+        if abs(np.log(scale / both)).max() < ROUND_SHARE:
+            scale = np.full(2, both)
+        return np.array([_rounded(float(one)) for one in scale])
 
     def _late(self, looks: Sequence[_Look], wanted: float) -> str:
         """Why the file is of the same clip at another time; empty if it is not."""
@@ -197,15 +203,15 @@ class _Check:
             for offset in range(-reach, reach + 1):
                 pairs = [(look, round(other * look.frame + offset)) for look in looks]
                 inside = [(look, f) for look, f in pairs if 0 <= f < len(frames) and len(frames[f].pixel)]
-                if len(inside) < max(FEWEST_FRAMES, 0.6 * len(looks)):
+                if len(inside) < max(FEWEST_FRAMES, 0.45 * len(looks)):
                     continue
                 now = float(np.mean([self.distance(look, frames[f]) for look, f in inside]))
                 if now < (best if other == 1.0 else 0.8 * best):
                     best, shift, rate = now, offset, other
         if rate != 1.0:
             return (
-                f"it runs through the motion {rate:.3g} times as fast as the clip; it must be made from this "
-                "clip, with an entry for every frame"
+                f"it runs through the motion {1.0 / rate:.3g} times as fast as the clip; it must be made from "
+                "this clip, with an entry for every frame"
             )
         if abs(shift) < 2:
             return ""
@@ -237,7 +243,7 @@ def applied(people: People, finding: PictureFinding) -> People:
     if finding.mirrored:
         names = tuple(mirrored_point(name) for name in names)
         notes.append(f"{people.source}: is of a mirrored copy of the clip; left and right were exchanged")
-    people = replace(people, doubted=finding.elsewhere)
+    people = replace(people, looked=finding.looked)
     if not notes:
         return people
     frames = []
@@ -276,10 +282,6 @@ def _crop(pixel: Array, names: Sequence[str]) -> Crop:
 
 def _rounded(scale: float) -> float:
     """The ratio of small numbers that is meant by a measured scale, if one is near."""
-    ratios = _ratios()
+    ratios = {many / few for many in range(1, 13) for few in range(1, 13)}
     nearest = min(ratios, key=lambda ratio: abs(np.log(ratio / scale)))
     return nearest if abs(np.log(nearest / scale)) < ROUND_SHARE else scale
-
-
-def _ratios() -> Iterator[float]:
-    return iter({many / few for many in range(1, 13) for few in range(1, 13)})

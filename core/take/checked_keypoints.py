@@ -3,8 +3,6 @@
 from dataclasses import replace
 from functools import lru_cache
 
-import numpy as np
-
 from ..errors import InputError
 from ..files.digest import digest
 from ..footage.clips.frame_checks import FrameFindings
@@ -65,7 +63,6 @@ def _each_once(people: People, findings: FrameFindings) -> People:
     again = {index for index in findings.repeated if index < len(people.frames)}
     if not again or people.by_hand:
         return people
-    points = len(people.names)
-    nobody = SeenPeople(np.zeros((0, points, 2)), np.zeros((0, points)), np.zeros((0, points, 3)))
+    nobody = SeenPeople.nobody(len(people.names))
     frames = tuple(nobody if index in again else frame for index, frame in enumerate(people.frames))
     return replace(people, frames=frames)

@@ -92,7 +92,7 @@ class Album:
         return image
 
 
-GLIMPSES, GLIMPSE_SIDE_PX = 10, 640
+GLIMPSES, GLIMPSE_SIDE_PX = 8, 640
 """Pictures that are kept, and their longer side: the pose network sees 256 pixels of a person."""
 
 

@@ -42,7 +42,7 @@ def held_against_clip(
     aligned = _aligned(detected, frame_count, fps, frame_start)
     everyone, notes = _everyone(detected, size)
     points, first = len(detected.layout.numbers), 0
-    nobody = SeenPeople(np.zeros((0, points, 2)), np.zeros((0, points)), np.zeros((0, points, 3)))
+    nobody = SeenPeople.nobody(points)
     frames = [nobody] * aligned.frame_count
     for number, people in detected.people.items():
         rows = np.arange(first, first + len(people))
@@ -75,8 +75,8 @@ def _repeat_notes(where: str, frames: list[SeenPeople], repeated: int) -> tuple[
             "that is stuck; it must have one for every frame"
         )
     note = (
-        f"{where}: {repeated} of {there + repeated} results repeat the one before, as of a program that looks "
-        "at some frames only; each counts once"
+        f"{where}: {repeated} of {there + repeated} results repeat the one before, as of a program that "
+        "looks at some frames only; each counts once"
     )
     return (note,)
 

@@ -123,9 +123,8 @@ def _canvas(frame: Mapping[str, Any], spot: str) -> tuple[int, int] | None:
         return None
     width, height = (side if type(side) is int and 0 < side <= 65536 else 0 for side in size)
     if not (width and height):
-        raise InputError(
-            f"{spot}: canvas_width and canvas_height are {shown(list(size))}; they must be pixels"
-        )
+        said = f"{spot}: canvas_width and canvas_height are {shown(list(size))}"
+        raise InputError(f"{said}; they must be whole pixels")
     return width, height
 
 

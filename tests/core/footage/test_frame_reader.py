@@ -88,7 +88,12 @@ GRADIENTS = [
 
 def watched(album: Album) -> Clip:
     """A clip of them that fills an album."""
-    return watch_clip(Clip(Path("drawn"), Drawn(GRADIENTS, fps=25.0, size=(640, 480))), FrameChecks(), album, Glimpses(640, {}))
+    return watch_clip(
+        Clip(Path("drawn"), Drawn(GRADIENTS, fps=25.0, size=(640, 480))),
+        FrameChecks(),
+        album,
+        Glimpses(640, {}),
+    )
 
 
 def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
