@@ -210,8 +210,8 @@ class _Check:
                     best, shift, rate = now, offset, other
         if rate != 1.0:
             return (
-                f"it runs through the motion {1.0 / rate:.3g} times as fast as the clip; it must be made from "
-                "this clip, with an entry for every frame"
+                f"it runs through the motion {1.0 / rate:.3g} times as fast as the clip; it must be of this "
+                "clip, frame by frame"
             )
         if abs(shift) < 2:
             return ""
