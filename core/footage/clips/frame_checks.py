@@ -232,6 +232,7 @@ class FrameChecks:
 STOPS = 6.0
 """How many times smaller the change of a repeated picture is than those before and after it: it is what
 compression leaves. Whoever comes to rest slows down over several frames."""
+MOST_REPEATS = 10  # frames in a row; for longer there is nothing to be seen
 LEAST_CHANGE = 0.15  # levels, in the mean of the picture, from which anything moves
 
 
@@ -242,7 +243,7 @@ def _repeated(moved: Mapping[int, float]) -> tuple[int, ...]:
     before = 0.0  # change of the last frame that was none of the run's
     for index, change in moved.items():
         if run and change > STOPS * max(moved[one] for one in run):
-            found += run if change > LEAST_CHANGE else []
+            found += run if change > LEAST_CHANGE and len(run) <= MOST_REPEATS else []
             run, before = [], change
         elif change * STOPS < before and (run or before > LEAST_CHANGE):
             run.append(index)
