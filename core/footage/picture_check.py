@@ -47,6 +47,11 @@ class PictureFinding:
     """Frames that were looked at, and whether the network sees somebody there whom the file has."""
     refusal: str = ""  # why it cannot be used, to follow the file's name
 
+    @property
+    def is_scaled(self) -> bool:
+        """Whether it is of another size than the clip."""
+        return self.scale != (1.0, 1.0)
+
 
 @dataclass(frozen=True, eq=False)
 class _Look:
@@ -88,8 +93,9 @@ def check_by_pictures(
             refusal="nobody in it is where a person is seen in the clip's pictures, at any size or time; it "
             "must be of this clip"
         )
-    good = [look for (look, _), fits in zip(looks, fitting, strict=True) if fits]
-    return check.explained(good) or PictureFinding(looked=dict(zip(frames, fitting, strict=True)))
+    return check.explained([look for look, _ in looks if look.poses]) or PictureFinding(
+        looked=dict(zip(frames, fitting, strict=True))
+    )
 
 
 class _Check:
@@ -233,7 +239,7 @@ def applied(people: People, finding: PictureFinding) -> People:
         raise InputError(f"{where}: {finding.refusal}")
     notes, names = [], people.names
     scale, size = np.array(finding.scale), np.array(people.size, dtype=np.float64)
-    if finding.scale != (1.0, 1.0):
+    if finding.is_scaled:
         width, height = np.round(size / scale).astype(int)
         notes.append(
             f"{people.source}: its points lie where the person in the clip's pictures is if it was made from "
