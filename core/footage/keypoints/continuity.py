@@ -26,12 +26,12 @@ FEWEST = 4  # points seen in two frames that tell how the body moved
 def repeated_results(frames: Sequence[SeenPeople]) -> list[int]:
     """Indices of the frames whose people are exactly those of the frame before.
 
-    No two pictures of a camera give the same numbers, down to the scores.
+    No two pictures of a camera give the same numbers for several points, down to the scores.
     """
     found = []
     for index in range(1, len(frames)):
         last, now = frames[index - 1], frames[index]
-        if not len(now.pixel) or now.pixel.shape != last.pixel.shape:
+        if not len(now.pixel) or now.pixel.shape != last.pixel.shape or now.pixel.shape[1] < FEWEST:
             continue
         same = np.array_equal(now.pixel, last.pixel, equal_nan=True)
         if same and np.array_equal(now.score, last.score):
