@@ -224,7 +224,7 @@ def _each_once(tracks: RegionTracks, findings: FrameFindings) -> RegionTracks:
         return tracks
     again = list(findings.repeated)
     nothing = {"centroid": np.nan, "second_moment": np.nan, "area": np.nan, "quality": 0.0, "clipped": False}
-    arrays = {name: np.array(getattr(tracks, name)) for name in nothing}
+    arrays: dict[str, Any] = {name: np.array(getattr(tracks, name)) for name in nothing}
     for name, value in nothing.items():
         arrays[name][again] = value
     return replace(tracks, **arrays)

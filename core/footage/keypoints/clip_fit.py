@@ -37,8 +37,8 @@ def held_against_clip(
     if detected.time_s is not None and not detected.numbered:
         numbers = numbers_by_time(detected.time_s, fps, frame_count)
         if numbers is not None:
-            people = dict(zip(numbers, detected.people.values(), strict=True))
-            detected = replace(detected, people=people, numbered=True)
+            by_number = dict(zip(numbers, detected.people.values(), strict=True))
+            detected = replace(detected, people=by_number, numbered=True)
     aligned = _aligned(detected, frame_count, fps, frame_start)
     everyone, notes = _everyone(detected, size)
     points, first = len(detected.layout.numbers), 0

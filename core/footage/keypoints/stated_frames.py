@@ -58,7 +58,7 @@ def _stated(entries: Sequence[Any], names: Sequence[str]) -> Array | None:
         return None
     fields = {_plain(name): name for name in entries[0] if isinstance(name, str)}
     for name in names:
-        values = [entry.get(fields[name]) for entry in entries] if name in fields else [None]
+        values: list[Any] = [entry.get(fields[name]) for entry in entries] if name in fields else [None]
         if all(type(value) in (int, float) and abs(value) < MOST for value in values):
             numbers = np.array(values, dtype=np.float64)
             return numbers if (np.diff(numbers) > 0.0).all() else None
