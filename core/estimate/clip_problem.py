@@ -77,6 +77,8 @@ class ClipProblem:
     points: ObservedKeypoints  # the same, as they are compared
     swapped: BoolArray  # (F, N) which of them were exchanged
     step_s: Array  # (F - 1,) time between frames [s]
+    unseen: tuple[str, ...]  # limbs that are never seen
+    there: BoolArray  # (F,) whether the performer is there; nothing is solved elsewhere
 
     @property
     def accelerations(self) -> Array:

@@ -159,6 +159,7 @@ class _Check:
         if len(looks) < FEWEST_FRAMES:
             return None
         frames = self.people.frames
+        there = {look.frame: True for look in looks}
 
         def cost(changed: Callable[[Array], Array] = np.asarray, either_side: bool = True) -> float:
             return float(
@@ -170,7 +171,7 @@ class _Check:
             return None
         flip = partial(_flipped, width=float(self.people.size[0]), swap=self._swap)
         if cost(flip, either_side=False) < min(FITS, BETTER * sided):
-            return PictureFinding(mirrored=True)
+            return PictureFinding(mirrored=True, looked=there)
         if now < LEAST_OFF:
             return None
         wanted = min(FITS, BETTER * now)
@@ -179,7 +180,7 @@ class _Check:
         if min(costs) < FARTHEST / 2:
             scale = self._fitted_scale(looks, np.full(2, near))
             if cost(partial(np.multiply, scale)) < wanted and abs(np.log(scale)).max() > LEAST_SCALE:
-                return PictureFinding(scale=(float(scale[0]), float(scale[1])))
+                return PictureFinding((float(scale[0]), float(scale[1])), looked=there)
         late = self._late(looks, wanted)
         return PictureFinding(refusal=late) if late else None
 

@@ -32,6 +32,7 @@ class Reading:
     key: str = ""  # cache key of the clip and the settings, see `reading_key`; empty where unknown
     frame_findings: FrameFindings = NO_FINDINGS  # blank and repeated frames, cuts and interlacing
     glimpses: Glimpses | None = None  # a few larger pictures; None where it was not read from a clip
+    steady: Array | None = None  # (F, 3, 3) from what it shows to the clip's pixels, see `steady_camera`
 
 
 Arrays = dict[str, NDArray[Any]]

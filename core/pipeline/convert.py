@@ -10,9 +10,11 @@ from ..posing.found_poses import FoundPoses, with_found
 from ..posing.pose_clip import pose_clip
 from ..prior.library import Library
 from ..progress import Job, stretch
+from ..take.checked_keypoints import with_checked_keypoints
 from ..take.conversion_settings import ConversionSettings
 from ..take.description import Description
 from ..take.read_footage import read_footage
+from ..take.steady_camera import steadied
 from ..take.take import Take
 from ..take.take_file import read_described
 
@@ -62,9 +64,12 @@ def find_and_reconstruct(
         InputError: The clip cannot be used, or there is no library with a posture.
         ConversionError: No motion could be computed.
     """
-    if libraries is None:
-        return FoundReconstruction(take, (yield from reconstruct(take, method)))
     reading = yield from stretch(read_footage(take), 0.0, READ)
+    take = yield from stretch(with_checked_keypoints(take, reading), READ, READ)
+    take, reading = yield from stretch(steadied(take, reading), READ, READ)
+    if libraries is None:
+        result = yield from stretch(reconstruct(take, method, reading), READ, 1.0)
+        return FoundReconstruction(take, result)
     found = yield from stretch(pose_clip(take, reading, libraries, floor_m), READ, POSED)
     take = with_found(take, found)
     result = yield from stretch(reconstruct(take, method, reading), POSED, 1.0)

@@ -32,9 +32,14 @@ def with_checked_keypoints(take: Take, reading: Reading, done: float = 0.0) -> J
     """
     checked = []
     posed = sum(keyframe.matched is None for keyframe in take.keyframes)
+    if (
+        reading.steady is not None
+    ):  # places are no longer those of the clip's pictures, and were checked before
+        return take
     network = _network() if take.keypoints and posed < FEWEST_KEYFRAMES else None
     for people in take.keypoints:
-        if network is not None and reading.glimpses is not None and not people.by_hand:
+        asked = not people.by_hand and not people.looked
+        if network is not None and reading.glimpses is not None and asked:
             key = digest(reading.key, people.names, *_arrays(people))
             if key not in _known or not reading.key:
                 job = check_by_pictures(people, reading.glimpses, network, take.fps)

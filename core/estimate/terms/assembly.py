@@ -23,7 +23,7 @@ from .motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
 from .regions import RegionTerm
 from .term import QuadraticBuilder, QuadraticTerm, Term
 
-ANKLES = ("ankle.L", "ankle.R")
+ANKLES, LEGS = ("ankle.L", "ankle.R"), ("leg.L", "leg.R")
 
 
 def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Term]:
@@ -32,7 +32,9 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     step_s = clip.step_s[window.first : window.last - 1]
     pace = float(np.median(step_s)) / REFERENCE_STEP_S if len(step_s) else 1.0
     prior_depth = depths.evaluate(clip.body, clip.camera, clip.body.pose(state.prior), state.frame)
-    ankles = _ankles(clip.body)
+    ankles = tuple(
+        ankle for ankle, leg in zip(_ankles(clip.body), LEGS, strict=True) if leg not in clip.unseen
+    )
     evidence = clip.evidence
     terms: list[Term] = [
         _prior_term(clip, window, step_s),
@@ -47,13 +49,14 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
         ),
         DepthTerm(clip.camera, prior_depth, clip.depth_std_m[frames, None] * clip.depth_factor[frames]),
         LimitTerm(),
-        StillnessTerm(clip.camera, ankles, step_s),
     ]
+    if ankles:
+        terms.append(StillnessTerm(clip.camera, ankles, step_s))
     if evidence.keypoints.model.names:
         terms.append(_keypoint_term(clip, window, step_s))
     if np.isfinite(clip.points.depth_m).any():
         terms.append(_hint_term(clip, window, step_s))
-    if clip.ankle_height_m is not None:
+    if clip.ankle_height_m is not None and ankles:
         terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
     return terms
 
