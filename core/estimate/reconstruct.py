@@ -21,6 +21,7 @@ from ..footage.region_tracks import RegionTracks
 from ..prior.keyframe_proposals import evidence_speed
 from ..prior.keyframes import interpolate, with_offset
 from ..progress import Job, Progress, stretch, within
+from ..take.checked_keypoints import with_checked_keypoints
 from ..take.clip_check import check_frame_count, check_in_front
 from ..take.conversion_settings import METHODS
 from ..take.motion import Motion
@@ -124,6 +125,7 @@ def _reconstruct(
         begun = EXTRACTION_SHARE
     else:
         _check_tracks(take, reading.tracks)
+    take = yield from with_checked_keypoints(take, reading, begun)
     tracks = reading.tracks
     keypoints = performer_keypoints(take, interpolate(take.keyframes, tracks.frame_count), tracks)
     there = presence(take, reading, keypoints)

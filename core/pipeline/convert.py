@@ -12,6 +12,7 @@ from ..posing.found_poses import FoundPoses, with_found
 from ..posing.pose_clip import pose_clip
 from ..prior.library import Library
 from ..progress import Job, stretch
+from ..take.checked_keypoints import with_checked_keypoints
 from ..take.conversion_settings import METHODS, ConversionSettings
 from ..take.description import Description
 from ..take.read_footage import read_footage
@@ -109,6 +110,7 @@ def find_and_reconstruct(
         ConversionError: No motion could be computed.
     """
     reading = yield from stretch(read_footage(take), 0.0, READ)
+    take = yield from stretch(with_checked_keypoints(take, reading), READ, READ)
     take, reading = yield from stretch(steadied(take, reading), READ, READ)
     if libraries is None:
         result = yield from stretch(reconstruct(take, method, reading), READ, 1.0)
