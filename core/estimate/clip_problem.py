@@ -15,6 +15,7 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..prior.keyframes import with_turns
 from .clip_state import ClipState, Window
 from .keypoint_evidence import KeypointEvidence
+from .terms.reference import ExpectedPoints
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +78,7 @@ class ClipProblem:
     points: ObservedKeypoints  # the same, as they are compared
     swapped: BoolArray  # (F, N) which of them were exchanged
     step_s: Array  # (F - 1,) time between frames [s]
+    reference: ExpectedPoints | None = None  # where a motion from elsewhere has the points; None without one
 
     @property
     def accelerations(self) -> Array:

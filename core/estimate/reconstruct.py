@@ -33,6 +33,7 @@ from .keyframe_trust import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .performer_placement import found_ankle_m
+from .reference_evidence import OPTIONS, ReferenceEvidence, reference_evidence, with_reference
 from .second_look import seen_tracks
 from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 
@@ -93,7 +94,7 @@ def check_reconstructible(take: Take, method: str) -> None:
             keyframes.
     """
     check_method(take, method)
-    if len(take.keyframes) < 2:
+    if len(take.keyframes) < 2 and (take.reference is None or method != "map"):
         raise InputError(f"{take.name} has {len(take.keyframes)} keyframes; at least 2 are needed")
 
 
@@ -121,7 +122,14 @@ def _reconstruct(
         begun = EXTRACTION_SHARE
     else:
         _check_tracks(take, reading.tracks)
-    tracks = reading.tracks
+    tracks, referred = reading.tracks, None
+    if take.reference is not None and method == "map":
+        said = reference_evidence(take, tracks)
+        notes += said.notes
+        if isinstance(said, ReferenceEvidence):
+            referred, take = said, with_reference(take, said)
+        elif len(take.keyframes) < 2:
+            raise InputError(f"{said.notes[0]}; without it at least 2 keyframes are needed")
     keypoints = performer_keypoints(take, interpolate(take.keyframes, tracks.frame_count), tracks)
     worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps, keypoints)
     left_out = len(take.keyframes) - len(worth)
@@ -129,6 +137,7 @@ def _reconstruct(
     take = replace(take, keyframes=worth)
     notes += found_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
+    wide = [OPTIONS.keyframe_width if key.matched and key.matched.is_referred else 1.0 for key in keyframes]
     prior = interpolate(keyframes, tracks.frame_count)
     if left_out or match_scale.any():  # else the prior is that of all keyframes
         keypoints = performer_keypoints(take, prior, tracks)
@@ -137,7 +146,7 @@ def _reconstruct(
     motion, model, solution, seen = baseline, average_model(take), None, tracks
     if method == "map":
         usable = _usable(earlier, reading)
-        solution = yield from _whole_clip(take, reading, keypoints, prior, match_scale, begun, usable)
+        solution = yield from _whole_clip(take, reading, keypoints, prior, match_scale * wide, begun, usable, referred)
         seen = seen_tracks(tracks, solution.problem.observed)
         motion, model = _solved(take, seen, solution, match_scale), solution.evidence.model
         notes += evidence_notes(take, solution.evidence) + keypoint_notes(solution.keypoints)
@@ -176,13 +185,15 @@ def _whole_clip(
     match_scale: Array,
     begun: float,
     earlier: WholeClipResult | None,
+    referred: ReferenceEvidence | None,
 ) -> Job[WholeClipResult]:
     ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
     seen = Seen(reading.tracks, take.marker_segments, keypoints, reading.album, ignored)
     ankle, index = None, np.array(take.keyframe_indices, dtype=np.intp)
     if _is_composed(take):
         ankle = found_ankle_m(take.body, prior[index], index, prior.batch[0])
-    believed = Believed(prior, take.keyframe_indices, match_scale, ankle)
+    expected = None if referred is None else referred.expected
+    believed = Believed(prior, take.keyframe_indices, match_scale, ankle, expected)
     estimate = estimate_whole_clip(take.body, take.camera, seen, believed, earlier=earlier)
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 

@@ -14,6 +14,7 @@ from ..footage.keypoints.keypoints import People
 from ..footage.region_tracks import MarkerStyle
 from ..prior.keyframes import Keyframe
 from .description import TAKE_FILE
+from .reference import ReferenceMotion
 from .evidence import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
 
 POORLY_FITTED_M = 0.06
@@ -46,6 +47,8 @@ class Take:
     contours: bool = True
     """Whether the contours of the body are followed, where the camera stands still."""
     ignored_regions: tuple[IgnoredRegion, ...] = ()
+    reference: ReferenceMotion | None = None
+    """A motion of the same performance from elsewhere."""
 
     @property
     def file(self) -> Path:

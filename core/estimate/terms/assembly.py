@@ -20,6 +20,7 @@ from ..performer_placement import ANKLE_HEIGHT_STD_M, standing_ankle_m
 from .contact import BalanceTerm, GroundTerm, StillnessTerm
 from .keypoints import DepthHintTerm, KeypointTerm
 from .motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
+from .reference import ReferenceTerm
 from .regions import RegionTerm
 from .term import QuadraticBuilder, QuadraticTerm, Term
 
@@ -55,6 +56,9 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
         terms.append(_hint_term(clip, window, step_s))
     if clip.ankle_height_m is not None:
         terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
+    if clip.reference is not None:
+        kept = np.exp(-step_s / clip.reference.memory_s)[:, None]
+        terms.append(ReferenceTerm(clip.reference[frames], kept))
     return terms
 
 

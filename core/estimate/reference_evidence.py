@@ -1,0 +1,240 @@
+"""What a reference motion tells of a take: whether it is of this performance, how far it errs, and its keyframes.
+
+A network's error is a bias that wanders: it lasts for some tenths of a second, is larger along the line of
+sight, and a posed keyframe tells it nearby.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import Array, BoolArray, IndexArray
+from ..body.human import HUMAN
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..body.posture_fit import fit_posture
+from ..footage.region_tracks import RegionTracks
+from ..numerics.robust import DEGREES
+from ..prior.keyframes import Keyframe, Matched
+from ..prior.texts import REFERENCE
+from ..take.performer_keypoints import performer_keypoints
+from ..take.take import Take
+from .reference_alignment import AlignedReference, SeenPoints, about_hips, align, place
+from .terms.reference import ExpectedPoints
+
+USUAL_STD_M = {
+    "hip": 0.015,
+    "shoulder": 0.025,
+    "head": 0.03,
+    "elbow": 0.035,
+    "knee": 0.035,
+    "ankle": 0.045,
+    "wrist": 0.05,
+}
+"""Usual error of a network's point about the hips, along each axis across the line of sight [m]."""
+STD_M = np.array([USUAL_STD_M[name.partition(".")[0]] for name in HUMAN.point_names])
+LIMBS = np.array([name.startswith(("elbow", "wrist", "knee", "ankle")) for name in HUMAN.point_names])
+
+
+@dataclass(frozen=True)
+class ReferenceOptions:
+    """How far a reference motion is believed."""
+
+    along: float = 2.2  # error along the line of sight, in those across it
+    memory_s: float = 0.4
+    least_factor: float = 0.7
+    most_factor: float = 3.0
+    smooth_s: float = 0.09  # of the local quadratic that takes its jitter away
+    keyframe_s: float = 0.4  # time between the keyframes found in it
+    keyframe_width: float = 4.0  # of their error, in a usual difference between performers
+    from_posed_s: float = 0.3
+    # Its bias over time, as posed keyframes tell it: the share that lasts all along the clip, the time in which
+    # the rest fades, and a person's own error beside it.
+    constant_share: float = 0.3
+    correlation_s: float = 0.5
+    posed_variance: float = 0.1
+    least_variance: float = 0.05
+    least_gain: float = 0.35
+    other_times: int = 21
+    most_frames: int = 400  # that are asked for the gain
+
+
+OPTIONS = ReferenceOptions()
+
+
+@dataclass(frozen=True, eq=False)
+class ReferenceEvidence:
+    """What a believed reference motion tells of F frames."""
+
+    expected: ExpectedPoints
+    keyframes: tuple[Keyframe, ...]  # found in it, away from posed ones
+    factor: float  # its error in usual ones
+    gain: float  # 1 less its cost relative to that of the same motion at other times
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class NoReference:
+    """A reference motion that is set aside, and why."""
+
+    notes: tuple[str, ...]
+
+
+def reference_evidence(take: Take, tracks: RegionTracks) -> ReferenceEvidence | NoReference:
+    """What a take's reference motion tells; the posed keyframes of the take correct it."""
+    assert take.reference is not None
+    posed = tuple(key for key in take.keyframes if key.matched is None)
+    keypoints = performer_keypoints(replace(take, keyframes=posed), None, tracks)
+    seen = SeenPoints.of(take.camera, keypoints, tracks, take.marker_segments)
+    aligned = align(take.reference, take.body, seen, tracks.time_s, take.fps)
+    worth = gain(aligned, seen)
+    if worth < OPTIONS.least_gain:
+        return NoReference(
+            (
+                f"{take.reference.file or 'the reference motion'}: is set aside, since it fits the footage "
+                f"hardly better than the same motion at other times ({worth:.2f}); it must be of this clip",
+            )
+        )
+    factor = error_factor(aligned, seen)
+    points = smoothed(aligned.points, tracks.time_s, OPTIONS.smooth_s)
+    hips, std = aligned.hips, np.ones(len(points))
+    if posed:
+        index = np.array([key.index for key in posed])
+        true = take.body.points(take.body.pose(Posture.stack([key.posture for key in posed])))
+        offset = about_hips(true) - points[index]
+        told = np.isfinite(offset).all(axis=(1, 2))
+        if told.any():
+            share, left = _bias(tracks.time_s[index[told]], tracks.time_s)
+            points = points + np.einsum("fk,kpi->fpi", share, offset[told])
+            middle = true - about_hips(true)
+            hips = hips + share @ (middle[told, 0] - hips[index[told]])
+            std = np.sqrt(np.maximum(left, OPTIONS.least_variance))
+    expected = ExpectedPoints(
+        np.where(aligned.known[:, None, None], points, np.nan),
+        _whitening(take, hips, factor * std[:, None] * STD_M),
+        OPTIONS.memory_s,
+    )
+    found = _keyframes(take, points + hips[:, None], posed, tracks.time_s, factor)
+    return ReferenceEvidence(expected, found, factor, worth)
+
+
+def with_reference(take: Take, said: ReferenceEvidence) -> Take:
+    """The take with the keyframes found in its reference motion instead of all others that were found."""
+    posed = [key for key in take.keyframes if key.matched is None]
+    return replace(take, keyframes=tuple(sorted((*posed, *said.keyframes), key=lambda key: key.index)))
+
+
+def _whitening(take: Take, hips: Array, std_m: Array) -> Array:
+    """(F, 13, 3, 3) inverse standard deviations, larger along the line of sight; `std_m` (F, 13) across."""
+    sight = take.camera.sight(hips, np.arange(len(hips)))
+    along = sight[:, :, None] * sight[:, None, :]
+    shape = np.eye(3) - along * (1.0 - 1.0 / OPTIONS.along)
+    return np.asarray(shape[:, None] / std_m[..., None, None])
+
+
+def _keyframes(
+    take: Take, points: Array, posed: tuple[Keyframe, ...], time_s: Array, factor: float
+) -> tuple[Keyframe, ...]:
+    """Keyframes at even times, where all points are known and no posed keyframe is near."""
+    step = max(1, round(OPTIONS.keyframe_s * take.fps))
+    asked = np.unique([*range(0, len(points), step), len(points) - 1])
+    near = np.array([key.index for key in posed], dtype=np.intp)
+    apart = np.abs(time_s[asked][:, None] - time_s[near]).min(axis=1, initial=np.inf)
+    asked = asked[(apart > OPTIONS.from_posed_s) & np.isfinite(points[asked]).all(axis=(1, 2))]
+    if not len(asked):
+        return ()
+    posture = fit_posture(take.body, points[asked]).posture
+    return tuple(
+        Keyframe(int(frame), posture[row], matched=Matched(REFERENCE, "reference", False, 0.8))
+        for row, frame in enumerate(asked)
+    )
+
+
+def _bias(at_s: Array, time_s: Array) -> tuple[Array, Array]:
+    """Of a bias known at (K,) times: weights (F, K) that tell it at others, and its variance there (F,)."""
+
+    def covariance(one: Array, other: Array) -> Array:
+        alike = np.exp(-np.abs(one[:, None] - other) / OPTIONS.correlation_s)
+        return np.asarray(OPTIONS.constant_share + (1.0 - OPTIONS.constant_share) * alike)
+
+    known = covariance(at_s, at_s) + OPTIONS.posed_variance * np.eye(len(at_s))
+    across = covariance(at_s, time_s)
+    share = np.linalg.solve(known, across).T
+    return share, 1.0 - np.sum(share * across.T, axis=1)
+
+
+# --- Its worth
+
+
+def gain(aligned: AlignedReference, seen: SeenPoints) -> float:
+    """1 less the motion's cost relative to that of the same motion at other times, forward and backward.
+
+    About 0.7 to 0.9 for a motion of this clip, up to 0.3 for others.
+    """
+    inside = np.einsum("fji,fpj->fpi", seen.rotation, aligned.points)
+    told = np.flatnonzero(np.isfinite(aligned.placed.cost))
+    if len(told) < 2:
+        return 0.0
+    told = told[np.unique(np.linspace(0, len(told) - 1, OPTIONS.most_frames).round().astype(int))]
+    some, part, count = inside[told], seen[told], len(told)
+    own = float(np.nanmean(place(some, part).cost))
+    others = []
+    for number in range(OPTIONS.other_times):
+        order = np.arange(count)[:: 1 - 2 * (number % 2)]
+        other = np.roll(order, round((number + 1) * count / (OPTIONS.other_times + 1)))
+        others.append(float(np.nanmean(place(some[other], part).cost)))
+    return 1.0 - own / max(float(np.median(others)), 1e-9)
+
+
+def error_factor(aligned: AlignedReference, seen: SeenPoints) -> float:
+    """The motion's error in usual ones, by how far limbs' points are off in the picture."""
+    squared = (aligned.placed.residual_m**2).sum(axis=-1)  # (F, A) of two axes
+    told = np.isfinite(squared).any(axis=0)
+    usual = seen.mean @ STD_M
+    limb = told & (seen.mean @ LIMBS > 0.99)
+    if not limb.any():
+        return 1.0
+    # The median of two axes' square is 2 log 2 variances.
+    size = np.sqrt(np.nanmedian(squared[:, limb], axis=0) / (2.0 * np.log(2.0))) / usual[limb]
+    return float(np.clip(np.median(size), OPTIONS.least_factor, OPTIONS.most_factor))
+
+
+# --- Its jitter
+
+
+def smoothed(points: Array, time_s: Array, width_s: float) -> Array:
+    """Points (F, N, 3) by a local quadratic under a Gaussian of `width_s` (Savitzky & Golay; Cleveland 1979).
+
+    Robust: points far from their own curve count for less. NaN only where fewer than three frames are near.
+    """
+    step = float(np.median(np.diff(time_s)))
+    reach = max(1, round(3.0 * width_s / step))
+    offsets = np.arange(-reach, reach + 1)
+    known = np.isfinite(points).all(axis=-1)
+    value = np.where(known[..., None], points, 0.0)
+    trust: Array = known.astype(np.float64)
+    result = points
+    for _ in range(3):
+        result = _quadratic(value, trust, time_s, offsets, width_s)
+        off = np.where(known, np.linalg.norm(value - result, axis=-1), np.nan)
+        usual = np.nanmedian(off, axis=0) if known.any() else np.ones(points.shape[1])
+        trust = np.where(known, DEGREES / (DEGREES + np.nan_to_num(off / np.maximum(usual, 1e-4)) ** 2), 0.0)
+    return result
+
+
+def _quadratic(value: Array, trust: Array, time_s: Array, offsets: IndexArray, width_s: float) -> Array:
+    frames = len(value)
+    normal = np.zeros((*trust.shape, 3, 3))
+    right = np.zeros((*trust.shape, 3, 3))
+    enough = np.zeros(trust.shape)
+    for offset in offsets:
+        at = np.arange(max(0, -offset), min(frames, frames - offset))
+        away = (time_s[at + offset] - time_s[at]) / width_s
+        weight = np.exp(-0.5 * away**2)[:, None] * trust[at + offset]
+        basis = np.stack([np.ones_like(away), away, away**2], axis=-1)
+        normal[at] += weight[..., None, None] * (basis[:, :, None] * basis[:, None, :])[:, None]
+        right[at] += weight[..., None, None] * basis[:, None, :, None] * value[at + offset][..., None, :]
+        enough[at] += weight
+    normal += 1e-6 * np.eye(3)
+    result = np.linalg.solve(normal, right)[..., 0, :]
+    return np.where((enough > 0.5)[..., None], result, np.nan)
