@@ -33,7 +33,7 @@ from .keyframe_trust import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .performer_placement import found_ankle_m
-from .reference_evidence import OPTIONS, ReferenceEvidence, reference_evidence, with_reference
+from .reference_evidence import OPTIONS, NoReference, ReferenceEvidence, reference_evidence, with_reference
 from .second_look import seen_tracks
 from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 
@@ -67,13 +67,17 @@ class Reconstruction:
 
 
 def reconstruct(
-    take: Take, method: str = "map", reading: Reading | None = None, earlier: Reconstruction | None = None
+    take: Take,
+    method: str = "map",
+    reading: Reading | None = None,
+    earlier: Reconstruction | None = None,
+    referred: ReferenceEvidence | NoReference | None = None,
 ) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
     `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; `reading` has
     what was read from the same clip before, which is then not opened again; of `earlier` those parts are used
-    that still hold. Closing the generator cancels the job, which has no effects of its own.
+    that still hold; `referred` is what is known already of the take's reference motion. Closing the generator cancels the job, which has no effects of its own.
 
     Raises:
         InputError: The clip cannot be used, a color matches nothing in it, or the method is unknown.
@@ -83,7 +87,7 @@ def reconstruct(
     check_reconstructible(take, method)
     # The matrices are small: more threads of linear algebra take up to twenty times as long.
     with threadpool_limits(limits=1, user_api="blas"):
-        return (yield from _reconstruct(take, method, reading, earlier))
+        return (yield from _reconstruct(take, method, reading, earlier, referred))
 
 
 def check_reconstructible(take: Take, method: str) -> None:
@@ -114,7 +118,11 @@ def check_method(take: Take, method: str) -> None:
 
 
 def _reconstruct(
-    take: Take, method: str, reading: Reading | None, earlier: Reconstruction | None
+    take: Take,
+    method: str,
+    reading: Reading | None,
+    earlier: Reconstruction | None,
+    said: ReferenceEvidence | NoReference | None,
 ) -> Job[Reconstruction]:
     notes, begun = take.notes, 0.0
     if reading is None:
@@ -124,7 +132,7 @@ def _reconstruct(
         _check_tracks(take, reading.tracks)
     tracks, referred = reading.tracks, None
     if take.reference is not None and method == "map":
-        said = reference_evidence(take, tracks)
+        said = said or reference_evidence(take, tracks)
         notes += said.notes
         if isinstance(said, ReferenceEvidence):
             referred, take = said, with_reference(take, said)

@@ -52,7 +52,10 @@ class AlignmentOptions:
     usual_distance: float = 0.3  # standard deviation of a frame's own distance from it, as a share
     change: float = 1.0 / 60.0  # probability that a network begins or ceases to exchange sides, a frame
     jump_std_m: float = 0.08  # of a point from where it was a frame before
-    alike: float = 0.15  # the points of a frame err alike, and so do a few frames in a row
+    # What the picture says of the sides errs for seconds where a detector has them wrong, so it counts little;
+    # a network that exchanges them jumps. A frame is thought exchanged at this cost.
+    sides_weight: float = 0.02
+    exchanged_cost: float = 0.3
     # A network that has its motion in the camera's axes knows the vertical better than the picture does.
     same_axes_deg: float = 8.0
 
@@ -248,7 +251,8 @@ def _without_repeats(points: Array) -> Array:
 def _sides(points: Array, seen: SeenPoints) -> BoolArray:
     """(F,) whether a motion in camera axes has left for right, by its own steps and by the picture."""
     both = np.stack([points, points[:, MIRRORED]])
-    own = np.nan_to_num(place(both, seen).cost) * (seen.confidence > 0.0).sum(axis=1) * ALIGNMENT.alike
+    own = np.nan_to_num(place(both, seen).cost) * (seen.confidence > 0.0).sum(axis=1) * ALIGNMENT.sides_weight
+    own[1] += ALIGNMENT.exchanged_cost
     known = np.flatnonzero(np.isfinite(points).all(axis=(1, 2)))
     if len(known) < 2:
         return np.zeros(len(points), dtype=bool)

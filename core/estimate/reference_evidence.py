@@ -5,19 +5,26 @@ sight, and a posed keyframe tells it nearby.
 """
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
+from scipy.spatial.transform import Rotation
+from scipy.special import ndtr
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.posture_fit import fit_posture
+from ..errors import pluralize
+from ..footage.keypoints.keypoints import Keypoints
+from ..footage.keypoints.performer import principal_keypoints
 from ..footage.region_tracks import RegionTracks
 from ..numerics.robust import DEGREES
 from ..prior.keyframes import Keyframe, Matched
 from ..prior.texts import REFERENCE
 from ..take.performer_keypoints import performer_keypoints
+from ..take.reference import ReferenceMotion
 from ..take.take import Take
 from .reference_alignment import AlignedReference, SeenPoints, about_hips, align, place
 from .terms.reference import ExpectedPoints
@@ -33,6 +40,7 @@ USUAL_STD_M = {
 }
 """Usual error of a network's point about the hips, along each axis across the line of sight [m]."""
 STD_M = np.array([USUAL_STD_M[name.partition(".")[0]] for name in HUMAN.point_names])
+USUAL_ERROR_M = float(STD_M.mean() * np.sqrt(2.0 + 2.2**2))  # of a point in space, with what lies along the sight
 LIMBS = np.array([name.startswith(("elbow", "wrist", "knee", "ankle")) for name in HUMAN.point_names])
 
 
@@ -53,8 +61,10 @@ class ReferenceOptions:
     constant_share: float = 0.3
     correlation_s: float = 0.5
     posed_variance: float = 0.1
+    usual_count: float = 3.0  # posed keyframes that the error in the picture weighs as much as
+    same_guess_m: float = 0.02  # median distance from the detector's own guess in space within which it is that
     least_variance: float = 0.05
-    least_gain: float = 0.35
+    least_gain: float = 0.29
     other_times: int = 21
     most_frames: int = 400  # that are asked for the gain
 
@@ -70,7 +80,13 @@ class ReferenceEvidence:
     keyframes: tuple[Keyframe, ...]  # found in it, away from posed ones
     factor: float  # its error in usual ones
     gain: float  # 1 less its cost relative to that of the same motion at other times
-    notes: tuple[str, ...] = ()
+    name: str  # for sentences
+    notes: tuple[str, ...]  # sentences for people
+
+    @property
+    def confidence(self) -> float:
+        """Probability that its postures are right to 10 cm."""
+        return usual_confidence(self.factor)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,11 +103,13 @@ def reference_evidence(take: Take, tracks: RegionTracks) -> ReferenceEvidence | 
     keypoints = performer_keypoints(replace(take, keyframes=posed), None, tracks)
     seen = SeenPoints.of(take.camera, keypoints, tracks, take.marker_segments)
     aligned = align(take.reference, take.body, seen, tracks.time_s, take.fps)
+    if _is_own_guess(take.reference, keypoints):
+        return NoReference((f"{_name(take)}: is the guess in space that came with the keypoints, whose errors it shares, so it is set aside",))
     worth = gain(aligned, seen)
     if worth < OPTIONS.least_gain:
         return NoReference(
             (
-                f"{take.reference.file or 'the reference motion'}: is set aside, since it fits the footage "
+                f"{_name(take)}: is set aside, since it fits the footage "
                 f"hardly better than the same motion at other times ({worth:.2f}); it must be of this clip",
             )
         )
@@ -104,6 +122,7 @@ def reference_evidence(take: Take, tracks: RegionTracks) -> ReferenceEvidence | 
         offset = about_hips(true) - points[index]
         told = np.isfinite(offset).all(axis=(1, 2))
         if told.any():
+            factor = _with_posed(factor, offset[told], _whitening(take, hips, np.ones((len(hips), 1)) * STD_M)[index[told]])
             share, left = _bias(tracks.time_s[index[told]], tracks.time_s)
             points = points + np.einsum("fk,kpi->fpi", share, offset[told])
             middle = true - about_hips(true)
@@ -115,13 +134,55 @@ def reference_evidence(take: Take, tracks: RegionTracks) -> ReferenceEvidence | 
         OPTIONS.memory_s,
     )
     found = _keyframes(take, points + hips[:, None], posed, tracks.time_s, factor)
-    return ReferenceEvidence(expected, found, factor, worth)
+    note = (
+        f"{_name(take)}: a motion from elsewhere is followed, whose points err by about "
+        f"{100.0 * factor * USUAL_ERROR_M:.0f} cm as the footage has it"
+    )
+    aside = aligned.exchanged.sum()
+    swapped = (f"{_name(take)}: left and right are exchanged back in {pluralize(int(aside), 'frame')}",)
+    return ReferenceEvidence(expected, found, factor, worth, _name(take), (note, *(swapped if aside else ())))
+
+
+def _name(take: Take) -> str:
+    assert take.reference is not None
+    return Path(take.reference.file).name or "the reference motion"
+
+
+def _is_own_guess(reference: ReferenceMotion, keypoints: Keypoints) -> bool:
+    """Whether a reference motion is what the detector guessed with its keypoints: it errs as they do."""
+    hint = principal_keypoints(keypoints).hint_m if keypoints.names else np.zeros((0, len(STD_M), 3))
+    frames = min(len(hint), len(reference.points_m))
+    one, other = about_hips(reference.points_m[:frames]), about_hips(hint[:frames])
+    told = np.isfinite(one).all(axis=(1, 2)) & np.isfinite(other).all(axis=(1, 2))
+    if told.sum() < 2:
+        return False
+    one, other = one[told].reshape(-1, 3), other[told].reshape(-1, 3)
+    turn, _ = Rotation.align_vectors(other, one)
+    one = turn.apply(one)
+    size = float((one * other).sum() / max((one * one).sum(), 1e-9))
+    return bool(np.median(np.linalg.norm(size * one - other, axis=-1)) < OPTIONS.same_guess_m)
+
+
+def _with_posed(factor: float, offset: Array, whitening: Array) -> float:
+    """The error in usual ones, by posed keyframes too, of which `offset` (K, 13, 3) is left."""
+    squared = np.mean((whitening @ offset[..., None])[..., 0] ** 2, axis=(1, 2))
+    total = OPTIONS.usual_count * factor**2 + squared.sum()
+    learned = float(np.sqrt(total / (OPTIONS.usual_count + len(squared))))
+    return float(np.clip(learned, OPTIONS.least_factor, OPTIONS.most_factor))
 
 
 def with_reference(take: Take, said: ReferenceEvidence) -> Take:
     """The take with the keyframes found in its reference motion instead of all others that were found."""
     posed = [key for key in take.keyframes if key.matched is None]
     return replace(take, keyframes=tuple(sorted((*posed, *said.keyframes), key=lambda key: key.index)))
+
+
+def usual_confidence(factor: float) -> float:
+    """Probability that a network's posture is right to 10 cm, given its error in usual ones.
+
+    Of single postures mean errors are spread by half an octave, about log-normally.
+    """
+    return float(np.clip(ndtr(np.log(0.1 / (factor * USUAL_ERROR_M)) / 0.4), 0.02, 0.98))
 
 
 def _whitening(take: Take, hips: Array, std_m: Array) -> Array:
@@ -145,7 +206,7 @@ def _keyframes(
         return ()
     posture = fit_posture(take.body, points[asked]).posture
     return tuple(
-        Keyframe(int(frame), posture[row], matched=Matched(REFERENCE, "reference", False, 0.8))
+        Keyframe(int(frame), posture[row], matched=Matched(REFERENCE, _name(take), False, usual_confidence(factor)))
         for row, frame in enumerate(asked)
     )
 

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from ..estimate.reconstruct import Reconstruction, reconstruct
-from ..posing.found_poses import FoundPoses, with_found
+from ..estimate.reference_evidence import ReferenceEvidence, reference_evidence, with_reference
+from ..posing.found_poses import FoundPoses, referred_poses, with_found
 from ..posing.pose_clip import pose_clip
 from ..prior.library import Library
 from ..progress import Job, stretch
@@ -65,9 +66,15 @@ def find_and_reconstruct(
     if libraries is None:
         return FoundReconstruction(take, (yield from reconstruct(take, method)))
     reading = yield from stretch(read_footage(take), 0.0, READ)
-    found = yield from stretch(pose_clip(take, reading, libraries, floor_m), READ, POSED)
-    take = with_found(take, found)
-    result = yield from stretch(reconstruct(take, method, reading), POSED, 1.0)
+    said = None
+    if take.reference is not None and method == "map":
+        said = reference_evidence(take, reading.tracks)
+    if isinstance(said, ReferenceEvidence):
+        take, found = with_reference(take, said), referred_poses(take, said)
+    else:
+        found = yield from stretch(pose_clip(take, reading, libraries, floor_m), READ, POSED)
+        take = with_found(take, found)
+    result = yield from stretch(reconstruct(take, method, reading, referred=said), POSED, 1.0)
     return FoundReconstruction(take, result, found)
 
 

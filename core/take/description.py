@@ -22,7 +22,7 @@ SHOOT_FILE = "shoot.json"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**20
 SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "ignored_regions", "actor")
-SETTING_FIELDS = ("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence")
+SETTING_FIELDS = ("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence", "reference")
 FILE_FIELDS = ("$schema", "schema_version", "root")
 """Fields about the file itself; editors read the first."""
 KEYFRAMES = "keyframes"
@@ -141,9 +141,13 @@ def describe(
     if settings.keypoints is not None and said_in in shared:  # names that every take has
         own = (_own_name(folder, bare, file.relative_to(said_in.parent)) for file in settings.keypoints)
         settings = replace(settings, keypoints=tuple(own))
+    said_in = Path(fields.source_of("reference"))
+    if settings.reference is not None and said_in in shared:
+        own_reference = _own_name(folder, bare, settings.reference.relative_to(said_in.parent))
+        settings = replace(settings, reference=own_reference)
     usual = _own_name(folder, bare, Path(KEYPOINT_FILE))
     keypoints = settings.keypoints or ((usual,) if os.path.lexists(usual) else ())
-    used = [*files, clip, keyframes, *keypoints]
+    used = [*files, clip, keyframes, *keypoints, *filter(None, [settings.reference])]
     used += [link for within in (clip, *keypoints) for link in _links(within)]
     if settings.library is not None and settings.library.endswith(".json"):
         used.append(Path(settings.library))

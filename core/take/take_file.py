@@ -34,6 +34,7 @@ from .clip_check import open_footage, picture_count
 from .conversion_settings import ConversionSettings
 from .description import KEYPOINT_FILE, Description, describe, keypoint_files
 from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
+from .reference import read_reference
 from .take import Take, check_evidence, with_evidence
 
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
@@ -168,7 +169,8 @@ def read_described(
         )
     body = said.actor.body
     posed = keyframes or description.keyframes
-    optional = keyframes is None and not keyframes_required
+    referred = settings.reference is not None  # it has keyframes of its own
+    optional = keyframes is None and (referred or not keyframes_required)
     missing = optional and (fewest_keyframes == 0 or not os.path.exists(posed))
     if not missing and keyframes is None and not os.path.exists(posed):
         named = f" ({fields.source_of('keyframes')} names it)" if fields.has("keyframes") else ""
@@ -189,6 +191,7 @@ def read_described(
         described_in=description.file,
         title=description.name,
         keypoints=_keypoints(description, settings, camera, fps, frame_start, frame_count),
+        reference=None if settings.reference is None else read_reference(settings.reference),
         ignored_regions=ignored_regions(
             said.ignored_regions or (), camera.resolution, frame_start, fields.source_of(IGNORED_REGIONS)
         ),
@@ -225,7 +228,7 @@ def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) 
 
     Every file is written atomically; a clip or keypoints that lie in the folder stay as they are.
     """
-    clip = _copy_clip(take, folder)
+    clip = _copied(take.clip, folder)
     fields: dict[str, Any] = {"fps": take.fps, "frame_start": take.frame_start}
     if take.frame_count is not None:
         fields["frame_count"] = take.frame_count
@@ -240,6 +243,8 @@ def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) 
         fields[IGNORED_REGIONS] = ignored_region_fields(take.ignored_regions, take.frame_start)
     if take.keypoints:
         fields["keypoints"] = _write_keypoints(take, folder)
+    if take.reference is not None and take.reference.file:
+        fields["reference"] = _copied(Path(take.reference.file), folder)
     if evidence is not None:
         fields["evidence"] = list(evidence)
     fields["actor"] = {"segments_m": dict(take.body.actor.segments_m)}
@@ -248,14 +253,14 @@ def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) 
     write_json(folder / "take.json", fields, indent=1)
 
 
-def _copy_clip(take: Take, folder: Path) -> str:
-    """Copy the clip into `folder` unless it lies there; returns its path within."""
-    source = take.clip.resolve()
+def _copied(given: Path, folder: Path) -> str:
+    """Copy a clip or a motion into `folder` unless it lies there; returns its path within."""
+    source = given.resolve()
     if source.is_relative_to(folder.resolve()):
         return source.relative_to(folder.resolve()).as_posix()
     if not source.exists():
         raise InputError(
-            f"{take.clip}: no such file or folder; only a video or a folder of images can be copied"
+            f"{given}: no such file or folder; only what is there can be copied"
         )
     copy = shutil.copytree if source.is_dir() else shutil.copyfile
     write_atomically(folder / source.name, lambda beside: copy(source, beside))

@@ -16,7 +16,7 @@ from ...core.take.take_file import read_described
 from ..actor.take_actor import add_actor
 from ..bridge.actions import assign_action
 from ..bridge.footage import clip_rate
-from ..bridge.footage_to_scene import load_footage, show_footage
+from ..bridge.footage_to_scene import load_footage, show_footage, stored_path
 from ..bridge.keyframes import write_keyframes
 from ..bridge.scene_frames import scene_frames
 from ..follow.evidence import add_keypoint_file
@@ -112,5 +112,7 @@ def _add_evidence(settings: bpy.types.PropertyGroup, opened: OpenedTake) -> None
         if people.file:
             add_keypoint_file(settings, Path(people.file))
     follow, kinds = settings.follow, opened.kinds
+    if opened.take.reference is not None:
+        follow.reference = stored_path(Path(opened.take.reference.file))
     follow.use_markers, follow.use_keypoints = MARKERS in kinds, KEYPOINTS in kinds
     follow.use_depth_hints, follow.use_contours = DEPTH_HINTS in kinds, CONTOURS in kinds
