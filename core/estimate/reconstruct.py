@@ -77,7 +77,8 @@ def reconstruct(
 
     `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; `reading` has
     what was read from the same clip before, which is then not opened again; of `earlier` those parts are used
-    that still hold; `referred` is what is known already of the take's reference motion. Closing the generator cancels the job, which has no effects of its own.
+    that still hold; `referred` is what is known already of the take's reference motion. Closing the generator
+    cancels the job, which has no effects of its own.
 
     Raises:
         InputError: The clip cannot be used, a color matches nothing in it, or the method is unknown.
@@ -154,7 +155,9 @@ def _reconstruct(
     motion, model, solution, seen = baseline, average_model(take), None, tracks
     if method == "map":
         usable = _usable(earlier, reading)
-        solution = yield from _whole_clip(take, reading, keypoints, prior, match_scale * wide, begun, usable, referred)
+        solution = yield from _whole_clip(
+            take, reading, keypoints, prior, match_scale * wide, begun, usable, referred
+        )
         seen = seen_tracks(tracks, solution.problem.observed)
         motion, model = _solved(take, seen, solution, match_scale), solution.evidence.model
         notes += evidence_notes(take, solution.evidence) + keypoint_notes(solution.keypoints)

@@ -1,4 +1,4 @@
-"""What a reference motion tells of a take: whether it is of this performance, how far it errs, and its keyframes.
+"""What a reference motion tells of a take: whether it is of this performance, how far it errs, keyframes.
 
 A network's error is a bias that wanders: it lasts for some tenths of a second, is larger along the line of
 sight, and a posed keyframe tells it nearby.
@@ -13,7 +13,6 @@ from scipy.special import ndtr
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
-from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.posture_fit import fit_posture
 from ..errors import pluralize
@@ -21,12 +20,14 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..footage.keypoints.performer import principal_keypoints
 from ..footage.region_tracks import RegionTracks
 from ..numerics.robust import DEGREES
+from ..numerics.vectors import gaussian, usual_step
 from ..prior.keyframes import Keyframe, Matched
 from ..prior.texts import REFERENCE
 from ..take.performer_keypoints import performer_keypoints
 from ..take.reference import ReferenceMotion
 from ..take.take import Take
-from .reference_alignment import AlignedReference, SeenPoints, about_hips, align, place
+from .reference_alignment import AlignedReference, about_hips, align
+from .reference_placement import SeenPoints, place
 from .terms.reference import ExpectedPoints
 
 USUAL_STD_M = {
@@ -40,7 +41,6 @@ USUAL_STD_M = {
 }
 """Usual error of a network's point about the hips, along each axis across the line of sight [m]."""
 STD_M = np.array([USUAL_STD_M[name.partition(".")[0]] for name in HUMAN.point_names])
-USUAL_ERROR_M = float(STD_M.mean() * np.sqrt(2.0 + 2.2**2))  # of a point in space, with what lies along the sight
 LIMBS = np.array([name.startswith(("elbow", "wrist", "knee", "ankle")) for name in HUMAN.point_names])
 
 
@@ -56,20 +56,25 @@ class ReferenceOptions:
     keyframe_s: float = 0.4  # time between the keyframes found in it
     keyframe_width: float = 4.0  # of their error, in a usual difference between performers
     from_posed_s: float = 0.3
-    # Its bias over time, as posed keyframes tell it: the share that lasts all along the clip, the time in which
-    # the rest fades, and a person's own error beside it.
+    # Its bias over time, as posed keyframes tell it: the share that lasts all along the clip, the time in
+    # which the rest fades, a person's own error beside it, and what of its variance is never told.
     constant_share: float = 0.3
     correlation_s: float = 0.5
     posed_variance: float = 0.1
-    usual_count: float = 3.0  # posed keyframes that the error in the picture weighs as much as
-    same_guess_m: float = 0.02  # median distance from the detector's own guess in space within which it is that
     least_variance: float = 0.05
+    usual_count: float = 3.0  # posed keyframes that the error in the picture weighs as much as
+    # Right motions cost .1 to .3 of what the same motion costs at other times, others more than .7.
     least_gain: float = 0.29
     other_times: int = 21
     most_frames: int = 400  # that are asked for the gain
+    left_out_s: float = 0.3  # time over which frames are judged together
+    same_guess_m: float = (
+        0.02  # median distance from the detector's own guess in space within which it is that
+    )
 
 
 OPTIONS = ReferenceOptions()
+USUAL_ERROR_M = float(STD_M.mean() * np.sqrt(2.0 + OPTIONS.along**2))  # of a point in space
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +83,7 @@ class ReferenceEvidence:
 
     expected: ExpectedPoints
     keyframes: tuple[Keyframe, ...]  # found in it, away from posed ones
+    left_out: BoolArray  # (F,) where it is of something else
     factor: float  # its error in usual ones
     gain: float  # 1 less its cost relative to that of the same motion at other times
     name: str  # for sentences
@@ -86,7 +92,7 @@ class ReferenceEvidence:
     @property
     def confidence(self) -> float:
         """Probability that its postures are right to 10 cm."""
-        return usual_confidence(self.factor)
+        return _confidence(self.factor)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,24 +103,33 @@ class NoReference:
 
 
 def reference_evidence(take: Take, tracks: RegionTracks) -> ReferenceEvidence | NoReference:
-    """What a take's reference motion tells; the posed keyframes of the take correct it."""
+    """What a take's reference motion tells; its posed keyframes correct it."""
     assert take.reference is not None
+    name = Path(take.reference.file).name or "the reference motion"
     posed = tuple(key for key in take.keyframes if key.matched is None)
     keypoints = performer_keypoints(replace(take, keyframes=posed), None, tracks)
-    seen = SeenPoints.of(take.camera, keypoints, tracks, take.marker_segments)
-    aligned = align(take.reference, take.body, seen, tracks.time_s, take.fps)
     if _is_own_guess(take.reference, keypoints):
-        return NoReference((f"{_name(take)}: is the guess in space that came with the keypoints, whose errors it shares, so it is set aside",))
-    worth = gain(aligned, seen)
-    if worth < OPTIONS.least_gain:
         return NoReference(
             (
-                f"{_name(take)}: is set aside, since it fits the footage "
-                f"hardly better than the same motion at other times ({worth:.2f}); it must be of this clip",
+                f"{name}: is set aside, since it is the guess in space that came with the keypoints, whose "
+                "errors it shares",
             )
         )
-    factor = error_factor(aligned, seen)
+    seen = SeenPoints.of(take.camera, keypoints, tracks, take.marker_segments)
+    aligned = align(take.reference, take.body, seen, tracks.time_s, take.fps)
+    cost, usual = own_and_usual_cost(aligned, seen)
+    gain = 1.0 - cost / usual
+    if gain < OPTIONS.least_gain:
+        return NoReference(
+            (
+                f"{name}: is set aside, since it fits the footage hardly better than the same motion at "
+                f"other times ({gain:.2f}); it must be of this clip",
+            )
+        )
+    left_out = _left_out(aligned, usual, tracks.time_s)
     points = smoothed(aligned.points, tracks.time_s, OPTIONS.smooth_s)
+    points[left_out] = np.nan
+    factor = error_factor(aligned, seen)
     hips, std = aligned.hips, np.ones(len(points))
     if posed:
         index = np.array([key.index for key in posed])
@@ -122,30 +137,59 @@ def reference_evidence(take: Take, tracks: RegionTracks) -> ReferenceEvidence | 
         offset = about_hips(true) - points[index]
         told = np.isfinite(offset).all(axis=(1, 2))
         if told.any():
-            factor = _with_posed(factor, offset[told], _whitening(take, hips, np.ones((len(hips), 1)) * STD_M)[index[told]])
-            share, left = _bias(tracks.time_s[index[told]], tracks.time_s)
-            points = points + np.einsum("fk,kpi->fpi", share, offset[told])
-            middle = true - about_hips(true)
-            hips = hips + share @ (middle[told, 0] - hips[index[told]])
+            index, offset, middle = index[told], offset[told], (true - about_hips(true))[told, 0]
+            factor = _with_posed(
+                factor, offset, _whitening(take, hips, np.ones((len(hips), 1)) * STD_M)[index]
+            )
+            share, left = _bias(tracks.time_s[index], tracks.time_s)
+            points = points + np.einsum("fk,kpi->fpi", share, offset)
+            hips = hips + share @ (middle - hips[index])
             std = np.sqrt(np.maximum(left, OPTIONS.least_variance))
     expected = ExpectedPoints(
         np.where(aligned.known[:, None, None], points, np.nan),
         _whitening(take, hips, factor * std[:, None] * STD_M),
         OPTIONS.memory_s,
     )
-    found = _keyframes(take, points + hips[:, None], posed, tracks.time_s, factor)
-    note = (
-        f"{_name(take)}: a motion from elsewhere is followed, whose points err by about "
-        f"{100.0 * factor * USUAL_ERROR_M:.0f} cm as the footage has it"
+    found = _keyframes(
+        take,
+        points + hips[:, None],
+        posed,
+        tracks.time_s,
+        Matched(REFERENCE, name, False, _confidence(factor)),
     )
-    aside = aligned.exchanged.sum()
-    swapped = (f"{_name(take)}: left and right are exchanged back in {pluralize(int(aside), 'frame')}",)
-    return ReferenceEvidence(expected, found, factor, worth, _name(take), (note, *(swapped if aside else ())))
+    notes = [
+        f"{name}: a motion from elsewhere is followed; its points are about "
+        f"{100.0 * factor * USUAL_ERROR_M:.0f} cm off by what is seen"
+    ]
+    for count, what in (
+        (aligned.exchanged.sum(), "left and right are exchanged back"),
+        (left_out.sum(), "is of something else and left out"),
+    ):
+        notes += [f"{name}: {what} in {pluralize(int(count), 'frame')}"] if count else []
+    if aligned.lag:
+        notes.append(
+            f"{name}: is {pluralize(abs(aligned.lag), 'frame')} {'late' if aligned.lag > 0 else 'early'}, "
+            "which is taken back"
+        )
+    return ReferenceEvidence(expected, found, left_out, factor, gain, name, tuple(notes))
 
 
-def _name(take: Take) -> str:
-    assert take.reference is not None
-    return Path(take.reference.file).name or "the reference motion"
+def with_reference(take: Take, said: ReferenceEvidence) -> Take:
+    """The take with the keyframes found in its reference motion; others found stay where it is silent."""
+    kept = [key for key in take.keyframes if key.matched is None or _stays(key, said)]
+    return replace(take, keyframes=tuple(sorted((*kept, *said.keyframes), key=lambda key: key.index)))
+
+
+def _stays(key: Keyframe, said: ReferenceEvidence) -> bool:
+    return key.matched is not None and not key.matched.is_referred and bool(said.left_out[key.index])
+
+
+def _confidence(factor: float) -> float:
+    """Probability that a network's posture is right to 10 cm, given its error in usual ones.
+
+    Mean errors of single postures are spread by half an octave, about log-normally.
+    """
+    return float(np.clip(ndtr(np.log(0.1 / (factor * USUAL_ERROR_M)) / 0.4), 0.02, 0.98))
 
 
 def _is_own_guess(reference: ReferenceMotion, keypoints: Keypoints) -> bool:
@@ -163,26 +207,22 @@ def _is_own_guess(reference: ReferenceMotion, keypoints: Keypoints) -> bool:
     return bool(np.median(np.linalg.norm(size * one - other, axis=-1)) < OPTIONS.same_guess_m)
 
 
+def _left_out(aligned: AlignedReference, usual: float, time_s: Array) -> BoolArray:
+    """(F,) where a motion fits no better than at other times."""
+    told = np.isfinite(aligned.placed.cost)
+    width = OPTIONS.left_out_s / usual_step(time_s)
+    near = gaussian(np.where(told, aligned.placed.cost, 0.0), width) / np.maximum(
+        gaussian(1.0 * told, width), 1e-9
+    )
+    return np.asarray(near > (1.0 - OPTIONS.least_gain) * usual)
+
+
 def _with_posed(factor: float, offset: Array, whitening: Array) -> float:
     """The error in usual ones, by posed keyframes too, of which `offset` (K, 13, 3) is left."""
     squared = np.mean((whitening @ offset[..., None])[..., 0] ** 2, axis=(1, 2))
     total = OPTIONS.usual_count * factor**2 + squared.sum()
     learned = float(np.sqrt(total / (OPTIONS.usual_count + len(squared))))
     return float(np.clip(learned, OPTIONS.least_factor, OPTIONS.most_factor))
-
-
-def with_reference(take: Take, said: ReferenceEvidence) -> Take:
-    """The take with the keyframes found in its reference motion instead of all others that were found."""
-    posed = [key for key in take.keyframes if key.matched is None]
-    return replace(take, keyframes=tuple(sorted((*posed, *said.keyframes), key=lambda key: key.index)))
-
-
-def usual_confidence(factor: float) -> float:
-    """Probability that a network's posture is right to 10 cm, given its error in usual ones.
-
-    Of single postures mean errors are spread by half an octave, about log-normally.
-    """
-    return float(np.clip(ndtr(np.log(0.1 / (factor * USUAL_ERROR_M)) / 0.4), 0.02, 0.98))
 
 
 def _whitening(take: Take, hips: Array, std_m: Array) -> Array:
@@ -194,21 +234,18 @@ def _whitening(take: Take, hips: Array, std_m: Array) -> Array:
 
 
 def _keyframes(
-    take: Take, points: Array, posed: tuple[Keyframe, ...], time_s: Array, factor: float
+    take: Take, points: Array, posed: tuple[Keyframe, ...], time_s: Array, matched: Matched
 ) -> tuple[Keyframe, ...]:
     """Keyframes at even times, where all points are known and no posed keyframe is near."""
-    step = max(1, round(OPTIONS.keyframe_s * take.fps))
-    asked = np.unique([*range(0, len(points), step), len(points) - 1])
+    count = max(1, round((time_s[-1] - time_s[0]) / OPTIONS.keyframe_s)) + 1
+    asked = np.unique(np.linspace(0, len(points) - 1, count).round().astype(np.intp))
     near = np.array([key.index for key in posed], dtype=np.intp)
     apart = np.abs(time_s[asked][:, None] - time_s[near]).min(axis=1, initial=np.inf)
     asked = asked[(apart > OPTIONS.from_posed_s) & np.isfinite(points[asked]).all(axis=(1, 2))]
     if not len(asked):
         return ()
     posture = fit_posture(take.body, points[asked]).posture
-    return tuple(
-        Keyframe(int(frame), posture[row], matched=Matched(REFERENCE, _name(take), False, usual_confidence(factor)))
-        for row, frame in enumerate(asked)
-    )
+    return tuple(Keyframe(int(frame), posture[row], matched=matched) for row, frame in enumerate(asked))
 
 
 def _bias(at_s: Array, time_s: Array) -> tuple[Array, Array]:
@@ -227,24 +264,20 @@ def _bias(at_s: Array, time_s: Array) -> tuple[Array, Array]:
 # --- Its worth
 
 
-def gain(aligned: AlignedReference, seen: SeenPoints) -> float:
-    """1 less the motion's cost relative to that of the same motion at other times, forward and backward.
-
-    About 0.7 to 0.9 for a motion of this clip, up to 0.3 for others.
-    """
+def own_and_usual_cost(aligned: AlignedReference, seen: SeenPoints) -> tuple[float, float]:
+    """What the footage costs given the motion, and given it at other times, forward and backward."""
     inside = np.einsum("fji,fpj->fpi", seen.rotation, aligned.points)
     told = np.flatnonzero(np.isfinite(aligned.placed.cost))
     if len(told) < 2:
-        return 0.0
+        return 1.0, 1.0
     told = told[np.unique(np.linspace(0, len(told) - 1, OPTIONS.most_frames).round().astype(int))]
     some, part, count = inside[told], seen[told], len(told)
-    own = float(np.nanmean(place(some, part).cost))
     others = []
     for number in range(OPTIONS.other_times):
         order = np.arange(count)[:: 1 - 2 * (number % 2)]
         other = np.roll(order, round((number + 1) * count / (OPTIONS.other_times + 1)))
         others.append(float(np.nanmean(place(some[other], part).cost)))
-    return 1.0 - own / max(float(np.median(others)), 1e-9)
+    return float(np.nanmean(place(some, part).cost)), max(float(np.median(others)), 1e-9)
 
 
 def error_factor(aligned: AlignedReference, seen: SeenPoints) -> float:
@@ -268,8 +301,7 @@ def smoothed(points: Array, time_s: Array, width_s: float) -> Array:
 
     Robust: points far from their own curve count for less. NaN only where fewer than three frames are near.
     """
-    step = float(np.median(np.diff(time_s)))
-    reach = max(1, round(3.0 * width_s / step))
+    reach = max(1, round(3.0 * width_s / usual_step(time_s)))
     offsets = np.arange(-reach, reach + 1)
     known = np.isfinite(points).all(axis=-1)
     value = np.where(known[..., None], points, 0.0)

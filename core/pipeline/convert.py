@@ -69,8 +69,9 @@ def find_and_reconstruct(
     said = None
     if take.reference is not None and method == "map":
         said = reference_evidence(take, reading.tracks)
-    if isinstance(said, ReferenceEvidence):
-        take, found = with_reference(take, said), referred_poses(take, said)
+    if isinstance(said, ReferenceEvidence) and not said.left_out.any():
+        take = with_reference(take, said)
+        found = referred_poses(take, said)
     else:
         found = yield from stretch(pose_clip(take, reading, libraries, floor_m), READ, POSED)
         take = with_found(take, found)

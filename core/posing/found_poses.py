@@ -65,12 +65,15 @@ def referred_poses(take: Take, said: ReferenceEvidence) -> FoundPoses:
     count = len(said.expected.points)
     postures = interpolate(take.keyframes, count)
     frames = tuple(
-        MatchedFrame(key.index, (Candidate(key.posture, "", False, said.confidence),)) for key in said.keyframes
+        MatchedFrame(key.index, (Candidate(key.posture, "", False, said.confidence),))
+        for key in said.keyframes
     )
     every = np.arange(count)
     lower = found_ankle_m(take.body, postures, every, count)
     floor_m = float(np.min(lower)) - standing_ankle_m(take.body)
-    reason = f"the found poses are those of {said.name}, which fits the footage {said.gain:.0%} better than chance"
+    reason = (
+        f"the found poses are those of {said.name}, which fits the footage {said.gain:.0%} better than chance"
+    )
     return FoundPoses(frames, postures, said.gain, floor_m, reason, library=REFERENCE)
 
 

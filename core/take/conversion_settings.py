@@ -257,8 +257,8 @@ class SettingsFields(Record):
     """What the motion is held against; the default is whatever the take has. Hints of depth come with
     keypoints."""
     reference: Annotated[str, relative_path(REFERENCE_VALID)] | None = None
-    """A 3D motion of the same performance from elsewhere, as a neural network's, in axes, size and time of its
-    own; relative to the take's folder and inside it. In shoot.json a name that every take has."""
+    """A 3D motion of the same performance from elsewhere, as a neural network's, in axes, size and time of
+    its own; relative to the take's folder and inside it. In shoot.json a name that every take has."""
     library: LibraryName | None = None
     """Keyframe library to find keyframes with, beside posed ones: its name, a file ending in .json below the
     folder of the file with this field, or auto for all libraries, which is the same as auto in keyframes."""

@@ -22,7 +22,10 @@ SHOOT_FILE = "shoot.json"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**20
 SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "ignored_regions", "actor")
-SETTING_FIELDS = ("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence", "reference")
+SETTING_FIELDS = (
+    *("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence"),
+    "reference",
+)
 FILE_FIELDS = ("$schema", "schema_version", "root")
 """Fields about the file itself; editors read the first."""
 KEYFRAMES = "keyframes"

@@ -71,7 +71,9 @@ def _mhr70(path: Path) -> Array:
             rows = csv.reader(file)
             header = [name.strip() for name in next(rows, [])]
             wanted = [_columns(header, name, path) for name in HUMAN.point_names]
-            places = [_row(row, len(header), wanted, path, number) for number, row in enumerate(rows, 2) if row]
+            places = [
+                _row(row, len(header), wanted, path, number) for number, row in enumerate(rows, 2) if row
+            ]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: cannot be read as a csv ({error})") from error
     if not 2 <= len(places) <= MOST_FRAMES:

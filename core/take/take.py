@@ -14,8 +14,8 @@ from ..footage.keypoints.keypoints import People
 from ..footage.region_tracks import MarkerStyle
 from ..prior.keyframes import Keyframe
 from .description import TAKE_FILE
-from .reference import ReferenceMotion
 from .evidence import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
+from .reference import ReferenceMotion
 
 POORLY_FITTED_M = 0.06
 """Hand-posed points fit an actor of the right size within two or three centimeters."""

@@ -259,9 +259,7 @@ def _copied(given: Path, folder: Path) -> str:
     if source.is_relative_to(folder.resolve()):
         return source.relative_to(folder.resolve()).as_posix()
     if not source.exists():
-        raise InputError(
-            f"{given}: no such file or folder; only what is there can be copied"
-        )
+        raise InputError(f"{given}: no such file or folder; only what is there can be copied")
     copy = shutil.copytree if source.is_dir() else shutil.copyfile
     write_atomically(folder / source.name, lambda beside: copy(source, beside))
     return source.name

@@ -88,8 +88,8 @@ class KEYMARK_PG_follow(bpy.types.PropertyGroup):
     )
     reference: bpy.props.StringProperty(
         name="Reference Motion",
-        description="A 3D motion of the same performance from elsewhere, as a neural network's: it is turned, "
-        "placed and mended as the footage shows, and needs no keyframes",
+        description="A 3D motion of the same performance from elsewhere, as a neural network's: it is "
+        "turned, placed and mended as the footage shows, and needs no keyframes",
         subtype="FILE_PATH",
         options={"ANIMATABLE", "PATH_SUPPORTS_BLEND_RELATIVE"},
     )

@@ -25,6 +25,8 @@ from .regions import RegionTerm
 from .term import QuadraticBuilder, QuadraticTerm, Term
 
 ANKLES = ("ankle.L", "ankle.R")
+LOOSE_FEET = {"release_speed_m_s": 0.4, "release_height_m": 0.06}
+"""Of feet that stand, where a reference motion, whose feet slide and jump, is followed from the start."""
 
 
 def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Term]:
@@ -48,7 +50,7 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
         ),
         DepthTerm(clip.camera, prior_depth, clip.depth_std_m[frames, None] * clip.depth_factor[frames]),
         LimitTerm(),
-        StillnessTerm(clip.camera, ankles, step_s),
+        StillnessTerm(clip.camera, ankles, step_s, **(LOOSE_FEET if clip.reference is not None else {})),
     ]
     if evidence.keypoints.model.names:
         terms.append(_keypoint_term(clip, window, step_s))
