@@ -245,7 +245,13 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
         lower = motion.points[:, ankles, 2].min(axis=1)
         place_std_m = place_depth_std_m(motion.points, lower, take.camera)
-    sure = np.array([1.0 if key.matched is None else key.matched.confidence for key in take.keyframes])
+    # A reference motion has its own errors in the estimate; open is what all sizes share.
+    sure = np.array(
+        [
+            1.0 if key.matched is None or key.matched.is_referred else key.matched.confidence
+            for key in take.keyframes
+        ]
+    )
     open_depth = undetermined_covariance(motion.points, take.camera, index, match_scale, sure, place_std_m)
     return replace(motion, point_covariance=motion.point_covariance + open_depth)
 

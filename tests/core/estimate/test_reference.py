@@ -139,7 +139,9 @@ def test_smoothing_takes_jitter_and_leaves_motion() -> None:
     calm = smoothed(noisy, TRACKS.time_s, 0.09)
     before, after = (np.linalg.norm(np.diff(one, n=2, axis=0), axis=-1).mean() for one in (noisy, calm))
     assert after < 0.2 * before
-    assert np.linalg.norm(calm - POINTS, axis=-1).mean() < 0.6 * np.linalg.norm(noisy - POINTS, axis=-1).mean()
+    assert (
+        np.linalg.norm(calm - POINTS, axis=-1).mean() < 0.6 * np.linalg.norm(noisy - POINTS, axis=-1).mean()
+    )
     assert np.linalg.norm(calm[40, 5] - POINTS[40, 5]) < 0.05
 
 
@@ -160,7 +162,8 @@ def take_of(
 ) -> Take:
     hint = np.full((FRAMES, len(keypoints.names), 3), np.nan) if hints is None else hints
     frames = tuple(
-        SeenPeople(keypoints.pixel[i : i + 1], keypoints.score[i : i + 1], hint[i : i + 1]) for i in range(FRAMES)
+        SeenPeople(keypoints.pixel[i : i + 1], keypoints.score[i : i + 1], hint[i : i + 1])
+        for i in range(FRAMES)
     )
     return Take(
         folder=Path(),
@@ -185,7 +188,9 @@ def said_of(take: Take) -> ReferenceEvidence:
 
 
 def off_mm(said: ReferenceEvidence, frame: int) -> float:
-    return 1e3 * float(np.linalg.norm(said.expected.points[frame] - about_hips(POINTS)[frame], axis=-1).mean())
+    return 1e3 * float(
+        np.linalg.norm(said.expected.points[frame] - about_hips(POINTS)[frame], axis=-1).mean()
+    )
 
 
 def test_posed_keyframes_correct_it_nearby_and_take_the_place_of_found_ones() -> None:
