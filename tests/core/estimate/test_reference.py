@@ -197,8 +197,6 @@ def test_posed_keyframes_correct_it_nearby_and_take_the_place_of_found_ones() ->
     plain, posed = said_of(take_of(network())), said_of(take_of(network(), (40,)))
     assert off_mm(posed, 40) < 0.2 * off_mm(plain, 40)
     assert off_mm(posed, 43) < 0.9 * off_mm(plain, 43)
-    spread = [np.linalg.det(said.expected.whitening[[40, 0], 5]) for said in (plain, posed)]
-    assert spread[1][0] / spread[0][0] > 5.0 * spread[1][1] / spread[0][1]
     index = [key.index for key in posed.keyframes]
     assert min(abs(one - 40) for one in index) > 9
     assert len(plain.keyframes) == 7
