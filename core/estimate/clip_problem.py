@@ -78,6 +78,8 @@ class ClipProblem:
     points: ObservedKeypoints  # the same, as they are compared
     swapped: BoolArray  # (F, N) which of them were exchanged
     step_s: Array  # (F - 1,) time between frames [s]
+    unseen: tuple[str, ...]  # limbs that are never seen
+    there: BoolArray  # (F,) whether the performer is there; nothing is solved elsewhere
     reference: ExpectedPoints | None = None  # where a motion from elsewhere has the points; None without one
 
     @property

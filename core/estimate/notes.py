@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from ..arrays import BoolArray
 from ..files.fields import listed
 from ..footage.region_tracks import RegionTracks
 from ..prior.keyframes import Matched
@@ -12,14 +13,17 @@ from .clip_problem import KeyframeEvidence
 MOST_NAMED = 3  # largest number of frames that a note names
 
 
-def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:
-    """Notes on markers: found too seldom, variable frame rate, and those of the tracks."""
+def marker_notes(tracks: RegionTracks, there: BoolArray) -> tuple[str, ...]:
+    """Notes on markers: found too seldom, variable frame rate, and those of the tracks.
+
+    `there` (F,): frames in which the performer is there.
+    """
     notes = list(tracks.notes)
     for marker, name in enumerate(tracks.names):
         seen = int(tracks.visible[:, marker].sum())
-        if seen < 0.5 * tracks.frame_count:
+        if seen < 0.5 * there.sum():
             notes.append(
-                f"marker {name} was found in {seen} of {tracks.frame_count} frames only; check its "
+                f"marker {name} was found in {seen} of {there.sum()} frames only; check its "
                 "color, or pose keyframes where it is hidden"
             )
     if tracks.variable_frame_rate:

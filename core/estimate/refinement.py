@@ -15,13 +15,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, BoolArray
-from ..body.posture import Posture
 from ..evidence.keypoints import DEPTH_STD_M
 from ..footage.clips.album import Album
 from ..prior.frame_prior import REFERENCE_STEP_S
 from ..progress import Part, scaled
 from .clip_problem import ClipProblem
-from .clip_state import ClipState, Window
+from .clip_state import ClipState, Window, spliced
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_search import all_located, contour_schedule, points_locate
 from .second_look import find_lost
@@ -121,7 +120,7 @@ def _depth_factor(
     gaps = len(problem.keyframes) + 1
     # A gap of which only some frames are estimated again would not tell what all of it did.
     asked = np.bincount(gap[among], minlength=gaps) > 0
-    told &= (asked & (np.bincount(gap[~told], minlength=gaps) == 0))[gap]
+    told &= (asked & (np.bincount(gap[~told & problem.there], minlength=gaps) == 0))[gap]
     count = np.bincount(gap[told], minlength=gaps)
     total = np.stack([np.bincount(gap[told], one[told], minlength=gaps) for one in squared.T], axis=-1)
     mean = total / np.maximum(count, 1)[:, None]
@@ -165,12 +164,10 @@ def _learned(
     schedule = contour_schedule(
         problem.body, camera, album.factor, segments, problem.prior, problem.keypoints
     )
-    posture = _kept(spans, states)
+    posture = spliced(
+        problem.prior,
+        spans,
+        [state.posture[window.kept] for state, window in zip(states, spans, strict=True)],
+    )
     learning = learn_contours(problem.body, camera, album, posture, problem.keyframes, schedule)
     return (yield from scaled(learning, 0.0, 1.0))
-
-
-def _kept(spans: list[Window], states: list[ClipState]) -> Posture:
-    return Posture.concatenate(
-        [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
-    )

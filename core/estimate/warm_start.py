@@ -18,6 +18,7 @@ from ..arrays import Array, BoolArray
 from ..evidence.keypoints import ObservedKeypoints
 from ..evidence.regions import ObservedRegions
 from ..footage.camera import Camera
+from ..numerics.vectors import runs
 from .clip_problem import ClipProblem, KeyframeEvidence
 from .clip_state import Window, windows
 from .keyframe_error import posing_covariance, velocities
@@ -87,6 +88,8 @@ def _same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
         and earlier.noise == now.noise
         and (earlier.reference is None) == (now.reference is None)
         and np.array_equal(earlier.step_s, now.step_s)
+        and np.array_equal(earlier.there, now.there)
+        and earlier.unseen == now.unseen
     )
 
 
@@ -183,9 +186,8 @@ def revised_windows(changed: BoolArray, length: int, margin: int) -> list[Window
     effect.
     """
     count = len(changed)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], changed.astype(np.int8), [0]]))).tolist()
     kept: list[list[int]] = []
-    for first, last in zip(edges[::2], edges[1::2], strict=True):
+    for first, last in runs(changed):
         start, stop = max(first - margin, 0), min(last + margin, count)
         if kept and start <= kept[-1][1] + margin:
             kept[-1][1] = stop

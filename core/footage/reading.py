@@ -31,6 +31,7 @@ class Reading:
     notes: tuple[str, ...] = ()  # sentences on possible faults of the clip
     key: str = ""  # cache key of the clip and the settings, see `reading_key`; empty where unknown
     frame_findings: FrameFindings = NO_FINDINGS  # blank frames, cuts and interlacing
+    steady: Array | None = None  # (F, 3, 3) from what it shows to the clip's pixels, see `steady_camera`
 
 
 Arrays = dict[str, NDArray[Any]]

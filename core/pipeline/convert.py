@@ -14,6 +14,7 @@ from ..progress import Job, stretch
 from ..take.conversion_settings import ConversionSettings
 from ..take.description import Description
 from ..take.read_footage import read_footage
+from ..take.steady_camera import steadied
 from ..take.take import Take
 from ..take.take_file import read_described
 
@@ -63,9 +64,11 @@ def find_and_reconstruct(
         InputError: The clip cannot be used, or there is no library with a posture.
         ConversionError: No motion could be computed.
     """
-    if libraries is None:
-        return FoundReconstruction(take, (yield from reconstruct(take, method)))
     reading = yield from stretch(read_footage(take), 0.0, READ)
+    take, reading = yield from stretch(steadied(take, reading), READ, READ)
+    if libraries is None:
+        result = yield from stretch(reconstruct(take, method, reading), READ, 1.0)
+        return FoundReconstruction(take, result)
     said = None
     if take.reference is not None and method == "map":
         said = reference_evidence(take, reading.tracks)

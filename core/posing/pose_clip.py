@@ -11,6 +11,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
+from ..body.body_volume import rested
 from ..body.posture import Posture
 from ..errors import InputError
 from ..estimate.performer_placement import found_ankle_m
@@ -74,7 +75,7 @@ def pose_clip(
         composed = yield from within("Composing postures", composing, LEARNED_SHARE, COMPOSED_SHARE)
         fitting = within("Fitting the postures", _fitting(take, given, composed), 0.0, 1.0)
         result = yield from stretch(fitting, COMPOSED_SHARE, 1.0)
-        postures = result.posture
+        postures = rested(given.body, result.posture, given.unseen)
         explained, off = _explained(given, postures[given.sampled])
         candidates = _candidates(pools, stances, given, composed, postures, explained)
         seen = np.isfinite(off).any(axis=1)
@@ -111,12 +112,13 @@ def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[Whol
     return estimate_whole_clip(
         given.body,
         given.camera,
-        Seen(tracks, take.marker_segments, given.keypoints),
+        Seen(tracks, take.marker_segments, given.keypoints, there=given.there),
         Believed(
             interpolate(keyframes, tracks.frame_count),
             tuple(map(int, sampled)),
             scale,
             found_ankle_m(given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m),
+            given.unseen,
         ),
     )
 

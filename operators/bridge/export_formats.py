@@ -28,6 +28,7 @@ class ExportFormat:
     operator_type: str = ""
     """Class name of the exporter that an add-on registers; empty where Blender has it built in."""
     addon: str = ""  # name of the add-on, as in the Preferences
+    built_in: bool = False  # whether Keymark writes it itself
 
     def missing(self) -> str | None:
         """Why this Blender cannot write the format; None where it can."""
@@ -35,7 +36,7 @@ class ExportFormat:
             if hasattr(bpy.types, self.operator_type):
                 return None
             return f"Enable the add-on {self.addon} in the Preferences"
-        if bpy.app.build_options.usd:
+        if self.built_in or bpy.app.build_options.usd:
             return None
         return f"This Blender is built without {self.name}"
 
@@ -73,6 +74,24 @@ def _written_by(exporter: str, **options: object) -> Callable[[bpy.types.Object,
         operator(filepath=str(path), check_existing=False, **options)
 
     return write
+
+
+def _write_trc(armature_object: bpy.types.Object, path: Path) -> None:
+    """Write the joints of an armature over its scene's frames."""
+    from ...core.take.point_files import write_trc
+    from .motions.joint_paths import joint_paths
+
+    points, rate = joint_paths(armature_object)
+    write_trc(path, points, rate)
+
+
+def _write_c3d(armature_object: bpy.types.Object, path: Path) -> None:
+    """Write the joints of an armature over its scene's frames."""
+    from ...core.take.point_files import write_c3d
+    from .motions.joint_paths import joint_paths
+
+    points, rate = joint_paths(armature_object)
+    write_c3d(path, points, rate)
 
 
 FORMATS = {
@@ -131,6 +150,20 @@ FORMATS = {
             only_deform_bones=False,
             export_materials=False,
         ),
+    ),
+    "TRC": ExportFormat(
+        "TRC",
+        ".trc",
+        "Write the places of the joints for biomechanics: OpenSim, Pose2Sim and others",
+        _write_trc,
+        built_in=True,
+    ),
+    "C3D": ExportFormat(
+        "C3D",
+        ".c3d",
+        "Write the places of the joints as motion capture's own format has them",
+        _write_c3d,
+        built_in=True,
     ),
 }
 """By identifier, in the order in which the export panel shows them."""

@@ -163,6 +163,9 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
 
     def draw_step(self, context: Context) -> None:
         take, character = active_take(context.scene), find_character(context.scene)
+        elsewhere = self.body.row(align=True)
+        elsewhere.operator("keymark.load_motion", icon="IMPORT")
+        elsewhere.operator("keymark.mend_motion", icon="MOD_SMOOTH")
         if character is None:
             buttons = self.body.column()
             buttons.scale_y = 1.2

@@ -24,7 +24,7 @@ from .reference import ReferenceTerm
 from .regions import RegionTerm
 from .term import QuadraticBuilder, QuadraticTerm, Term
 
-ANKLES = ("ankle.L", "ankle.R")
+ANKLES, LEGS = ("ankle.L", "ankle.R"), ("leg.L", "leg.R")
 LOOSE_FEET = {"release_speed_m_s": 0.4, "release_height_m": 0.06}
 """Of feet that stand, where a reference motion, whose feet slide and jump, is followed from the start."""
 
@@ -35,7 +35,9 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     step_s = clip.step_s[window.first : window.last - 1]
     pace = float(np.median(step_s)) / REFERENCE_STEP_S if len(step_s) else 1.0
     prior_depth = depths.evaluate(clip.body, clip.camera, clip.body.pose(state.prior), state.frame)
-    ankles = _ankles(clip.body)
+    ankles = tuple(
+        ankle for ankle, leg in zip(_ankles(clip.body), LEGS, strict=True) if leg not in clip.unseen
+    )
     evidence = clip.evidence
     terms: list[Term] = [
         _prior_term(clip, window, step_s),
@@ -50,13 +52,15 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
         ),
         DepthTerm(clip.camera, prior_depth, clip.depth_std_m[frames, None] * clip.depth_factor[frames]),
         LimitTerm(),
-        StillnessTerm(clip.camera, ankles, step_s, **(LOOSE_FEET if clip.reference is not None else {})),
     ]
+    if ankles:
+        loose = LOOSE_FEET if clip.reference is not None else {}
+        terms.append(StillnessTerm(clip.camera, ankles, step_s, **loose))
     if evidence.keypoints.model.names:
         terms.append(_keypoint_term(clip, window, step_s))
     if np.isfinite(clip.points.depth_m).any():
         terms.append(_hint_term(clip, window, step_s))
-    if clip.ankle_height_m is not None:
+    if clip.ankle_height_m is not None and ankles:
         terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
     if clip.reference is not None:
         kept = np.exp(-step_s / clip.reference.memory_s)[:, None]

@@ -40,6 +40,18 @@ class Album:
         kept = {index // step: packed for index, packed in self._pictures.items() if index % step == 0}
         return Album(self.factor, kept)
 
+    def warped(self, homography: Array) -> "Album":
+        """The album with each picture mapped by one of the clip's homographies (F, 3, 3), edges repeated."""
+        scale = np.diag([self.factor, self.factor, 1.0])
+        kept = {}
+        for index, packed in self._pictures.items():
+            image = cv2.imdecode(packed, cv2.IMREAD_COLOR)
+            own = np.linalg.inv(scale) @ homography[index] @ scale
+            size = image.shape[1], image.shape[0]
+            image = cv2.warpPerspective(image, own, size, borderMode=cv2.BORDER_REPLICATE)
+            _, kept[index] = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, 90])
+        return Album(self.factor, kept)
+
     def opened(self, room: int) -> "Album":
         """The same album for many looks at the same frames: it keeps `room` bytes of what it has unpacked."""
         return Album(self.factor, self._pictures, room)
@@ -131,7 +143,7 @@ def picture_motion(album: Album, frames: int) -> Generator[float, None, Array]:
         if index in album:
             now = cv2.cvtColor(album.picture(index), cv2.COLOR_BGR2GRAY).astype(np.float64)
             if before is not None:
-                changed = _changed(now - before)
+                changed = changed_pixels(now - before)
                 swept[index - 1] = changed.sum()
                 rows = changed.sum(axis=1) + (0.0 if rows is None else rows)
             before = now
@@ -145,7 +157,7 @@ def picture_motion(album: Album, frames: int) -> Generator[float, None, Array]:
     return np.asarray(0.5 * (padded[:-1] + padded[1:]))
 
 
-def _changed(difference: Array) -> BoolArray:
+def changed_pixels(difference: Array) -> BoolArray:
     """Pixels that change, beside noise and the light of the whole picture."""
     difference = np.abs(difference - np.median(difference))
     usual = 1.4826 * float(np.median(difference))

@@ -11,6 +11,7 @@ SUMMARIES = {
     "merge": "gather the motions of a batch in one asset library",
     "character": "recognize a character's bones and controls, or check its map",
     "retarget": "put a motion onto a character: character.blend, and .fbx, .glb, .usd or .bvh",
+    "mend": "mend a motion from elsewhere: jitter, sliding feet, exchanged sides",
     "detect": "find points of the body in clips",
     "propose": "propose the frames to pose",
     "library": "list, show, check, merge, mirror, learn and exchange keyframe libraries",

@@ -48,8 +48,10 @@ FIGURES = {
 def retarget_command(arguments: argparse.Namespace) -> None:
     """Put the motion that the command line names onto a character, and list the files that were made."""
     require_blender("a character needs")
-    settings = CharacterSettings(CharacterFile.parse(arguments.character), arguments.map, _options(arguments))
-    formats = _formats(arguments.format)
+    settings = CharacterSettings(
+        CharacterFile.parse(arguments.character), arguments.map, chosen_options(arguments)
+    )
+    formats = chosen_formats(arguments.format)
     motion_file, blend = _source(arguments.motion)
     output: Path = arguments.output
     refuse_unsupported_output(output)
@@ -104,7 +106,8 @@ def _retarget(
     return record, files, notes
 
 
-def _options(arguments: argparse.Namespace) -> CharacterOptions:
+def chosen_options(arguments: argparse.Namespace) -> CharacterOptions:
+    """How the command line wants a motion on a character."""
     usual = CharacterOptions()
     return CharacterOptions(
         root_motion=arguments.root_motion,
@@ -132,7 +135,12 @@ def _tolerance_mm(text: str) -> float:
     return value
 
 
-def _formats(text: str) -> tuple[str, ...]:
+def chosen_formats(text: str) -> tuple[str, ...]:
+    """The words of `EXPORTS` that a text names.
+
+    Raises:
+        UsageError: It names others.
+    """
     words = [word.strip().lower() for word in text.split(",") if word.strip()]
     unknown = [word for word in words if word not in EXPORTS]
     if unknown:
@@ -184,7 +192,7 @@ RETARGET = Command(
         *output("DIR", "folder for the result, new or old"),
         argument(
             "--format",
-            metavar="bvh,fbx,glb,usd",
+            metavar=",".join(EXPORTS),
             default="",
             help="further files of the character with its motion, separated by commas",
         ),

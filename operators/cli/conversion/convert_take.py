@@ -1,5 +1,6 @@
 """Conversion of one take into one complete folder of results."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from ....core.estimate.reconstruct import check_method
@@ -28,6 +29,7 @@ from ....core.take.conversion_digest import conversion_digest
 from ....core.take.conversion_record import RECORD_FILE, is_up_to_date
 from ....core.take.conversion_settings import METHODS, ConversionSettings
 from ....core.take.description import Description
+from ....core.take.steady_camera import followed_camera
 from ..console import Console
 from ..library_search_path import library_folders, requested_libraries
 from ..parser import require_blender, version
@@ -93,7 +95,8 @@ def convert_if_changed(
         console.stage("Writing Blender's files")
         real_output = real_path(output)
         notes: tuple[str, ...] = ()
-        curves = {BLEND: write_blender_files(take, result.motion, staging_folder, real_output, debug)}
+        filmed = replace(take, camera=followed_camera(take, result.reading))
+        curves = {BLEND: write_blender_files(filmed, result.motion, staging_folder, real_output, debug)}
         if character is not None:
             from ...bridge.result_files import show_take
 
@@ -101,7 +104,7 @@ def convert_if_changed(
                 character,
                 result.motion,
                 take.name,
-                lambda scene, shown: show_take(scene, take, shown),
+                lambda scene, shown: show_take(scene, filmed, shown),
                 (staging_folder, real_output),
                 console,
                 debug,
@@ -112,6 +115,7 @@ def convert_if_changed(
         if settings.pictures is not False:
             console.stage("Drawing the pictures")
             seen, contours = compare_keypoints(result), performer_contours(result)
-            write_pictures(staging_folder / REPORT, take, result.motion, result.tracks, seen, contours)
+            report = staging_folder / REPORT
+            write_pictures(report, take, result.motion, result.tracks, seen, contours, result.reading)
         asked, folders = (description, settings, digest), (staging_folder, output)
         return finish_result(made, libraries, notes, asked, version(), folders, curves, kept_names)
