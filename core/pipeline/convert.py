@@ -1,6 +1,6 @@
 """From a described take to its motion: keyframes that are posed or found, then the estimate."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -14,13 +14,19 @@ from ..progress import Job, stretch
 from ..take.conversion_settings import ConversionSettings
 from ..take.description import Description
 from ..take.read_footage import read_footage
+from ..take.reference import ReferenceMotion
 from ..take.steady_camera import steadied
 from ..take.take import Take
 from ..take.take_file import read_described
 
+ReadArmature = Callable[[Path], ReferenceMotion]
+
 
 def take_to_pose(
-    description: Description, keyframes: Path | None, settings: ConversionSettings | None = None
+    description: Description,
+    keyframes: Path | None,
+    settings: ConversionSettings | None = None,
+    read_armature: ReadArmature | None = None,
 ) -> Take:
     """Read a take with the keyframes that a person posed, or with none where no file is named.
 
@@ -29,7 +35,12 @@ def take_to_pose(
     """
     fewest = 0 if keyframes is None else 1
     take = read_described(
-        description, keyframes, keyframes_required=False, fewest_keyframes=fewest, settings=settings
+        description,
+        keyframes,
+        keyframes_required=False,
+        fewest_keyframes=fewest,
+        settings=settings,
+        read_armature=read_armature,
     )
     return replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None))
 
@@ -48,11 +59,16 @@ class FoundReconstruction:
     """What was found; None where that was not asked for."""
 
 
-def take_to_convert(description: Description, settings: ConversionSettings) -> Take:
-    """A described take with its posed keyframes, which may lack where others are found."""
+def take_to_convert(
+    description: Description, settings: ConversionSettings, read_armature: ReadArmature | None = None
+) -> Take:
+    """A described take with its posed keyframes, which may lack where others are found.
+
+    `read_armature` reads a reference motion that only Blender can.
+    """
     if settings.library is None:
-        return read_described(description, settings.keyframes, settings=settings)
-    return take_to_pose(description, settings.keyframes, settings)
+        return read_described(description, settings.keyframes, settings=settings, read_armature=read_armature)
+    return take_to_pose(description, settings.keyframes, settings, read_armature)
 
 
 def find_and_reconstruct(

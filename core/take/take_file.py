@@ -2,7 +2,7 @@
 
 import os
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from itertools import islice
@@ -34,7 +34,7 @@ from .clip_check import open_footage, picture_count
 from .conversion_settings import ConversionSettings
 from .description import KEYPOINT_FILE, Description, describe, keypoint_files
 from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
-from .reference import read_reference
+from .reference import ReferenceMotion, reference_of_take
 from .take import Take, check_evidence, with_evidence
 
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
@@ -148,8 +148,11 @@ def read_described(
     fewest_keyframes: int = FEWEST_KEYFRAMES,
     settings: ConversionSettings | None = None,
     whole: bool = False,
+    read_armature: Callable[[Path], ReferenceMotion] | None = None,
 ) -> Take:
     """Read a take from its description; see `read_take`.
+
+    `read_armature` reads a reference motion that only Blender can; it is left out without it.
 
     `fewest_keyframes` must be in the keyframe file; with 0 the take's own is not opened. `settings` say which
     keypoints are read and which evidence is used, by default the take's own.
@@ -191,7 +194,7 @@ def read_described(
         described_in=description.file,
         title=description.name,
         keypoints=_keypoints(description, settings, camera, fps, frame_start, frame_count),
-        reference=None if settings.reference is None else read_reference(settings.reference),
+        reference=reference_of_take(settings.reference, read_armature),
         ignored_regions=ignored_regions(
             said.ignored_regions or (), camera.resolution, frame_start, fields.source_of(IGNORED_REGIONS)
         ),

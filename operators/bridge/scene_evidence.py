@@ -227,9 +227,10 @@ class SceneEvidence:
 
     def reference_motion(self) -> "ReferenceMotion | None":
         """The motion from elsewhere; None without one."""
-        from ...core.take.reference import read_reference
+        from ...core.take.reference import reference_of_take
+        from .motions.import_motion import armature_reference
 
-        return None if self.reference is None else read_reference(self.reference)
+        return reference_of_take(self.reference, armature_reference)
 
     def people(self, footage: Footage, frames: Array) -> tuple[People, ...]:
         """Everyone whom each source of keypoints saw, clicked points first; `frames` (F,) are the scene's."""

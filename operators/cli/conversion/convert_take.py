@@ -30,6 +30,7 @@ from ....core.take.conversion_record import RECORD_FILE, is_up_to_date
 from ....core.take.conversion_settings import METHODS, ConversionSettings
 from ....core.take.description import Description
 from ....core.take.steady_camera import followed_camera
+from ..blender_silence import blender_silence
 from ..console import Console
 from ..library_search_path import library_folders, requested_libraries
 from ..parser import require_blender, version
@@ -80,7 +81,11 @@ def convert_if_changed(
             return None
         if settings.library is not None:
             refuse_own_folder(description, output)
-        take = take_to_convert(description, settings)
+        with blender_silence(debug):
+            from ...bridge.motions.import_motion import armature_reference
+
+            maps_folders = library_folders()
+            take = take_to_convert(description, settings, lambda file: armature_reference(file, maps_folders))
         method = settings.method or METHODS[0]
         check_method(take, method)
         if character is not None:
