@@ -33,6 +33,7 @@ def scene_evidence(take: bpy.types.PropertyGroup) -> SceneEvidence:
         depth_hints=bool(follow.use_depth_hints),
         contours=bool(follow.use_contours),
         ignored_regions=ignored_regions(take) if follow.use_markers else (),
+        reference=Path(bpy.path.abspath(follow.reference)) if follow.reference else None,
     )
 
 
