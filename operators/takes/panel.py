@@ -49,7 +49,8 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
     if any(result.outdated for character in take.characters for result in character.results):
         return "Next: retarget the character again"
     if not any(result.action for character in take.characters for result in character.results):
-        return "Next: review, then a character"
+        finished = take.finish.action is not None
+        return "Next: a character, or export" if finished else "Next: review, then a character"
     return "Next: export, or another take"
 
 
