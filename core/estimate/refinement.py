@@ -165,9 +165,8 @@ def _learned(
         problem.body, camera, album.factor, segments, problem.prior, problem.keypoints
     )
     posture = spliced(
-        problem.prior,
-        spans,
-        [state.posture[window.kept] for state, window in zip(states, spans, strict=True)],
+        problem.prior, spans, [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
     )
     learning = learn_contours(problem.body, camera, album, posture, problem.keyframes, schedule)
     return (yield from scaled(learning, 0.0, 1.0))
+

@@ -85,12 +85,7 @@ def camera_motion(
     away = np.stack([moved(own, corners) for own in homography]) - corners
     moved_px = float(np.percentile(np.linalg.norm(away, axis=-1).mean(axis=1), 95.0))
     return CameraMotion(
-        frames,
-        homography,
-        np.array([share for _, share in found]),
-        moved_px,
-        zoom,
-        moved_px > NOTICED * width,
+        frames, homography, np.array([share for _, share in found]), moved_px, zoom, moved_px > NOTICED * width
     )
 
 
@@ -116,12 +111,7 @@ def _followed(
         gray = _gray(album, int(frame))
         start = moved(last, corners.astype(np.float64)).astype(np.float32)
         ends, there, _ = cv2.calcOpticalFlowPyrLK(
-            anchor,
-            gray,
-            corners[:, None],
-            start[:, None].copy(),
-            flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
-            **WINDOW,
+            anchor, gray, corners[:, None], start[:, None].copy(), flags=cv2.OPTFLOW_USE_INITIAL_FLOW, **WINDOW
         )
         kept = (there[:, 0] > 0) & ~_covered(ends[:, 0], places[frame])
         if kept.sum() < FEWEST_CORNERS:
@@ -188,8 +178,7 @@ def _turned(begun: NDArray[np.float32], ended: NDArray[np.float32], matrix: Arra
         residual = moved(mapped(values), points) - ended
         step = 1e-6
         jacobian = np.stack(
-            [(moved(mapped(values + step * axis), points) - ended - residual) / step for axis in np.eye(4)],
-            axis=-1,
+            [(moved(mapped(values + step * axis), points) - ended - residual) / step for axis in np.eye(4)], axis=-1
         )
         own = agree if agree.sum() >= FEWEST_CORNERS else np.ones(len(points), dtype=np.bool_)
         rows, right = jacobian[own].reshape(-1, 4), residual[own].reshape(-1)

@@ -121,12 +121,9 @@ def _tracks(tracks: RegionTracks, back: Array) -> RegionTracks:
     centroid = moved(back[:, None], tracks.centroid)
     step = 0.5 * np.eye(2)
     columns = [
-        moved(back[:, None], tracks.centroid + axis) - moved(back[:, None], tracks.centroid - axis)
-        for axis in step
+        moved(back[:, None], tracks.centroid + axis) - moved(back[:, None], tracks.centroid - axis) for axis in step
     ]
     local = np.stack(columns, axis=-1)  # (F, M, 2, 2)
     moment = local @ tracks.second_moment @ np.swapaxes(local, -1, -2)
     area = tracks.area * np.abs(np.linalg.det(np.nan_to_num(local)))
-    return replace(
-        tracks, centroid=centroid, second_moment=moment, area=np.where(np.isfinite(tracks.area), area, np.nan)
-    )
+    return replace(tracks, centroid=centroid, second_moment=moment, area=np.where(np.isfinite(tracks.area), area, np.nan))
