@@ -20,10 +20,11 @@ from ..numerics.vectors import gaussian, weighted_median
 from ..numerics.wandering import Sizes, learn_sizes, smooth_path
 from ..progress import Job, Progress, within
 from ..take.motion import Motion
+from .contacts import Contact
 from .exchanged_sides import exchanged_frames, opposite_points
 from .foot_ground import Soles
 from .place_by_feet import place_by_feet
-from .planted_feet import Contact, plant_feet
+from .planted_feet import plant_feet
 
 METHOD = "mend"
 MOST_FRAMES = 36_000  # twenty minutes at 30 frames a second

@@ -50,6 +50,7 @@ UPRIGHT = {
     (2, -1): ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
 }
 """Rotations that make an axis of a sign Z."""
+MHR_UP = (1, -1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +61,7 @@ class _Table:
     values: Array  # (F, N, 3) in the file's units; NaN where absent
     rate: float | None = None  # frames a second
     unit_m: float | None = None
+    up: tuple[int, int] | None = None  # axis and sign that point up, where the format says
 
 
 def read_points(path: Path) -> tuple[Array, float | None]:
@@ -80,7 +82,12 @@ def read_points(path: Path) -> tuple[Array, float | None]:
         )
     points = _principal(table, path)
     points[~(np.abs(points) < FARTHEST).all(axis=2) | (points == 0.0).all(axis=2)] = np.nan
-    return _upright(points * _unit_m(table, points, path), path), table.rate
+    if table.up is not None:
+        return np.asarray(points @ np.array(UPRIGHT[table.up], dtype=np.float64).T), table.rate
+    known = int(np.isfinite(points).all(axis=(1, 2)).sum())
+    if known < 2:
+        raise InputError(f"{path}: a performer is in {known} of its frames; at least 2 are needed")
+    return _upright(points * _unit_m(table, points, path)), table.rate
 
 
 def _principal(table: _Table, path: Path) -> Array:
@@ -93,12 +100,21 @@ def _principal(table: _Table, path: Path) -> Array:
                 known.setdefault(point, index)
     columns, missing = [], []
     for point in HUMAN.point_names:
-        choices: Sequence[Sequence[str]] = HEADS if point == "head" else ((point,),)
+        heads = HEADS[:1] if table.up == MHR_UP else HEADS
+        choices: Sequence[Sequence[str]] = heads if point == "head" else ((point,),)
         found = next((names for names in choices if all(name in known for name in names)), None)
         if found is None:
             missing.append(point)
         else:
             columns.append(np.mean([table.values[:, known[name]] for name in found], axis=0))
+    if missing and table.up == MHR_UP:
+        stem, dot, side = missing[0].partition(".")
+        names = [f"{'left' if side == 'L' else 'right'}_{stem}"] if dot else ["left_ear", "right_ear"]
+        absent = next((name for name in names if name not in table.names), names[0])
+        raise InputError(
+            f"{path}: has no column {absent}_3DX; a csv of MHR-70's points has columns like nose_3DX, "
+            "nose_3DY, nose_3DZ for each point"
+        )
     if missing:
         raise InputError(
             f"{path}: has no point for {listed(missing, 4)}; it must have both shoulders, elbows, wrists, "
@@ -141,15 +157,12 @@ def _unit_m(table: _Table, points: Array, path: Path) -> float:
     return unit
 
 
-def _upright(points: Array, path: Path) -> Array:
+def _upright(points: Array) -> Array:
     """The points with Z up."""
     names = HUMAN.point_names
     feet = points[:, [names.index("ankle.L"), names.index("ankle.R")]].mean(axis=1)
     tall = points[:, names.index("head")] - feet
-    tall = tall[np.isfinite(tall).all(axis=1)]
-    if len(tall) < 2:
-        raise InputError(f"{path}: a performer is in {len(tall)} of its frames; at least 2 are needed")
-    mean = tall.mean(axis=0)
+    mean = np.nanmean(tall, axis=0)
     axis = int(np.argmax(np.abs(mean)))
     return np.asarray(points @ np.array(UPRIGHT[axis, 1 if mean[axis] > 0.0 else -1], dtype=np.float64).T)
 
@@ -177,6 +190,8 @@ def _read_csv(path: Path) -> _Table:
             f"{path}: has no points; a csv of points has columns like left_knee_x, left_knee_y, left_knee_z"
         )
     places = np.stack([values[:, [columns[name][axis] for axis in "xyz"]] for name in names], axis=1)
+    if any(name.endswith("_3DX") for name in header):  # MHR-70: meters in a camera's axes, y down
+        return _Table(tuple(names), places, None, 1.0, MHR_UP)
     times = [header.index(name) for name in ("time", "timestamp", "time_s") if name in header]
     return _Table(tuple(names), places, _rate_of(values[:, times[0]]) if times else None)
 
