@@ -32,9 +32,7 @@ def with_checked_keypoints(take: Take, reading: Reading, done: float = 0.0) -> J
     """
     checked = []
     posed = sum(keyframe.matched is None for keyframe in take.keyframes)
-    if (
-        reading.steady is not None
-    ):  # places are no longer those of the clip's pictures, and were checked before
+    if reading.steady is not None:  # places are no longer the clip's own, and were checked before
         return take
     network = _network() if take.keypoints and posed < FEWEST_KEYFRAMES else None
     for people in take.keypoints:
