@@ -168,4 +168,3 @@ def _learned(
     posture = spliced(problem.prior, spans, solved)
     learning = learn_contours(problem.body, camera, album, posture, problem.keyframes, schedule)
     return (yield from scaled(learning, 0.0, 1.0))
-

@@ -87,7 +87,12 @@ def camera_motion(
     away = np.stack([moved(own, corners) for own in homography]) - corners
     moved_px = float(np.percentile(np.linalg.norm(away, axis=-1).mean(axis=1), 95.0))
     return CameraMotion(
-        frames, homography, np.array([share for _, share in found]), moved_px, zoom, moved_px > NOTICED * width
+        frames,
+        homography,
+        np.array([share for _, share in found]),
+        moved_px,
+        zoom,
+        moved_px > NOTICED * width,
     )
 
 

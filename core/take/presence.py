@@ -89,9 +89,7 @@ def is_empty(album: Album, tracks: RegionTracks, keypoints: Keypoints, run: tupl
     nearest = seen[np.argsort(np.minimum(abs(seen - run[0]), abs(seen - run[1])), kind="stable")]
     some = [int(frame) for frame in _spread(nearest, LOOKS) if int(frame) in album]
     asked = [int(frame) for frame in _spread(np.arange(*run), LOOKS) if int(frame) in album]
-    outside = [
-        _changed_elsewhere(album, places[there], there, empty) for there in some for empty in asked
-    ]
+    outside = [_changed_elsewhere(album, places[there], there, empty) for there in some for empty in asked]
     return bool(outside) and float(np.median(outside)) < ELSEWHERE
 
 
