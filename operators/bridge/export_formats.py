@@ -94,7 +94,23 @@ def _write_c3d(armature_object: bpy.types.Object, path: Path) -> None:
     write_c3d(path, points, rate)
 
 
+def _write_keymark(armature_object: bpy.types.Object, path: Path) -> None:
+    """Write an actor's motion as `motion.json`, which the command line retargets and learns from."""
+    from ...core.take.motion import write_motion
+    from .rig import shown_motion
+
+    action = armature_object.animation_data.action
+    write_motion(shown_motion(armature_object.users_scene[0], armature_object, action), path)
+
+
 FORMATS = {
+    "KEYMARK": ExportFormat(
+        "Keymark Motion",
+        ".json",
+        "Write motion.json, as Keymark keeps it, for its command line and programs of your own",
+        _write_keymark,
+        built_in=True,
+    ),
     "BVH": ExportFormat(
         "BVH",
         ".bvh",
