@@ -19,8 +19,8 @@ STEPS = (
     "reconstruct",
     "review",
     "overlays",
-    "finish",
     "character",
+    "finish",
     "library",
 )
 """The steps of the work, in the order in which the sidebar shows their panels."""

@@ -174,6 +174,11 @@ def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[P
     return [pose for pose in found if pose.crop.side > SMALLEST * largest]
 
 
+def find_in_picture(network: PoseNetwork, picture: Image) -> list[Pose]:
+    """Whoever is seen in a single picture, the surest first."""
+    return _scan(network, picture, [])
+
+
 def _grid(picture: Image, side: float) -> Iterator[Crop]:
     """Crops of a side all over a picture; one where it fills the picture."""
     axes = []

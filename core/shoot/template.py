@@ -230,7 +230,7 @@ def _camera(survey: ClipSurvey) -> dict[str, Any]:
     camera["//height_m"] = [
         "height of the camera above the floor in meters; a phone in standing hands is at about",
         f"{EYE_HEIGHT_M:g}. Blender finds it with any of the clips: Load Footage, then From Lines or",
-        "From the Performer in the step Footage.",
+        "From the Performer in the step Clip.",
     ]
     camera["height_m"] = None
     camera["//tilt_deg"] = [

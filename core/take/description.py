@@ -22,7 +22,10 @@ SHOOT_FILE = "shoot.json"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**20
 SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "ignored_regions", "actor")
-SETTING_FIELDS = ("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence")
+SETTING_FIELDS = (
+    *("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence"),
+    "reference",
+)
 ASSUMED = "(assumed)"
 """Location of fields that nobody has said, for sentences."""
 FILE_FIELDS = ("$schema", "schema_version", "root")
@@ -146,7 +149,11 @@ def describe(
         settings = replace(settings, keypoints=tuple(own))
     usual = _own_name(folder, bare, Path(KEYPOINT_FILE)) if is_folder else keypoints_beside(path)
     keypoints = settings.keypoints or ((usual,) if usual is not None and os.path.lexists(usual) else ())
-    used = [*files, clip, keyframes, *keypoints]
+    said_in = Path(fields.source_of("reference"))
+    if settings.reference is not None and said_in in shared:
+        own_reference = _own_name(folder, bare, settings.reference.relative_to(said_in.parent))
+        settings = replace(settings, reference=own_reference)
+    used = [*files, clip, keyframes, *keypoints, *filter(None, [settings.reference])]
     used += [link for within in (clip, *keypoints) for link in _links(within)]
     if settings.library is not None and settings.library.endswith(".json"):
         used.append(Path(settings.library))

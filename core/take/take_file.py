@@ -2,7 +2,7 @@
 
 import os
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from itertools import islice
@@ -34,6 +34,7 @@ from .clip_check import open_footage, picture_count
 from .conversion_settings import ConversionSettings
 from .description import KEYPOINT_FILE, Description, describe, keypoint_files
 from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
+from .reference import ReferenceMotion, reference_of_take
 from .take import Take, check_evidence, with_evidence
 
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
@@ -151,8 +152,11 @@ def read_described(
     fewest_keyframes: int = FEWEST_KEYFRAMES,
     settings: ConversionSettings | None = None,
     whole: bool = False,
+    read_armature: Callable[[Path], ReferenceMotion] | None = None,
 ) -> Take:
     """Read a take from its description; see `read_take`.
+
+    `read_armature` reads a reference motion that only Blender can; it is left out without it.
 
     `fewest_keyframes` must be in the keyframe file; with 0 the take's own is not opened. `settings` say which
     keypoints are read and which evidence is used, by default the take's own.
@@ -172,7 +176,8 @@ def read_described(
         )
     body = said.actor.body
     posed = keyframes or description.keyframes
-    optional = keyframes is None and not keyframes_required
+    referred = settings.reference is not None  # it has keyframes of its own
+    optional = keyframes is None and (referred or not keyframes_required)
     missing = optional and (fewest_keyframes == 0 or not os.path.exists(posed))
     if not missing and keyframes is None and not os.path.exists(posed):
         named = f" ({fields.source_of('keyframes')} names it)" if fields.has("keyframes") else ""
@@ -193,6 +198,7 @@ def read_described(
         described_in=description.file,
         title=description.name,
         keypoints=_keypoints(description, settings, camera, fps, frame_start, frame_count),
+        reference=reference_of_take(settings.reference, read_armature),
         ignored_regions=ignored_regions(
             said.ignored_regions or (), camera.resolution, frame_start, fields.source_of(IGNORED_REGIONS)
         ),
@@ -238,7 +244,7 @@ def write_take(
     Every file is written atomically; a clip or keypoints that lie in the folder stay as they are. `more`
     are fields that a take does not hold.
     """
-    clip = _copy_clip(take, folder)
+    clip = _copied(take.clip, folder)
     fields: dict[str, Any] = {**more, "fps": take.fps, "frame_start": take.frame_start}
     if take.frame_count is not None:
         fields["frame_count"] = take.frame_count
@@ -253,6 +259,8 @@ def write_take(
         fields[IGNORED_REGIONS] = ignored_region_fields(take.ignored_regions, take.frame_start)
     if take.keypoints:
         fields["keypoints"] = _write_keypoints(take, folder)
+    if take.reference is not None and take.reference.file:
+        fields["reference"] = _copied(Path(take.reference.file), folder)
     if evidence is not None:
         fields["evidence"] = list(evidence)
     fields["actor"] = {"segments_m": dict(take.body.actor.segments_m)}
@@ -261,15 +269,13 @@ def write_take(
     write_json(folder / "take.json", fields, indent=1)
 
 
-def _copy_clip(take: Take, folder: Path) -> str:
-    """Copy the clip into `folder` unless it lies there; returns its path within."""
-    source = take.clip.resolve()
+def _copied(given: Path, folder: Path) -> str:
+    """Copy a clip or a motion into `folder` unless it lies there; returns its path within."""
+    source = given.resolve()
     if source.is_relative_to(folder.resolve()):
         return source.relative_to(folder.resolve()).as_posix()
     if not source.exists():
-        raise InputError(
-            f"{take.clip}: no such file or folder; only a video or a folder of images can be copied"
-        )
+        raise InputError(f"{given}: no such file or folder; only what is there can be copied")
     copy = shutil.copytree if source.is_dir() else shutil.copyfile
     write_atomically(folder / source.name, lambda beside: copy(source, beside))
     return source.name

@@ -160,7 +160,7 @@ class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
 
 
 class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
-    """Mark the character's motion as an asset, with the catalog, tags and details in the step Finish"""
+    """Mark the character's motion as an asset, with the catalog, tags and details of the step Export"""
 
     bl_idname = "keymark.mark_result_asset"
     bl_label = "Mark Asset"

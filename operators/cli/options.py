@@ -58,6 +58,15 @@ KEYPOINT_FILES = argument(
 """Keypoint files of one take."""
 
 
+REFERENCE_FILE = argument(
+    "--reference",
+    metavar="FILE",
+    type=Path,
+    help="3D motion of the same performance from elsewhere, as a neural network's, that is mended by the "
+    "footage; by default the one that the take names",
+)
+
+
 def _kinds(text: str) -> tuple[str, ...] | None:
     """The kinds of evidence; None for an empty text, which farms pass for a setting that is not filled in."""
     if not text:
@@ -210,4 +219,5 @@ def given_settings(arguments: argparse.Namespace) -> ConversionSettings:
         pictures=False if given.get("no_report") else None,
         keypoints=tuple(filter(None, given.get("keypoints") or ())) or None,
         evidence=given.get("evidence"),
+        reference=given.get("reference"),
     )

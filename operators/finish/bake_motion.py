@@ -141,6 +141,7 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         name="Format",
         description="Format of the file",
         items=[(kind, listed.name, listed.description) for kind, listed in FORMATS.items()],
+        default="BVH",
     )
     filepath: bpy.props.StringProperty(name="File", description="File to write", subtype="FILE_PATH")
     filter_glob: bpy.props.StringProperty(

@@ -170,7 +170,7 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, f"Loaded {clip.name}: {extent} pixels")
         if lens_is_guess(take):
             guess = f"The lens is a guess: {take.guessed_lens_mm:.1f} mm"
-            self.report({"INFO"}, f"{guess}; set it in the Footage panel if you know it")
+            self.report({"INFO"}, f"{guess}; set it in the step Clip if you know it")
 
 
 class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):

@@ -13,7 +13,7 @@ from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence import KEYPOINTS
 from ..console import arguments_console
 from ..conversion.convert_take import convert_take
-from ..options import KEYPOINT_FILES, evidence_option, given_settings, output
+from ..options import KEYPOINT_FILES, REFERENCE_FILE, evidence_option, given_settings, output
 from ..parser import Command, UsageError, argument
 
 
@@ -92,6 +92,7 @@ CONVERT = Command(
             "keyframes are found in the footage with all libraries there are",
         ),
         KEYPOINT_FILES,
+        REFERENCE_FILE,
         evidence_option(),
         argument(
             "--library",

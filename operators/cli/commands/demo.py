@@ -130,7 +130,7 @@ LONGEST_S = 300.0
 
 
 def write_demo_character(file: Path) -> None:
-    """Generate the rig with a simple body into a .blend."""
+    """Generate the rig with the shipped skin into a .blend."""
     import bpy
 
     program = bpy.app.binary_path

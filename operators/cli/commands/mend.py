@@ -72,7 +72,7 @@ def mend_command(arguments: argparse.Namespace) -> None:
             console.stage("Writing the motion")
             write_motion(motion, staging / MOTION)
             with blender_silence(arguments.debug):
-                from ...bridge.motions.write_actor import write_actor_bvh
+                from ...bridge.motions.mend_action import write_actor_bvh
 
                 write_actor_bvh(motion, staging / BVH)
             if settings is not None:

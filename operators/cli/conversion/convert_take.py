@@ -28,7 +28,9 @@ from ....core.take.conversion_digest import conversion_digest
 from ....core.take.conversion_record import RECORD_FILE, is_up_to_date
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description
+from ....core.take.reference import ReferenceMotion
 from ....core.take.steady_camera import followed_camera
+from ..blender_silence import blender_silence
 from ..console import Console
 from ..library_search_path import library_folders, requested_libraries
 from ..parser import require_blender, version
@@ -86,7 +88,9 @@ def convert_if_changed(
             console.stage("Opening the character")
             with opened_character(character.file, character.map, debug):
                 pass  # what is wrong with it is better known before the work
-        made = run(convert(description, settings, libraries), console.progress)
+        made = run(
+            convert(description, settings, libraries, lambda file: _reference(file, debug)), console.progress
+        )
         take, result = made.take, made.reconstruction
         console.stage("Writing the motion")
         write_motion_files(staging_folder, made)
@@ -120,3 +124,11 @@ def convert_if_changed(
             write_pictures(report, take, result.motion, result.tracks, seen, contours, result.reading)
         asked, folders = (description, settings, digest), (staging_folder, output)
         return finish_result(made, libraries, notes, asked, version(), folders, curves, kept_names)
+
+
+def _reference(file: Path, debug: bool) -> ReferenceMotion:
+    """A motion of an armature's file, which only Blender reads."""
+    from ...bridge.motions.import_motion import armature_reference
+
+    with blender_silence(debug):
+        return armature_reference(file, library_folders())
