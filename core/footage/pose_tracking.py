@@ -45,10 +45,7 @@ def find_people(clip: Clip, network: PoseNetwork, longest: int) -> Job[People]:
     Raises:
         InputError: It is a picture, has no frames or too many, or nobody is in it.
     """
-    if clip.frame_count == 1 and not clip.knows_its_rate:
-        raise InputError(
-            f"{clip.path}: is a single picture; it must be a video, or a folder of the pictures of one"
-        )
+    refuse_picture(clip)
     scale = min(1.0, LARGEST_SIDE_PX / max(clip.size))
     tracking = _Tracking(network)
     seen: list[list[_Sighting]] = []
@@ -69,6 +66,14 @@ def find_people(clip: Clip, network: PoseNetwork, longest: int) -> Job[People]:
         )
     frames = tuple(_people(frame, clip.size, scale) for frame in kept)
     return People(LAYOUT.names, NAME, clip.size, frames)
+
+
+def refuse_picture(clip: Clip) -> None:
+    """Refuse a single picture in place of a clip."""
+    if clip.frame_count == 1 and not clip.knows_its_rate:
+        raise InputError(
+            f"{clip.path}: is a single picture; it must be a video, or a folder of the pictures of one"
+        )
 
 
 def _stretches(clip: Clip, scale: float) -> Iterator[list[Image]]:
