@@ -198,7 +198,7 @@ def thumbnail(motion: Motion) -> Image:
 def _axes(motion: Motion) -> Array:
     """World directions (3, 3) to the right, upwards, and away from the eye, as rows."""
     names = motion.body.skeleton.point_names
-    side = (motion.points[:, names.index("hip.L")] - motion.points[:, names.index("hip.R")]).mean(axis=0)
+    side = np.nanmean(motion.points[:, names.index("hip.L")] - motion.points[:, names.index("hip.R")], axis=0)
     angle = float(np.arctan2(side[1], side[0])) + 0.5  # the performer's left is on the right of the view
     right = np.array([np.cos(angle), np.sin(angle), 0.0])
     return np.stack([right, [0.0, 0.0, 1.0], [-right[1], right[0], 0.0]])

@@ -19,6 +19,7 @@ from keymark.core.review.score import score_points
 from keymark.core.take.steady_camera import camera_matrix, camera_notes, followed_camera, steadied
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
+
 from tests._synthetic_take import write_synthetic_take
 
 ROOT = Path(__file__).resolve().parents[3]

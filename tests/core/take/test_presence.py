@@ -26,6 +26,7 @@ from keymark.core.take.motion import read_motion, write_motion
 from keymark.core.take.presence import absence_notes, presence, unseen_limbs, unseen_notes
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
+
 from tests._synthetic_take import BODY, write_synthetic_take
 
 ROOT = Path(__file__).resolve().parents[3]
