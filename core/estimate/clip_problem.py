@@ -15,6 +15,7 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..prior.keyframes import with_turns
 from .clip_state import ClipState, Window
 from .keypoint_evidence import KeypointEvidence
+from .terms.reference import ExpectedPoints
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +80,7 @@ class ClipProblem:
     step_s: Array  # (F - 1,) time between frames [s]
     unseen: tuple[str, ...]  # limbs that are never seen
     there: BoolArray  # (F,) whether the performer is there; nothing is solved elsewhere
+    reference: ExpectedPoints | None = None  # where a motion from elsewhere has the points; None without one
 
     @property
     def accelerations(self) -> Array:

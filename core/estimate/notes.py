@@ -96,7 +96,9 @@ def found_notes(take: Take) -> tuple[str, ...]:
     if not found:
         return ()
     posed, origin = len(take.keyframes) - len(found), _origin([said for _, said in found])
-    if posed == 0:
+    if posed == 0 and all(said.is_referred for _, said in found):
+        notes = [f"no keyframe was posed: the motion rests on {len(found)} {origin}"]
+    elif posed == 0:
         notes = [
             (
                 f"no keyframe was posed: the motion rests on {len(found)} {origin}, other performers'; "
@@ -121,7 +123,9 @@ def found_notes(take: Take) -> tuple[str, ...]:
 
 def _origin(found: Sequence[Matched]) -> str:
     libraries = sorted({said.library for said in found if not said.is_composed})
-    parts = ["postures composed of all libraries"] if any(said.is_composed for said in found) else []
+    parts = ["postures of a motion from elsewhere"] if any(said.is_referred for said in found) else []
+    if any(said.is_composed and not said.is_referred for said in found):
+        parts.append("postures composed of all libraries")
     parts += [f"postures of the library {' and '.join(libraries)}"] if libraries else []
     return " and ".join(parts)
 

@@ -21,6 +21,7 @@ from ..footage.region_tracks import RegionTracks
 from ..prior.keyframe_proposals import evidence_speed
 from ..prior.keyframes import interpolate, with_offset
 from ..progress import Job, Progress, stretch, within
+from ..take.checked_keypoints import with_checked_keypoints
 from ..take.clip_check import check_frame_count, check_in_front
 from ..take.conversion_settings import METHODS
 from ..take.motion import Motion
@@ -36,6 +37,7 @@ from .keyframe_trust import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .performer_placement import found_ankle_m
+from .reference_evidence import OPTIONS, NoReference, ReferenceEvidence, reference_evidence, with_reference
 from .second_look import seen_tracks
 from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 
@@ -69,13 +71,18 @@ class Reconstruction:
 
 
 def reconstruct(
-    take: Take, method: str = "map", reading: Reading | None = None, earlier: Reconstruction | None = None
+    take: Take,
+    method: str = "map",
+    reading: Reading | None = None,
+    earlier: Reconstruction | None = None,
+    referred: ReferenceEvidence | NoReference | None = None,
 ) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
     `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; `reading` has
     what was read from the same clip before, which is then not opened again; of `earlier` those parts are used
-    that still hold. Closing the generator cancels the job, which has no effects of its own.
+    that still hold; `referred` is what is known already of the take's reference motion. Closing the generator
+    cancels the job, which has no effects of its own.
 
     Raises:
         InputError: The clip cannot be used, a color matches nothing in it, or the method is unknown.
@@ -85,7 +92,7 @@ def reconstruct(
     check_reconstructible(take, method)
     # The matrices are small: more threads of linear algebra take up to twenty times as long.
     with threadpool_limits(limits=1, user_api="blas"):
-        return (yield from _reconstruct(take, method, reading, earlier))
+        return (yield from _reconstruct(take, method, reading, earlier, referred))
 
 
 def check_reconstructible(take: Take, method: str) -> None:
@@ -96,7 +103,7 @@ def check_reconstructible(take: Take, method: str) -> None:
             keyframes.
     """
     check_method(take, method)
-    if len(take.keyframes) < 2:
+    if len(take.keyframes) < 2 and (take.reference is None or method != "map"):
         raise InputError(f"{take.name} has {len(take.keyframes)} keyframes; at least 2 are needed")
 
 
@@ -116,7 +123,11 @@ def check_method(take: Take, method: str) -> None:
 
 
 def _reconstruct(
-    take: Take, method: str, reading: Reading | None, earlier: Reconstruction | None
+    take: Take,
+    method: str,
+    reading: Reading | None,
+    earlier: Reconstruction | None,
+    said: ReferenceEvidence | NoReference | None,
 ) -> Job[Reconstruction]:
     notes, begun = take.notes, 0.0
     if reading is None:
@@ -124,7 +135,15 @@ def _reconstruct(
         begun = EXTRACTION_SHARE
     else:
         _check_tracks(take, reading.tracks)
-    tracks = reading.tracks
+    take = yield from with_checked_keypoints(take, reading, begun)
+    tracks, referred = reading.tracks, None
+    if take.reference is not None and method == "map":
+        said = said or reference_evidence(take, tracks)
+        notes += said.notes
+        if isinstance(said, ReferenceEvidence):
+            referred, take = said, with_reference(take, said)
+        elif len(take.keyframes) < 2:
+            raise InputError(f"{said.notes[0]}; without it at least 2 keyframes are needed")
     keypoints = performer_keypoints(take, interpolate(take.keyframes, tracks.frame_count), tracks)
     there = presence(take, reading, keypoints)
     absent = absence_notes(take, there)
@@ -136,6 +155,7 @@ def _reconstruct(
     take = replace(take, keyframes=worth)
     notes += found_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
+    wide = [OPTIONS.keyframe_width if key.matched and key.matched.is_referred else 1.0 for key in keyframes]
     prior = interpolate(keyframes, tracks.frame_count)
     if left_out or absent or match_scale.any():  # else the prior is that of all keyframes
         keypoints = performer_keypoints(take, prior, tracks)
@@ -147,7 +167,9 @@ def _reconstruct(
         ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
         given = Seen(tracks, take.marker_segments, keypoints, reading.album, ignored, there)
         unseen = unseen_limbs(take, tracks, keypoints, there)
-        solution = yield from _whole_clip(take, given, prior, match_scale, unseen, begun, usable)
+        believed = _believed(take, prior, match_scale * wide, unseen, referred)
+        estimate = estimate_whole_clip(take.body, take.camera, given, believed, earlier=usable)
+        solution = yield from within("Estimating the motion", estimate, begun, 1.0)
         seen = seen_tracks(tracks, solution.problem.observed)
         motion, model = _solved(take, seen, solution, match_scale, unseen), solution.evidence.model
         if not shaken:  # else the camera is what does not fit
@@ -178,7 +200,7 @@ def _present(take: Take, there: BoolArray) -> Take:
     kept = tuple(key for key in take.keyframes if there[key.index])
     if len(kept) < 2:
         raise InputError(
-            f"{take.name} has {len(kept)} keyframes in frames in which somebody is seen; at least 2 are needed"
+            f"{take.name} has {len(kept)} keyframes in frames that show somebody; at least 2 are needed"
         )
     return replace(take, keyframes=kept)
 
@@ -191,21 +213,18 @@ def _check_tracks(take: Take, tracks: RegionTracks) -> None:
     check_in_front(take)
 
 
-def _whole_clip(
+def _believed(
     take: Take,
-    seen: Seen,
     prior: Posture,
     match_scale: Array,
     unseen: tuple[str, ...],
-    begun: float,
-    earlier: WholeClipResult | None,
-) -> Job[WholeClipResult]:
+    referred: ReferenceEvidence | None,
+) -> Believed:
     ankle, index = None, np.array(take.keyframe_indices, dtype=np.intp)
     if _is_composed(take):
         ankle = found_ankle_m(take.body, prior[index], index, prior.batch[0])
-    believed = Believed(prior, take.keyframe_indices, match_scale, ankle, unseen)
-    estimate = estimate_whole_clip(take.body, take.camera, seen, believed, earlier=earlier)
-    return (yield from within("Estimating the motion", estimate, begun, 1.0))
+    expected = None if referred is None else referred.expected
+    return Believed(prior, take.keyframe_indices, match_scale, ankle, unseen, expected)
 
 
 def _is_composed(take: Take) -> bool:
@@ -250,7 +269,13 @@ def _solved(
         ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
         lower = None if {"leg.L", "leg.R"} <= set(never) else motion.points[:, ankles, 2].min(axis=1)
         place_std_m = place_depth_std_m(motion.points, lower, take.camera)
-    sure = np.array([1.0 if key.matched is None else key.matched.confidence for key in take.keyframes])
+    # A reference motion has its own errors in the estimate; open is what all sizes share.
+    sure = np.array(
+        [
+            1.0 if key.matched is None or key.matched.is_referred else key.matched.confidence
+            for key in take.keyframes
+        ]
+    )
     open_depth = undetermined_covariance(motion.points, take.camera, index, match_scale, sure, place_std_m)
     return replace(motion, point_covariance=motion.point_covariance + open_depth)
 

@@ -86,6 +86,7 @@ def _same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
         and earlier.keypoints.names == now.keypoints.names
         and earlier.keypoints.sources == now.keypoints.sources
         and earlier.noise == now.noise
+        and (earlier.reference is None) == (now.reference is None)
         and np.array_equal(earlier.step_s, now.step_s)
         and np.array_equal(earlier.there, now.there)
         and earlier.unseen == now.unseen
@@ -150,6 +151,8 @@ def _changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     changed = np.asarray(np.abs(now.prior.minus(earlier.prior)).max(axis=1) > SAME.posture)
     changed |= _observations_differ(earlier.tracked, now.tracked)
     changed |= _observations_differ(earlier.points, now.points)
+    if earlier.reference is not None and now.reference is not None:
+        changed |= earlier.reference.differ(now.reference)
     changed |= (earlier.depth_std_m != now.depth_std_m) | _ankle_heights_differ(earlier, now)
     changed[np.setxor1d(earlier.keyframes, now.keyframes)] = True
     both, before, after = np.intersect1d(earlier.keyframes, now.keyframes, return_indices=True)

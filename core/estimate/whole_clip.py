@@ -37,6 +37,7 @@ from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import doubted_at_changes, exchanged_back, find_swaps, keypoint_trust
 from .performer_placement import lower_ankle_m
 from .refinement import refine
+from .terms.reference import ExpectedPoints
 from .warm_start import blend_weight, continued, revised_windows
 from .window_problem import WindowProblem
 
@@ -75,6 +76,7 @@ class Believed:
     posed ones, which all are by default."""
     lower_ankle: Array | None = None  # (F,) where all keyframes are matched [m]; by soles where None
     unseen: tuple[str, ...] = ()  # limbs that are never seen, whose feet say nothing of the place
+    reference: ExpectedPoints | None = None  # where a motion from elsewhere has the points; None without one
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,6 +173,7 @@ def estimate_whole_clip(
         step_s=np.maximum(np.diff(tracks.time_s), 1e-3),
         there=np.ones(tracks.frame_count, dtype=bool) if seen.there is None else seen.there,
         unseen=believed.unseen,
+        reference=believed.reference,
     )
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or matched.any()) else None

@@ -3,6 +3,7 @@
 Axes, scale, place and time are its own (`estimate/reference_alignment` finds them); here everything has Z up.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,10 +14,13 @@ from ..body.human import HUMAN
 from ..errors import InputError
 from ..files.fields import listed
 from ..files.json_file import ENDING
+from ..files.paths import regular_file_size
 from .motion import read_motion
 from .point_files import POINT_ENDINGS, read_points
 
 REFERENCE_ENDINGS = (*POINT_ENDINGS, ENDING)
+ARMATURE_ENDINGS = (".bvh", ".fbx", ".glb", ".gltf", ".vrm", ".usd", ".usda", ".usdc", ".usdz", ".blend")
+"""Of files with an animated armature, which Blender reads."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +37,20 @@ class ReferenceMotion:
             raise ValueError(f"points must have the shape (R, 13, 3), not {shape}")
 
 
+def reference_of_take(
+    path: Path | None, read_armature: Callable[[Path], ReferenceMotion] | None
+) -> ReferenceMotion | None:
+    """The reference motion that a take names; None without one, and of an armature where nobody can read it.
+
+    Raises:
+        InputError: See `read_reference`.
+    """
+    if path is None or path.suffix.lower() not in ARMATURE_ENDINGS:
+        return None if path is None else read_reference(path)
+    regular_file_size(path, "a reference motion")
+    return None if read_armature is None else read_armature(path)
+
+
 def read_reference(path: Path) -> ReferenceMotion:
     """Read a reference motion: points by name, as MHR-70's csv and FreeMoCap have them, or a motion.json.
 
@@ -43,7 +61,7 @@ def read_reference(path: Path) -> ReferenceMotion:
     if ending not in REFERENCE_ENDINGS:
         raise InputError(
             f"{path}: is no reference motion; it must end in {listed(REFERENCE_ENDINGS)}: points by name, "
-            "or a motion.json"
+            f"or a motion.json; or be an armature's, in {listed(ARMATURE_ENDINGS)}"
         )
     if ending == ENDING:
         motion = read_motion(path)

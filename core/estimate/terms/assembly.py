@@ -20,10 +20,13 @@ from ..performer_placement import ANKLE_HEIGHT_STD_M, standing_ankle_m
 from .contact import BalanceTerm, GroundTerm, StillnessTerm
 from .keypoints import DepthHintTerm, KeypointTerm
 from .motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
+from .reference import ReferenceTerm
 from .regions import RegionTerm
 from .term import QuadraticBuilder, QuadraticTerm, Term
 
 ANKLES, LEGS = ("ankle.L", "ankle.R"), ("leg.L", "leg.R")
+LOOSE_FEET = {"release_speed_m_s": 0.4, "release_height_m": 0.06}
+"""Of feet that stand, where a reference motion, whose feet slide and jump, is followed from the start."""
 
 
 def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Term]:
@@ -32,7 +35,8 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     step_s = clip.step_s[window.first : window.last - 1]
     pace = float(np.median(step_s)) / REFERENCE_STEP_S if len(step_s) else 1.0
     prior_depth = depths.evaluate(clip.body, clip.camera, clip.body.pose(state.prior), state.frame)
-    ankles = tuple(ankle for ankle, leg in zip(_ankles(clip.body), LEGS, strict=True) if leg not in clip.unseen)
+    seen = [leg not in clip.unseen for leg in LEGS]
+    ankles = tuple(ankle for ankle, own in zip(_ankles(clip.body), seen, strict=True) if own)
     evidence = clip.evidence
     terms: list[Term] = [
         _prior_term(clip, window, step_s),
@@ -49,13 +53,17 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
         LimitTerm(),
     ]
     if ankles:
-        terms.append(StillnessTerm(clip.camera, ankles, step_s))
+        loose = LOOSE_FEET if clip.reference is not None else {}
+        terms.append(StillnessTerm(clip.camera, ankles, step_s, **loose))
     if evidence.keypoints.model.names:
         terms.append(_keypoint_term(clip, window, step_s))
     if np.isfinite(clip.points.depth_m).any():
         terms.append(_hint_term(clip, window, step_s))
     if clip.ankle_height_m is not None and ankles:
         terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
+    if clip.reference is not None:
+        kept = np.exp(-step_s / clip.reference.memory_s)[:, None]
+        terms.append(ReferenceTerm(clip.reference[frames], kept))
     return terms
 
 

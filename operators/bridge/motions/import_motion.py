@@ -13,17 +13,21 @@ from ....core.errors import InputError
 from ....core.files.fields import listed
 from ....core.files.paths import real_path, regular_file_size
 from ....core.numerics.vectors import unit
+from ....core.progress import run
 from ....core.retarget.maps.map_registry import ChosenMap
+from ....core.retarget.mended_armature import ArmaturePoints
 from ....core.retarget.solve.rest_body import RestBody
 from ....core.retarget.solve.two_bone import smallest_rotation
 from ....core.take.conversion_settings import CharacterFile
+from ....core.take.reference import ARMATURE_ENDINGS, ReferenceMotion
 from ..actions import assign_action, existing_channelbag
+from ..blend_files import own_scene, showing_scene
 from ..character.import_character import ImportedCharacter, import_character
 from ..character.read_character import read_character
 from ..keys import mark_generated
-from .read_poses import motion_map
+from .read_poses import action_frames, animated_action, motion_map, read_poses
 
-MOTION_ENDINGS = (".bvh", ".fbx", ".glb", ".gltf", ".vrm", ".usd", ".usda", ".usdc", ".usdz", ".blend")
+MOTION_ENDINGS = ARMATURE_ENDINGS
 SLOWEST, FASTEST = 1.0, 1000.0  # frames a second of a motion
 LARGEST_BVH = 2**29
 UNITS = (1.0, 0.01, 0.1, 0.001, 0.0254, 0.3048, 100.0)
@@ -122,6 +126,21 @@ def load_motion(file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path
         raise
     bpy.data.scenes.remove(meanwhile)
     return armature
+
+
+def armature_reference(path: Path, maps: Sequence[Path] = ()) -> ReferenceMotion:
+    """The joints of a file's animated armature as a reference motion; the scene is as before afterwards.
+
+    Raises:
+        InputError: See `import_motion`.
+    """
+    with own_scene("Motion") as scene, showing_scene(scene):
+        imported, chosen = import_motion(CharacterFile(path), scene, maps)
+        armature = imported.armature
+        points = ArmaturePoints.of(RestBody.of(read_character(armature), chosen.character_map))
+        action = animated_action(armature)
+        poses, _ = run(read_poses(armature, action, action_frames(armature, action), points.bones))
+        return ReferenceMotion(points.of_poses(poses), scene.render.fps / scene.render.fps_base, str(path))
 
 
 def _retime(bag: bpy.types.ActionChannelbag, first: float, factor: float, start: float) -> None:
