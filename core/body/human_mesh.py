@@ -100,6 +100,10 @@ def part_ends(joints: Mapping[str, Array]) -> dict[str, tuple[Array, Array]]:
         for limb in LIMBS:
             for first, last in zip(limb[:-1], limb[1:], strict=True):
                 found[f"{first}.{side}"] = (joints[f"{first}.{side}"], joints[f"{last}.{side}"])
+        # A foot stays level whatever height its bone's end has: its sole is flat at rest.
+        ankle, *ahead = (joints[f"{name}.{side}"] for name in ("foot", "toe", "toe_end"))
+        ball, tip = (np.array([*place[:2], ankle[2]]) for place in ahead)
+        found[f"foot.{side}"], found[f"toe.{side}"] = (ankle, ball), (ball, tip)
         shoulder = joints[f"upper_arm.{side}"]
         found[f"shoulder.{side}"] = (shoulders + COLLAR * (shoulder - shoulders), shoulder)
     return found

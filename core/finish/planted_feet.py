@@ -11,7 +11,7 @@ from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..estimate.block_banded import BlockBanded
 from .contacts import STRAY_M, Contact, find_contacts
-from .foot_ground import Shins, Soles, find_ground, on_ground, smooth_above
+from .foot_ground import Shins, Soles, find_ground, on_ground
 from .rig import Rig
 
 FADE_S = 0.2  # time in which a correction fades on either side of a rest
@@ -24,7 +24,6 @@ FLOOR_TOLERANCE_M = (
     0.0015  # the same of a sole that is near the ground but does not rest: it must not pass it
 )
 NEAR_GROUND_M = 0.03  # height up to which a sole is near the ground
-LIFT_S = 0.1  # time over which a foot is lifted that a few frames would have in the ground
 SOLE_TOLERANCE_M = 0.001  # largest error that it may give heel and tip of a resting foot [m], which lies flat
 ITERATIONS = 8
 
@@ -81,10 +80,7 @@ def _out_of_ground_m(body: Body, pose: Pose, contacts: Sequence[Contact], time_s
     needed = np.maximum(floor + soles.clearance_m(shins) - shins.ankle[..., 2], 0.0)
     for contact in contacts:  # a resting foot is where it rests
         needed[contact.first : contact.last + 1, contact.point] = 0.0
-    lifted = np.stack([smooth_above(own, time_s, LIFT_S) for own in needed.T], axis=1)
-    for contact in contacts:
-        lifted[contact.first : contact.last + 1, contact.point] = 0.0
-    return lifted
+    return needed
 
 
 def point_tolerances(

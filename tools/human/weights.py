@@ -23,9 +23,9 @@ SPREAD_M = {
     "forearm": 0.028,
     "hand": 0.018,
     "thigh": 0.055,
-    "shin": 0.036,
-    "foot": 0.018,
-    "toe": 0.014,
+    "shin": 0.026,
+    "foot": 0.012,
+    "toe": 0.012,
 }
 """How far a part's boundary is spread along the skin."""
 
@@ -50,7 +50,7 @@ def part_of(points: Array) -> NDArray[np.int64]:
         "hand": x > 0.7735,
         "thigh": (z < -0.055 + 0.50 * x - 0.25 * y) & (z < 0.05) & (x < 0.3),
         "shin": z < -0.429,
-        "foot": z < -0.866 - 0.55 * y,
+        "foot": z < -0.862 - 0.25 * y,
         "toe": (z < -0.86) & (y < -0.130),
     }
     for part, there in sided.items():

@@ -4,7 +4,14 @@ import numpy as np
 from _scene import BODY
 from keymark.core.body.posture import Posture
 from keymark.core.finish.contacts import Contact, find_contacts
-from keymark.core.finish.planted_feet import FADE_S, plant_feet
+from keymark.core.finish.planted_feet import (
+    FADE_S,
+    FLOOR_TOLERANCE_M,
+    plant_feet,
+    point_tolerances,
+    sole_rows,
+)
+from keymark.core.finish.rig import NO_TURN, Rig, RigBone
 from keymark.core.progress import run
 
 FPS = 30.0
@@ -110,3 +117,34 @@ def test_a_motion_without_a_rest_is_returned_as_it_is() -> None:
     planted = run(plant_feet(BODY, posture, TIME_S[:3]))
     assert planted.contacts == ()
     assert planted.posture is posture
+
+
+def test_a_foot_on_its_way_between_two_rests_does_not_go_below_the_floor() -> None:
+    names = BODY.skeleton.dof_names
+    dip = np.clip(np.sin(np.pi * (TIME_S - 0.7) / 0.6), 0.0, None) * ((TIME_S > 0.7) & (TIME_S < 1.3))
+    vector = np.zeros((60, len(names)))
+    vector[:, 2] = 0.9
+    for side, amount in (("L", dip), ("R", np.zeros(60))):
+        vector[:, names.index(f"hip.{side}.rotation_x")] = -0.35 + 0.2 * amount
+        vector[:, names.index(f"knee.{side}.flexion")] = 0.7 - 0.4 * amount
+    vector[:, names.index("hip.L.rotation_y")] = -0.12 * np.clip((TIME_S - 0.7) / 0.6, 0.0, 1.0)
+    before = Posture.from_vector(BODY.skeleton, vector)
+    planted = run(plant_feet(BODY, before, TIME_S))
+    assert [contact.point for contact in planted.contacts] == [0, 0, 1]
+    floor = min(contact.place[2] for contact in planted.contacts)
+    depth = [floor - places(posture)[:, ANKLES[0], 2] for posture in (before, planted.posture)]
+    assert depth[0].max() > 0.03 > 0.001 > depth[1].max()
+    assert np.abs(np.diff(depth[1], 2)).max() < 0.02  # it does not jump
+    still = places(planted.posture)[:, ANKLES[1]]
+    assert np.ptp(still[10:50], axis=0).max() < 2e-3
+
+
+def test_soles_near_the_ground_are_held_by_few_keys() -> None:
+    still, ends = np.eye(3), np.zeros((2, 3))
+    rig = Rig(tuple(RigBone(f"foot.{side}", -1, NO_TURN, still, still, np.zeros(3), ends) for side in "LR"))
+    near = np.zeros((60, 2), dtype=bool)
+    near[20:30, 0] = True
+    allowed = point_tolerances(rig, 60, 0.005, (), near)
+    left, right = sole_rows(rig, "L"), sole_rows(rig, "R")
+    assert len(left) == 2 and set(allowed[20:30][:, left].ravel()) == {FLOOR_TOLERANCE_M}
+    assert set(allowed[:, right].ravel()) == {0.005} and set(allowed[30:, left[0]]) == {0.005}
