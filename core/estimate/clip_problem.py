@@ -55,7 +55,8 @@ class ClipProblem:
 
     # What the keyframes say.
     keyframes: IndexArray  # (K,) their frames
-    matched: BoolArray  # (K,) which of them are matched
+    matched: BoolArray  # (K,) which of them are matched, or corrected in the picture only
+    corrected: BoolArray  # (K,) which of these a person vouches for in the picture
     evidence: KeyframeEvidence
     factor: Array  # (D, D) of the deviation's accelerations
     interpolated: Posture  # F postures: the keyframes interpolated, which turns the short way round

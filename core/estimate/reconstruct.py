@@ -182,13 +182,16 @@ def _whole_clip(
     ankle, index = None, np.array(take.keyframe_indices, dtype=np.intp)
     if _is_composed(take):
         ankle = found_ankle_m(take.body, prior[index], index, prior.batch[0])
-    believed = Believed(prior, take.keyframe_indices, match_scale, ankle)
+    corrected = np.array([keyframe.depth_found for keyframe in take.keyframes])
+    believed = Believed(prior, take.keyframe_indices, match_scale, corrected, ankle)
     estimate = estimate_whole_clip(take.body, take.camera, seen, believed, earlier=earlier)
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 
 
 def _is_composed(take: Take) -> bool:
-    return all(key.matched is not None and key.matched.is_composed for key in take.keyframes)
+    return all(
+        key.depth_found or (key.matched is not None and key.matched.is_composed) for key in take.keyframes
+    )
 
 
 def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array) -> Motion:

@@ -71,6 +71,7 @@ class Believed:
     match_scale: Array | None = None
     """(K,) size of each matched keyframe's error, relative to a usual difference between performers; 0 for
     posed ones, which all are by default."""
+    corrected: BoolArray | None = None  # (K,) which of these a person vouches for in the picture
     lower_ankle: Array | None = None  # (F,) where all keyframes are matched [m]; by soles where None
 
 
@@ -149,6 +150,7 @@ def estimate_whole_clip(
         noise=options.regions,
         keyframes=index,
         matched=matched,
+        corrected=np.zeros_like(matched) if believed.corrected is None else believed.corrected,
         evidence=(yield from scaled(reading, 0.0, 0.0)),
         factor=process_noise_factor(prior[index], tracks.time_s[index]),
         interpolated=prior,

@@ -116,7 +116,7 @@ def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[Whol
             interpolate(keyframes, tracks.frame_count),
             tuple(map(int, sampled)),
             scale,
-            found_ankle_m(given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m),
+            lower_ankle=found_ankle_m(given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m),
         ),
     )
 

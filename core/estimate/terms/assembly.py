@@ -10,12 +10,13 @@ import numpy as np
 from ...arrays import Array
 from ...body.kinematics import Body
 from ...evidence import keypoints as depths
-from ...evidence.keypoints import LEAST_CONFIDENCE, ObservedKeypoints
+from ...evidence.keypoints import LEAST_CONFIDENCE, KeypointModel, ObservedKeypoints
 from ...evidence.regions import ObservedRegions, RegionNoise
 from ...prior.frame_prior import REFERENCE_STEP_S, FramePrior
 from ..clip_problem import ClipProblem, KeyframeEvidence
 from ..clip_state import ClipState, Window
 from ..keypoint_evidence import KeypointEvidence
+from ..keyframe_error import POINT_STD_M
 from ..performer_placement import ANKLE_HEIGHT_STD_M, standing_ankle_m
 from .contact import BalanceTerm, GroundTerm, StillnessTerm
 from .keypoints import DepthHintTerm, KeypointTerm
@@ -53,6 +54,8 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
         terms.append(_keypoint_term(clip, window, step_s))
     if np.isfinite(clip.points.depth_m).any():
         terms.append(_hint_term(clip, window, step_s))
+    if clip.corrected.any():
+        terms.append(_picture_term(clip, window))
     if clip.ankle_height_m is not None:
         terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
     return terms
@@ -139,6 +142,18 @@ def _keypoint_term(clip: ClipProblem, window: Window, step_s: Array) -> Keypoint
     evidence = clip.evidence.keypoints
     kept = np.exp(-step_s / evidence.memory_s)[:, None]
     return KeypointTerm(evidence.model, clip.points[window.frames], evidence.error_m, kept)
+
+
+def _picture_term(clip: ClipProblem, window: Window) -> KeypointTerm:
+    """Points of keyframes that were corrected in the picture, which is as sure as a posed one's."""
+    model = KeypointModel.usual(clip.body, clip.camera, clip.body.skeleton.point_names)
+    frame = clip.keyframes[clip.corrected]
+    pixel = np.full((clip.frames, len(model.names), 2), np.nan)
+    pixel[frame] = model.pixels(clip.body.pose(clip.prior[frame]), frame)
+    seen = np.isfinite(pixel).all(axis=-1)
+    observed = ObservedKeypoints(pixel, seen.astype(np.float64), np.full(seen.shape, np.nan))
+    std_m = np.full(len(model.names), POINT_STD_M)
+    return KeypointTerm(model, observed[window.frames], std_m, None)
 
 
 def _hint_term(clip: ClipProblem, window: Window, step_s: Array) -> DepthHintTerm:
