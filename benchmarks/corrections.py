@@ -1,6 +1,7 @@
 """Corrections: what the motion found without posing gains from the most doubtful frames put right.
 
-In the picture only, where every point is seen where it truly is and keeps the depth that was found; and in space.
+In the picture only, where every point is seen where it truly is and keeps the depth that was found; and in
+space.
 
 Usage: corrections.py [TAKE ...] [--keypoints] with names or folders of takes. See README.md.
 """
@@ -17,7 +18,6 @@ from trials import Trial, unposed_trials
 
 load_project()
 
-from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.body.posture_fit import fit_posture  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses, with_found  # noqa: E402
@@ -59,7 +59,6 @@ def error_of(trial: Trial, take: Take) -> Error:
     """Errors of the default method's motion over all frames."""
     motion = run(reconstruct(take, "map", trial.reading)).motion
     score = trial.score(motion.points, motion.sigma_m)
-    if "parts" in sys.modules: print(sys.modules["parts"].parts(trial, motion.points))
     return Error(score.rooted, score.mpjpe_all, score.skate or 0.0)
 
 
@@ -75,7 +74,7 @@ def corrected(trial: Trial, take: Take, kind: str, count: int) -> Take:
 
 
 def in_the_picture(trial: Trial, take: Take, found: Keyframe) -> Keyframe:
-    """A keyframe whose points are dragged to where they are seen; lengths stay, so depths give way a little."""
+    """A keyframe whose points are dragged to where they are seen; lengths stay, so depths give way."""
     body, frame = take.body, found.index
     truth = trial.truth[frame]
     rotation, eye = take.camera.pose(frame)
@@ -108,7 +107,10 @@ def table(results: Mapping[str, Mapping[str, Error]]) -> str:
         lines.append(f"| {name} | {' | '.join(cells)} |")
     ratios = {
         column: [
-            [getattr(row[column], field) / max(getattr(row["found"], field), 1e-9) for row in results.values()]
+            [
+                getattr(row[column], field) / max(getattr(row["found"], field), 1e-9)
+                for row in results.values()
+            ]
             for field in ("rooted", "mpjpe", "skate")
         ]
         for column in columns

@@ -78,8 +78,10 @@ def select_keyframes(
     keypoints: Keypoints | None = None,
 ) -> tuple[Keyframe, ...]:
     """The posed keyframes, and those matched ones that are better than interpolation between them."""
-    posed = tuple(keyframe for keyframe in keyframes if keyframe.matched is None)
-    compared = tuple(key for key in keyframes if key.matched is None or not key.matched.is_composed)
+    posed = tuple(keyframe for keyframe in keyframes if keyframe.is_posed)
+    compared = tuple(
+        key for key in keyframes if key.is_posed or (key.matched is not None and not key.matched.is_composed)
+    )
     if len(posed) < FEWEST_POSED or len(posed) == len(compared):
         return keyframes
     library_m = _library_error_m(compared, posed, model, fps)

@@ -189,9 +189,8 @@ def _whole_clip(
 
 
 def _is_composed(take: Take) -> bool:
-    return all(
-        key.depth_found or (key.matched is not None and key.matched.is_composed) for key in take.keyframes
-    )
+    found = [key.matched for key in take.keyframes if key.matched is not None]
+    return all(each.is_composed for each in found) and not all(key.is_posed for key in take.keyframes)
 
 
 def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array) -> Motion:

@@ -36,6 +36,7 @@ from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import doubted_at_changes, exchanged_back, find_swaps, keypoint_trust
 from .performer_placement import lower_ankle_m
 from .refinement import refine
+from .rests import rests_of, without_corrections
 from .warm_start import blend_weight, continued, revised_windows
 from .window_problem import WindowProblem
 
@@ -140,7 +141,7 @@ def estimate_whole_clip(
     )
     reading = read_mixed_keyframes(model, options.regions, at, match_scale)
     ankle_height_m = None  # posed keyframes say where the floor is, and better
-    if matched.all():
+    if matched.all() or believed.lower_ankle is not None:
         ankle_height_m = believed.lower_ankle
         if ankle_height_m is None:
             ankle_height_m = lower_ankle_m(body, prior[index], index, prior.batch[0])
@@ -159,6 +160,7 @@ def estimate_whole_clip(
         depth_std_m=depth_std_m(index, matched, tracks.frame_count),
         ankle_height_m=ankle_height_m,
         limb_size=np.ones(body.skeleton.dof_count),
+        rests=None,
         depth_factor=np.ones((tracks.frame_count, len(body.skeleton.points))),
         observed=observed,
         tracked=observed,
@@ -228,10 +230,17 @@ def _solve_windows(
     stretches = list(zip(spans, shares[:-1], shares[1:], strict=True))
     # All windows by their markers first: contours learned from the whole clip then join them without a seam.
     states = []
+    doubted = without_corrections(problem)
     for window, begun, ended in stretches:
-        part = WindowProblem(problem, window, problem.start(window))
+        part = WindowProblem(doubted, window, problem.start(window))
         yield from scaled(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
         states.append(part.state.without_cache())
+    if doubted is not problem:
+        problem = replace(problem, rests=rests_of(doubted, spans, states))
+        for row, (window, _, ended) in enumerate(stretches):
+            part = WindowProblem(problem, window, states[row])
+            yield from scaled(part.converge(), MARKERS_SHARE * ended, MARKERS_SHARE * ended)
+            states[row] = part.state.without_cache()
     if earlier is None:
         refining = refine(problem, spans, states, album, anew, contours)
     else:

@@ -15,6 +15,7 @@ from ..shell.results import reading_of
 from ..shell.takes import active_take, find_take, footage_of
 from .candidate_buttons import candidate_title
 from .found_keyframes import known_matches
+from .store_keyframe import note_corrected
 
 if TYPE_CHECKING:
     from ...core.posing.candidates import Candidate
@@ -125,6 +126,8 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
         show_keyframes(take)
         write_posture(take.armature, found.candidates[0].posture)
         offer_poses(take, scene.frame_current_final, found.candidates)
+        take.matching.corrected_in_depth = False
+        note_corrected(take, scene.frame_current_final, in_depth=False)
         note_contradictions(take, scene.frame_current_final, found.contradictions)
         if found.contradictions:
             names = ", ".join(found.contradictions)

@@ -15,8 +15,8 @@ from ...evidence.regions import ObservedRegions, RegionNoise
 from ...prior.frame_prior import REFERENCE_STEP_S, FramePrior
 from ..clip_problem import ClipProblem, KeyframeEvidence
 from ..clip_state import ClipState, Window
-from ..keypoint_evidence import KeypointEvidence
 from ..keyframe_error import POINT_STD_M
+from ..keypoint_evidence import KeypointEvidence
 from ..performer_placement import ANKLE_HEIGHT_STD_M, standing_ankle_m
 from .contact import BalanceTerm, GroundTerm, StillnessTerm
 from .keypoints import DepthHintTerm, KeypointTerm
@@ -48,7 +48,7 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
         ),
         DepthTerm(clip.camera, prior_depth, clip.depth_std_m[frames, None] * clip.depth_factor[frames]),
         LimitTerm(),
-        StillnessTerm(clip.camera, ankles, step_s),
+        stillness_term(clip, window),
     ]
     if evidence.keypoints.model.names:
         terms.append(_keypoint_term(clip, window, step_s))
@@ -59,6 +59,13 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     if clip.ankle_height_m is not None:
         terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
     return terms
+
+
+def stillness_term(clip: ClipProblem, window: Window) -> StillnessTerm:
+    """Ankles that stand."""
+    pairs = slice(window.first, window.last - 1)
+    rests = None if clip.rests is None else clip.rests[pairs]
+    return StillnessTerm(clip.camera, _ankles(clip.body), clip.step_s[pairs], rests)
 
 
 def frame_terms(

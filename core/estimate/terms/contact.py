@@ -31,6 +31,7 @@ class StillnessTerm:
     camera: Camera
     points: tuple[int, ...]  # indices of the principal points it is about
     step_s: Array  # (F - 1,) time between frames [s]
+    rests: Array | None = None  # (F - 1, points) how far each is known to stand, whatever its speed, 0 to 1
     release_speed_m_s: float = 0.2  # across the line of sight, c, at which rows count a quarter
     depth_share: float = 0.3  # how much motion along the line of sight counts to that speed
     release_height_m: float = 0.04  # above the lowest point, at which rows count a quarter
@@ -72,7 +73,13 @@ class StillnessTerm:
     def _standing(self, travel: Array, middle: Array, frame: IndexArray) -> Array:
         """(F - 1, points) how far each point is taken to stand, 0 to 1."""
         speed, height = self._moving(travel, middle, frame)
-        return np.asarray(_kernel(speed) * _kernel(height))
+        standing = _kernel(speed) * _kernel(height)
+        return np.asarray(standing if self.rests is None else np.maximum(standing, self.rests))
+
+    def standing(self, state: ClipState) -> Array:
+        """(F - 1, points) how far each point is taken to stand in a state, 0 to 1."""
+        places = state.body.points(state.pose)[:, list(self.points)]
+        return self._standing(np.diff(places, axis=0), 0.5 * (places[1:] + places[:-1]), state.frame[1:])
 
     def _moving(self, travel: Array, middle: Array, frame: IndexArray) -> tuple[Array, Array]:
         """(F - 1, points) speed and height, in those at which rows count a quarter."""

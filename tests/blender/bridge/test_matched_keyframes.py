@@ -25,6 +25,7 @@ from keymark.operators.bridge.keyframes import (
     untouched_frames,
     write_matched,
 )
+from keymark.operators.bridge.keys import MATCH_AMPLITUDE
 from keymark.operators.bridge.pose import read_posture
 from keymark.operators.bridge.take_from_scene import read_scene_take
 from keymark.operators.follow.evidence import scene_evidence
@@ -149,7 +150,7 @@ def test_matched_keyframes_are_taken_over_and_removed(take: bpy.types.PropertyGr
     assert untouched_frames(armature_object, action, HUMAN) == ()
     assert read_at(take, 7).minus(before) == pytest.approx(0.0, abs=1e-6)
     key = key_at(take, 'pose.bones["chest"].rotation_quaternion', 0, 7.0)
-    assert key.type == "KEYFRAME" and key.amplitude >= 0.0
+    assert key.type == "KEYFRAME" and key.amplitude != MATCH_AMPLITUDE
     remove_keyframes(armature_object, action, HUMAN, (7.0,))
     invalidate_keyed_frames()
     assert keyed_frames(armature_object, action, HUMAN) == keyframes_of(take) == (1.0, 13.0)
