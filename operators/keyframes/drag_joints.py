@@ -97,8 +97,9 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
         body, posture = shown_pose(take)
         sight = np.array(self.sight, dtype=np.float64)
         sight /= max(float(np.linalg.norm(sight)), 1e-9)
-        moved = dragged(body, posture, self.joint, np.array(self.place), sight, self.pushed)
-        in_depth = self.pushed or _shows_depth(context, take, sight, np.array(self.place))
+        place, floor_m = np.array(self.place), take.matching.known_floor_m
+        moved = dragged(body, posture, self.joint, place, sight, self.pushed, floor_m)
+        in_depth = self.pushed or _shows_depth(context, take, sight, place)
         set_corrected(self, context, take, moved, in_depth)
 
 
@@ -274,7 +275,8 @@ def _preview(take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
     from ...core.posing.dragged import dragged
     from ..bridge.pose import write_posture
 
-    moved = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, drag.depth_m != 0.0)
+    pushed, floor_m = drag.depth_m != 0.0, take.matching.known_floor_m
+    moved = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, pushed, floor_m)
     write_posture(take.armature, moved)
 
 

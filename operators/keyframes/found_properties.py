@@ -197,6 +197,14 @@ class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
         description="Whether that pose was moved in depth, and not in the camera's picture alone",
         options={"HIDDEN"},
     )
+
+    @property
+    def known_floor_m(self) -> float | None:
+        """Height of the floor where it is given or was found [m]."""
+        if self.floor == "HEIGHT":
+            return float(self.floor_height)
+        return float(self.floor_found) if self.is_property_set("floor_found") else None
+
     matches: bpy.props.CollectionProperty(type=KEYMARK_PG_match)
     active_match: bpy.props.IntProperty(
         name="Last Chosen", description="The found keyframe that was chosen last", min=0, options={"HIDDEN"}

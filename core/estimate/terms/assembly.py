@@ -17,8 +17,8 @@ from ..clip_problem import ClipProblem, KeyframeEvidence
 from ..clip_state import ClipState, Window
 from ..keyframe_error import POINT_STD_M
 from ..keypoint_evidence import KeypointEvidence
-from ..performer_placement import ANKLE_HEIGHT_STD_M, standing_ankle_m
-from .contact import BalanceTerm, GroundTerm, StillnessTerm
+from ..performer_placement import ANKLE_HEIGHT_STD_M, SHOE_M, standing_ankle_m
+from .contact import BalanceTerm, FloorTerm, GroundTerm, StillnessTerm
 from .keypoints import DepthHintTerm, KeypointTerm
 from .motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
 from .regions import RegionTerm
@@ -122,7 +122,8 @@ def free_frame_terms(
         BalanceTerm(body),
     ]
     if floor_m is not None:
-        terms.append(GroundTerm(_ankles(body), floor_m + standing_ankle_m(body)))
+        standing_m = floor_m + standing_ankle_m(body)
+        terms += [GroundTerm(_ankles(body), standing_m), FloorTerm(_ankles(body), standing_m - SHOE_M)]
     if points is not None and evidence.keypoints.model.names:
         terms += _frame_point_terms(evidence.keypoints, points, starts)
     return BeliefTerm.of(starts, body.skeleton.dof_count, bias_std), terms

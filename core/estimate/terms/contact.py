@@ -96,6 +96,31 @@ def _kernel(x: Array) -> Array:
     return np.asarray((1.0 + x**2) ** -2.0)
 
 
+@dataclass(frozen=True)
+class FloorTerm:
+    """A one-sided spring on every point below a height: nobody stands in the floor."""
+
+    points: tuple[int, ...]  # which of the principal points: the ankles
+    least_m: float  # how low they come [m]
+    std_m: float = 0.01  # how exactly a floor is level
+    robust: ClassVar[bool] = False
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add a row for each point, zero above the height."""
+        below = self._below(state)
+        jacobian = state.body.points_jacobian(state.pose)[:, list(self.points), 2] @ state.tangent_jacobian
+        equations.add_rows(below, jacobian * ((below != 0.0) / self.std_m)[..., None])
+
+    def cost(self, state: ClipState) -> Array:
+        """(F,) half the sum of squares."""
+        return np.asarray(0.5 * (self._below(state) ** 2).sum(-1))
+
+    def _below(self, state: ClipState) -> Array:
+        """(F, points) how far each is below [standard deviations], negative; 0 above."""
+        heights = state.body.points(state.pose)[:, list(self.points), 2]
+        return np.asarray(np.minimum(heights - self.least_m, 0.0) / self.std_m)
+
+
 DEGREES = 3.0  # of Student's t: leaps and stairs are forgiven
 
 
