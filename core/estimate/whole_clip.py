@@ -126,7 +126,8 @@ def estimate_whole_clip(
     swapped = _swaps(usual.model, keypoints, prior, index, tracks.time_s)
     keypoints = doubted_at_changes(exchanged_back(keypoints, swapped), swapped, tracks.time_s)
     points = ObservedKeypoints.of(keypoints)
-    posed = index[~matched]
+    corrected = np.zeros_like(matched) if believed.corrected is None else believed.corrected
+    posed = index[~matched | corrected]
     if keypoints.names and len(posed):
         said = keypoint_trust(usual.model, usual.sources, points, body.pose(prior[posed]), posed)
         usual = replace(usual, trust=said.trust, lag={name: lag for name, lag in said.lag.items() if lag})
@@ -139,7 +140,7 @@ def estimate_whole_clip(
     at = SeenAtKeyframes(
         index, prior[index], observed[index], width_px[index], usual, points[index], outlines
     )
-    reading = read_mixed_keyframes(model, options.regions, at, match_scale)
+    reading = read_mixed_keyframes(model, options.regions, at, match_scale, corrected)
     ankle_height_m = None  # posed keyframes say where the floor is, and better
     if matched.all() or believed.lower_ankle is not None:
         ankle_height_m = believed.lower_ankle
@@ -151,7 +152,7 @@ def estimate_whole_clip(
         noise=options.regions,
         keyframes=index,
         matched=matched,
-        corrected=np.zeros_like(matched) if believed.corrected is None else believed.corrected,
+        corrected=corrected,
         evidence=(yield from scaled(reading, 0.0, 0.0)),
         factor=process_noise_factor(prior[index], tracks.time_s[index]),
         interpolated=prior,

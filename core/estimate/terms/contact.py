@@ -74,7 +74,7 @@ class StillnessTerm:
         """(F - 1, points) how far each point is taken to stand, 0 to 1."""
         speed, height = self._moving(travel, middle, frame)
         standing = _kernel(speed) * _kernel(height)
-        return np.asarray(standing if self.rests is None else np.maximum(standing, self.rests))
+        return np.asarray(standing if self.rests is None else np.maximum(standing, HELD * self.rests**4))
 
     def standing(self, state: ClipState) -> Array:
         """(F - 1, points) how far each point is taken to stand in a state, 0 to 1."""
@@ -89,6 +89,11 @@ class StillnessTerm:
         speed = np.linalg.norm(counted, axis=-1) / self.step_s[:, None]
         height = middle[..., 2] - middle[..., 2].min(axis=1, keepdims=True)
         return speed / self.release_speed_m_s, height / self.release_height_m
+
+
+HELD = 5.0
+"""Weight of a foot that is known to rest: 3 mm from frame to frame add up over a rest in which a corrected
+keyframe has it elsewhere. The fourth power leaves out feet of which that is not sure."""
 
 
 def _kernel(x: Array) -> Array:
