@@ -136,10 +136,8 @@ def _copied(make: Maker, motion: Motion, source: SegmentMotion, frames: np.ndarr
     started = time.process_time()
     action = copy_rotations(actor, armature, own.character_map, (int(frames[0]), int(frames[-1])))
     seconds = time.process_time() - started
-    quality = run(
-        measure(armature, action, frames, source, own.motion, character, own.character_map, in_fk={})
-    )
-    return _row(quality, seconds, len(frames)) | {"keys_share": 100.0}
+    found = run(measure(armature, action, frames, source, own.motion, character, own.character_map, in_fk={}))
+    return _row(found.quality, seconds, len(frames)) | {"keys_share": 100.0}
 
 
 def _row(quality: Quality, seconds: float, frame_count: int) -> Row:

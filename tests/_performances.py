@@ -131,4 +131,4 @@ def quality(
     """Figures of a solved motion."""
     return measured(
         source_joints(source), motion, joints(character_map, motion), soles(character, character_map, motion)
-    )
+    ).quality

@@ -15,6 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 MODULES = {
+    "c3d": "c3d",
     "cv2": "opencv-python-headless",
     "hypothesis": "hypothesis",
     "imageio_ffmpeg": "imageio-ffmpeg",

@@ -14,8 +14,8 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from . import rotations
 from .kinematics import RIGID, Body, Extremities, Pose, segment_turn
-from .posture import Posture
-from .skeleton import SIDES, Segment
+from .posture import Posture, headings_rad, yaw_rotation
+from .skeleton import SIDES, Segment, Skeleton
 
 # Half-widths (lateral, sagittal) at a segment's start and end, as shares of stature.
 HALF_WIDTHS: dict[str, tuple[tuple[float, float], tuple[float, float]]] = {
@@ -216,6 +216,8 @@ def lower_sole_m(body: Body, posture: Posture) -> Array:
 # --- The default posture
 
 
+LIMB_ROOTS = {"arm": "shoulder", "leg": "hip"}
+"""The joint that a limb hangs on, without its side."""
 ARMS_LOWERED_RAD = float(np.radians(75.0))  # less than a right angle: sleeves keep arms off the trunk
 
 
@@ -243,6 +245,30 @@ def standing_posture(
     vector[:3] = np.zeros(3) if place is None else place
     vector[2] += hip_height_m(body)
     return Posture.from_vector(skeleton, vector)
+
+
+def limb_dofs(skeleton: Skeleton, limb: str) -> IndexArray:
+    """Degrees of freedom of a limb, `arm.L` ... `leg.R`."""
+    kind, _, side = limb.partition(".")
+    first = next(i for i, one in enumerate(skeleton.joints) if one.name == f"{LIMB_ROOTS[kind]}.{side}")
+    return next(part for part in skeleton.limbs if skeleton.dof_starts[first] in part)
+
+
+def rested(body: Body, posture: Posture, limbs: tuple[str, ...]) -> Posture:
+    """The postures (F,) with some limbs as one who stands at ease has them: legs hang straight down."""
+    if not limbs:
+        return posture
+    skeleton, ease = posture.skeleton, standing_posture(body)
+    own = np.concatenate([limb_dofs(skeleton, limb) for limb in limbs])
+    balls, hinges = np.isin(skeleton.ball_dofs[:, 0], own), np.isin(skeleton.hinge_dofs, own)
+    turns = np.where(balls[:, None, None], ease.rotations, posture.rotations)
+    angles = np.where(hinges, ease.angles, posture.angles)
+    upright = np.swapaxes(posture.rotations[..., 0, :, :], -1, -2) @ yaw_rotation(headings_rad(posture))
+    names = [skeleton.joints[joint].name for joint in skeleton.ball_joints]
+    for limb in limbs:
+        if limb.startswith("leg"):
+            turns[..., names.index(f"hip.{limb[-1]}"), :, :] = upright
+    return Posture(skeleton, posture.translation, turns, angles)
 
 
 def hip_height_m(body: Body) -> float:

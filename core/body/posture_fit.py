@@ -79,7 +79,7 @@ def _in_frame(frame: Array, direction: Array) -> Array:
     return np.einsum("nji,nj->ni", frame, direction)
 
 
-def _nearest_rotation(matrix: Array) -> Array:
+def nearest_rotation(matrix: Array) -> Array:
     """The nearest rotation to each matrix (N, 3, 3); an arbitrary one where points coincide."""
     left, _, right = np.linalg.svd(matrix)
     left[..., 2] *= np.linalg.det(left @ right)[..., None]
@@ -91,7 +91,7 @@ def _assemble(body: Body, hips: Array, turns: dict[str, Array], angles: dict[str
     rest = Posture.rest(skeleton, (len(hips),))
     matrices, hinges = np.array(rest.rotations), np.array(rest.angles)
     for column, joint in enumerate(skeleton.ball_joints):
-        matrices[:, column] = _nearest_rotation(turns[skeleton.joints[joint].name])
+        matrices[:, column] = nearest_rotation(turns[skeleton.joints[joint].name])
     for column, joint in enumerate(skeleton.hinge_joints):
         name = skeleton.joints[joint].name
         if name in angles:
@@ -156,7 +156,7 @@ def _residuals(body: Body, posture: Posture, targets: Array, weights: Array) -> 
     return cost, normal, gradient
 
 
-def fit_posture(body: Body, points: Array, start: Posture | None = None) -> PostureFit:
+def fit_posture(body: Body, points: Array, start: Posture | None = None, iterations: int = 60) -> PostureFit:
     """Fit postures of an actor to given points, as closely as its segment lengths allow.
 
     Args:
@@ -164,6 +164,7 @@ def fit_posture(body: Body, points: Array, start: Posture | None = None) -> Post
         points: (N, 13, 3) principal points in the world [m]; NaN for an unknown point (then `start` is
             required).
         start: A batch of N postures to start from; by default a geometric guess.
+        iterations: Most of them; the points are reached long before what they hardly show comes to rest.
     """
     targets = np.asarray(points, dtype=np.float64)
     posture = guess_posture(body, targets) if start is None else start
@@ -173,7 +174,7 @@ def fit_posture(body: Body, points: Array, start: Posture | None = None) -> Post
         posture,
         Posture.plus,
         Posture.where,
-        60,
+        iterations,
         1e-9,
     )
     residual = np.linalg.norm(body.points(body.pose(posture)) - targets, axis=-1)

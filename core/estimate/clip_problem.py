@@ -15,6 +15,7 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..prior.keyframes import with_turns
 from .clip_state import ClipState, Window
 from .keypoint_evidence import KeypointEvidence
+from .terms.reference import ExpectedPoints
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +68,7 @@ class ClipProblem:
     prior: Posture  # the interpolated postures with the turns
     turns: IndexArray  # (K - 1,) whole turns about the vertical that the prior adds in each gap
     limb_size: Array  # (D,) factor on the accelerations of each degree of freedom's limb
-    rests: Array | None  # (F - 1, 2) how far each ankle stands by the footage; None where that is not asked
+    rests: Array | None  # (F - 1, A) how far each ankle seen stands by the footage; None where not asked
     depth_factor: Array  # (F, P) on the noise of the prior's depths, by how far the prior misses each point
     observed: ObservedRegions  # the markers' regions: as tracked, and those found at a second look
 
@@ -79,6 +80,9 @@ class ClipProblem:
     points: ObservedKeypoints  # the same, as they are compared
     swapped: BoolArray  # (F, N) which of them were exchanged
     step_s: Array  # (F - 1,) time between frames [s]
+    unseen: tuple[str, ...]  # limbs that are never seen
+    there: BoolArray  # (F,) whether the performer is there; nothing is solved elsewhere
+    reference: ExpectedPoints | None = None  # where a motion from elsewhere has the points; None without one
 
     @property
     def accelerations(self) -> Array:

@@ -30,6 +30,10 @@ class Window:
         """The frames kept, counted from the window's first."""
         return slice(self.keep_first - self.first, self.keep_last - self.first)
 
+    def moved(self, first: int) -> "Window":
+        """The window of a stretch that begins at a frame of the clip, as a window of the clip."""
+        return Window(self.first + first, self.last + first, self.keep_first + first, self.keep_last + first)
+
 
 def windows(frames: int, length: int, margin: int) -> Iterator[Window]:
     """Windows whose kept parts follow each other without a gap.
@@ -121,3 +125,12 @@ def evenly_spread(frame: IndexArray, most: int) -> IndexArray:
         return np.arange(len(frame))
     wanted = np.linspace(frame[0], frame[-1], most)
     return np.unique(np.abs(frame[:, None] - wanted).argmin(axis=0))
+
+
+def spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:
+    """The base postures (F,) with those that windows keep in their place."""
+    translation, rotations, angles = base.translation.copy(), base.rotations.copy(), base.angles.copy()
+    for window, piece in zip(spans, pieces, strict=True):
+        inner = slice(window.keep_first, window.keep_last)
+        translation[inner], rotations[inner], angles[inner] = piece.translation, piece.rotations, piece.angles
+    return Posture(base.skeleton, translation, rotations, angles)

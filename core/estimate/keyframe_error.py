@@ -118,12 +118,12 @@ def depth_std_m(index: IndexArray, matched: BoolArray, frames: int) -> Array:
     return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** share)
 
 
-def place_depth_std_m(points: Array, ankles: Array, camera: Camera) -> Array:
+def place_depth_std_m(points: Array, ankles: Array | None, camera: Camera) -> Array:
     """(F,) error of a whole composed performer's place along the line of sight [m], which all frames share.
 
     Sizes tell a distance, and so does the floor, the better the more the camera looks down on it.
 
-    `points` (F, P, 3) in the world and `ankles` (F,), heights of the lower one [m].
+    `points` (F, P, 3) in the world and `ankles` (F,), heights of the lower one [m], None where unseen.
     """
     frame = np.arange(len(points))
     middle = points.mean(axis=1)
@@ -131,7 +131,8 @@ def place_depth_std_m(points: Array, ankles: Array, camera: Camera) -> Array:
     location = np.array([camera.pose(int(index))[1] for index in frame])
     distance = np.linalg.norm(middle - location, axis=-1)
     level = np.hypot(sight[:, 0], sight[:, 1]) * distance
-    slope = np.abs(location[:, 2] - ankles) / np.maximum(level, 1e-3)  # of the sight of the feet
+    below = np.zeros(len(points)) if ankles is None else np.abs(location[:, 2] - ankles)
+    slope = below / np.maximum(level, 1e-3)  # of the sight of the feet
     by_size, by_floor = 1.0 / (SIZE_STD * distance), slope / GROUND_STD_M
     return np.asarray(1.0 / np.hypot(by_size, by_floor))
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from ..arrays import BoolArray
 from ..files.fields import listed
 from ..footage.region_tracks import RegionTracks
 from ..prior.keyframes import Matched
@@ -12,14 +13,17 @@ from .clip_problem import KeyframeEvidence
 MOST_NAMED = 3  # largest number of frames that a note names
 
 
-def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:
-    """Notes on markers: found too seldom, variable frame rate, and those of the tracks."""
+def marker_notes(tracks: RegionTracks, there: BoolArray) -> tuple[str, ...]:
+    """Notes on markers: found too seldom, variable frame rate, and those of the tracks.
+
+    `there` (F,): frames in which the performer is there.
+    """
     notes = list(tracks.notes)
     for marker, name in enumerate(tracks.names):
         seen = int(tracks.visible[:, marker].sum())
-        if seen < 0.5 * tracks.frame_count:
+        if seen < 0.5 * there.sum():
             notes.append(
-                f"marker {name} was found in {seen} of {tracks.frame_count} frames only; check its "
+                f"marker {name} was found in {seen} of {there.sum()} frames only; check its "
                 "color, or pose keyframes where it is hidden"
             )
     if tracks.variable_frame_rate:
@@ -92,7 +96,9 @@ def found_notes(take: Take) -> tuple[str, ...]:
     if not found:
         return ()
     posed, origin = len(take.keyframes) - len(found), _origin([said for _, said in found])
-    if posed == 0:
+    if posed == 0 and all(said.is_referred for _, said in found):
+        notes = [f"no keyframe was posed: the motion rests on {len(found)} {origin}"]
+    elif posed == 0:
         notes = [
             (
                 f"no keyframe was posed: the motion rests on {len(found)} {origin}, other performers'; "
@@ -117,7 +123,9 @@ def found_notes(take: Take) -> tuple[str, ...]:
 
 def _origin(found: Sequence[Matched]) -> str:
     libraries = sorted({said.library for said in found if not said.is_composed})
-    parts = ["postures composed of all libraries"] if any(said.is_composed for said in found) else []
+    parts = ["postures of a motion from elsewhere"] if any(said.is_referred for said in found) else []
+    if any(said.is_composed and not said.is_referred for said in found):
+        parts.append("postures composed of all libraries")
     parts += [f"postures of the library {' and '.join(libraries)}"] if libraries else []
     return " and ".join(parts)
 

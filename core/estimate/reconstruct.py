@@ -7,7 +7,8 @@ from types import MappingProxyType
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from ..arrays import Array, chunks
+from ..arrays import Array, BoolArray, chunks
+from ..body.body_volume import limb_dofs, rested
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
@@ -20,19 +21,23 @@ from ..footage.region_tracks import RegionTracks
 from ..prior.keyframe_proposals import evidence_speed
 from ..prior.keyframes import interpolate, with_offset
 from ..progress import Job, Progress, stretch, within
+from ..take.checked_keypoints import with_checked_keypoints
 from ..take.clip_check import check_frame_count, check_in_front
 from ..take.conversion_settings import METHODS
 from ..take.motion import Motion
 from ..take.performer_keypoints import performer_keypoints
+from ..take.presence import absence_notes, presence, unseen_limbs, unseen_notes
 from ..take.read_footage import average_model, read_footage
+from ..take.steady_camera import camera_notes
 from ..take.take import Take
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
-from .keyframe_error import place_depth_std_m, undetermined_covariance, unobserved_variance
+from .keyframe_error import UNOBSERVED, place_depth_std_m, undetermined_covariance, unobserved_variance
 from .keyframe_trust import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .performer_placement import found_ankle_m
+from .reference_evidence import OPTIONS, NoReference, ReferenceEvidence, reference_evidence, with_reference
 from .second_look import seen_tracks
 from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 
@@ -66,13 +71,18 @@ class Reconstruction:
 
 
 def reconstruct(
-    take: Take, method: str = "map", reading: Reading | None = None, earlier: Reconstruction | None = None
+    take: Take,
+    method: str = "map",
+    reading: Reading | None = None,
+    earlier: Reconstruction | None = None,
+    referred: ReferenceEvidence | NoReference | None = None,
 ) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
     `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; `reading` has
     what was read from the same clip before, which is then not opened again; of `earlier` those parts are used
-    that still hold. Closing the generator cancels the job, which has no effects of its own.
+    that still hold; `referred` is what is known already of the take's reference motion. Closing the generator
+    cancels the job, which has no effects of its own.
 
     Raises:
         InputError: The clip cannot be used, a color matches nothing in it, or the method is unknown.
@@ -82,7 +92,7 @@ def reconstruct(
     check_reconstructible(take, method)
     # The matrices are small: more threads of linear algebra take up to twenty times as long.
     with threadpool_limits(limits=1, user_api="blas"):
-        return (yield from _reconstruct(take, method, reading, earlier))
+        return (yield from _reconstruct(take, method, reading, earlier, referred))
 
 
 def check_reconstructible(take: Take, method: str) -> None:
@@ -93,7 +103,7 @@ def check_reconstructible(take: Take, method: str) -> None:
             keyframes.
     """
     check_method(take, method)
-    if len(take.keyframes) < 2:
+    if len(take.keyframes) < 2 and (take.reference is None or method != "map"):
         raise InputError(f"{take.name} has {len(take.keyframes)} keyframes; at least 2 are needed")
 
 
@@ -113,7 +123,11 @@ def check_method(take: Take, method: str) -> None:
 
 
 def _reconstruct(
-    take: Take, method: str, reading: Reading | None, earlier: Reconstruction | None
+    take: Take,
+    method: str,
+    reading: Reading | None,
+    earlier: Reconstruction | None,
+    said: ReferenceEvidence | NoReference | None,
 ) -> Job[Reconstruction]:
     notes, begun = take.notes, 0.0
     if reading is None:
@@ -121,34 +135,55 @@ def _reconstruct(
         begun = EXTRACTION_SHARE
     else:
         _check_tracks(take, reading.tracks)
-    tracks = reading.tracks
+    take = yield from with_checked_keypoints(take, reading, begun)
+    tracks, referred = reading.tracks, None
+    if take.reference is not None and method == "map":
+        said = said or reference_evidence(take, tracks)
+        notes += said.notes
+        if isinstance(said, ReferenceEvidence):
+            referred, take = said, with_reference(take, said)
+        elif len(take.keyframes) < 2:
+            raise InputError(f"{said.notes[0]}; without it at least 2 keyframes are needed")
     keypoints = performer_keypoints(take, interpolate(take.keyframes, tracks.frame_count), tracks)
+    there = presence(take, reading, keypoints)
+    absent = absence_notes(take, there)
+    shaken = camera_notes(take, reading)
+    take = _present(take, there)
     worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps, keypoints)
     left_out = len(take.keyframes) - len(worth)
-    notes += reading.notes + left_out_notes(take, left_out)
+    notes += reading.notes + shaken + absent + left_out_notes(take, left_out)
     take = replace(take, keyframes=worth)
     notes += found_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
+    wide = [OPTIONS.keyframe_width if key.matched and key.matched.is_referred else 1.0 for key in keyframes]
     prior = interpolate(keyframes, tracks.frame_count)
-    if left_out or match_scale.any():  # else the prior is that of all keyframes
+    if left_out or absent or match_scale.any():  # else the prior is that of all keyframes
         keypoints = performer_keypoints(take, prior, tracks)
     notes += keypoints.notes
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution, seen = baseline, average_model(take), None, tracks
     if method == "map":
         usable = _usable(earlier, reading)
-        solution = yield from _whole_clip(take, reading, keypoints, prior, match_scale, begun, usable)
+        ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
+        given = Seen(tracks, take.marker_segments, keypoints, reading.album, ignored, there)
+        unseen = unseen_limbs(take, tracks, keypoints, there)
+        believed = _believed(take, prior, match_scale * wide, unseen, referred)
+        estimate = estimate_whole_clip(take.body, take.camera, given, believed, earlier=usable)
+        solution = yield from within("Estimating the motion", estimate, begun, 1.0)
         seen = seen_tracks(tracks, solution.problem.observed)
-        motion, model = _solved(take, seen, solution, match_scale), solution.evidence.model
-        notes += evidence_notes(take, solution.evidence) + keypoint_notes(solution.keypoints)
-        notes += contour_notes(take, solution.contours is not None)
+        motion, model = _solved(take, seen, solution, match_scale, unseen), solution.evidence.model
+        if not shaken:  # else the camera is what does not fit
+            notes += evidence_notes(take, solution.evidence)
+        notes += keypoint_notes(solution.keypoints)
+        notes += contour_notes(take, solution.contours is not None) + unseen_notes(unseen)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
         notes += filter_notes(take)
     moved = evidence_speed(tracks, take.marker_segments, keypoints, reading.album)
     speed = yield from within("Measuring the speed", moved, 1.0, 1.0)
     yield Progress("Done", 1.0)
-    notes += marker_notes(seen)
+    notes += marker_notes(seen, there)
+    motion, baseline = motion.emptied(there), baseline.emptied(there)
     return Reconstruction(motion, baseline, reading, speed.values, notes, keypoints, model, solution)
 
 
@@ -160,6 +195,16 @@ def _usable(earlier: Reconstruction | None, reading: Reading) -> WholeClipResult
     return earlier.solution if known else None
 
 
+def _present(take: Take, there: BoolArray) -> Take:
+    """The take with the keyframes of frames in which the performer is there."""
+    kept = tuple(key for key in take.keyframes if there[key.index])
+    if len(kept) < 2:
+        raise InputError(
+            f"{take.name} has {len(kept)} keyframes in frames that show somebody; at least 2 are needed"
+        )
+    return replace(take, keyframes=kept)
+
+
 def _check_tracks(take: Take, tracks: RegionTracks) -> None:
     names = tuple(style.name for style in take.markers)
     if tracks.names != names:
@@ -168,24 +213,19 @@ def _check_tracks(take: Take, tracks: RegionTracks) -> None:
     check_in_front(take)
 
 
-def _whole_clip(
+def _believed(
     take: Take,
-    reading: Reading,
-    keypoints: Keypoints,
     prior: Posture,
     match_scale: Array,
-    begun: float,
-    earlier: WholeClipResult | None,
-) -> Job[WholeClipResult]:
-    ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
-    seen = Seen(reading.tracks, take.marker_segments, keypoints, reading.album, ignored)
+    unseen: tuple[str, ...],
+    referred: ReferenceEvidence | None,
+) -> Believed:
     ankle, index = None, np.array(take.keyframe_indices, dtype=np.intp)
     if _is_composed(take):
         ankle = found_ankle_m(take.body, prior[index], index, prior.batch[0])
+    expected = None if referred is None else referred.expected
     corrected = np.array([keyframe.depth_found for keyframe in take.keyframes])
-    believed = Believed(prior, take.keyframe_indices, match_scale, corrected, ankle)
-    estimate = estimate_whole_clip(take.body, take.camera, seen, believed, earlier=earlier)
-    return (yield from within("Estimating the motion", estimate, begun, 1.0))
+    return Believed(prior, take.keyframe_indices, match_scale, ankle, unseen, expected, corrected)
 
 
 def _is_composed(take: Take) -> bool:
@@ -193,7 +233,9 @@ def _is_composed(take: Take) -> bool:
     return all(each.is_composed for each in found) and not all(key.is_posed for key in take.keyframes)
 
 
-def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array) -> Motion:
+def _solved(
+    take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array, never: tuple[str, ...]
+) -> Motion:
     fit = result.keypoints
     diagnostics = {
         "residual_px": result.residual_px,
@@ -217,15 +259,25 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
     visible = np.concatenate([tracks.visible, seen], axis=1)
     names = (*take.marker_segments, *points)
     unseen = unobserved_variance(take.body.skeleton, names, visible, index, tracks.time_s)
-    motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
+    for limb in never:
+        unseen[:, limb_dofs(take.body.skeleton, limb)] = UNOBSERVED.limb_std_rad**2
+    posture = rested(take.body, result.posture, never)
+    motion = _motion(take, tracks, posture, result.covariance, "map", diagnostics, unseen)
+    motion = replace(motion, unseen=never)
     if not match_scale.any():
         return motion
     place_std_m: Array | float = 0.0
     if _is_composed(take):
         ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
-        lower = motion.points[:, ankles, 2].min(axis=1)
+        lower = None if {"leg.L", "leg.R"} <= set(never) else motion.points[:, ankles, 2].min(axis=1)
         place_std_m = place_depth_std_m(motion.points, lower, take.camera)
-    sure = np.array([1.0 if key.matched is None else key.matched.confidence for key in take.keyframes])
+    # A reference motion has its own errors in the estimate; open is what all sizes share.
+    sure = np.array(
+        [
+            1.0 if key.matched is None or key.matched.is_referred else key.matched.confidence
+            for key in take.keyframes
+        ]
+    )
     open_depth = undetermined_covariance(motion.points, take.camera, index, match_scale, sure, place_std_m)
     return replace(motion, point_covariance=motion.point_covariance + open_depth)
 

@@ -15,16 +15,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, BoolArray
-from ..body.posture import Posture
 from ..evidence.keypoints import DEPTH_STD_M
 from ..footage.clips.album import Album
 from ..prior.frame_prior import REFERENCE_STEP_S
 from ..progress import Part, scaled
 from .clip_problem import ClipProblem
-from .clip_state import ClipState, Window
+from .clip_state import ClipState, Window, spliced
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_search import all_located, contour_schedule, points_locate
+from .keyframe_error import match_covariance
 from .second_look import find_lost
+from .terms.assembly import stillness_term
 from .turn_choice import choose_turns
 from .warm_start import changed_gaps
 from .window_problem import WindowProblem
@@ -121,7 +122,7 @@ def _depth_factor(
     gaps = len(problem.keyframes) + 1
     # A gap of which only some frames are estimated again would not tell what all of it did.
     asked = np.bincount(gap[among], minlength=gaps) > 0
-    told &= (asked & (np.bincount(gap[~told], minlength=gaps) == 0))[gap]
+    told &= (asked & (np.bincount(gap[~told & problem.there], minlength=gaps) == 0))[gap]
     count = np.bincount(gap[told], minlength=gaps)
     total = np.stack([np.bincount(gap[told], one[told], minlength=gaps) for one in squared.T], axis=-1)
     mean = total / np.maximum(count, 1)[:, None]
@@ -165,12 +166,37 @@ def _learned(
     schedule = contour_schedule(
         problem.body, camera, album.factor, segments, problem.prior, problem.keypoints
     )
-    posture = _kept(spans, states)
+    solved = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
+    posture = spliced(problem.prior, spans, solved)
     learning = learn_contours(problem.body, camera, album, posture, problem.keyframes, schedule)
     return (yield from scaled(learning, 0.0, 1.0))
 
 
-def _kept(spans: list[Window], states: list[ClipState]) -> Posture:
-    return Posture.concatenate(
-        [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
-    )
+# --- Rests of the feet, which a corrected keyframe amid found ones does not tear
+
+
+def without_corrections(problem: ClipProblem) -> ClipProblem:
+    """The problem with every keyframe as doubtful as a found one; the same where all are, or none is.
+
+    A keyframe that a person put right lies beside frames whose evidence has a foot a little elsewhere. Feet
+    that move from frame to frame are released, so the one frame would jump there and back. Where feet rest is
+    therefore asked before the keyframe is believed, and holds afterwards: the correction moves the whole rest.
+    """
+    decided = ~problem.matched | problem.corrected
+    if not problem.matched.any() or not decided.any():
+        return problem
+    information = problem.evidence.information.copy()
+    frame = problem.keyframes[decided]
+    information[decided] = np.linalg.inv(match_covariance(problem.prior[frame], problem.camera, frame))
+    evidence = replace(problem.evidence, information=information)
+    return replace(problem, evidence=evidence, corrected=np.zeros_like(decided))
+
+
+def rests_of(problem: ClipProblem, spans: list[Window], states: list[ClipState]) -> Array:
+    """(F - 1, A) how far each ankle that is seen stands in states of some windows, 0 to 1; 0 elsewhere."""
+    terms = [stillness_term(problem, window) for window in spans]
+    rests = np.zeros((problem.frames - 1, len(terms[0].points) if terms else 0))
+    for window, term, state in zip(spans, terms, states, strict=True):
+        if window.last - window.first > 1 and term.points:
+            rests[window.first : window.last - 1] = term.standing(state)
+    return rests

@@ -18,6 +18,7 @@ from ..arrays import Array, BoolArray
 from ..evidence.keypoints import ObservedKeypoints
 from ..evidence.regions import ObservedRegions
 from ..footage.camera import Camera
+from ..numerics.vectors import runs
 from .clip_problem import ClipProblem, KeyframeEvidence
 from .clip_state import Window, windows
 from .keyframe_error import posing_covariance, velocities
@@ -85,7 +86,10 @@ def _same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
         and earlier.keypoints.names == now.keypoints.names
         and earlier.keypoints.sources == now.keypoints.sources
         and earlier.noise == now.noise
+        and (earlier.reference is None) == (now.reference is None)
         and np.array_equal(earlier.step_s, now.step_s)
+        and np.array_equal(earlier.there, now.there)
+        and earlier.unseen == now.unseen
     )
 
 
@@ -147,6 +151,8 @@ def _changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     changed = np.asarray(np.abs(now.prior.minus(earlier.prior)).max(axis=1) > SAME.posture)
     changed |= _observations_differ(earlier.tracked, now.tracked)
     changed |= _observations_differ(earlier.points, now.points)
+    if earlier.reference is not None and now.reference is not None:
+        changed |= earlier.reference.differ(now.reference)
     changed |= (earlier.depth_std_m != now.depth_std_m) | _ankle_heights_differ(earlier, now)
     changed[np.setxor1d(earlier.keyframes, now.keyframes)] = True
     corrected = earlier.keyframes[earlier.corrected], now.keyframes[now.corrected]
@@ -182,9 +188,8 @@ def revised_windows(changed: BoolArray, length: int, margin: int) -> list[Window
     effect.
     """
     count = len(changed)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], changed.astype(np.int8), [0]]))).tolist()
     kept: list[list[int]] = []
-    for first, last in zip(edges[::2], edges[1::2], strict=True):
+    for first, last in runs(changed):
         start, stop = max(first - margin, 0), min(last + margin, count)
         if kept and start <= kept[-1][1] + margin:
             kept[-1][1] = stop

@@ -22,10 +22,11 @@ from ..footage.clips.album import Album
 from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
+from ..numerics.vectors import runs
 from ..prior.frame_prior import REFERENCE_STEP_S, process_noise_factor
 from ..progress import Part, scaled
 from .clip_problem import ClipProblem, KeyframeEvidence
-from .clip_state import Window, windows
+from .clip_state import Window, spliced, windows
 from .contour_evidence import ContourEvidence, contour_rows, learn_contours
 from .contour_search import all_located, contour_schedule
 from .keyframe_error import depth_std_m
@@ -35,8 +36,8 @@ from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import doubted_at_changes, exchanged_back, find_swaps, keypoint_trust
 from .performer_placement import lower_ankle_m
-from .refinement import refine
-from .rests import rests_of, without_corrections
+from .refinement import refine, rests_of, without_corrections
+from .terms.reference import ExpectedPoints
 from .warm_start import blend_weight, continued, revised_windows
 from .window_problem import WindowProblem
 
@@ -61,6 +62,7 @@ class Seen:
     keypoints: Keypoints | None = None  # the performer's; None for none
     album: Album | None = None  # pictures of all frames, in which contours are measured; None leaves them out
     ignored: IgnoredPixels | None = None  # what of the pictures is never a marker; None for nothing
+    there: BoolArray | None = None  # (F,) frames in which the performer is there; all where None
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,16 +74,18 @@ class Believed:
     match_scale: Array | None = None
     """(K,) size of each matched keyframe's error, relative to a usual difference between performers; 0 for
     posed ones, which all are by default."""
-    corrected: BoolArray | None = None  # (K,) which of these a person vouches for in the picture
     lower_ankle: Array | None = None  # (F,) where all keyframes are matched [m]; by soles where None
+    unseen: tuple[str, ...] = ()  # limbs that are never seen, whose feet say nothing of the place
+    reference: ExpectedPoints | None = None  # where a motion from elsewhere has the points; None without one
+    corrected: BoolArray | None = None  # (K,) which of the keyframes a person vouches for in the picture
 
 
 @dataclass(frozen=True, eq=False)
 class WholeClipResult:
     """The estimate of F frames; another estimate of the same clip may start from it."""
 
-    posture: Posture  # a batch of F postures
-    covariance: Array  # (F, D, D) of the posture's own tangent
+    posture: Posture  # a batch of F postures; the prior's where the performer is not there
+    covariance: Array  # (F, D, D) of the posture's own tangent; NaN where he is not there
     residual_px: Array  # (F, M) predicted to observed centroids [px]; NaN where not compared
     problem: ClipProblem  # the problem it solves
     contours: ContourEvidence | None  # None where no background can be trusted
@@ -171,6 +175,9 @@ def estimate_whole_clip(
         points=points,
         swapped=swapped,
         step_s=np.maximum(np.diff(tracks.time_s), 1e-3),
+        there=np.ones(tracks.frame_count, dtype=bool) if seen.there is None else seen.there,
+        unseen=believed.unseen,
+        reference=believed.reference,
     )
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or matched.any()) else None
@@ -203,14 +210,21 @@ def _solve(
     kept = None if earlier is None else continued(earlier.problem, problem)
     if earlier is not None and kept is not None:
         problem, changed = kept
-        spans = revised_windows(changed, length, margin // 2)
+        spans = [
+            window.moved(first)
+            for first, last in runs(problem.there)
+            for window in revised_windows(changed[first:last], length, margin // 2)
+        ]
         result = yield from _solve_windows(problem, spans, changed, album, earlier)
         share = blend_weight(changed, margin // 2)[:, None]
         step = share * result.posture.minus(earlier.posture)
         return replace(result, posture=earlier.posture.plus(step))
-    every = list(windows(problem.frames, length, margin))
-    everything = np.ones(problem.frames, dtype=bool)
-    return (yield from _solve_windows(problem, every, everything, album, None, contours))
+    every = [
+        window.moved(first)
+        for first, last in runs(problem.there)
+        for window in windows(last - first, length, margin)
+    ]
+    return (yield from _solve_windows(problem, every, problem.there, album, None, contours))
 
 
 def _solve_windows(
@@ -248,11 +262,13 @@ def _solve_windows(
         refining = refine(problem, spans, states, album, anew, earlier.contours, earlier.problem)
     problem, states, contours = yield from scaled(refining, MARKERS_SHARE, REFINED_SHARE)
     dofs = problem.body.skeleton.dof_count
-    covariance = np.empty((problem.frames, dofs, dofs)) if earlier is None else earlier.covariance.copy()
+    shape = (problem.frames, dofs, dofs)
+    covariance = np.full(shape, np.nan) if earlier is None else earlier.covariance.copy()
     outlined = None if earlier is None or earlier.outlined is None else earlier.outlined.copy()
     if earlier is None and contours is not None and contours.along is not None:
         outlined = np.zeros((problem.frames, len(contours.model.parts.segments)), dtype=bool)
-    residual_px = np.empty(problem.observed.quality.shape) if earlier is None else earlier.residual_px.copy()
+    unseen = np.full(problem.observed.quality.shape, np.nan)
+    residual_px = unseen if earlier is None else earlier.residual_px.copy()
     postures: list[Posture] = []
     for window, begun, ended in stretches:
         first, last = (REFINED_SHARE + (1.0 - REFINED_SHARE) * share for share in (begun, ended))
@@ -264,14 +280,6 @@ def _solve_windows(
         if outlined is not None:
             outlined[inner] = part.outlined()
         postures.append(posture)
-    posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
+    posture = spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
     return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined)
-
-
-def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:
-    translation, rotations, angles = base.translation.copy(), base.rotations.copy(), base.angles.copy()
-    for window, piece in zip(spans, pieces, strict=True):
-        inner = slice(window.keep_first, window.keep_last)
-        translation[inner], rotations[inner], angles[inner] = piece.translation, piece.rotations, piece.angles
-    return Posture(base.skeleton, translation, rotations, angles)

@@ -329,16 +329,25 @@ class NumberArray(Kind):
     shape: tuple[int, ...]
     """Lengths of its axes; -1 for any."""
     limit: float
+    null_rows: bool = False
+    """Whether null may stand in place of a whole entry of the list; its numbers are NaN."""
 
     @property
     def valid(self) -> str:  # type: ignore[override]
         words = " x ".join("any number" if length < 0 else str(length) for length in self.shape)
-        return f"a list of numbers of shape {words}, each within {self.limit:g}"
+        gaps = ", or null for an entry" if self.null_rows else ""
+        return f"a list of numbers of shape {words}, each within {self.limit:g}{gaps}"
 
     def read(self, value: Any, where: str, name: str) -> Array:
+        absent: list[int] = []
+        if self.null_rows and isinstance(value, list):
+            absent = [index for index, row in enumerate(value) if row is None]
+            row = np.zeros(self.shape[1:]).tolist()
+            value = [row if one is None else one for one in value] if absent else value
         array = number_array(value)
         if array is None or array.ndim != len(self.shape) or not np.all(np.abs(array) <= self.limit):
             refuse(where, name, value, self.valid)
         if any(length not in (-1, given) for length, given in zip(self.shape, array.shape, strict=True)):
             refuse(where, name, value, self.valid)
+        array[absent] = np.nan
         return array

@@ -4,16 +4,17 @@ The orientation of a shin or foot is taken apart as Rz(heading) Ry(roll) Rx(pitc
 positive pitch points the toes down. All arrays are of left and right on the axis after the frames.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import convolve1d, maximum_filter1d
 
 from ..arrays import Array
 from ..body.body_volume import sole_offsets
 from ..body.kinematics import Body, Pose
 from ..body.skeleton import SIDES
-from .planted_feet import NEIGHBORHOOD_S, Contact
+from .contacts import NEIGHBORHOOD_S, Contact
 
 TOES_UP_RAD = np.radians(50.0)
 """Dorsiflexion of a loaded ankle: about 40 degrees in a lunge (Bennell et al. 1998, *Australian Journal of
@@ -126,7 +127,10 @@ NOISE_M = 0.03  # two rests on one floor differ by no more than this unless one 
 class FootGround:
     """The ground under both feet in F frames."""
 
-    height_m: Array  # (F, 2) height of the ground under the left and the right foot [m]
+    height_m: (
+        Array  # (F, 2) height of the ground under the left and the right foot, nowhere above the ankle [m]
+    )
+    floor_m: Array  # (F, 2) the same by the feet's rests alone: between two of them the lower one's [m]
     resting: Array  # (F, 2) how far the foot rests flat, 0 to 1
     on_toes: Array  # (F, 2) how far it rests on its toes, 0 to 1
 
@@ -142,12 +146,15 @@ def find_ground(shins: Shins, soles: Soles, time_s: Array, contacts: Sequence[Co
         weight = resting if flat - level < NOISE_M else on_toes
         weight[rows, contact.point] = _settled(time_s[rows])
     if contacts:
-        height = np.stack([_between(foot, contacts, levels, time_s) for foot in range(2)], axis=-1)
+        height, floor = (
+            np.stack([_between(foot, contacts, levels, time_s, lower) for foot in range(2)], axis=-1)
+            for lower in (False, True)
+        )
     else:
-        height = np.repeat(_lower_foot(beneath, time_s)[:, None], 2, axis=-1)
+        height = floor = np.repeat(_lower_foot(beneath, time_s)[:, None], 2, axis=-1)
     # A rest's own height is that of its ankle in every frame: what the ankle errs by, the ground has.
     height = (1.0 - resting) * height + resting * beneath
-    return FootGround(np.minimum(height, beneath), resting, on_toes)
+    return FootGround(np.minimum(height, beneath), floor, resting, on_toes)
 
 
 def on_ground(contacts: Sequence[Contact]) -> tuple[Contact, ...]:
@@ -187,8 +194,13 @@ def _settled(time_s: Array) -> Array:
     return smooth_step(edge)
 
 
-def _between(foot: int, contacts: Sequence[Contact], levels: Sequence[float], time_s: Array) -> Array:
-    """(F,) the ground under a foot: at its rests, and beyond them at the other foot's."""
+def _between(
+    foot: int, contacts: Sequence[Contact], levels: Sequence[float], time_s: Array, lower: bool
+) -> Array:
+    """(F,) the ground under a foot: at its rests, and beyond them at the other foot's.
+
+    Between two rests it goes from one to the other, or is that of the lower one.
+    """
     rests = [(c, level) for c, level in zip(contacts, levels, strict=True) if c.point == foot]
     if rests:
         first, last = min(c.first for c, _ in rests), max(c.last for c, _ in rests)
@@ -206,7 +218,10 @@ def _between(foot: int, contacts: Sequence[Contact], levels: Sequence[float], ti
         # Coming down and rolling off, the foot is over the same ground.
         rolling = min(0.15, (stop - start) / 3.0)
         share = (time_s - start - rolling) / max(stop - start - 2.0 * rolling, 1e-9)
-        height[before.last :] = low + (high - low) * smooth_step(share[before.last :])
+        if lower:
+            height[before.last + 1 : after.first], height[after.first :] = min(low, high), high
+        else:
+            height[before.last :] = low + (high - low) * smooth_step(share[before.last :])
     return height
 
 
@@ -222,3 +237,49 @@ def smooth_step(share: Array) -> Array:
     """0 below 0, 1 above 1, and smooth in between."""
     s = np.clip(share, 0.0, 1.0)
     return np.asarray(s * s * (3.0 - 2.0 * s))
+
+
+def smooth_above(needed: Array, time_s: Array, reach_s: float) -> Array:
+    """A smooth signal (F,) nowhere below the needed one: its running maximum over the reach, smoothed."""
+    if len(needed) < 3 or not needed.any():
+        return np.array(needed)
+    step = float(np.median(np.diff(time_s)))
+    frames = max(1, int(np.ceil(reach_s / step)))
+    highest = maximum_filter1d(needed, 2 * frames + 1, mode="nearest")
+    window = np.hanning(2 * frames + 3)[1:-1]
+    return np.asarray(convolve1d(highest, window / window.sum(), mode="nearest"))
+
+
+# --- Feet that are in the ground all the same
+
+
+IN_FLOOR_M = 0.002
+"""Depth from which a foot counts as below the floor, at a performer's size [m]: more than key reduction may
+make of it."""
+MOST_RUNS = 3  # stretches of frames that a sentence names
+
+
+def floor_notes(
+    depth_m: Mapping[str, Array], frames: Array, whose: str = "", size: float = 1.0
+) -> tuple[str, ...]:
+    """Sentences, without a full stop, on feet that are in the floor: which, how deep, and in which frames.
+
+    Depths (F,) are by side, negative above the floor; `whose` follows the foot, and `size` is the body's over
+    a performer's.
+    """
+    notes = []
+    for side, depth in depth_m.items():
+        deep = np.flatnonzero(depth > size * IN_FLOOR_M)
+        if len(deep):
+            runs = np.split(deep, np.flatnonzero(np.diff(deep) > 1) + 1)
+            longest = sorted(runs, key=lambda run: -float(depth[run].max()))[:MOST_RUNS]
+            named = [
+                f"{frames[run[0]]:g}" if len(run) == 1 else f"{frames[run[0]]:g} to {frames[run[-1]]:g}"
+                for run in sorted(longest, key=lambda run: int(run[0]))
+            ]
+            more = f" and {len(runs) - MOST_RUNS} more times" if len(runs) > MOST_RUNS else ""
+            notes.append(
+                f"The {'left' if side == 'L' else 'right'} foot{whose} is up to "
+                f"{1000.0 * float(depth.max()):.3g} mm below the floor, in frames {', '.join(named)}{more}"
+            )
+    return tuple(notes)

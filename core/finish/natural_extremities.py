@@ -16,8 +16,8 @@ from ..body.posture import Posture
 from ..body.rotations import exponential, hinge
 from ..body.skeleton import SIDES
 from ..numerics.vectors import gaussian, usual_step
+from .contacts import Contact, find_contacts
 from .foot_ground import FootGround, Shins, Soles, find_ground, on_ground, smooth_step
-from .planted_feet import Contact, find_contacts
 
 HANGING_RAD = np.radians(20.0)  # plantarflexion of a foot that hangs free, well above the ground
 HANGING_FROM_M, HANGING_AT_M = 0.15, 0.5  # heights of the sole between which a foot begins to hang
@@ -207,8 +207,8 @@ def natural_extremities(
 
     `contacts` are rests of the ankles, 0 the left and 1 the right; they are found where not given.
     """
-    pose = body.pose(posture)
-    shins, soles = Shins.of(body, pose), Soles.of(body)
+    pose, soles = body.pose(posture), Soles.of(body)
+    shins = Shins.of(body, pose)
     rests = on_ground(find_contacts(shins.ankle, time_s) if contacts is None else contacts)
     ground = find_ground(shins, soles, time_s, rests)
     feet = foot_turns(shins, soles, ground, time_s, rests)

@@ -1,4 +1,4 @@
-"""Contacts of feet, where an ankle is slow, near one place and low, and feet that are held there."""
+"""Feet that are held where they rest and above the ground on their way, and what few keys may make of it."""
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
@@ -6,101 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
-from ..body.kinematics import Body
+from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..estimate.block_banded import BlockBanded
+from .contacts import STRAY_M, Contact, find_contacts
+from .foot_ground import Shins, Soles, find_ground, on_ground, smooth_above
 from .rig import Rig
-
-RELEASE_SPEED_M_S = 0.25  # below this a foot may rest; once it must be slower than half of it
-NEIGHBORHOOD_S = 1.0
-STRAY_M = 0.025  # largest distance of a resting ankle's estimate from its place
-
-
-@dataclass(frozen=True, eq=False)
-class Contact:
-    """A foot at rest."""
-
-    point: int  # index of the point that rests
-    first: int  # the first frame of the rest, from 0
-    last: int  # its last frame, included
-    place: Array  # (3,) its place [m]
-
-
-def find_contacts(places: Array, time_s: Array, stray_m: float = STRAY_M) -> tuple[Contact, ...]:
-    """Find the contacts of points (F, N, 3) [m], in order of point and frame.
-
-    No floor is assumed: a foot may rest on a step or a beam. One that sways or slides farther than it may
-    stray does not rest. A rest on a step begins when the point comes there, though its way there still tells
-    that it is high.
-    """
-    if len(places) < 3:
-        return ()
-    speed = np.linalg.norm(np.gradient(places, time_s, axis=0), axis=-1)
-    found: list[Contact] = []
-    for point in range(places.shape[1]):
-        path, own = places[:, point], speed[:, point]
-        # On stairs a foot that carries the body may be high, while the other one is faster than this.
-        carries = np.delete(speed, point, axis=1).max(axis=1, initial=0.0) > 0.5
-        may_rest = carries | _is_low(path, time_s)
-        free = 0
-        for run in _slow_runs(own, may_rest):
-            first, last = _longest_rest(path, stray_m, *run)
-            lasted, whole = time_s[last] - time_s[first], time_s[run[1]] - time_s[run[0]]
-            # Shortest rest; shorter ones are turning points of a moving foot.
-            # Least share of a slow run that a rest takes; a foot that is slow but does not stay slides.
-            if lasted >= max(0.2, 0.6 * whole):
-                place = path[first : last + 1].mean(axis=0)
-                near = np.linalg.norm(path - place, axis=-1) <= stray_m
-                rest = _widened(~may_rest & near & (own < RELEASE_SPEED_M_S), first, last, free)
-                found.append(Contact(point, *rest, place))
-                free = rest[1] + 1
-    return tuple(found)
-
-
-def _is_low(path: Array, time_s: Array) -> BoolArray:
-    """(F,) whether a point is near its own lowest."""
-    low = np.array(
-        [path[np.abs(time_s - now) <= NEIGHBORHOOD_S, 2].min() for now in time_s], dtype=np.float64
-    )
-    return np.asarray(path[:, 2] - low < 0.05)
-
-
-def _widened(stays: BoolArray, first: int, last: int, free: int) -> tuple[int, int]:
-    """The range of frames (first, last) with the frames from `free` on beside it in which the point stays."""
-    while first > free and stays[first - 1]:
-        first -= 1
-    while last < len(stays) - 1 and stays[last + 1]:
-        last += 1
-    return first, last
-
-
-def _slow_runs(speed: Array, may_rest: BoolArray) -> list[tuple[int, int]]:
-    """Runs of frames (first, last) that stay below the release speed and somewhere rest."""
-    slow = (speed < RELEASE_SPEED_M_S) & may_rest
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], slow.astype(np.intp), [0]])))
-    runs = zip(edges[::2], edges[1::2] - 1, strict=True)
-    return [(int(a), int(b)) for a, b in runs if speed[a : b + 1].min() < 0.12]
-
-
-def _longest_rest(path: Array, stray_m: float, first: int, last: int) -> tuple[int, int]:
-    """The longest part of a run that stays near its own mean place."""
-    longest = (first, first)
-    start = first
-    for stop in range(first + 1, last + 1):
-        while not _stays(path[start : stop + 1], stray_m):
-            start += 1
-        if stop - start > longest[1] - longest[0]:
-            longest = (start, stop)
-    return longest
-
-
-def _stays(path: Array, stray_m: float) -> bool:
-    return bool((np.linalg.norm(path - path.mean(axis=0), axis=-1) <= stray_m).all())
-
-
-# --- Foot planting
-
 
 FADE_S = 0.2  # time in which a correction fades on either side of a rest
 ANKLE_STD_M = 2e-4  # standard deviation of an ankle from its target
@@ -108,6 +20,11 @@ CHANGE_STD = {"pelvis.location": 0.005, "hip": 0.1, "knee": 0.1, "shin": 0.03}
 """Standard deviation of the change of each degree of freedom [m, rad]: legs before hips, bends before
 twists."""
 RESTING_TOLERANCE_M = 0.0005  # most that key reduction may move a resting ankle: it must not slide
+FLOOR_TOLERANCE_M = (
+    0.0015  # the same of a sole that is near the ground but does not rest: it must not pass it
+)
+NEAR_GROUND_M = 0.03  # height up to which a sole is near the ground
+LIFT_S = 0.1  # time over which a foot is lifted that a few frames would have in the ground
 SOLE_TOLERANCE_M = 0.001  # largest error that it may give heel and tip of a resting foot [m], which lies flat
 ITERATIONS = 8
 
@@ -123,14 +40,21 @@ class PlantedFeet:
 def plant_feet(
     body: Body, posture: Posture, time_s: Array, stray_m: float = STRAY_M
 ) -> Generator[float, None, PlantedFeet]:
-    """Hold resting feet still, by their mean place; postures far from any rest are unchanged."""
+    """Hold resting feet still, by their mean place, and moving ones out of the ground between their rests.
+
+    Postures far from any rest and above the ground are unchanged.
+    """
     ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
-    places = body.points(body.pose(posture))[:, ankles]
+    pose = body.pose(posture)
+    places = body.points(pose)[:, ankles]
     contacts = find_contacts(places, time_s, stray_m)
     yield 0.1
     if not contacts:
         return PlantedFeet(posture, ())
     target, touched = _targets(places, contacts, time_s)
+    lift = _out_of_ground_m(body, pose, contacts, time_s)
+    target[..., 2] += lift
+    touched |= (lift > 0.0).any(axis=1)
     dofs = _free_dofs(body)
     std = np.array([CHANGE_STD[_kind(body.skeleton.dof_names[dof])] for dof in dofs])
     delta = np.zeros((len(time_s), len(dofs)))
@@ -147,10 +71,38 @@ def plant_feet(
     return PlantedFeet(planted, contacts)
 
 
-def point_tolerances(rig: Rig, frame_count: int, tolerance_m: float, contacts: Sequence[Contact]) -> Array:
-    """(F, P) tolerance of each of the rig's points [m], less for resting ankles and soles."""
+def _out_of_ground_m(body: Body, pose: Pose, contacts: Sequence[Contact], time_s: Array) -> Array:
+    """(F, 2) how much higher the ankles must be for feet that could lie flat to be out of the ground [m]."""
+    standing = on_ground(contacts)
+    if not standing:
+        return np.zeros((len(time_s), 2))
+    shins, soles = Shins.of(body, pose), Soles.of(body)
+    floor = find_ground(shins, soles, time_s, standing).floor_m
+    needed = np.maximum(floor + soles.clearance_m(shins) - shins.ankle[..., 2], 0.0)
+    for contact in contacts:  # a resting foot is where it rests
+        needed[contact.first : contact.last + 1, contact.point] = 0.0
+    lifted = np.stack([smooth_above(own, time_s, LIFT_S) for own in needed.T], axis=1)
+    for contact in contacts:
+        lifted[contact.first : contact.last + 1, contact.point] = 0.0
+    return lifted
+
+
+def point_tolerances(
+    rig: Rig,
+    frame_count: int,
+    tolerance_m: float,
+    contacts: Sequence[Contact],
+    near_ground: BoolArray | None = None,
+) -> Array:
+    """(F, P) tolerance of each of the rig's points [m], less for resting ankles and soles.
+
+    `near_ground` (F, 2) says where a sole that moves is near the ground.
+    """
     allowed = np.full((frame_count, rig.point_slices[-1].stop), tolerance_m)
     row = {bone.name: index for index, bone in enumerate(rig.bones)}
+    for side, near in zip(SIDES, () if near_ground is None else near_ground.T, strict=False):
+        soles = sole_rows(rig, side)
+        allowed[np.ix_(near, soles)] = min(FLOOR_TOLERANCE_M, tolerance_m)
     for contact in contacts:
         frames, side = slice(contact.first, contact.last + 1), SIDES[contact.point]
         ankle = rig.point_slices[row[f"shin.{side}"]].start + 1
@@ -160,6 +112,15 @@ def point_tolerances(rig: Rig, frame_count: int, tolerance_m: float, contacts: S
             allowed[frames, foot.start] = min(RESTING_TOLERANCE_M, tolerance_m)
             allowed[frames, foot.start + 1 : foot.stop] = min(SOLE_TOLERANCE_M, tolerance_m)
     return allowed
+
+
+def sole_rows(rig: Rig, side: str) -> IndexArray:
+    """Which of a rig's points are heel and tip of a foot; none where it has no bone of its own."""
+    row = {bone.name: index for index, bone in enumerate(rig.bones)}
+    if f"foot.{side}" not in row:
+        return np.zeros(0, dtype=np.intp)
+    foot = rig.point_slices[row[f"foot.{side}"]]
+    return np.arange(foot.start + 1, foot.stop)
 
 
 def _free_dofs(body: Body) -> IndexArray:

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from ..arrays import Array, IndexArray
+from ..arrays import Array, BoolArray, IndexArray
 
 
 def unit(vectors: Array) -> Array:
@@ -22,6 +22,12 @@ def usual_step(time_s: Array, otherwise: float = 1.0) -> float:
     step = np.diff(time_s)
     advancing = step[np.isfinite(step) & (step > 0.0)]
     return float(np.median(advancing)) if len(advancing) else otherwise
+
+
+def runs(holds: BoolArray) -> list[tuple[int, int]]:
+    """First frame, and the one after the last, of each run of frames (F,) in which something holds."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], holds.astype(np.int8), [0]]))).tolist()
+    return list(zip(edges[::2], edges[1::2], strict=True))
 
 
 def columns_at(at: Array | IndexArray, known: Array | IndexArray, values: Array) -> Array:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
+from ..body.body_volume import rested
 from ..body.human import LIMBS
 from ..body.kinematics import Body
 from ..body.posture import Posture
@@ -109,6 +110,7 @@ def compose_frames(
         rough = rough_depths(given.body, camera, evidence, sampled, time_s)
     if floor_m is None:
         floor_m = floor_height_m(given, stances, rough)
+    floor_seen_m = None if set(LEGS) <= set(given.unseen) else floor_m  # feet never seen tell no place
     yield 0.1
     beliefs: Sequence[PartBelief | None] = [None] * len(sampled)
     for turn, shares in enumerate(rounds):
@@ -119,11 +121,11 @@ def compose_frames(
         rows = np.unique(np.append(np.arange(0, len(sampled), 1 if is_last else 2), len(sampled) - 1))
         weight = tempering(time_s[rows])
         believed = [beliefs[row] for row in rows]
-        costs = _costs(given, stances, sampled[rows], floor_m, believed, weight)
+        costs = _costs(given, stances, sampled[rows], floor_seen_m, believed, weight)
         others: list[FrameCosts] = []
         if is_last and len(evidence.points):
             mirrored = replace(given, evidence=evidence.exchanged())
-            others = _costs(mirrored, stances, sampled[rows], floor_m, believed, weight)
+            others = _costs(mirrored, stances, sampled[rows], floor_seen_m, believed, weight)
         states = yield from scaled(_states(costs, others, rough[rows], shares), begun, searched)
         step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
         leading = best_path(stances, states, costs, others, time_s[rows], weight, step_m)
@@ -135,7 +137,7 @@ def compose_frames(
             rough = np.array([camera.depth(at, int(frame)) for at, frame in zip(hips, sampled, strict=True)])
             telling = part_beliefs(given, pools, stances, posture, hips, floor_m)
             beliefs = yield from scaled(telling, led, ended)
-    return Composition(path, states, posture, floor_m)
+    return Composition(path, states, rested(given.body, posture, given.unseen), floor_m)
 
 
 def _posed_throughout(given: PosingInput) -> bool:
@@ -151,7 +153,7 @@ def _costs(
     given: PosingInput,
     stances: StanceFeatures,
     frames: IndexArray,
-    floor_m: float,
+    floor_m: float | None,
     beliefs: Sequence[PartBelief | None],
     weight: float,
 ) -> list[FrameCosts]:

@@ -3,12 +3,16 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from ..body.posture import Posture
+from ..estimate.performer_placement import found_ankle_m, standing_ankle_m
+from ..estimate.reference_evidence import ReferenceEvidence
 from ..files.fields import listed
-from ..prior.keyframes import Keyframe, Matched
-from ..prior.texts import COMPOSED
+from ..prior.keyframes import Keyframe, Matched, interpolate
+from ..prior.texts import COMPOSED, REFERENCE
 from ..take.take import Take
-from .candidates import MatchedFrame
+from .candidates import Candidate, MatchedFrame
 
 NEAR_FRAMES = 2  # found keyframes keep farther than this from posed ones
 
@@ -54,6 +58,23 @@ def with_found(take: Take, found: FoundPoses) -> Take:
         if index is not None and index not in keyframes:
             keyframes[index] = found.keyframe(frame, index)
     return replace(take, keyframes=tuple(each for _, each in sorted((keyframes | kept).items())))
+
+
+def referred_poses(take: Take, said: ReferenceEvidence) -> FoundPoses:
+    """The poses that a take has from its reference motion, among its keyframes already."""
+    count = len(said.expected.points)
+    postures = interpolate(take.keyframes, count)
+    frames = tuple(
+        MatchedFrame(key.index, (Candidate(key.posture, "", False, said.confidence),))
+        for key in said.keyframes
+    )
+    every = np.arange(count)
+    lower = found_ankle_m(take.body, postures, every, count)
+    floor_m = float(np.min(lower)) - standing_ankle_m(take.body)
+    reason = (
+        f"the found poses are those of {said.name}, which fits the footage {said.gain:.0%} better than chance"
+    )
+    return FoundPoses(frames, postures, said.gain, floor_m, reason, library=REFERENCE)
 
 
 def _free_frame(index: int, posed: Sequence[int], frames: int) -> int | None:

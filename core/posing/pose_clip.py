@@ -11,6 +11,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
+from ..body.body_volume import rested
 from ..body.posture import Posture
 from ..errors import InputError
 from ..estimate.performer_placement import found_ankle_m
@@ -20,6 +21,7 @@ from ..prior.keyframes import Keyframe, interpolate
 from ..prior.library import Library
 from ..prior.texts import COMPOSED
 from ..progress import Job, Part, Progress, stretch, within
+from ..take.checked_keypoints import with_checked_keypoints
 from ..take.take import Take
 from .candidates import MatchedFrame, composed_candidates
 from .compose_clip import Composition, compose_frames
@@ -54,11 +56,13 @@ def pose_clip(
         frames: Indices of the frames to find keyframes at, instead of `keyframe_count` proposed ones.
 
     Raises:
-        InputError: There is no library, none has a posture, or neither a marker nor a keypoint is seen.
+        InputError: There is no library, none has a posture, neither a marker nor a keypoint is seen, or the
+            keypoints are not of this clip.
     """
     usable = [library for library in libraries if library.postures]
     if not usable:
         raise InputError("no keyframe library with a posture is given; at least one is needed to find poses")
+    take = yield from with_checked_keypoints(take, reading)
     with threadpool_limits(limits=1, user_api="blas"):
         given = posing_input(take, reading, keyframe_count)
         if frames is not None:
@@ -74,7 +78,7 @@ def pose_clip(
         composed = yield from within("Composing postures", composing, LEARNED_SHARE, COMPOSED_SHARE)
         fitting = within("Fitting the postures", _fitting(take, given, composed), 0.0, 1.0)
         result = yield from stretch(fitting, COMPOSED_SHARE, 1.0)
-        postures = result.posture
+        postures = rested(given.body, result.posture, given.unseen)
         explained, off = _explained(given, postures[given.sampled])
         candidates = _candidates(pools, stances, given, composed, postures, explained)
         seen = np.isfinite(off).any(axis=1)
@@ -114,15 +118,14 @@ def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[Whol
     return estimate_whole_clip(
         given.body,
         given.camera,
-        Seen(tracks, take.marker_segments, given.keypoints),
+        Seen(tracks, take.marker_segments, given.keypoints, there=given.there),
         Believed(
             interpolate(keyframes, tracks.frame_count),
             tuple(map(int, sampled)),
             scale,
-            corrected,
-            lower_ankle=found_ankle_m(
-                given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m
-            ),
+            found_ankle_m(given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m),
+            given.unseen,
+            corrected=corrected,
         ),
     )
 

@@ -15,10 +15,12 @@ from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
 from ..footage.region_tracks import RegionTracks
+from ..numerics.vectors import runs
 from ..prior.keyframe_proposals import evidence_speed, propose_keyframes
 from ..prior.keyframes import Keyframe
 from ..progress import run
 from ..take.performer_keypoints import performer_keypoints
+from ..take.presence import presence, unseen_limbs
 from ..take.take import Take
 from .match_evidence import MatchEvidence
 
@@ -69,6 +71,8 @@ class PosingInput:
     keyframes: IndexArray  # (K,) frames whose posture is asked for
     posed: PosedFrames
     keypoints: Keypoints  # all the performer's, in the detector's layout
+    there: BoolArray  # (F,) frames in which the performer is there; others have no posture
+    unseen: tuple[str, ...] = ()  # limbs that are never seen
     first: int = 0  # index of the first of these frames in the clip
 
     @cached_property
@@ -78,8 +82,8 @@ class PosingInput:
         duration = float(time_s[-1] - time_s[0]) / max(len(time_s) - 1, 1)
         # Rate at which a clip is sampled: between samples this near a motion's posture is well known.
         stride = max(1, round(1.0 / 15.0 / duration)) if duration > 0.0 else 1
-        even = np.arange(0, len(time_s), stride)
-        every = np.concatenate([even, [len(time_s) - 1], self.keyframes, self.posed.frames])
+        even = [np.append(np.arange(first, last, stride), last - 1) for first, last in runs(self.there)]
+        every = np.concatenate([*even, self.keyframes, self.posed.frames])
         return np.unique(every).astype(np.intp)
 
     @cached_property
@@ -110,15 +114,32 @@ def posing_input(take: Take, reading: Reading, keyframe_count: int | None = None
         given = (("marker", take.markers), ("keypoint", take.keypoints))
         missing = " and ".join(name for name, has in given if has)
         raise InputError(f"{take.clip}: no {missing} is seen in the footage, so no posture can be found")
-    speed = run(evidence_speed(tracks, take.marker_segments, keypoints))
+    speed = run(evidence_speed(tracks, take.marker_segments, keypoints)).values
+    there = presence(take, reading, keypoints)
+    posed = [keyframe for keyframe in take.keyframes if there[keyframe.index]]
     return PosingInput(
         take.body,
         take.camera,
         MatchEvidence.of(tracks, take.marker_segments, keypoints),
-        propose_keyframes(speed.values, keyframe_count),
-        PosedFrames.of(take.body, take.keyframes),
+        _proposed(speed, there, keyframe_count),
+        PosedFrames.of(take.body, posed),
         keypoints,
+        there,
+        unseen_limbs(take, tracks, keypoints, there),
     )
+
+
+def _proposed(speed: Array, there: BoolArray, count: int | None) -> IndexArray:
+    """Frames to ask for, in each stretch in which the performer is there its share of `count`."""
+    if there.all():
+        return propose_keyframes(speed, count)
+    chosen = []
+    for first, last in runs(there):
+        length, own = last - first, None
+        if count is not None:
+            own = min(max(round(count * length / int(there.sum())), 2), length)
+        chosen.append(first + (propose_keyframes(speed[first:last], own) if length > 1 else np.zeros(1, int)))
+    return np.concatenate(chosen).astype(np.intp)
 
 
 def check_followed(take: Take) -> None:
@@ -151,6 +172,7 @@ def stretch_of(whole: PosingInput, first: int, last: int) -> PosingInput:
             whole.body, held - first, tuple(posed.postures[row] for row in rows), posed.depth_found[rows]
         ),
         keypoints=_keypoints(whole.keypoints, own),
+        there=np.ones(last + 1 - first, dtype=np.bool_),  # a person asks for them
         first=whole.first + first,
     )
 

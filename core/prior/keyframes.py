@@ -11,7 +11,7 @@ from ..body.posture import Posture, headings_rad, yawed_at
 from ..body.posture_spline import cubic_spline, linear_spline
 from ..files.kinds import Number, Text
 from ..files.records import Record
-from .texts import COMPOSED
+from .texts import COMPOSED, REFERENCE
 
 DOUBTFUL = 0.5  # confidence below which a found keyframe is doubtful: more likely wrong than about right
 
@@ -40,8 +40,13 @@ class Matched(Record):
 
     @property
     def is_composed(self) -> bool:
-        """Whether parts of several libraries were put together, for this performer in this footage."""
-        return self.library == COMPOSED
+        """Whether it was made for this performer in this footage, of no single library."""
+        return self.library in (COMPOSED, REFERENCE)
+
+    @property
+    def is_referred(self) -> bool:
+        """Whether it is that of a reference motion."""
+        return self.library == REFERENCE
 
 
 @dataclass(frozen=True, eq=False)

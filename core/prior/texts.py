@@ -14,6 +14,7 @@ from ..files.paths import is_control_character
 
 EVERY_LIBRARY = "auto"  # stands for all libraries where one is named; hence no valid identifier
 COMPOSED = "composed"  # stands for parts of several libraries; hence no valid identifier
+REFERENCE = "reference motion"  # stands for a motion from elsewhere; no identifier has a space
 
 
 LONGEST_IDENTIFIER = 64

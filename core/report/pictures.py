@@ -11,19 +11,24 @@ from ..errors import InputError
 from ..evidence.contours import ContourModel
 from ..footage.camera import Camera
 from ..footage.clips.clip import Clip
+from ..footage.reading import Reading
 from ..footage.region_tracks import RegionTracks
 from ..pipeline.result import PICTURES
 from ..review.compared_keypoints import ComparedKeypoints
 from ..take.motion import Motion
+from ..take.steady_camera import steadied_picture
 from ..take.take import Take
 from .canvas import PAPER, SCALE, Canvas, draw_grid, side_directions, write_png
 from .overlay_sheet import CELL_WIDTH, LABEL, MARGIN, evenly_spaced_frames, frame_label, overlay_sheet, sheet
 from .stick_figure import draw_figure, legend, stick_figure
 
 
-def footage_frames(clip: Clip, frames: Sequence[int]) -> dict[int, Image]:
-    """Frames of a clip by their index, rising; those that cannot be read are left out."""
-    return {frame: _reduced(image) for frame, image in clip.source.at(list(frames))}
+def footage_frames(clip: Clip, frames: Sequence[int], reading: Reading | None = None) -> dict[int, Image]:
+    """Frames of a clip by their index, rising, as a steady camera shows them, but unreadable ones."""
+    shown = clip.source.at(list(frames))
+    if reading is None or reading.steady is None:
+        return {frame: _reduced(image) for frame, image in shown}
+    return {frame: _reduced(steadied_picture(image, reading, frame)) for frame, image in shown}
 
 
 def _reduced(image: Image) -> Image:
@@ -75,7 +80,7 @@ def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
 def _floor_height(motion: Motion) -> float:
     """Height of the ground plane if the feet are near it, else of the lowest ankle [m]."""
     names = motion.body.skeleton.point_names
-    lowest = float(motion.points[:, [names.index("ankle.L"), names.index("ankle.R")], 2].min())
+    lowest = float(np.nanmin(motion.points[:, [names.index("ankle.L"), names.index("ankle.R")], 2]))
     return 0.0 if abs(lowest) < 0.5 else lowest
 
 
@@ -86,11 +91,16 @@ def write_pictures(
     tracks: RegionTracks,
     keypoints: ComparedKeypoints | None = None,
     contours: ContourModel | None = None,
+    reading: Reading | None = None,
 ) -> tuple[Path, ...]:
-    """Write the pictures; the frames that they show are decoded in one more pass over the clip."""
+    """Write the pictures; the frames that they show are decoded in one more pass over the clip.
+
+    `reading`: that of the motion, which knows how the camera moved.
+    """
     folder.mkdir(parents=True, exist_ok=True)
-    frames = evenly_spaced_frames(len(motion.time_s))
-    shown = footage_frames(Clip.open(take.clip, fps=take.fps), frames)
+    known = np.flatnonzero(motion.there)
+    frames = tuple(int(known[frame]) for frame in evenly_spaced_frames(len(known)))
+    shown = footage_frames(Clip.open(take.clip, fps=take.fps), frames, reading)
     if not shown:
         raise InputError(f"{take.clip}: can no longer be read; the pictures need it once more")
     write_png(str(folder / PICTURES[0]), overlay_sheet(take, motion, tracks, shown, keypoints, contours))

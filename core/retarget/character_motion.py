@@ -71,7 +71,7 @@ class CharacterMotion:
     way_m: Array = field(default_factory=lambda: np.zeros(3))
     """(F, 3) or (3,) way over the ground that `RootMotion.IN_PLACE` took off, canonical [m]."""
     ground_m: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
-    """(F,) by limb of each planted foot: height of the ground under it, canonical [m]."""
+    """(F,) by leg: height of the ground under its foot, canonical [m]."""
     hands: Mapping[str, HandGoal] = field(default_factory=lambda: MappingProxyType({}))
     """Where hands belong, by side, of those that reach."""
     notes: tuple[str, ...] = ()  # what a person should know, in sentences without a full stop

@@ -16,6 +16,8 @@ from ..body.skeleton import SIDES
 from .character import LONG_BONES
 from .character_motion import CharacterMotion, FootRest
 
+SOLE_M = 0.01
+"""Height over its lowest point up to which a foot touches the ground [m], at the performer's size."""
 FULL_SHARE = 0.95  # share from which a hand's goal counts in full
 
 
@@ -27,9 +29,11 @@ class Quality:
     arms_worst_deg: float | None = None
     legs_deg: float | None = None  # mean angle between the legs' bones and the performer's
     legs_worst_deg: float | None = None
-    skate_mm: float | None = None  # mean way of a resting foot from frame to frame
+    skate_mm: float | None = None
+    """Mean way of a resting foot from frame to frame, of whichever of ankle, heel and toes goes farthest."""
     skate_worst_mm: float | None = None
-    penetration_mm: float | None = None  # greatest depth of a sole below the ground
+    penetration_mm: float | None = None
+    """Greatest depth below the ground of a foot's mesh as it is shown, or of its bones without one."""
     hands_mm: float | None = None
     """Mean distance of wrists from where they belong by the body, the other hand and the floor, in reach."""
     hands_worst_mm: float | None = None
@@ -67,24 +71,35 @@ def direction_errors_deg(
     return np.stack(angles, axis=1)
 
 
-def skate_mm(ankles: Mapping[str, Array], rests: Sequence[FootRest]) -> Array:
-    """(N,) way of resting feet from each frame to the next, of all rests; ankles (F, 3) are by limb."""
-    steps = [
-        np.linalg.norm(np.diff(ankles[rest.limb][rest.first : rest.last + 1], axis=0), axis=-1)
-        for rest in rests
-        if rest.limb in ankles
-    ]
+def skate_mm(feet: Mapping[str, Array], rests: Sequence[FootRest], sole_m: float) -> Array:
+    """(N,) way of resting feet from each frame to the next, of all rests: of the point that goes farthest.
+
+    Feet (F, K, 3) are by limb, the ankle first; of its other points those count that are no higher than
+    `sole_m` over the lowest in the middle of the rest.
+    """
+    steps = []
+    for rest in rests:
+        if rest.limb in feet:
+            path = feet[rest.limb][rest.first : rest.last + 1]
+            height = path[len(path) // 2, :, 2]
+            sole = height - height.min() < sole_m
+            sole[0] = True
+            steps.append(np.linalg.norm(np.diff(path[:, sole], axis=0), axis=-1).max(axis=1))
     return 1000.0 * np.concatenate(steps) if steps else np.empty(0)
 
 
-def penetration_mm(heights_m: Mapping[str, Array], ground_m: Mapping[str, Array]) -> float | None:
-    """Greatest depth below the ground (F,) by leg of soles (F, N) by role of foot and toe; 0 for none."""
-    depths = [
-        float((ground_m[limb][:, None] - heights).max())
-        for role, heights in heights_m.items()
-        if heights.size and (limb := f"leg.{role.rpartition('.')[2]}") in ground_m
-    ]
-    return 1000.0 * max(0.0, *depths) if depths else None
+def depths_m(heights_m: Mapping[str, Array], ground_m: Mapping[str, Array]) -> dict[str, Array]:
+    """(F,) by leg: depth of the lowest point of a foot below the ground (F,), negative above it [m].
+
+    Heights (F, N) are by role of foot and toe.
+    """
+    found: dict[str, Array] = {}
+    for role, heights in heights_m.items():
+        limb = f"leg.{role.rpartition('.')[2]}"
+        if heights.size and limb in ground_m:
+            depth = ground_m[limb] - heights.min(axis=1)
+            found[limb] = np.maximum(found.get(limb, depth), depth)
+    return found
 
 
 def hand_distances_mm(
@@ -109,16 +124,24 @@ def farthest_mm(
     return 1000.0 * max(found) if found else None
 
 
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """What is measured of a motion as it is shown."""
+
+    quality: Quality
+    depth_m: Mapping[str, Array]  # (F,) by leg: depth of its foot below the ground, negative above it [m]
+
+
 def measured(
     source: Mapping[str, Array],
     motion: CharacterMotion,
     shown: Mapping[str, Array],
     soles: Mapping[str, Array],
-) -> Quality:
+) -> Measured:
     """The figures of what is shown of a solved motion, without those of controls and keys.
 
     In the world: joints (F, 3) by role of the performer and of the character, and points (F, N, 3) of its
-    soles.
+    feet by role of foot and toe.
     """
     space = motion.to_world
     up, turn = space.rotation @ motion.stance.T, motion.facing
@@ -130,12 +153,25 @@ def measured(
         return np.asarray((points - space.location) @ up)
 
     carried = {role: canonical(path) + motion.way_m for role, path in shown.items()}
-    skate = skate_mm(
-        {f"leg.{s}": carried[f"foot.{s}"] for s in SIDES if f"foot.{s}" in carried}, motion.rests
-    )
-    depth = penetration_mm(
-        {role: canonical(points)[..., 2] for role, points in soles.items()}, motion.ground_m
-    )
+    under = {role: canonical(points) for role, points in soles.items()}
+    feet = {
+        f"leg.{side}": np.concatenate(
+            [
+                carried[f"foot.{side}"][:, None],
+                *(
+                    points + np.expand_dims(motion.way_m, -2)
+                    for role, points in under.items()
+                    if role[-1] == side
+                ),
+            ],
+            axis=1,
+        )
+        for side in SIDES
+        if f"foot.{side}" in carried
+    }
+    skate = skate_mm(feet, motion.rests, SOLE_M * motion.size)
+    depth_m = depths_m({role: points[..., 2] for role, points in under.items()}, motion.ground_m)
+    deepest = max((float(depth.max()) for depth in depth_m.values()), default=None)
     wrists = {side: carried[f"hand.{side}"] for side in SIDES if f"hand.{side}" in carried}
     places = {side: goal.place_m for side, goal in motion.hands.items()}
     full = {side: (goal.share >= FULL_SHARE) & goal.in_reach for side, goal in motion.hands.items()}
@@ -144,18 +180,19 @@ def measured(
     floors = {side: place * [0.0, 0.0, 1.0] for side, place in places.items()}
     at_floor = {side: full[side] & (goal.floor_share >= FULL_SHARE) for side, goal in motion.hands.items()}
     floor = hand_distances_mm(heights, floors, at_floor)
-    return Quality(
+    quality = Quality(
         arms_deg=_mean(arms),
         arms_worst_deg=_most(arms),
         legs_deg=_mean(legs),
         legs_worst_deg=_most(legs),
         skate_mm=_mean(skate),
         skate_worst_mm=_most(skate),
-        penetration_mm=depth,
+        penetration_mm=None if deepest is None else 1000.0 * max(deepest, 0.0),
         hands_mm=_mean(hands),
         hands_worst_mm=_most(hands),
         hands_floor_mm=_most(floor),
     )
+    return Measured(quality, depth_m)
 
 
 def _mean(values: Array) -> float | None:

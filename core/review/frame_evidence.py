@@ -58,7 +58,10 @@ def contour_sight(reconstruction: Reconstruction) -> Generator[float, None, Cont
     quality = _relative(number / own.sum(axis=0))
     along = predicted.pixel.reshape(len(frame), -1, len(SHARES), len(SIDES), 2)
     lines = np.swapaxes(along, 2, 3).reshape(len(frame), -1, len(SHARES), 2)
-    return ContourSight(tuple(parts), quality, np.where(number > 0.0, misfit, np.nan), lines)
+    there = motion.there
+    lines = np.where(there[:, None, None, None], lines, np.nan)
+    misfit = np.where(there[:, None] & (number > 0.0), misfit, np.nan)
+    return ContourSight(tuple(parts), quality, misfit, lines)
 
 
 def _relative(share: Array) -> Array:
@@ -156,7 +159,7 @@ def compare_keypoints(reconstruction: Reconstruction) -> ComparedKeypoints:
         names=fit.keypoints.names,
         sources=fit.keypoints.sources,
         seen=fit.keypoints.pixel,
-        predicted=fit.predicted_px,
+        predicted=np.where(reconstruction.motion.there[:, None, None], fit.predicted_px, np.nan),
         confidence=ObservedKeypoints.of(fit.keypoints).confidence,
         distance_px=fit.residual_px,
         expected_px=fit.std_px,

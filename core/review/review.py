@@ -124,8 +124,9 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
     """Review a reconstruction; `scene_frames` (F,) are those of the clip's frames."""
     motion, tracks, model = reconstruction.motion, reconstruction.tracks, reconstruction.model
     frame = np.arange(tracks.frame_count)
-    pose = take.body.pose(motion.posture)
+    pose, there = take.body.pose(motion.posture), motion.there
     predicted, offset = yield from within(STAGE, _predictions(model, pose, tracks.centroid), 0.0, 0.5)
+    predicted[~there], offset[~there] = np.nan, np.nan
     contours = yield from within(STAGE, contour_sight(reconstruction), 0.5, 1.0)
     noise, width = RegionNoise(), limb_widths(model, motion.posture.translation, frame)
     variance = noise.surface_std(width)[..., 0] ** 2 + noise.bias_std(width)[..., 0] ** 2
@@ -140,8 +141,8 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
     squared = np.minimum(np.trace(expected, axis1=-2, axis2=-1), wrong**2).mean(axis=1)
     index = np.array(motion.keyframe_indices, dtype=np.intp)
     evidence = frame_evidence(
-        np.where(np.isfinite(squared), squared, 1.0),
-        believed,
+        np.where(there, np.where(np.isfinite(squared), squared, 1.0), 0.0),
+        np.where(there, believed, 1.0),  # where nobody is there no keyframe is missing
         reconstruction.speed,
         MarkerSight(take.marker_segments, np.where(tracks.visible, tracks.quality, 0.0), misfit),
         contours,

@@ -51,7 +51,7 @@ def score_points(
     camera: Camera,
     sigma_m: Array | None = None,
 ) -> Score:
-    """Score points (F, 13, 3) against true ones [m].
+    """Score points (F, 13, 3) against true ones [m]; frames of NaN, in which nobody is there, do not count.
 
     Args:
         points: The motion's.
@@ -69,19 +69,24 @@ def score_points(
     free[list(keyframe_indices)] = False
     if not free.any():
         raise InputError("every frame is a keyframe; a score needs at least one frame without a keyframe")
+    known = np.isfinite(points).all(axis=(1, 2))
+    free &= known
+    if not free.any():
+        raise InputError("the motion is empty in every frame without a keyframe; a score needs at least one")
     error = points - truth  # (F, P, 3)
     distance = np.linalg.norm(error, axis=-1)  # (F, P)
     along, across = _along_and_across(error, truth, camera)
     hips = [HUMAN.point_names.index(name) for name in ("hip.L", "hip.R")]
     rooted = np.linalg.norm(error - error[:, hips].mean(axis=1, keepdims=True), axis=-1)
     bend = np.linalg.norm(np.diff(error, n=2, axis=0), axis=-1)
+    bend = bend[np.isfinite(bend).all(axis=1)]
     # Half-width of a normal distribution's 95 % interval, in standard deviations.
-    covered = None if sigma_m is None else float(np.mean(distance <= 1.96 * sigma_m))
+    covered = None if sigma_m is None else float(np.mean((distance <= 1.96 * sigma_m)[known]))
     return Score(
         frames=len(truth),
-        keyframes=int(np.sum(~free)),
+        keyframes=len(set(keyframe_indices)),
         mpjpe=1e3 * float(distance[free].mean()),
-        mpjpe_all=1e3 * float(distance.mean()),
+        mpjpe_all=1e3 * float(distance[known].mean()),
         rooted=1e3 * float(rooted[free].mean()),
         depth=1e3 * float(along[free].mean()),
         image=1e3 * float(across[free].mean()),
@@ -143,4 +148,5 @@ def _skate(points: Array, truth: Array) -> float | None:
     # An ankle whose true position moves less than this in a frame stands.
     stands = np.linalg.norm(np.diff(truth[:, ankles], axis=0), axis=-1) < 0.004
     travel = np.linalg.norm(np.diff(points[:, ankles, :2], axis=0), axis=-1)
+    stands &= np.isfinite(travel)
     return 1e3 * float(travel[stands].mean()) if stands.any() else None

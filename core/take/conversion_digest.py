@@ -60,6 +60,7 @@ def conversion_digest(
         settings.pictures is not False,
         None if settings.character is None else (_character(settings.character), tuple(maps)),
         *_evidence(description, settings),
+        *(() if settings.reference is None else ((settings.reference.name, _content(settings.reference)),)),
     )
 
 
@@ -69,6 +70,13 @@ def _evidence(description: Description, settings: ConversionSettings) -> tuple[o
     if not keypoints and settings.evidence is None:
         return ()
     return (tuple(_keypoints(file) for file in keypoints), settings.evidence)
+
+
+def _content(path: Path) -> str:
+    try:
+        return content_digest(path)
+    except OSError as error:
+        raise InputError(f"{path}: the reference motion cannot be read ({error.strerror})") from error
 
 
 def _keypoints(path: Path) -> tuple[object, ...]:

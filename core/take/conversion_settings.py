@@ -145,6 +145,7 @@ KEYFRAMES_VALID = (
 KEYPOINTS_VALID = "a file or folder inside the take's folder, as in keypoints.json, or a list of several"
 MOST_KEYPOINT_FILES = 16
 """Sources of keypoints of one take: some detectors, tracks and clicks."""
+REFERENCE_VALID = "the path of a motion inside the take's folder, as in network.bvh"
 LIBRARY_VALID = (
     f"a library's name, {EVERY_LIBRARY}, or the path of a library file inside the folder, as in walking.json"
 )
@@ -168,6 +169,8 @@ class ConversionSettings:
     """Files or folders of keypoints; by default the take's own where it has some."""
     evidence: tuple[str, ...] | None = None
     """Kinds of evidence that are used, in the order of `EVIDENCE`; None for whatever the take has."""
+    reference: Path | None = None
+    """The file of a motion from elsewhere that is evidence too."""
 
     def with_defaults(self, defaults: "ConversionSettings") -> "ConversionSettings":
         """These settings, and the default for each that is None."""
@@ -253,6 +256,9 @@ class SettingsFields(Record):
     evidence: Annotated[tuple[str, ...], EvidenceKinds()] | None = None
     """What the motion is held against; the default is whatever the take has. Hints of depth come with
     keypoints."""
+    reference: Annotated[str, relative_path(REFERENCE_VALID)] | None = None
+    """A 3D motion of the same performance from elsewhere, as a neural network's, in axes, size and time of
+    its own; relative to the take's folder and inside it. In shoot.json a name that every take has."""
     library: LibraryName | None = None
     """Keyframe library to find keyframes with, beside posed ones: its name, a file ending in .json below the
     folder of the file with this field, or auto for all libraries, which is the same as auto in keyframes."""
@@ -291,4 +297,5 @@ def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSe
         character,
         None if said.keypoints is None else tuple(inside("keypoints") / file for file in said.keypoints),
         said.evidence,
+        None if said.reference is None else inside("reference") / said.reference,
     )

@@ -1,28 +1,32 @@
 """A motion: posture, thirteen points and their covariance for every frame of the clip."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.actor import Actor
-from ..body.human import HUMAN
+from ..body.human import HUMAN, LIMBS
 from ..body.kinematics import Body
 from ..body.posture import Posture, posture_to_json, rounded
 from ..errors import ConversionError
 from ..files.json_file import read_json, shown, write_json
-from ..files.kinds import ByName, Items, Kind, NumberArray, Whole, number_array, refuse
+from ..files.kinds import ByName, Choice, Items, Kind, NumberArray, Whole, number_array, refuse
 from ..files.records import Record
 from .evidence import MOST_FRAMES, Frame, FrameCount, FrameRate, Line
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A reconstructed motion of F frames."""
+    """A reconstructed motion of F frames.
+
+    In those in which the performer is not there, points and covariance are NaN, and the posture is that of
+    the nearest frame in which he is.
+    """
 
     body: Body
     fps: float
@@ -38,6 +42,10 @@ class Motion:
     method: str
     diagnostics: Mapping[str, Array] = field(default_factory=lambda: MappingProxyType({}))
     """Diagnostics of the estimate by name, (F, ...) each."""
+    empty: tuple[int, ...] = ()
+    """Indices of the frames in which the performer is not there."""
+    unseen: tuple[str, ...] = ()
+    """Limbs that are never seen and rest, as in `LIMBS`."""
 
     @property
     def scene_frames(self) -> Array:
@@ -48,6 +56,52 @@ class Motion:
     def sigma_m(self) -> Array:
         """(F, 13) square root of the trace of each point's covariance [m]."""
         return np.sqrt(np.trace(self.point_covariance, axis1=-2, axis2=-1))
+
+    @property
+    def there(self) -> BoolArray:
+        """(F,) whether the performer is there."""
+        there = np.ones(len(self.time_s), dtype=np.bool_)
+        there[list(self.empty)] = False
+        return there
+
+    def emptied(self, there: BoolArray) -> "Motion":
+        """The motion with nothing in frames in which the performer is not there, of F."""
+        if there.all():
+            return self
+        return replace(
+            self,
+            posture=self.posture[_nearest(there)],
+            points=np.where(there[:, None, None], self.points, np.nan),
+            point_covariance=np.where(there[:, None, None, None], self.point_covariance, np.nan),
+            empty=tuple(np.flatnonzero(~there).tolist()),
+        )
+
+    def without_absence(self) -> "Motion":
+        """The motion of the frames in which the performer is there alone, without diagnostics."""
+        there = self.there
+        if there.all():
+            return self
+        index = np.cumsum(there) - 1
+        return replace(
+            self,
+            time_s=self.time_s[there],
+            posture=self.posture[there],
+            points=self.points[there],
+            point_covariance=self.point_covariance[there],
+            keyframe_indices=tuple(int(index[key]) for key in self.keyframe_indices if there[key]),
+            diagnostics=MappingProxyType({}),
+            empty=(),
+        )
+
+
+def _nearest(there: BoolArray) -> IndexArray:
+    """(F,) for each frame the nearest in which the performer is there: itself where he is."""
+    known = np.flatnonzero(there)
+    frame = np.arange(len(there))
+    after = np.minimum(np.searchsorted(known, frame), len(known) - 1)
+    before = np.maximum(after - 1, 0)
+    nearer = np.abs(known[before] - frame) < np.abs(known[after] - frame)
+    return known[np.where(nearer, before, after)]
 
 
 LARGEST_BYTES = 2**29
@@ -73,7 +127,7 @@ class Diagnostic(Kind):
 
 
 def _lists(names: tuple[str, ...], *shape: int) -> ByName:
-    item = NumberArray((-1, *shape), LARGEST_NUMBER)
+    item = NumberArray((-1, *shape), LARGEST_NUMBER, null_rows=True)
     return ByName("lists by name", names=names, needs=names, strict=False, item=item)
 
 
@@ -90,13 +144,14 @@ class MotionFile(Record):
     frame_count: FrameCount
     """Number of frames, F."""
     method: Line
-    """map, ekf or interpolation."""
+    """map, ekf, interpolation, or mend for a motion from elsewhere."""
     keyframes: Annotated[tuple[Annotated[int, Whole(-(10**8), 10**8)], ...], Items("frames", 0, MOST_FRAMES)]
     """Scene frames of the keyframes."""
     time_s: Annotated[Array, NumberArray((-1,), LARGEST_NUMBER)]
     """Time of each frame [s]."""
     points: Annotated[Mapping[str, Array], _lists(HUMAN.point_names, 3)]
-    """The thirteen joint centers: F times [x, y, z] [m] each."""
+    """The thirteen joint centers: F times [x, y, z] [m] each; here and below null in frames in which the
+    performer is not there."""
     posture: Annotated[Mapping[str, Array], _lists(HUMAN.dof_names)]
     """The posture by degree of freedom: F numbers [m, rad] each."""
     actor: Actor
@@ -108,10 +163,14 @@ class MotionFile(Record):
     uncertainty."""
     covariance_mm2: Annotated[Mapping[str, Array], _lists(HUMAN.point_names, 6)] = field(default_factory=dict)
     """Covariance of each point: F times xx, xy, xz, yy, yz, zz [mm²]."""
+    unseen: Annotated[
+        tuple[Annotated[str, Choice(LIMBS)], ...], Items("limbs", 0, len(LIMBS), unique="limb")
+    ] = ()
+    """Limbs that are never seen: they rest, and characters keep their own."""
 
     ORDER = (
         *("fps", "frame_start", "frame_count", "method", "keyframes", "time_s", "points", "sigma_m"),
-        *("covariance_mm2", "posture", "actor", "diagnostics"),
+        *("covariance_mm2", "posture", "actor", "diagnostics", "unseen"),
     )
 
     def mistake(self) -> str:
@@ -124,6 +183,13 @@ class MotionFile(Record):
                 return (
                     f"{name} is a list of {len(array)}; it must have one entry for each of {self.frame_count}"
                 )
+        empty = np.isnan(self.points["head"]).any(axis=-1)
+        if empty.all():
+            return "points is null in every frame; a motion has a place in one frame or more"
+        for name in ("points", "posture", "sigma_m", "covariance_mm2"):
+            for key, array in getattr(self, name).items():
+                if (np.isnan(array).reshape(len(array), -1).any(axis=1) != empty).any():
+                    return f"{name}.{key} is null in other frames than points.head; null is for all or none"
         first, last = self.frame_start, self.frame_start + self.frame_count - 1
         if not all(first <= frame <= last for frame in self.keyframes):
             return (
@@ -135,11 +201,15 @@ class MotionFile(Record):
 def write_motion(motion: Motion, path: Path) -> None:
     """Write a motion as `motion.json`, atomically; the same motion gives the same bytes.
 
-    Lengths are in meters and angles in radians, rounded to 1e-6; lists run over the frames of the clip.
+    Lengths are in meters and angles in radians, rounded to 1e-6; lists run over the frames of the clip, and
+    have null where the performer is not there.
     A method that has no covariance (all NaN) leaves `sigma_m` and `covariance_mm2` out.
     """
     _check_finite(motion)
-    names = motion.body.skeleton.point_names
+    names, empty = motion.body.skeleton.point_names, motion.empty
+    posture: dict[str, Any] = posture_to_json(motion.posture)
+    places: Any = _rows(rounded(np.swapaxes(motion.points, 0, 1)), empty)
+    angles: Any = _rows(list(posture.values()), empty)
     file = MotionFile(
         fps=motion.fps,
         frame_start=motion.frame_start,
@@ -147,11 +217,12 @@ def write_motion(motion: Motion, path: Path) -> None:
         method=motion.method,
         keyframes=tuple(index + motion.frame_start for index in motion.keyframe_indices),
         time_s=rounded(motion.time_s),
-        points=dict(zip(names, rounded(np.swapaxes(motion.points, 0, 1)), strict=True)),
-        posture=posture_to_json(motion.posture),
+        points=dict(zip(names, places, strict=True)),
+        posture=dict(zip(posture, angles, strict=True)),
         actor=motion.body.actor,
         diagnostics={name: _significant(rows) for name, rows in sorted(motion.diagnostics.items())},
-        **(_uncertainty(motion) if _has_covariance(motion) else {}),
+        unseen=motion.unseen,
+        **(_uncertainty(motion, empty) if _has_covariance(motion) else {}),
     )
     write_json(path, file.to_json())
 
@@ -159,18 +230,21 @@ def write_motion(motion: Motion, path: Path) -> None:
 def read_motion(path: Path) -> Motion:
     """Read a motion that `write_motion` wrote."""
     file = MotionFile.from_json(read_json(path, LARGEST_BYTES), str(path))
-    body = Body(file.actor)
+    body, points = Body(file.actor), np.stack(list(file.points.values()), axis=1)
+    posture, there = np.stack(list(file.posture.values()), axis=1), np.isfinite(points).all(axis=(1, 2))
     return Motion(
         body=body,
         fps=file.fps,
         frame_start=file.frame_start,
         time_s=file.time_s,
-        posture=Posture.from_vector(body.skeleton, np.stack(list(file.posture.values()), axis=1)),
-        points=np.stack(list(file.points.values()), axis=1),
+        posture=Posture.from_vector(body.skeleton, posture[_nearest(there)]),
+        points=points,
         point_covariance=_covariance(file),
         keyframe_indices=tuple(frame - file.frame_start for frame in file.keyframes),
         method=file.method,
         diagnostics=MappingProxyType(dict(file.diagnostics)),
+        empty=tuple(np.flatnonzero(~there).tolist()),
+        unseen=file.unseen,
     )
 
 
@@ -178,12 +252,22 @@ def _has_covariance(motion: Motion) -> bool:
     return not np.isnan(motion.point_covariance).all()
 
 
-def _uncertainty(motion: Motion) -> dict[str, Any]:
+def _rows(columns: list[list[Any]], empty: tuple[int, ...]) -> list[list[Any]]:
+    """Lists over F frames with None in those that are empty."""
+    for column in columns:
+        for frame in empty:
+            column[frame] = None
+    return columns
+
+
+def _uncertainty(motion: Motion, empty: tuple[int, ...]) -> dict[str, Any]:
     names = motion.body.skeleton.point_names
     covariance = 1e6 * motion.point_covariance[:, :, UPPER[0], UPPER[1]]  # (F, P, 6), meters² to millimeters²
     return {
-        "sigma_m": dict(zip(names, rounded(motion.sigma_m.T), strict=True)),
-        "covariance_mm2": dict(zip(names, _significant(np.swapaxes(covariance, 0, 1)), strict=True)),
+        "sigma_m": dict(zip(names, _rows(rounded(motion.sigma_m.T), empty), strict=True)),
+        "covariance_mm2": dict(
+            zip(names, _rows(_significant(np.swapaxes(covariance, 0, 1)), empty), strict=True)
+        ),
     }
 
 
@@ -201,7 +285,7 @@ def _check_finite(motion: Motion) -> None:
     if _has_covariance(motion):
         arrays["covariance"] = motion.point_covariance
     for name, values in arrays.items():
-        bad = ~np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+        bad = ~np.isfinite(values.reshape(len(values), -1)).all(axis=1) & motion.there
         if bad.any():
             frame = int(np.flatnonzero(bad)[0]) + motion.frame_start
             raise ConversionError(

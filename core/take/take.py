@@ -15,6 +15,7 @@ from ..footage.region_tracks import MarkerStyle
 from ..prior.keyframes import Keyframe
 from .description import TAKE_FILE
 from .evidence import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
+from .reference import ReferenceMotion
 
 POORLY_FITTED_M = 0.06
 """Hand-posed points fit an actor of the right size within two or three centimeters."""
@@ -46,6 +47,8 @@ class Take:
     contours: bool = True
     """Whether the contours of the body are followed, where the camera stands still."""
     ignored_regions: tuple[IgnoredRegion, ...] = ()
+    reference: ReferenceMotion | None = None
+    """A motion of the same performance from elsewhere."""
 
     @property
     def file(self) -> Path:

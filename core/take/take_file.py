@@ -2,7 +2,7 @@
 
 import os
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from itertools import islice
@@ -34,6 +34,7 @@ from .clip_check import open_footage, picture_count
 from .conversion_settings import ConversionSettings
 from .description import KEYPOINT_FILE, Description, describe, keypoint_files
 from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
+from .reference import ReferenceMotion, reference_of_take
 from .take import Take, check_evidence, with_evidence
 
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
@@ -45,6 +46,10 @@ MARKER_NAME = Text(
 )
 
 
+SHORTEST_M, TALLEST_M = 0.5, 3.0
+"""Of a performer."""
+USUAL_HEIGHT_M = 1.75
+"""Of a performer whose height nobody says."""
 FRAME_RATE = Number(1.0, 1000.0, "frames per second")
 FRAME_START = Whole(-(10**6), 10**6)
 
@@ -82,7 +87,7 @@ class ActorFields(Record):
     Of segments_m and height_m the one in the nearer file counts; in the same file, segments_m.
     """
 
-    height_m: Annotated[float, Number(0.5, 3.0, "m")] | None = None
+    height_m: Annotated[float, Number(SHORTEST_M, TALLEST_M, "m")] | None = None
     """Height [m], for a body of average proportions."""
     segments_m: Segments | None = None
     """Lengths of the segments [m]: joint to joint; shoulder_width and hip_width join the two joints' centers,
@@ -147,8 +152,11 @@ def read_described(
     fewest_keyframes: int = FEWEST_KEYFRAMES,
     settings: ConversionSettings | None = None,
     whole: bool = False,
+    read_armature: Callable[[Path], ReferenceMotion] | None = None,
 ) -> Take:
     """Read a take from its description; see `read_take`.
+
+    `read_armature` reads a reference motion that only Blender can; it is left out without it.
 
     `fewest_keyframes` must be in the keyframe file; with 0 the take's own is not opened. `settings` say which
     keypoints are read and which evidence is used, by default the take's own.
@@ -168,7 +176,8 @@ def read_described(
         )
     body = said.actor.body
     posed = keyframes or description.keyframes
-    optional = keyframes is None and not keyframes_required
+    referred = settings.reference is not None  # it has keyframes of its own
+    optional = keyframes is None and (referred or not keyframes_required)
     missing = optional and (fewest_keyframes == 0 or not os.path.exists(posed))
     if not missing and keyframes is None and not os.path.exists(posed):
         named = f" ({fields.source_of('keyframes')} names it)" if fields.has("keyframes") else ""
@@ -189,6 +198,7 @@ def read_described(
         described_in=description.file,
         title=description.name,
         keypoints=_keypoints(description, settings, camera, fps, frame_start, frame_count),
+        reference=reference_of_take(settings.reference, read_armature),
         ignored_regions=ignored_regions(
             said.ignored_regions or (), camera.resolution, frame_start, fields.source_of(IGNORED_REGIONS)
         ),
@@ -220,13 +230,22 @@ def _keypoints(
     return tuple(read_keypoints(file, frame_count, camera.resolution, fps, frame_start) for file in files)
 
 
-def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) -> None:
+NOTHING_MORE: Mapping[str, Any] = {}
+
+
+def write_take(
+    take: Take,
+    folder: Path,
+    evidence: Sequence[str] | None = None,
+    more: Mapping[str, Any] = NOTHING_MORE,
+) -> None:
     """Write a take that `read_take` reads back: `take.json`, `keyframes.json`, keypoints and the clip.
 
-    Every file is written atomically; a clip or keypoints that lie in the folder stay as they are.
+    Every file is written atomically; a clip or keypoints that lie in the folder stay as they are. `more`
+    are fields that a take does not hold.
     """
-    clip = _copy_clip(take, folder)
-    fields: dict[str, Any] = {"fps": take.fps, "frame_start": take.frame_start}
+    clip = _copied(take.clip, folder)
+    fields: dict[str, Any] = {**more, "fps": take.fps, "frame_start": take.frame_start}
     if take.frame_count is not None:
         fields["frame_count"] = take.frame_count
     fields["clip"] = clip
@@ -240,6 +259,8 @@ def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) 
         fields[IGNORED_REGIONS] = ignored_region_fields(take.ignored_regions, take.frame_start)
     if take.keypoints:
         fields["keypoints"] = _write_keypoints(take, folder)
+    if take.reference is not None and take.reference.file:
+        fields["reference"] = _copied(Path(take.reference.file), folder)
     if evidence is not None:
         fields["evidence"] = list(evidence)
     fields["actor"] = {"segments_m": dict(take.body.actor.segments_m)}
@@ -248,15 +269,13 @@ def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) 
     write_json(folder / "take.json", fields, indent=1)
 
 
-def _copy_clip(take: Take, folder: Path) -> str:
-    """Copy the clip into `folder` unless it lies there; returns its path within."""
-    source = take.clip.resolve()
+def _copied(given: Path, folder: Path) -> str:
+    """Copy a clip or a motion into `folder` unless it lies there; returns its path within."""
+    source = given.resolve()
     if source.is_relative_to(folder.resolve()):
         return source.relative_to(folder.resolve()).as_posix()
     if not source.exists():
-        raise InputError(
-            f"{take.clip}: no such file or folder; only a video or a folder of images can be copied"
-        )
+        raise InputError(f"{given}: no such file or folder; only what is there can be copied")
     copy = shutil.copytree if source.is_dir() else shutil.copyfile
     write_atomically(folder / source.name, lambda beside: copy(source, beside))
     return source.name

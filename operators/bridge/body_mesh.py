@@ -1,93 +1,171 @@
-"""Body mesh on the armature's bones: a tapered, rounded limb for each segment, markers in their colors."""
+"""Body mesh on the armature's bones: the shipped human skin in the actor's size, markers in their colors."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+import bmesh
 import bpy
 import numpy as np
-from mathutils import Matrix
+from numpy.typing import NDArray
 
-from ...core.arrays import Array, IndexArray
-from ...core.body.body_volume import body_pieces, marker_parts, ring_quads
+from ...core.arrays import Array
+from ...core.body.body_volume import marker_parts, segment_piece
+from ...core.body.human_mesh import HumanMesh
 from ...core.body.kinematics import Body
+from ...core.body.posture import Posture
+from ...core.body.skeleton import SIDES
 from ...core.footage.region_tracks import MarkerStyle
 from .actor_lengths import skeleton_bones
+from .character.rigify_human import skinned
 
-SIDES_OF_RING = 20
-RINGS_OF_CAP = 4
+SKIN = (178, 164, 150)
+SEGMENTS: dict[str, dict[str, float]] = {
+    "hips": {"pelvis": 1.0},
+    "waist": {"pelvis": 1.0},
+    "ribs": {"chest": 1.0},
+    "chest": {"chest": 1.0},
+    "neck": {"chest": 0.5, "head": 0.5},
+    "head": {"head": 1.0},
+} | {
+    f"{part}.{side}": {f"{segment}.{side}": 1.0}
+    for side in SIDES
+    for part, segment in (
+        ("shoulder", "girdle"),
+        ("upper_arm", "upper_arm"),
+        ("forearm", "forearm"),
+        ("hand", "hand"),
+        ("thigh", "thigh"),
+        ("shin", "shin"),
+        ("foot", "foot"),
+        ("toe", "foot"),
+    )
+}
+"""What of each segment every part of the skin is moved by."""
+NECK, CROWN = 0.43, 1.40  # where the skull begins and ends along the head's segment, in its lengths
+BALL = 0.73  # where the toes begin along the foot's segment
+BESIDE_M = 0.2  # faces so near to a marker's edge are cut along it, at a stature of `STATURE_M`
+STATURE_M = 1.75
 
 
 def build_body_mesh(
     armature_object: bpy.types.Object, body: Body, markers: Sequence[MarkerStyle]
 ) -> bpy.types.Object:
-    """Add a mesh that the armature moves, each vertex with one bone; returns its object.
+    """Add a skin that the armature moves smoothly; returns its object.
 
-    The shaft of a marker's segment has the marker's color, without shading from lights or view transform
-    beyond what the renderer adds; caps and all other segments are a plain skin. `trunk` covers pelvis and
-    chest.
+    The skin around a marker's segment, from joint to joint, has the marker's color, without shading from
+    lights or view transform beyond what the renderer adds. `trunk` covers pelvis and chest.
     """
-    materials = [_material("Body", (178, 164, 150))]
-    color_of: dict[str, int] = {}
-    colored_caps: dict[str, set[int]] = {}
-    for marker in markers:
+    human = HumanMesh.read()
+    weights = human.on_bones(SEGMENTS)
+    standing = human.fitted(body_joints(body))
+    # The joints' frames at the bones' rest, whatever the armature's rest pose is.
+    vertices = np.zeros_like(standing)
+    starts = _starts(body)
+    for model in skeleton_bones(armature_object, body.skeleton):
+        if model.name in weights:
+            rest = np.array(armature_object.data.bones[model.name].matrix_local, dtype=np.float64)
+            placed = rest[:3, 3] + (standing - starts[model.name]) @ model.axes @ rest[:3, :3].T
+            vertices += weights[model.name][:, None] * placed
+    mesh = bpy.data.meshes.new(f"{armature_object.name} Body")
+    mesh.from_pydata(vertices.tolist(), [], human.triangles.tolist())
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(human.triangles), bool))
+    mesh.materials.append(_material("Body", SKIN))
+    body_object = skinned(armature_object, mesh, weights)
+    ends = {
+        part: _piece_ends(armature_object, body, part)
+        for marker in markers
+        for part in marker_parts(marker.segment)
+    }
+    _cut(mesh, [marker_parts(marker.segment) for marker in markers], ends, body.actor.stature_m)
+    segments = _face_segments(body_object)
+    centers = np.array([face.center for face in mesh.polygons], dtype=np.float64)
+    colors = np.zeros(len(mesh.polygons), dtype=np.int32)
+    for number, marker in enumerate(markers, 1):
+        mesh.materials.append(_material(marker.name, marker.color_srgb))
         parts = marker_parts(marker.segment)
         for part in parts:
-            color_of[part] = len(materials)
-            # Where two parts of one marker meet, the joint between them is colored as well.
-            colored_caps[part] = ({1} if part != parts[-1] else set()) | ({0} if part != parts[0] else set())
-        materials.append(_material(marker.name, marker.color_srgb))
-    axes = {model.name: model for model in skeleton_bones(armature_object, body.skeleton)}
-    vertices: list[Array] = []
-    faces: list[IndexArray] = []
-    colors: list[int] = []
-    groups: dict[str, range] = {}
-    count = 0
-    for piece in body_pieces(body):
-        model = axes[piece.segment]
-        rest = np.array(armature_object.data.bones[piece.segment].matrix_local, dtype=np.float64)
-        rings = piece.rings(SIDES_OF_RING, RINGS_OF_CAP, 1)
-        # The joint's frame at the bone's rest, whatever the armature's rest pose is.
-        start = body.local(next(s.start for s in body.skeleton.segments if s.name == piece.segment))
-        placed = rest[:3, 3] + (rings.reshape(-1, 3) - start) @ model.axes @ rest[:3, :3].T
-        quads = ring_quads(len(rings), SIDES_OF_RING)
-        vertices.append(placed)
-        faces.append(quads.reshape(-1, 4) + count)
-        caps = colored_caps.get(piece.segment, set())
-        first = 0 if 0 in caps else RINGS_OF_CAP
-        bands = range(first, RINGS_OF_CAP + 1 + (RINGS_OF_CAP if 1 in caps else 0))
-        material = color_of.get(piece.segment, 0)
-        colors += [
-            material if band in bands else 0 for band in range(len(quads)) for _ in range(SIDES_OF_RING)
-        ]
-        groups[piece.segment] = range(count, count + len(placed))
-        count += len(placed)
-    mesh = _mesh(armature_object.name, np.concatenate(vertices), np.concatenate(faces), colors)
-    for material_data in materials:
-        mesh.materials.append(material_data)
-    return _skinned(armature_object, mesh, groups)
-
-
-def _mesh(name: str, vertices: Array, faces: IndexArray, colors: list[int]) -> bpy.types.Mesh:
-    mesh = bpy.data.meshes.new(f"{name} Body")
-    mesh.from_pydata(vertices.tolist(), [], faces.tolist())
-    mesh.polygons.foreach_set("material_index", np.array(colors, np.int32))
-    mesh.polygons.foreach_set("use_smooth", np.ones(len(faces), bool))
-    mesh.update()
-    return mesh
-
-
-def _skinned(
-    armature_object: bpy.types.Object, mesh: bpy.types.Mesh, groups: dict[str, range]
-) -> bpy.types.Object:
-    body_object = bpy.data.objects.new(mesh.name, mesh)
-    for collection in armature_object.users_collection:
-        collection.objects.link(body_object)
-    body_object.parent = armature_object
-    body_object.matrix_parent_inverse = Matrix.Identity(4)
-    for name, indices in groups.items():
-        body_object.vertex_groups.new(name=name).add(list(indices), 1.0, "REPLACE")
-    modifier = body_object.modifiers.new("Armature", "ARMATURE")
-    modifier.object = armature_object
+            start, end = ends[part]
+            share = (centers - start) @ (end - start) / float((end - start) @ (end - start))
+            worn = segments == part
+            if part == "chest":
+                worn |= np.char.startswith(segments, "girdle")
+            colors[worn & ((share > 0.0) | (part != parts[0])) & ((share < 1.0) | (part != parts[-1]))] = (
+                number
+            )
+    mesh.polygons.foreach_set("material_index", colors)
     return body_object
+
+
+def body_joints(body: Body) -> dict[str, Array]:
+    """(3,) the joints of a body at rest, by the names of `HumanMesh.joints` [m]."""
+    pose = body.pose(Posture.from_vector(body.skeleton, np.zeros(body.skeleton.dof_count)))
+    ends = {segment.name: body.segment_ends(pose, segment.name) for segment in body.skeleton.segments}
+    neck, along = ends["head"][0], ends["head"][1] - ends["head"][0]
+    found = {"neck": neck, "head": neck + NECK * along, "crown": neck + CROWN * along}
+    for side in SIDES:
+        for part in ("upper_arm", "forearm", "hand", "thigh", "shin", "foot"):
+            found[f"{part}.{side}"] = ends[f"{part}.{side}"][0]
+        found[f"hand_end.{side}"] = ends[f"hand.{side}"][1]
+        ankle, tip = ends[f"foot.{side}"]
+        ball = ankle + BALL * (tip - ankle)
+        found[f"toe.{side}"], found[f"toe_end.{side}"] = ball, np.array([*tip[:2], ball[2]])
+    return found
+
+
+def _starts(body: Body) -> dict[str, Array]:
+    """(3,) where each segment begins on the body at rest [m]."""
+    pose = body.pose(Posture.from_vector(body.skeleton, np.zeros(body.skeleton.dof_count)))
+    return {segment.name: body.segment_ends(pose, segment.name)[0] for segment in body.skeleton.segments}
+
+
+def _piece_ends(armature_object: bpy.types.Object, body: Body, part: str) -> tuple[Array, Array]:
+    """Where the volume of a segment begins and ends on the armature at rest."""
+    piece = segment_piece(body, part)
+    model = next(one for one in skeleton_bones(armature_object, body.skeleton) if one.name == part)
+    rest = np.array(armature_object.data.bones[part].matrix_local, dtype=np.float64)
+    own = body.local(next(one.start for one in body.skeleton.segments if one.name == part))
+    start, end = (
+        rest[:3, 3] + rest[:3, :3] @ model.axes.T @ (place - own) for place in (piece.start, piece.end)
+    )
+    return start, end
+
+
+def _cut(
+    mesh: bpy.types.Mesh,
+    worn: Sequence[tuple[str, ...]],
+    ends: Mapping[str, tuple[Array, Array]],
+    stature_m: float,
+) -> None:
+    """Cut the faces straight where markers end, across their first and their last segment."""
+    near = BESIDE_M * stature_m / STATURE_M
+    shape = bmesh.new()
+    shape.from_mesh(mesh)
+    for parts in worn:
+        for part, last in ((parts[0], False), (parts[-1], True)):
+            start, end = ends[part]
+            place = end if last else start
+            beside = [
+                face
+                for face in shape.faces
+                if np.linalg.norm(np.array(face.calc_center_median()) - place) < near
+            ]
+            edges = {edge for face in beside for edge in face.edges}
+            vertices = {vertex for face in beside for vertex in face.verts}
+            bmesh.ops.bisect_plane(
+                shape, geom=[*vertices, *edges, *beside], dist=1e-5, plane_co=place, plane_no=end - start
+            )
+    shape.to_mesh(mesh)
+    shape.free()
+
+
+def _face_segments(body_object: bpy.types.Object) -> NDArray[np.str_]:
+    """(Q,) name of the segment that moves each face most."""
+    mesh, names = body_object.data, [group.name for group in body_object.vertex_groups]
+    weights = np.zeros((len(mesh.vertices), len(names)))
+    for vertex in mesh.vertices:
+        for group in vertex.groups:
+            weights[vertex.index, group.group] = group.weight
+    strongest = [int(weights[list(face.vertices)].sum(axis=0).argmax()) for face in mesh.polygons]
+    return np.array(names)[strongest]
 
 
 def _material(name: str, color_srgb: tuple[int, int, int]) -> bpy.types.Material:

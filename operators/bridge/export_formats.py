@@ -28,6 +28,7 @@ class ExportFormat:
     operator_type: str = ""
     """Class name of the exporter that an add-on registers; empty where Blender has it built in."""
     addon: str = ""  # name of the add-on, as in the Preferences
+    built_in: bool = False  # whether Keymark writes it itself
 
     def missing(self) -> str | None:
         """Why this Blender cannot write the format; None where it can."""
@@ -35,7 +36,7 @@ class ExportFormat:
             if hasattr(bpy.types, self.operator_type):
                 return None
             return f"Enable the add-on {self.addon} in the Preferences"
-        if bpy.app.build_options.usd:
+        if self.built_in or bpy.app.build_options.usd:
             return None
         return f"This Blender is built without {self.name}"
 
@@ -75,7 +76,41 @@ def _written_by(exporter: str, **options: object) -> Callable[[bpy.types.Object,
     return write
 
 
+def _write_trc(armature_object: bpy.types.Object, path: Path) -> None:
+    """Write the joints of an armature over its scene's frames."""
+    from ...core.take.point_files import write_trc
+    from .motions.read_poses import joint_paths
+
+    points, rate = joint_paths(armature_object)
+    write_trc(path, points, rate)
+
+
+def _write_c3d(armature_object: bpy.types.Object, path: Path) -> None:
+    """Write the joints of an armature over its scene's frames."""
+    from ...core.take.point_files import write_c3d
+    from .motions.read_poses import joint_paths
+
+    points, rate = joint_paths(armature_object)
+    write_c3d(path, points, rate)
+
+
+def _write_keymark(armature_object: bpy.types.Object, path: Path) -> None:
+    """Write an actor's motion as `motion.json`, which the command line retargets and learns from."""
+    from ...core.take.motion import write_motion
+    from .rig import shown_motion
+
+    action = armature_object.animation_data.action
+    write_motion(shown_motion(armature_object.users_scene[0], armature_object, action), path)
+
+
 FORMATS = {
+    "KEYMARK": ExportFormat(
+        "Keymark Motion",
+        ".json",
+        "Write motion.json, as Keymark keeps it, for its command line and programs of your own",
+        _write_keymark,
+        built_in=True,
+    ),
     "BVH": ExportFormat(
         "BVH",
         ".bvh",
@@ -131,6 +166,20 @@ FORMATS = {
             only_deform_bones=False,
             export_materials=False,
         ),
+    ),
+    "TRC": ExportFormat(
+        "TRC",
+        ".trc",
+        "Write the places of the joints for biomechanics: OpenSim, Pose2Sim and others",
+        _write_trc,
+        built_in=True,
+    ),
+    "C3D": ExportFormat(
+        "C3D",
+        ".c3d",
+        "Write the places of the joints as motion capture's own format has them",
+        _write_c3d,
+        built_in=True,
     ),
 }
 """By identifier, in the order in which the export panel shows them."""

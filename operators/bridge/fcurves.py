@@ -145,9 +145,10 @@ def write_motion(
     """
     skeleton = motion.body.skeleton
     posed = posed_extremities(armature_object, skeleton, keyframe_action)
-    natural = natural_extremities(motion.body, motion.posture, motion.time_s).without(posed)
-    columns = posture_columns(armature_object, motion.posture, natural)
-    frames = motion.scene_frames if frames is None else frames
+    frames = (motion.scene_frames if frames is None else frames)[motion.there]
+    shown = motion.without_absence()  # no keys where the performer is not there
+    natural = natural_extremities(shown.body, shown.posture, shown.time_s).without(posed)
+    columns = posture_columns(armature_object, shown.posture, natural)
     if action is None:
         action = bpy.data.actions.new(f"{armature_object.name} Motion")
     channelbag = channelbag_for(action, armature_object)

@@ -10,11 +10,19 @@ from ...core.arrays import Array, BoolArray, IndexArray
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import RIGID, Body, Extremities
 from ...core.body.posture import Posture
-from ...core.body.skeleton import Skeleton
+from ...core.body.skeleton import SIDES, Skeleton
+from ...core.finish.contacts import Contact
+from ...core.finish.foot_ground import Shins, Soles, find_ground, floor_notes, on_ground
 from ...core.finish.hermite import Spline
 from ...core.finish.key_reduction import reduce_keys
 from ...core.finish.natural_extremities import natural_extremities
-from ...core.finish.planted_feet import Contact, PlantedFeet, plant_feet, point_tolerances
+from ...core.finish.planted_feet import (
+    NEAR_GROUND_M,
+    PlantedFeet,
+    plant_feet,
+    point_tolerances,
+    sole_rows,
+)
 from ...core.finish.rig import Rig, RigPose
 from ...core.progress import Job, Progress, within
 from .actions import channelbag_for, existing_channelbag
@@ -116,12 +124,39 @@ def finish_motion(
         for held, bone in zip(values, rig.bones, strict=True):
             if bone.name in where and bone.mode == "QUATERNION":
                 held[:, :4] = unit_quaternions(held[:, :4])
+    floor_m = _floor_m(body, planted, time_s) if options.stray_m is not None else None
     if options.tolerance_m is None:
+        notes += _floor_notes(rig, rig.pose(values), floor_m, frames)
         return Finished(body, rig, frames, values, 0.0, planted.contacts, notes)
-    allowed = point_tolerances(rig, len(frames), options.tolerance_m, planted.contacts)
+    near = None if floor_m is None else _sole_heights_m(rig, rig.pose(values)) - floor_m < NEAR_GROUND_M
+    allowed = point_tolerances(rig, len(frames), options.tolerance_m, planted.contacts, near)
     reducing = reduce_keys(rig, frames, values, allowed, exact, options.whole_pose)
     reduced = yield from within("Finding the keys", reducing, PLANTED, 1.0)
+    few = rig.pose([spline.evaluate(frames, 0, len(frames) - 1) for spline in reduced.splines])
+    notes += _floor_notes(rig, few, floor_m, frames)
     return Finished(body, rig, frames, reduced.splines, reduced.furthest_m, planted.contacts, notes)
+
+
+def _floor_m(body: Body, planted: PlantedFeet, time_s: Array) -> Array | None:
+    """(F, 2) height of the floor under each foot by its rests [m]; None where no foot stands."""
+    standing = on_ground(planted.contacts)
+    if not standing:
+        return None
+    shins = Shins.of(body, body.pose(planted.posture))
+    return find_ground(shins, Soles.of(body), time_s, standing).floor_m
+
+
+def _sole_heights_m(rig: Rig, shown: RigPose) -> Array:
+    """(F, 2) height of the lower of heel and tip of each foot [m]; infinite without bones of their own."""
+    heights = [shown.points[:, sole_rows(rig, side), 2] for side in SIDES]
+    return np.stack([own.min(axis=1, initial=np.inf) for own in heights], axis=1)
+
+
+def _floor_notes(rig: Rig, shown: RigPose, floor_m: Array | None, frames: Array) -> tuple[str, ...]:
+    if floor_m is None:
+        return ()
+    depth = floor_m - _sole_heights_m(rig, shown)
+    return floor_notes({side: depth[:, number] for number, side in enumerate(SIDES)}, frames)
 
 
 def _planting_notes(

@@ -167,6 +167,12 @@ def add_generated_keys(
     _add_between(fcurve, _as_generated(_new_keys(frames, values, "GENERATED", "LINEAR")))
 
 
+def mark_generated(channelbag: bpy.types.ActionChannelbag) -> None:
+    """Let all keys count as Keymark's own: those that a person sets or changes later are then known."""
+    for fcurve in channelbag.fcurves:
+        _write_keys(fcurve, _as_generated(_read_keys(fcurve)))
+
+
 def _add_between(fcurve: bpy.types.FCurve, keys: Keys) -> None:
     """Add keys to a curve on the frames that have none."""
     if len(fcurve.keyframe_points):

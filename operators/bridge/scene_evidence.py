@@ -22,6 +22,7 @@ from .scene_frames import shown_index
 if TYPE_CHECKING:
     from ...core.footage.ignored_regions import IgnoredRegion
     from ...core.footage.region_tracks import MarkerStyle
+    from ...core.take.reference import ReferenceMotion
 
 
 def read_keypoint_file(
@@ -217,11 +218,19 @@ class SceneEvidence:
     depth_hints: bool = True  # whether a detector's guess of depths is used
     contours: bool = True
     ignored_regions: "tuple[IgnoredRegion, ...]" = ()  # regions of the picture that are never a marker
+    reference: Path | None = None  # file of a motion from elsewhere
 
     @property
     def has_keypoints(self) -> bool:
         """Whether there is any source of keypoints."""
         return bool(self.files or self.tracks or self.clicks)
+
+    def reference_motion(self) -> "ReferenceMotion | None":
+        """The motion from elsewhere; None without one."""
+        from ...core.take.reference import reference_of_take
+        from .motions.import_motion import armature_reference
+
+        return reference_of_take(self.reference, armature_reference)
 
     def people(self, footage: Footage, frames: Array) -> tuple[People, ...]:
         """Everyone whom each source of keypoints saw, clicked points first; `frames` (F,) are the scene's."""

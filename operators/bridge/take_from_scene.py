@@ -110,6 +110,7 @@ def read_scene_take(
         keypoints=evidence.people(footage, frames),
         contours=evidence.contours,
         ignored_regions=evidence.ignored_regions,
+        reference=evidence.reference_motion(),
     )
     if keyframe_action is None:
         return take, ()

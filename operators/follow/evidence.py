@@ -33,6 +33,7 @@ def scene_evidence(take: bpy.types.PropertyGroup) -> SceneEvidence:
         depth_hints=bool(follow.use_depth_hints),
         contours=bool(follow.use_contours),
         ignored_regions=ignored_regions(take) if follow.use_markers else (),
+        reference=Path(bpy.path.abspath(follow.reference)) if follow.reference else None,
     )
 
 
@@ -80,7 +81,7 @@ def anything_to_follow(context: bpy.types.Context) -> str | None:
         return None  # a take without footage says so itself
     if take.follow.use_contours and take.camera is not None:
         return "Load keypoints, assign tracks or add markers first: contours need a camera that stands still"
-    return "Switch on the contours, load keypoints, assign tracks or add markers first (What to Follow)"
+    return "Switch on the contours, load keypoints, assign tracks or add markers first (step Performer)"
 
 
 def keypoint_files(context: bpy.types.Context) -> str | None:

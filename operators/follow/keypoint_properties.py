@@ -86,6 +86,13 @@ class KEYMARK_PG_follow(bpy.types.PropertyGroup):
         description="Hold the motion against the outline of the body, where the camera stands still",
         default=True,
     )
+    reference: bpy.props.StringProperty(
+        name="Reference Motion",
+        description="A 3D motion of the same performance from elsewhere, as a neural network's: it is "
+        "turned, placed and mended as the footage shows, and needs no keyframes",
+        subtype="FILE_PATH",
+        options={"ANIMATABLE", "PATH_SUPPORTS_BLEND_RELATIVE"},
+    )
     files: bpy.props.CollectionProperty(type=KEYMARK_PG_keypoint_file)
     active_file: bpy.props.IntProperty(
         name="Active File", description="The file of keypoints that is chosen in the list", default=0, min=0

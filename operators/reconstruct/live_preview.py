@@ -6,6 +6,7 @@ from math import floor
 from typing import Any
 
 import bpy
+import numpy as np
 from bpy.app import handlers
 
 from ...core.arrays import Array
@@ -118,8 +119,8 @@ def show_review(take: bpy.types.PropertyGroup, review: Review) -> None:
     shown = take.review
     clear_review(take)
     shown.frame_count = len(review.frames)
-    believed = float(review.confidence.mean())
-    shown.confidence = believed if believed == believed else -1.0  # NaN: the method cannot tell
+    known = review.confidence[np.isfinite(review.confidence)]
+    shown.confidence = float(known.mean()) if len(known) else -1.0  # the method cannot tell
     for weak in review.weak_frames:
         item = shown.weak_frames.add()
         item.frame = review.frames[weak.index]

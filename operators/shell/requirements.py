@@ -37,7 +37,7 @@ def actor(context: bpy.types.Context) -> str | None:
     """The take's actor is in the scene and can be edited."""
     take = find_take(context.scene)
     if take is not None and has_lost_actor(take):
-        return "Bring the deleted actor back first, in the step Actor"
+        return "Bring the deleted actor back first, in the step Performer"
     armature_object = present_actor(take) if take else None
     if armature_object is None:
         return "Build the actor first, or choose its armature"
@@ -61,8 +61,10 @@ def all_colors(context: bpy.types.Context) -> str | None:
 
 
 def two_keyframes(context: bpy.types.Context) -> str | None:
-    """The take has at least two keyframes."""
+    """The take has at least two keyframes, or a motion from elsewhere."""
     take = find_take(context.scene)
+    if take is not None and take.follow.reference and take.method == "map":
+        return None  # the motion from elsewhere has keyframes of its own
     if take is None or take.keyframe_action is None:
         return keyframes(context)
     if len(keyframes_of(take)) == 1:

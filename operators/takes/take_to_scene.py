@@ -16,8 +16,9 @@ from ...core.take.take_file import read_described
 from ..actor.take_actor import add_actor
 from ..bridge.actions import assign_action
 from ..bridge.footage import clip_rate
-from ..bridge.footage_to_scene import load_footage, show_footage
+from ..bridge.footage_to_scene import load_footage, show_footage, stored_path
 from ..bridge.keyframes import write_keyframes
+from ..bridge.motions.import_motion import armature_reference
 from ..bridge.scene_frames import scene_frames
 from ..follow.evidence import add_keypoint_file
 from ..follow.ignored_regions import add_ignored_regions
@@ -50,7 +51,9 @@ def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTa
     usual = keyframe_file == KEYFRAME_FILE
     description = describe(folder)
     keyframes = None if usual else folder / keyframe_file
-    take = read_described(description, keyframes, keyframes_required=not usual, whole=True)
+    take = read_described(
+        description, keyframes, keyframes_required=not usual, whole=True, read_armature=armature_reference
+    )
     clip = open_clip(take)
     time_s = run(clip_times(clip))
     check_frame_count(take, len(time_s))
@@ -112,5 +115,7 @@ def _add_evidence(settings: bpy.types.PropertyGroup, opened: OpenedTake) -> None
         if people.file:
             add_keypoint_file(settings, Path(people.file))
     follow, kinds = settings.follow, opened.kinds
+    if opened.take.reference is not None:
+        follow.reference = stored_path(Path(opened.take.reference.file))
     follow.use_markers, follow.use_keypoints = MARKERS in kinds, KEYPOINTS in kinds
     follow.use_depth_hints, follow.use_contours = DEPTH_HINTS in kinds, CONTOURS in kinds

@@ -21,6 +21,7 @@ BINARY_INTERFACES = {
     "scipy": "cp{python}",  # a wheel for each Python
     "opencv-python-headless": "abi3",  # one wheel for every Python
     "threadpoolctl": "none",  # pure Python
+    "c3d": "none",
 }
 """Distributions that Blender lacks, and which of their wheels is taken."""
 TAGS = {

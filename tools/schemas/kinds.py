@@ -261,7 +261,9 @@ def _(kind: PostureValues, defs: dict[str, Schema]) -> Schema:
 @kind_schema.register
 def _(kind: NumberArray, defs: dict[str, Schema]) -> Schema:
     item: Schema = {"type": "number", "minimum": -kind.limit, "maximum": kind.limit}
-    for length in reversed(kind.shape):
+    for axis, length in reversed(list(enumerate(kind.shape))):
+        if kind.null_rows and axis == 0:
+            item = {"anyOf": [item, {"type": "null"}]}
         counts = {"minItems": 1} if length < 0 else {"minItems": length, "maxItems": length}
         item = {"type": "array"} | counts | {"items": item}
     return item

@@ -21,10 +21,13 @@ from ..performer_placement import ANKLE_HEIGHT_STD_M, SHOE_M, standing_ankle_m
 from .contact import BalanceTerm, FloorTerm, GroundTerm, StillnessTerm
 from .keypoints import DepthHintTerm, KeypointTerm
 from .motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
+from .reference import ReferenceTerm
 from .regions import RegionTerm
 from .term import QuadraticBuilder, QuadraticTerm, Term
 
-ANKLES = ("ankle.L", "ankle.R")
+ANKLES, LEGS = ("ankle.L", "ankle.R"), ("leg.L", "leg.R")
+LOOSE_FEET = {"release_speed_m_s": 0.4, "release_height_m": 0.06}
+"""Of feet that stand, where a reference motion, whose feet slide and jump, is followed from the start."""
 
 
 def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Term]:
@@ -33,7 +36,7 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     step_s = clip.step_s[window.first : window.last - 1]
     pace = float(np.median(step_s)) / REFERENCE_STEP_S if len(step_s) else 1.0
     prior_depth = depths.evaluate(clip.body, clip.camera, clip.body.pose(state.prior), state.frame)
-    ankles = _ankles(clip.body)
+    ankles = _seen_ankles(clip)
     evidence = clip.evidence
     terms: list[Term] = [
         _prior_term(clip, window, step_s),
@@ -48,24 +51,34 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
         ),
         DepthTerm(clip.camera, prior_depth, clip.depth_std_m[frames, None] * clip.depth_factor[frames]),
         LimitTerm(),
-        stillness_term(clip, window),
     ]
+    if ankles:
+        terms.append(stillness_term(clip, window))
     if evidence.keypoints.model.names:
         terms.append(_keypoint_term(clip, window, step_s))
     if np.isfinite(clip.points.depth_m).any():
         terms.append(_hint_term(clip, window, step_s))
     if clip.corrected.any():
         terms.append(_picture_term(clip, window))
-    if clip.ankle_height_m is not None:
+    if clip.ankle_height_m is not None and ankles:
         terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
+    if clip.reference is not None:
+        kept = np.exp(-step_s / clip.reference.memory_s)[:, None]
+        terms.append(ReferenceTerm(clip.reference[frames], kept))
     return terms
 
 
 def stillness_term(clip: ClipProblem, window: Window) -> StillnessTerm:
-    """Ankles that stand."""
+    """Ankles of legs that are seen, and stand."""
     pairs = slice(window.first, window.last - 1)
     rests = None if clip.rests is None else clip.rests[pairs]
-    return StillnessTerm(clip.camera, _ankles(clip.body), clip.step_s[pairs], rests)
+    loose = LOOSE_FEET if clip.reference is not None else {}
+    return StillnessTerm(clip.camera, _seen_ankles(clip), clip.step_s[pairs], rests, **loose)
+
+
+def _seen_ankles(clip: ClipProblem) -> tuple[int, ...]:
+    seen = [leg not in clip.unseen for leg in LEGS]
+    return tuple(ankle for ankle, own in zip(_ankles(clip.body), seen, strict=True) if own)
 
 
 def frame_terms(

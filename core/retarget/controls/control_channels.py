@@ -10,7 +10,7 @@ from ...arrays import Array
 from .control_plan import ControlKind, PlannedControl
 from .control_spaces import NOTHING, ControlSpace, unscaled
 
-ALWAYS_MOVED = (ControlKind.HIPS, ControlKind.GOAL, ControlKind.POLE, ControlKind.ROOT)
+ALWAYS_MOVED = (ControlKind.HIPS, ControlKind.GOAL, ControlKind.POLE, ControlKind.ROOT, ControlKind.CARRIER)
 """Kinds of controls that are placed wherever they can be."""
 
 
@@ -106,15 +106,25 @@ def control_channels(
             rotation = np.swapaxes(turn, -1, -2) @ unscaled(pose[:, :3, :3])
             turn = turn @ rotation
         place = place + axes @ space.origin
-        apart = pose[:, :3, 3] - place
+        held = _held_hips(controls, index)
+        goal = pose[:, :3, 3] if held is None else wanted[held.name][:, :3, 3] - turn @ held.space.origin
+        apart = goal - place
         location = None
         if space.movable and _is_moved(control, apart, size):
             local = (np.swapaxes(axes, -1, -2) @ apart[..., None])[..., 0]
             location = np.linalg.solve(space.axes, local.T).T
         if location is not None or not space.is_placed(size):  # where none can tell, as wanted
-            place = pose[:, :3, 3]
+            place = goal
         found.append(ControlChannels(rotation, location, turn, place))
     return tuple(found)
+
+
+def _held_hips(controls: Sequence[Control], index: int) -> Control | None:
+    """The hips that a root or carrier must place, because they cannot be placed themselves."""
+    if controls[index].plan.kind not in (ControlKind.ROOT, ControlKind.CARRIER):
+        return None
+    hips = (control for control in controls if control.plan.kind is ControlKind.HIPS)
+    return next((one for one in hips if one.space.carrier == index and not one.space.movable), None)
 
 
 def _is_moved(control: Control, apart: Array, size: float) -> bool:

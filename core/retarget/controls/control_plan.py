@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-from ..character import LIMBS, ROLES, joint_roles
+from ..character import LIMBS, ROLES, Character, joint_roles
 from ..maps.character_map import CharacterMap
 from ..options import LimbKeys, RetargetOptions, RootMotion
 
@@ -18,6 +18,7 @@ class ControlKind(Enum):
     TOE = "toe"  # it turns the toes while the leg is in IK
     POLE = "pole"  # elbow or knee point to it
     ROOT = "root"  # it carries the whole character
+    CARRIER = "carrier"  # it places hips that are connected to it, whose own location Blender ignores
 
 
 IN_FK = (ControlKind.FK, ControlKind.HIPS)
@@ -33,15 +34,29 @@ class PlannedControl:
     limb: str | None = None  # the limb of `roles.LIMBS` whose inverse kinematics it belongs to
 
 
-def planned_controls(character_map: CharacterMap, options: RetargetOptions) -> tuple[PlannedControl, ...]:
-    """The controls that are keyed, each once."""
+def planned_controls(
+    character_map: CharacterMap, options: RetargetOptions, character: Character | None = None
+) -> tuple[PlannedControl, ...]:
+    """The controls that are keyed, each once; of a character also the one that carries connected hips."""
     found: dict[str, PlannedControl] = {}
     if options.root_motion is RootMotion.ROOT_BONE and character_map.root is not None:
         root = character_map.root
         found[root] = PlannedControl(root, ControlKind.ROOT, root)
     for control in (*_ik_controls(character_map, options), *_fk_controls(character_map, options)):
         found.setdefault(control.name, control)
+    carrier = None if character is None else _hips_carrier(character, character_map)
+    if carrier is not None and "hips" not in character_map.left_alone:
+        found.setdefault(carrier, PlannedControl(carrier, ControlKind.CARRIER, carrier))
     return tuple(found.values())
+
+
+def _hips_carrier(character: Character, character_map: CharacterMap) -> str | None:
+    """The bone from which the hips hang by connected bones alone; None where they place themselves."""
+    hips = next((name for name in character_map.keyed_bones("hips") if name in character.index), None)
+    bone = None if hips is None else character.bone(hips)
+    while bone is not None and bone.connected and bone.parent >= 0:
+        bone = character.bones[bone.parent]
+    return None if bone is None or bone.name == hips else bone.name
 
 
 def limb_keys(character_map: CharacterMap, options: RetargetOptions, limb: str) -> LimbKeys:

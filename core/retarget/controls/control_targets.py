@@ -43,10 +43,13 @@ def on_controls(
     `offsets` are the poses (4, 4) of bones in their controls' axes; `size` is in the armature's units.
     """
     wanted = {}
+    frames = len(next(iter(motion.poses.values())))
     for plan in (control.plan for control in controls):
         if plan.kind is ControlKind.ROOT:
             if motion.root is not None:
                 wanted[plan.name] = motion.root
+        elif plan.kind is ControlKind.CARRIER:  # as at rest, wherever the hips need it
+            wanted[plan.name] = np.broadcast_to(character.bone(plan.name).rest, (frames, 4, 4))
         elif plan.kind is ControlKind.POLE:
             limb = str(plan.limb)
             joints = [motion.poses[bone][:, :3, 3] for bone in limb_bones(character_map, limb)]

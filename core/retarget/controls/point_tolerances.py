@@ -83,13 +83,13 @@ def _local(rest: Array, place: Array) -> Array:
 # --- How far key reduction may move a character's points
 
 
-FLOOR_M = 0.0015  # largest error of a sole near the floor [m]
-SHOWN_REST_M = 0.00008  # largest error of a resting foot that is shown [m]: it must not slide
-SWITCH_M = 0.0008  # largest distance of wrists and ankles between IK and FK [m]
+# In meters for a character of the performer's size; smaller and larger ones have them in proportion.
+FLOOR_M = 0.0015  # largest error of a sole near the floor
+SHOWN_REST_M = 0.00008  # largest error of a resting foot that is shown: it must not slide
+SWITCH_M = 0.0008  # largest distance of wrists and ankles between IK and FK
+LEAST_M = 0.0002  # of a limb's ends where it is all but straight: less would bring keys and no likeness
+LOW_M = 0.03  # height over its lowest place nearby at which a sole must not pass the floor
 CARRIED_SHARE = 0.5  # share of the tolerance for a limb's root, and as much for elbow or knee on it
-LEAST_M = 0.0002
-"""Tolerance of a limb's ends where it is all but straight [m]: less would bring keys and no likeness."""
-
 POLE_RAD = 0.04  # turn of a limb about its own line that a pole's error may make [rad]
 
 
@@ -100,7 +100,12 @@ class ToleranceRules:
     motion: CharacterMotion
     time_s: Array  # (F,) time of each frame [s]
     up: Array  # (3,) away from the floor, in the armature's axes
-    general_m: float  # tolerance of the body [m]
+    general_m: float  # tolerance of the body, of a character of the performer's size as all of them [m]
+
+    @property
+    def body_m(self) -> float:
+        """Tolerance of this character's body [m]."""
+        return self.general_m * self.motion.size
 
     def of(self, point: HeldPoint, path: Array, shown: bool, ends_m: float) -> Array:
         """(F,) tolerance of a point on a path (F, 3) in the armature's axes [m].
@@ -117,7 +122,7 @@ class ToleranceRules:
             allowed[self.resting(point.limb)] = min(SHOWN_REST_M, self.general_m)
         elif point.kind is PointKind.END:
             allowed[self.resting(point.limb)] = min(SWITCH_M, self.general_m)
-        return allowed
+        return allowed * self.motion.size
 
     def resting(self, limb: str | None) -> BoolArray:
         """(F,) whether the foot of a limb rests."""
@@ -130,30 +135,31 @@ class ToleranceRules:
     def _near_floor(self, path: Array) -> BoolArray:
         height = path @ self.up
         low = [height[np.abs(self.time_s - now) <= 1.0].min() for now in self.time_s]
-        # A sole this near to its lowest place nearby must not pass the floor.
-        return np.asarray(height - low < 0.03)
+        return np.asarray(height - low < LOW_M * self.motion.size)
 
+    def reach_m(self, joints: tuple[Array, Array, Array], share: float = 1.0) -> Array:
+        """(F,) error of a limb's length between root and end that moves elbow or knee by the tolerance [m].
 
-def reach_tolerance_m(joints: tuple[Array, Array, Array], general_m: float) -> Array:
-    """(F,) error of a limb's length between root and end that moves elbow or knee by the tolerance [m]."""
-    root, middle, end = joints
-    line = end - root
-    length = np.linalg.norm(line, axis=-1)
-    along = ((middle - root) * line).sum(axis=-1) / np.maximum(length, LEAST_M)
-    out = np.linalg.norm(
-        middle - root - along[:, None] * line / np.maximum(length, LEAST_M)[:, None], axis=-1
-    )
-    longer = np.maximum(np.maximum(along, length - along), LEAST_M)
-    return np.asarray(np.clip(general_m * out / longer, min(LEAST_M, general_m), general_m))
+        `share` is how much of the tolerance it may take.
+        """
+        root, middle, end = joints
+        general_m, least_m = share * self.body_m, LEAST_M * self.motion.size
+        line = end - root
+        length = np.linalg.norm(line, axis=-1)
+        along = ((middle - root) * line).sum(axis=-1) / np.maximum(length, least_m)
+        out = np.linalg.norm(
+            middle - root - along[:, None] * line / np.maximum(length, least_m)[:, None], axis=-1
+        )
+        longer = np.maximum(np.maximum(along, length - along), least_m)
+        return np.asarray(np.clip(general_m * out / longer, min(least_m, general_m), general_m))
 
+    def pole_m(self, joints: tuple[Array, Array, Array], distance_m: float) -> Array:
+        """(F,) error of a pole that moves elbow or knee by the tolerance, or its limb by `POLE_RAD` [m].
 
-def pole_tolerance_m(joints: tuple[Array, Array, Array], distance_m: float, general_m: float) -> Array:
-    """(F,) error of a pole that moves elbow or knee by the tolerance, or turns the limb by `POLE_RAD` [m].
-
-    `distance_m` is that of the pole from elbow or knee.
-    """
-    root, middle, end = joints
-    line = unit(end - root)
-    out = np.linalg.norm(np.cross(middle - root, line), axis=-1)
-    reach = out + distance_m
-    return np.asarray(np.minimum(general_m * reach / np.maximum(out, LEAST_M), POLE_RAD * reach))
+        `distance_m` is that of the pole from elbow or knee.
+        """
+        root, middle, end = joints
+        line = unit(end - root)
+        out = np.linalg.norm(np.cross(middle - root, line), axis=-1)
+        reach, least_m = out + distance_m, LEAST_M * self.motion.size
+        return np.asarray(np.minimum(self.body_m * reach / np.maximum(out, least_m), POLE_RAD * reach))

@@ -26,8 +26,6 @@ from .point_tolerances import (
     HeldPoint,
     PointKind,
     ToleranceRules,
-    pole_tolerance_m,
-    reach_tolerance_m,
 )
 
 NO_POINTS = np.zeros((0, 3))
@@ -58,7 +56,7 @@ def reduce_controls(
         # Share of the work that the body's controls are, where others follow.
         done = 0.5 if following else 1.0
         points = _body_points(motion, rules, body, {group.leg for group in following})
-        part = _reduced(motion, motion.channels, times, rules.general_m, of, points)
+        part = _reduced(motion, motion.channels, times, rules.body_m, of, points)
         keyed, shown = yield from scaled(part, 0.0, done)
     share = (1.0 - done) / max(len(following), 1)
     for group in following:
@@ -225,7 +223,7 @@ def _body_points(
         return lambda path: rules.of(point, path, not motion.shows_ik(point.limb), rules.general_m)
 
     def root(limb: str) -> Callable[[Array], Array]:
-        return lambda path: reach_tolerance_m(motion.joints_m(limb), CARRIED_SHARE * rules.general_m)
+        return lambda path: rules.reach_m(motion.joints_m(limb), CARRIED_SHARE)
 
     found = {index: [(place, held(point)) for point, place in motion.points_of(index)] for index in body}
     for name, limb in motion.limbs.items():
@@ -268,8 +266,8 @@ def _reduce_following(
         limb = str(motion.controls[index].plan.limb)
         if motion.controls[index].plan.kind is ControlKind.POLE:
             distance_m = motion.scale * motion.limbs[limb].pole_distance
-            heads[index] = pole_tolerance_m(motion.joints_m(limb), distance_m, rules.general_m)
-    keyed, local = yield from _reduced(motion, channels, times, rules.general_m, of, points, heads)
+            heads[index] = rules.pole_m(motion.joints_m(limb), distance_m)
+    keyed, local = yield from _reduced(motion, channels, times, rules.body_m, of, points, heads)
     return keyed, local if carrier is None else {index: one.on(carrier) for index, one in local.items()}
 
 
@@ -316,9 +314,9 @@ def _tolerance(
     if group.leg is not None:
         allowed = rules.of(point, path, not shows_ik, rules.general_m)
         share = CARRIED_SHARE if point.kind is PointKind.BODY else 1.0
-        return np.minimum(allowed, share * rules.general_m)
+        return np.minimum(allowed, share * rules.body_m)
     ends_m = SWITCH_M if limb is not None and limb.in_fk else rules.general_m
     allowed = rules.of(point, path, True, ends_m)
     if point.limb is not None and shows_ik and point.kind is PointKind.END:
-        allowed = np.minimum(allowed, reach_tolerance_m(motion.joints_m(point.limb), rules.general_m))
+        allowed = np.minimum(allowed, rules.reach_m(motion.joints_m(point.limb)))
     return allowed

@@ -5,6 +5,7 @@ after it the ball of the foot (its tip, where it has no toe bone) while the heel
 fades to either side.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,8 @@ from ...body.body_volume import sole_offsets
 from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
-from ...finish.planted_feet import RELEASE_SPEED_M_S, Contact
+from ...finish.contacts import RELEASE_SPEED_M_S, Contact
+from ...finish.foot_ground import smooth_above
 from .foot_shape import FootShape, Ground, is_rigid
 from .hips import Hold, ease, faded, speeds, straightness
 from .stage import Stage
@@ -36,6 +38,7 @@ LARGEST_ROLL_RAD = np.radians(20.0)
 rises higher than that front allows leaves the ground with it."""
 LARGEST_CHANGE_RAD = np.radians(45.0)  # largest change of a foot's pitch for a foot of another shape
 LONGEST_ROLL_S = 0.5
+LIFT_S = 0.1  # time over which a foot is lifted that a few frames would have in the ground
 MOST_TOE_BEND_RAD = np.radians(75.0)
 
 
@@ -66,11 +69,17 @@ def leveled(turn: Array, share: Array) -> Array:
 
 
 def plan_foot(
-    source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, leg: LimbPose
+    source: SegmentMotion,
+    stage: Stage,
+    ground: Ground,
+    shape: FootShape,
+    side: str,
+    leg: LimbPose,
+    lift_m: Array,
 ) -> FootPath:
-    """The path of a foot, from the leg by the performer's directions."""
+    """The path of a foot, from the leg by the performer's directions, on ground raised by `lift_m` (F,)."""
     point, time_s, ankle = SIDES.index(side), source.time_s, leg.end
-    ground_m = stage.heights(ground.height_m[:, point])
+    ground_m = stage.heights(ground.height_m[:, point]) + lift_m
     turn = _rolled(source, stage, ground, shape, side, ankle[:, 2] - ground_m)
     rests = [rest for rest in ground.rests if rest.point == point]
     stands = [_standing(turn[rest.first : rest.last + 1]) for rest in rests]
@@ -93,6 +102,17 @@ def plan_foot(
     path = ankle + faded(holds, time_s)
     path[:, 2] = np.maximum(path[:, 2], ground_m + depth_m)
     return FootPath(turn, path, planted, path[:, 2] - ground_m - depth_m, ground_m)
+
+
+def floor_lifts(depth_m: Array, stands: Sequence[tuple[int, int]], time_s: Array) -> Array:
+    """(F,) smooth lift that brings a foot out of the ground again that is (F,) deep in it [m].
+
+    It is the same throughout the frames (first, last) in which the foot stands, so that it goes on standing.
+    """
+    lift = np.maximum(depth_m, 0.0)
+    for first, last in stands:
+        lift[first : last + 1] = lift[first : last + 1].max()
+    return smooth_above(lift, time_s, LIFT_S)
 
 
 def sole_depth_m(turn: Array, shape: FootShape) -> Array:

@@ -9,8 +9,8 @@ from ...arrays import Array
 from ...body.body_volume import HEEL_BEHIND, sole_offsets
 from ...body.kinematics import SegmentMotion
 from ...body.skeleton import SIDES
-from ...finish.planted_feet import STRAY_M, Contact, find_contacts
-from .hips import smooth_above
+from ...finish.contacts import STRAY_M, Contact, find_contacts
+from ...finish.foot_ground import smooth_above
 from .rest_body import RestBody
 
 TOE_ROOM = 0.05

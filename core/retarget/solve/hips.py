@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import convolve1d, maximum_filter1d
 
 from ...arrays import Array, BoolArray
 from ...body.posture import yaw_rotation
-from ...finish.foot_ground import smooth_step
+from ...finish.foot_ground import smooth_above, smooth_step
 from ...numerics.vectors import columns_at, gaussian
 from .two_bone import STRAIGHTEST, LimbPose
 
@@ -98,17 +97,6 @@ def smoothed(values: Array, time_s: Array, deviation_s: float, ends_kept: bool =
     extended = np.concatenate([before, sampled, after])
     filtered = gaussian(extended, deviation_s / step)[reach : reach + len(even)]
     return columns_at(time_s, even, filtered).reshape(values.shape)
-
-
-def smooth_above(needed: Array, time_s: Array, reach_s: float) -> Array:
-    """A smooth signal (F,) nowhere below the needed one: its running maximum over the reach, smoothed."""
-    if len(needed) < 3 or not needed.any():
-        return np.array(needed)
-    step = float(np.median(np.diff(time_s)))
-    frames = max(1, int(np.ceil(reach_s / step)))
-    highest = maximum_filter1d(needed, 2 * frames + 1, mode="nearest")
-    window = np.hanning(2 * frames + 3)[1:-1]
-    return np.asarray(convolve1d(highest, window / window.sum(), mode="nearest"))
 
 
 # --- Hips

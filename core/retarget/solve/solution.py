@@ -84,12 +84,15 @@ class Solution:
         found = {side: self.limb(f"arm.{side}") for side in SIDES}
         return {side: arm for side, arm in found.items() if arm is not None}
 
-    def plan_feet(self, shapes: Mapping[str, FootShape]) -> dict[str, FootPath]:
-        """Paths of the feet that can be planted, by side."""
+    def plan_feet(self, shapes: Mapping[str, FootShape], lifts: Mapping[str, Array]) -> dict[str, FootPath]:
+        """Paths of the feet that can be planted, by side, lifted by (F,) by leg [m]."""
         if not self.body.is_moved("hips"):
             return {}
+        none = np.zeros(len(self.source.time_s))
         return {
-            side: plan_foot(self.source, self.stage, self.ground, shapes[side], side, leg)
+            side: plan_foot(
+                self.source, self.stage, self.ground, shapes[side], side, leg, lifts.get(f"leg.{side}", none)
+            )
             for side in SIDES
             if (leg := self.limb(f"leg.{side}")) is not None
         }

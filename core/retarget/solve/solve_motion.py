@@ -1,5 +1,8 @@
 """A performer's motion solved for a character: what its role bones do, before any control."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 import numpy as np
 
 from ...arrays import Array
@@ -25,8 +28,11 @@ def solve_motion(
     source: SegmentMotion,
     options: RetargetOptions,
     object_space: Similarity,
+    lifts: Mapping[str, Array] = MappingProxyType({}),
 ) -> Job[CharacterMotion]:
     """Solve a performer's motion for a character; `object_space` stays with `Placement.CHARACTER`.
+
+    `lifts` (F,) by leg are how much higher its foot goes than its sole at rest demands [m].
 
     Raises:
         InputError: The map does not fit the character.
@@ -44,7 +50,7 @@ def solve_motion(
     yield Progress("Turning bones", 0.2)
     solution = Solution.by_directions(body, alignment, source, stage, ground)
     yield Progress("Planting feet", 0.4)
-    feet = solution.plan_feet(shapes) if options.plant_feet else {}
+    feet = solution.plan_feet(shapes, lifts) if options.plant_feet else {}
     arms = solution.arms() if options.reach_hands else {}
     solution.move_hips(feet, arms)
     solution.plant(feet, shapes)
@@ -65,7 +71,9 @@ def solve_motion(
         stance=body.stance,
         facing=to_world.rotation @ body.stance.T @ stage.turn,
         way_m=way,
-        ground_m={f"leg.{side}": foot.ground_m for side, foot in feet.items()},
+        ground_m={
+            f"leg.{side}": stage.heights(ground.height_m[:, point]) for point, side in enumerate(SIDES)
+        },
         hands=hands,
         notes=(*rest_notes(body), *notes),
     )

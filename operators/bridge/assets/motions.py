@@ -74,7 +74,7 @@ class MotionAsset:
 
 def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
     """Write a motion into an empty Action: a GENERATED key for each frame and channel."""
-    channelbag = new_channelbag(action)
+    channelbag, motion = new_channelbag(action), motion.without_absence()
     body, skeleton = motion.body, motion.body.skeleton
     models = bone_models(body)
     modes = {model.name: usual_mode(skeleton, model) for model in models}

@@ -6,14 +6,18 @@ import bpy
 import numpy as np
 
 from ....core.arrays import Array
+from ....core.errors import InputError
 from ....core.finish.hermite import Spline
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, values_of
+from ....core.retarget.controls.control_plan import ControlKind
 from ..rotation_modes import bone_path, rotation_path
 from .controls import active_constraints, drivers
 
 CARRYING = ("CHILD_OF", "ARMATURE")
 """Constraints that carry a bone as a parent does: its own channels still count."""
 MOST_NAMES = 3  # bones that a sentence names; more are counted
+ASTRAY = 0.003  # distance of a control from its place that is worth a note, in sizes of the character
+LEFT_BEHIND = 0.03  # the same of hips that is no longer the performer's motion
 ADRIFT = 0.01
 """Distance, in sizes of the character, that random poses move a control from where its carrier has it."""
 
@@ -65,6 +69,28 @@ def channel_notes(
     return tuple(note.format(_listed(names)) for note, names in notes.items() if names)
 
 
+def require_placed_hips(armature_object: bpy.types.Object, motion: ControlMotion) -> None:
+    """Raise InputError where the hips cannot go where the performer goes: the body would fold up instead."""
+    bones = armature_object.data.bones
+    for control, channels in zip(motion.controls, motion.channels, strict=True):
+        off = np.linalg.norm(channels.place - motion.wanted[control.name][:, :3, 3], axis=-1).max()
+        if (
+            control.plan.kind is ControlKind.HIPS
+            and not control.space.movable
+            and off > LEFT_BEHIND * motion.size
+        ):
+            name, above = f"bone '{control.name}' of '{armature_object.name}'", bones[control.name].parent
+            if bones[control.name].use_connect and above is not None:
+                raise InputError(
+                    f"{name} is connected to '{above.name}' and cannot go where the performer goes; "
+                    "disconnect it in Edit Mode (Armature > Parent > Disconnect Bone)"
+                )
+            raise InputError(
+                f"{name} does not move with its own location and cannot go where the performer goes; mute "
+                "the driver or constraint that holds it"
+            )
+
+
 def _listed(names: Sequence[str]) -> str:
     more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
     return ", ".join(f"'{name}'" for name in names[:MOST_NAMES]) + more
@@ -75,7 +101,7 @@ def _held_back(motion: ControlMotion) -> list[str]:
     found = []
     for control, channels in zip(motion.controls, motion.channels, strict=True):
         off = np.linalg.norm(channels.place - motion.wanted[control.name][:, :3, 3], axis=-1).max()
-        if not control.space.movable and motion.scale * off > 0.005:
+        if not control.space.movable and off > ASTRAY * motion.size:
             found.append(control.name)
     return found
 

@@ -2,9 +2,10 @@
 
 import shutil
 import tempfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import bpy
@@ -36,11 +37,13 @@ class ImportedCharacter:
     notes: tuple[str, ...] = ()  # what a person should know, in sentences without a full stop
 
 
-def import_character(file: CharacterFile, scene: bpy.types.Scene) -> ImportedCharacter:
+def import_character(
+    file: CharacterFile, scene: bpy.types.Scene, animated: bool = False
+) -> ImportedCharacter:
     """Import a character into a scene of its own (see `own_scene`), which removes it again.
 
     Of a .blend objects are appended; nothing in it is run. Other files are read by Blender's own importers,
-    without their motions. The objects get a collection with the armature's name.
+    without their motions unless `animated`. The objects get a collection with the armature's name.
 
     Raises:
         InputError: Blender cannot read the file, it has no such armature or none at all, or several and none
@@ -51,10 +54,12 @@ def import_character(file: CharacterFile, scene: bpy.types.Scene) -> ImportedCha
     if suffix == BLEND:
         found, texts = _appended(file)
     else:
-        found, texts = _imported(file, scene), ()
+        found, texts = _imported(file, scene, animated), ()
     armature = _chosen(file, found)
     members = _members(armature, found.values())
-    notes = _mute_tracks(armature) if suffix == BLEND else _clear_motions(armature, members)
+    notes: tuple[str, ...] = ()
+    if not animated:
+        notes = _mute_tracks(armature) if suffix == BLEND else _clear_motions(armature, members)
     _into_collection(scene, armature.name, members)
     armature.hide_viewport = False  # else Blender would not evaluate it
     scene.view_layers[0].update()
@@ -79,20 +84,26 @@ def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[b
     return objects, tuple(text for text in wanted.texts if text is not None and text.use_module)
 
 
-def _imported(file: CharacterFile, scene: bpy.types.Scene) -> dict[str, bpy.types.Object]:
+def _imported(file: CharacterFile, scene: bpy.types.Scene, animated: bool) -> dict[str, bpy.types.Object]:
     before = {one.name for one in bpy.data.objects}
     with showing_scene(scene), tempfile.TemporaryDirectory() as folder:
         path = real_path(file.path)
         if path.suffix.lower() == VRM:  # a GLB under another name
             path = Path(shutil.copyfile(path, Path(folder) / f"{path.stem}.glb"))
         try:
-            if path.suffix.lower() == ".fbx":
-                bpy.ops.wm.fbx_import(filepath=str(path), use_anim=False)
-            else:
-                bpy.ops.import_scene.gltf(filepath=str(path))
-        except (RuntimeError, AttributeError, OSError) as error:
+            _importer(path.suffix.lower(), animated)(filepath=str(path))
+        except (RuntimeError, AttributeError, OSError, ValueError, ArithmeticError, LookupError) as error:
             raise _unreadable(file.path, error) from error
     return {_name_in_file(one.name, before): one for one in scene.objects}
+
+
+def _importer(suffix: str, animated: bool) -> Callable[..., object]:
+    """Blender's own importer of a kind of file."""
+    if suffix == ".fbx":
+        return partial(bpy.ops.wm.fbx_import, use_anim=animated)
+    if suffix == ".bvh":
+        return partial(bpy.ops.import_anim.bvh, update_scene_fps=True, rotate_mode="NATIVE")
+    return bpy.ops.wm.usd_import if suffix.startswith(".usd") else bpy.ops.import_scene.gltf
 
 
 def _name_in_file(name: str, taken: Iterable[str]) -> str:
@@ -190,15 +201,39 @@ def _into_collection(scene: bpy.types.Scene, name: str, members: Sequence[bpy.ty
 # --- The meshes of a character
 
 
+CARRIERS = ("CHILD_OF", "COPY_TRANSFORMS", "ARMATURE")
+"""Constraints by which a bone carries an object as a parent does."""
+
+
 def skins(armature_object: bpy.types.Object) -> list[bpy.types.Object]:
     """The rendered meshes that the armature deforms or carries, in its first scene."""
-    found = []
-    for scene in armature_object.users_scene[:1]:
-        for one in scene.objects:
-            if one.type == "MESH" and not one.hide_render:
-                if is_deformed(one, armature_object) or one.parent == armature_object:
-                    found.append(one)
-    return found
+    return [
+        one
+        for scene in armature_object.users_scene[:1]
+        for one in scene.objects
+        if one.type == "MESH"
+        and not one.hide_render
+        and (is_deformed(one, armature_object) or carrying_bone(one, armature_object) is not None)
+    ]
+
+
+def carrying_bone(one: bpy.types.Object, armature_object: bpy.types.Object) -> str | None:
+    """The bone that carries an object, through whatever parents; empty for the armature object itself.
+
+    None where neither carries it.
+    """
+    at: bpy.types.Object | None = one
+    while at is not None and at != armature_object:
+        for constraint in at.constraints:
+            if constraint.type in CARRIERS and not constraint.mute and constraint.influence > 0.0:
+                targets = constraint.targets if constraint.type == "ARMATURE" else [constraint]
+                for target in targets:
+                    if target.target == armature_object and target.subtarget:
+                        return str(target.subtarget)
+        if at.parent == armature_object and at.parent_type == "BONE":
+            return str(at.parent_bone)
+        at = at.parent
+    return None if at is None else ""
 
 
 def is_deformed(mesh_object: bpy.types.Object, armature_object: bpy.types.Object) -> bool:

@@ -1,17 +1,19 @@
-"""The soles of a character's feet, from the meshes that its armature deforms."""
+"""The soles of a character's feet, from the meshes that its armature deforms or carries."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
-from ....core.arrays import Array
+from ....core.arrays import Array, IndexArray
 from ....core.body.skeleton import SIDES
 from ....core.retarget.character import LEG, LONG_BONES, Character
 from ....core.retarget.character_motion import find_stance
 from ....core.retarget.maps.character_map import CharacterMap, Point
+from ..object_space import evaluated
 from .controls import active_constraints, constraint_bones
-from .import_character import is_deformed, skins
+from .import_character import carrying_bone, is_deformed, skins
 
 PARTS = LEG[2:]
 NEAR = 0.35  # largest distance of a sole's vertex from ankle or toe, in lengths of the leg
@@ -22,53 +24,104 @@ DIRECTIONS = 8  # directions along the ground in which a sole's outermost vertic
 MOST_VERTICES = 400_000  # vertices of a mesh that is looked at
 
 
+@dataclass(frozen=True, eq=False)
+class FootVertices:
+    """The vertices of a mesh that a foot and its toes move, at rest."""
+
+    mesh_object: bpy.types.Object
+    rows: Mapping[str, IndexArray]  # (N,) indices of the mesh's vertices by role of foot and toe
+    places: Mapping[str, Array]  # (N, 3) by role, in the armature's space
+
+
 def mesh_soles(
     armature_object: bpy.types.Object, character: Character, character_map: CharacterMap
 ) -> dict[str, tuple[Point, ...]]:
     """Points of the soles by role, in the armature's space; nothing where no mesh shows a foot."""
-    stance, leading = find_stance(character, character_map), _leading_roles(armature_object, character_map)
-    joints: dict[str, Array] = {}
-    for role in (f"{part}.{side}" for part in LEG for side in SIDES):
-        bone = character_map.bone(role)
-        if bone is not None:
-            joints[role] = character.bone(bone).head
-    legs = {
-        side: sum(float(np.linalg.norm(joints[b] - joints[a])) for a, b in LONG_BONES[f"leg.{side}"])
-        for side in SIDES
-    }
-    found: dict[str, list[Array]] = {}
-    for mesh_object in skins(armature_object):
-        mesh = mesh_object.data
-        if not is_deformed(mesh_object, armature_object) or len(mesh.vertices) > MOST_VERTICES:
-            continue
-        places = _places(armature_object, mesh_object)
-        near = np.zeros(len(places), dtype=bool)
-        for role in (role for role in joints if role.partition(".")[0] in PARTS):
-            near |= np.linalg.norm(places - joints[role], axis=-1) < NEAR * legs[role[-1]]
-        groups = mesh_object.vertex_groups
-        roles = {group.index: leading[group.name] for group in groups if group.name in leading}
-        for index in map(int, np.flatnonzero(near)):
-            weights = [(group.weight, group.group) for group in mesh.vertices[index].groups]
-            role = roles.get(max(weights)[1], "") if weights else ""
-            if role.partition(".")[0] in PARTS:
-                found.setdefault(role, []).append(places[index])
+    stance, joints = find_stance(character, character_map), _leg_joints(character, character_map)
+    feet = foot_vertices(armature_object, character, character_map)
     soles: dict[str, tuple[Point, ...]] = {}
     for side in SIDES:
-        own = {role: np.array(points) for role, points in found.items() if role.endswith(f".{side}")}
+        own: dict[str, list[Array]] = {}
+        for foot in feet:
+            for role, places in foot.places.items():
+                if role.endswith(f".{side}"):
+                    own.setdefault(role, []).append(places)
         if f"foot.{side}" in own:
-            soles |= _soles_of(own, joints[f"foot.{side}"], legs[side], stance)
+            vertices = {role: np.concatenate(places) for role, places in own.items()}
+            soles |= _soles_of(vertices, joints[f"foot.{side}"], _leg_length(joints, side), stance)
     return soles
 
 
-def _places(armature_object: bpy.types.Object, mesh_object: bpy.types.Object) -> Array:
-    """(N, 3) vertices of a mesh in the armature's space."""
+def foot_vertices(
+    armature_object: bpy.types.Object, character: Character, character_map: CharacterMap
+) -> list[FootVertices]:
+    """The vertices that feet and toes move, by deforming a mesh or by carrying one, near the feet at rest."""
+    leading = leading_roles(armature_object, character_map)
+    joints = _leg_joints(character, character_map)
+    found: list[FootVertices] = []
+    for mesh_object in skins(armature_object):
+        if len(mesh_object.data.vertices) > MOST_VERTICES:
+            continue
+        deformed = is_deformed(mesh_object, armature_object)
+        bone = None if deformed else carrying_bone(mesh_object, armature_object)
+        places = _places(armature_object, mesh_object, bone)
+        near = np.zeros(len(places), dtype=bool)
+        for role in (role for role in joints if role.partition(".")[0] in PARTS):
+            reach = NEAR * _leg_length(joints, role[-1])
+            near |= np.linalg.norm(places - joints[role], axis=-1) < reach
+        if deformed:
+            rows = foot_rows(mesh_object, mesh_object.data, np.flatnonzero(near), leading)
+        else:
+            role = leading.get(bone or "", "")
+            rows = {role: np.flatnonzero(near)} if role.partition(".")[0] in PARTS and near.any() else {}
+        if rows:
+            own = {role: places[indices] for role, indices in rows.items()}
+            found.append(FootVertices(mesh_object, rows, own))
+    return found
+
+
+def foot_rows(
+    mesh_object: bpy.types.Object, mesh: bpy.types.Mesh, indices: IndexArray, leading: Mapping[str, str]
+) -> dict[str, IndexArray]:
+    """By role of foot and toe: which of some vertices (N,) the bones that follow it move most."""
+    roles = {group.index: leading.get(group.name, "") for group in mesh_object.vertex_groups}
+    found: dict[str, list[int]] = {}
+    for index in map(int, indices):
+        weights = [(group.weight, group.group) for group in mesh.vertices[index].groups]
+        role = roles.get(max(weights)[1], "") if weights else ""
+        if role.partition(".")[0] in PARTS:
+            found.setdefault(role, []).append(index)
+    return {role: np.array(rows, dtype=np.intp) for role, rows in found.items()}
+
+
+def _leg_joints(character: Character, character_map: CharacterMap) -> dict[str, Array]:
+    """(3,) the joints of the legs by role, in the armature's space."""
+    roles = (f"{part}.{side}" for part in LEG for side in SIDES)
+    return {
+        role: character.bone(bone).head for role in roles if (bone := character_map.bone(role)) is not None
+    }
+
+
+def _leg_length(joints: Mapping[str, Array], side: str) -> float:
+    return sum(float(np.linalg.norm(joints[b] - joints[a])) for a, b in LONG_BONES[f"leg.{side}"])
+
+
+def _places(armature_object: bpy.types.Object, mesh_object: bpy.types.Object, bone: str | None) -> Array:
+    """(N, 3) vertices of a mesh in the armature's space; those that a bone carries as its rest has them."""
     flat = np.empty(3 * len(mesh_object.data.vertices), dtype=np.float32)
     mesh_object.data.vertices.foreach_get("co", flat)
-    to_armature = np.array(armature_object.matrix_world.inverted_safe() @ mesh_object.matrix_world)
-    return flat.reshape(-1, 3).astype(np.float64) @ to_armature[:3, :3].T + to_armature[:3, 3]
+    shown = evaluated(armature_object)
+    to_armature = shown.matrix_world.inverted_safe() @ evaluated(mesh_object).matrix_world
+    if bone:
+        to_rest = (
+            armature_object.data.bones[bone].matrix_local @ shown.pose.bones[bone].matrix.inverted_safe()
+        )
+        to_armature = to_rest @ to_armature
+    matrix = np.array(to_armature, dtype=np.float64)
+    return flat.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def _leading_roles(armature_object: bpy.types.Object, character_map: CharacterMap) -> dict[str, str]:
+def leading_roles(armature_object: bpy.types.Object, character_map: CharacterMap) -> dict[str, str]:
     """By bone the role of the bone that it follows: its own, or the nearest one above."""
     role_of = {bone: role for role in character_map.roles for bone in character_map.bones(role)}
     found: dict[str, str] = {}

@@ -76,7 +76,7 @@ def probe_controls(
                 plan,
                 bones[plan.name].rotation_mode,
                 space,
-                turns=plan.kind is not ControlKind.POLE,
+                turns=plan.kind not in (ControlKind.POLE, ControlKind.CARRIER),
                 displaced=plan.name in displaced,
             )
             for plan, space in zip(planned, find_spaces(posed), strict=True)

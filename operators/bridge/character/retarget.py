@@ -1,5 +1,6 @@
 """Retarget a motion to a character: its map is completed, the motion solved, keyed and measured."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import bpy
@@ -7,7 +8,8 @@ import bpy
 from ....core.arrays import Array
 from ....core.body.kinematics import SegmentMotion
 from ....core.errors import InputError
-from ....core.progress import Job, Progress, stretch, within
+from ....core.finish.foot_ground import IN_FLOOR_M, floor_notes
+from ....core.progress import Job, Progress, run, stretch, within
 from ....core.retarget.character import Character
 from ....core.retarget.character_motion import CharacterMotion, Similarity, find_stance
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
@@ -18,17 +20,18 @@ from ....core.retarget.controls.reduction import reduce_controls
 from ....core.retarget.maps.character_map import CharacterMap, Setting, Switch
 from ....core.retarget.maps.map_registry import check_map
 from ....core.retarget.options import Placement, RetargetOptions
-from ....core.retarget.quality import Quality
+from ....core.retarget.quality import Measured, Quality
 from ....core.retarget.recognition.facing import find_root
+from ....core.retarget.solve.feet import floor_lifts
 from ....core.retarget.solve.solve_motion import solve_motion
 from ..actions import assign_action
 from ..object_space import object_space
 from ..rotation_modes import rotation_values
-from .channel_notes import channel_notes
+from .channel_notes import channel_notes, require_placed_hips
 from .controls import fk_properties, shown_properties
 from .measure import measure
 from .mesh_soles import mesh_soles
-from .probe_controls import probe_controls
+from .probe_controls import ProbedControls, probe_controls
 from .read_character import read_character
 from .write_retargeted import RetargetedKeys, placement_keys, require_placeable, scaled_bones, write_keys
 
@@ -69,8 +72,9 @@ def complete_map(
 # --- Retarget a motion to a character
 
 
-SOLVED, PROBED, REDUCED = 0.25, 0.3, 0.8
-"""Shares of the job at which the motion is solved, the controls are known, and the keys are found."""
+SOLVED, PROBED, FIRST = 0.25, 0.3, 0.8
+"""Shares of the job at which the motion is solved, controls are known, and keys are found and measured."""
+REDUCED = 0.7  # share of the latter at which the keys are found
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,44 +139,27 @@ def retarget(
     if placed:
         require_placeable(armature_object)
     character_map, lacking = complete_map(armature_object, character, character_map)
-    solving = solve_motion(
-        character, character_map, source, options, Similarity(here.rotation, here.location, here.scale)
-    )
-    motion = yield from stretch(solving, 0.0, SOLVED)
+    there = Similarity(here.rotation, here.location, here.scale)
+    motion = yield from stretch(solve_motion(character, character_map, source, options, there), 0.0, SOLVED)
     yield Progress("Finding how the controls act", SOLVED)
     probed = probe_controls(
         armature_object,
         character_map,
         tuple(
             plan
-            for plan in planned_controls(character_map, options)
+            for plan in planned_controls(character_map, options, character)
             if plan.kind is not ControlKind.ROOT or motion.root is not None
         ),
     )
-    yield Progress("Bringing the motion onto the controls", PROBED)
-    controls = on_controls(
-        character, character_map, motion, probed.controls, probed.offsets, probed.poles, probed.size
-    )
-    yield Progress("Finding the keys", PROBED)
-    keyed = yield from _keyed(controls, motion, source, scene_frames, options)
-    keys = RetargetedKeys(
-        scene_frames,
-        keyed,
-        shown_properties(character_map, options),
-        placement_keys(armature_object, motion.to_world) if placed else (),
-        scaled_bones(armature_object, (one.control.name for one in keyed)),
-    )
-    yield Progress("Measuring the character", REDUCED)
-    in_fk = fk_properties(character_map, options)
-    action = bpy.data.actions.new("Keymark Measuring")
-    try:
-        write_keys(keys, armature_object, action)
-        measuring = measure(
-            armature_object, action, scene_frames, source, motion, character, character_map, in_fk
-        )
-        quality = yield from within("Measuring the character", measuring, REDUCED, 1.0)
-    finally:
-        bpy.data.actions.remove(action)
+    probed = replace(probed, notes=(*lacking, *probed.notes))
+    performance = _Performance(armature_object, character, character_map, source, scene_frames, options)
+    keys, controls, found = yield from stretch(performance.keyed(motion, probed), PROBED, FIRST)
+    lifts = performance.lifts(motion, found.depth_m)
+    if lifts:
+        yield Progress("Lifting the feet out of the floor", FIRST)
+        motion = run(solve_motion(character, character_map, source, options, there, lifts))
+        keys, controls, found = yield from stretch(performance.keyed(motion, probed), FIRST, 1.0)
+    sides = {limb[-1]: depth for limb, depth in found.depth_m.items()}
     return Retargeted(
         armature_object.session_uid,
         character,
@@ -180,14 +167,86 @@ def retarget(
         options,
         motion,
         keys,
-        replace(quality, keys=keys.key_count, dense_keys=keys.dense_count),
+        replace(found.quality, keys=keys.key_count, dense_keys=keys.dense_count),
         (
-            *lacking,
             *motion.notes,
             *probed.notes,
-            *channel_notes(armature_object, keyed, controls, keys.scaled),
+            *channel_notes(armature_object, keys.controls, controls, keys.scaled),
+            *floor_notes(sides, scene_frames, f" of '{character.name}'", motion.size),
         ),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Performance:
+    """What stays the same while a motion is brought onto a character, once or again with lifted feet."""
+
+    armature_object: bpy.types.Object
+    character: Character
+    character_map: CharacterMap
+    source: SegmentMotion
+    scene_frames: Array
+    options: RetargetOptions
+
+    def keyed(
+        self, motion: CharacterMotion, probed: ProbedControls
+    ) -> Job[tuple[RetargetedKeys, ControlMotion, Measured]]:
+        """A solved motion as keys, and what is measured of them as Blender shows them."""
+        armature_object, options = self.armature_object, self.options
+        yield Progress("Bringing the motion onto the controls", 0.0)
+        controls = on_controls(
+            self.character,
+            self.character_map,
+            motion,
+            probed.controls,
+            probed.offsets,
+            probed.poles,
+            probed.size,
+        )
+        require_placed_hips(armature_object, controls)
+        yield Progress("Finding the keys", 0.0)
+        keyed = yield from _keyed(controls, motion, self.source, self.scene_frames, options)
+        placed = options.placement is Placement.PERFORMER
+        keys = RetargetedKeys(
+            self.scene_frames,
+            keyed,
+            shown_properties(self.character_map, options),
+            placement_keys(armature_object, motion.to_world) if placed else (),
+            scaled_bones(armature_object, (one.control.name for one in keyed)),
+        )
+        yield Progress("Measuring the character", REDUCED)
+        action = bpy.data.actions.new("Keymark Measuring")
+        try:
+            write_keys(keys, armature_object, action)
+            measuring = measure(
+                armature_object,
+                action,
+                self.scene_frames,
+                self.source,
+                motion,
+                self.character,
+                self.character_map,
+                fk_properties(self.character_map, options),
+            )
+            measured = yield from within("Measuring the character", measuring, REDUCED, 1.0)
+        finally:
+            bpy.data.actions.remove(action)
+        return keys, controls, measured
+
+    def lifts(self, motion: CharacterMotion, depth_m: Mapping[str, Array]) -> dict[str, Array]:
+        """(F,) by leg how much higher a foot in the floor must be [m]; none where all feet are out of it."""
+        if not self.options.plant_feet or not any(
+            (depth > motion.size * IN_FLOOR_M).any() for depth in depth_m.values()
+        ):
+            return {}
+        return {
+            limb: floor_lifts(
+                depth,
+                [(rest.first, rest.last) for rest in motion.rests if rest.limb == limb],
+                self.source.time_s,
+            )
+            for limb, depth in depth_m.items()
+        }
 
 
 def _keyed(
@@ -201,4 +260,4 @@ def _keyed(
         return dense_controls(controls, rotation_values)
     rules = ToleranceRules(motion, source.time_s, motion.stance[2], options.tolerance_m)
     reducing = reduce_controls(controls, scene_frames, rules, rotation_values)
-    return (yield from within("Finding the keys", reducing, PROBED, REDUCED))
+    return (yield from within("Finding the keys", reducing, 0.0, REDUCED))

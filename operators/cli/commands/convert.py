@@ -13,7 +13,7 @@ from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence import KEYPOINTS
 from ..console import arguments_console
 from ..conversion.convert_take import convert_take
-from ..options import KEYPOINT_FILES, evidence_option, given_settings, output
+from ..options import KEYPOINT_FILES, REFERENCE_FILE, evidence_option, given_settings, output
 from ..parser import Command, UsageError, argument
 
 
@@ -24,7 +24,7 @@ def convert_command(arguments: argparse.Namespace) -> None:
         description = describe(take_path(arguments.take))
         settings = _settings(arguments, description)
         conversion = convert_take(description, arguments.output, console, settings, arguments.debug)
-        console.finish(conversion_summary(conversion), _text(conversion))
+        console.finish(conversion_summary(conversion), conversion_text(conversion))
 
 
 def conversion_summary(conversion: Conversion) -> dict[str, Any]:
@@ -62,7 +62,8 @@ def _settings(arguments: argparse.Namespace, description: Description) -> Conver
     return settings if given.library is None else replace(settings, keyframes=given.keyframes)
 
 
-def _text(conversion: Conversion) -> str:
+def conversion_text(conversion: Conversion) -> str:
+    """The result of a conversion in words."""
     motion = conversion.reconstruction.motion
     notes = [f"Note: {note}." for note in conversion.notes]
     count = f"{len(motion.keyframe_indices)} keyframes"
@@ -91,6 +92,7 @@ CONVERT = Command(
             "keyframes are found in the footage with all libraries there are",
         ),
         KEYPOINT_FILES,
+        REFERENCE_FILE,
         evidence_option(),
         argument(
             "--library",

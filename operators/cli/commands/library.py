@@ -184,7 +184,7 @@ def learn_command(arguments: argparse.Namespace) -> None:
         checked_identifier(arguments.identifier, "--identifier")
     with arguments_console(arguments) as console:
         console.stage("Reading the motion")
-        motion = read_motion(arguments.motion)
+        motion = read_motion(arguments.motion).without_absence()
         given = {
             name: getattr(arguments, name) or "" for name in ("title", "author", "license", "identifier")
         }

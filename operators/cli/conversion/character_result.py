@@ -3,15 +3,16 @@
 import importlib.util
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from ....core.body.kinematics import SegmentMotion, segment_motion
-from ....core.errors import InputError, KeymarkError, describe_unexpected
+from ....core.errors import ConversionError, InputError, KeymarkError, describe_unexpected
 from ....core.files.digest import content_digest
+from ....core.files.fields import listed
 from ....core.files.paths import regular_file_size
 from ....core.finish.natural_extremities import natural_extremities
 from ....core.pipeline.result import CHARACTER_BLEND, CHARACTER_PICTURE
@@ -25,10 +26,11 @@ from ....core.retarget.retarget_record import RetargetRecord, UsedCharacter, Use
 from ....core.shoot.discovery import Shoot
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.motion import Motion
+from ....core.take.presence import named_limbs
 from ..blender_silence import blender_silence
 from ..console import Console
 from ..library_search_path import library_folders
-from ..parser import version
+from ..parser import UsageError, argument, version
 from .blender_files import hidden_files
 
 if TYPE_CHECKING:
@@ -41,10 +43,36 @@ if TYPE_CHECKING:
 
 EXPORTS = {"bvh": ("BVH", "character.bvh"), "fbx": ("FBX", "character.fbx")}
 EXPORTS |= {"glb": ("GLTF", "character.glb"), "usd": ("USD", "character.usdc")}
+EXPORTS |= {"trc": ("TRC", "character.trc"), "c3d": ("C3D", "character.c3d")}
 """By the word for it: the format of `bridge/export_formats`, and the file."""
+FORMAT = argument(
+    "--format",
+    metavar=",".join(EXPORTS),
+    default="",
+    help="further files of the character with its motion, separated by commas",
+)
 Result = TypeVar("Result")
 ShowFootage = Callable[["bpy.types.Scene", Motion], "Array"]
 """Puts camera, clip, rate and range into a scene and returns the motion's scene frames (F,)."""
+
+
+def export_formats(text: str) -> tuple[str, ...]:
+    """The words of `EXPORTS` in a text, separated by commas."""
+    words = [word.strip().lower() for word in text.split(",") if word.strip()]
+    unknown = [word for word in words if word not in EXPORTS]
+    if unknown:
+        raise UsageError(f"--format is {text}; {listed(EXPORTS)} are valid, with commas between them")
+    return tuple(dict.fromkeys(words))
+
+
+def check_exporters(formats: tuple[str, ...]) -> None:
+    """Refuse, before the work, formats that this Blender cannot write."""
+    from ...bridge.character.import_character import missing_exporter
+
+    for word in formats:
+        why = missing_exporter(EXPORTS[word][0])
+        if why:
+            raise ConversionError(f"--format {word} cannot be written: {why[:1].lower()}{why[1:]}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,12 +147,13 @@ def write_character_result(
         from ...bridge.character.retarget import retarget
 
         with blender_silence(debug):
-            frames = show_footage(scene, motion)
+            frames = show_footage(scene, motion)[motion.there]
         character_map, options = opened.chosen.character_map, retarget_options(settings.options)
+        character_map, note = _without_unseen(character_map, motion.unseen)
         armature = opened.imported.armature
         job = retarget(armature, motion_segments(motion), frames, character_map, options)
         try:
-            retargeted = run(_silenced(job, debug), console.progress)
+            retargeted = run(silenced(job, debug), console.progress)
         except InputError as error:
             raise InputError(f"{settings.file.path}: {error}") from error
         console.stage("Writing the character")
@@ -152,13 +181,30 @@ def write_character_result(
             options=settings.options,
             roles=character_map.roles,
             limbs=keyed_limbs(retargeted.character_map, settings),
-            quality=retargeted.quality.to_dict(),
+            quality={**retargeted.quality.to_dict(), **dict.fromkeys(_unmeasured(motion.unseen))},
             doubts=opened.chosen.doubts,
-            notes=(*opened.imported.notes, *retargeted.notes),
+            notes=(*opened.imported.notes, *note, *retargeted.notes),
             files={CHARACTER_BLEND: curves},
         )
         write_retarget_record(staging_folder, record)
         return record
+
+
+def _without_unseen(
+    character_map: CharacterMap, unseen: tuple[str, ...]
+) -> tuple[CharacterMap, tuple[str, ...]]:
+    """The map with limbs that the motion's footage never shows left alone, and a note on them."""
+    if not unseen:
+        return character_map, ()
+    roles = [role for limb in unseen for role in LIMBS[limb] if role in character_map.roles]
+    alone = tuple(dict.fromkeys((*character_map.left_alone, *roles)))
+    note = f"{named_limbs(unseen)} never seen in the footage, so that the character keeps its own"
+    return replace(character_map, left_alone=alone), (note,)
+
+
+def _unmeasured(unseen: tuple[str, ...]) -> list[str]:
+    """Figures of limbs that are not the performer's."""
+    return [f"{kind}s_deg" for kind in ("arm", "leg") if any(limb.startswith(kind) for limb in unseen)]
 
 
 def _draw(
@@ -176,7 +222,8 @@ def _draw(
 
 
 def motion_segments(motion: Motion) -> SegmentMotion:
-    """The segments of a motion, with natural feet and hands."""
+    """The segments of a motion, with natural feet and hands, in frames in which the performer is there."""
+    motion = motion.without_absence()
     extremities = natural_extremities(motion.body, motion.posture, motion.time_s)
     return segment_motion(motion.body, motion.posture, motion.time_s, extremities)
 
@@ -191,7 +238,7 @@ def keyed_limbs(character_map: CharacterMap, settings: CharacterSettings) -> Map
     return keyed
 
 
-def _silenced(job: Job[Result], debug: bool) -> Job[Result]:
+def silenced(job: Job[Result], debug: bool) -> Job[Result]:
     """A job whose steps let no message of Blender through, while its progress is shown."""
     while True:
         with blender_silence(debug):

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from keymark.core.body.kinematics import Body
 from keymark.core.errors import InputError
-from keymark.core.take.motion import Motion
+from keymark.core.take.motion import Motion, read_motion
+from keymark.core.take.point_files import read_points
 from keymark.core.take.take import Take
 from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
@@ -135,7 +136,7 @@ IMPORTERS = {
 }
 
 
-@pytest.mark.parametrize("kind", list(FORMATS))
+@pytest.mark.parametrize("kind", list(IMPORTERS))
 def test_an_exported_motion_moves_alike_when_read_back(
     take: bpy.types.PropertyGroup, shown_points: ShownPoints, tmp_path: Path, kind: str
 ) -> None:
@@ -168,6 +169,37 @@ def test_an_exported_motion_moves_alike_when_read_back(
     bone = next(bone.name for bone in made[0].pose.bones if bone.name.replace("_", ".") == "hand.L")
     later = -1 if kind == "GLTF" else 0  # such files begin at zero
     assert way(made[0], bone, later) == pytest.approx(wanted, abs=2e-3)
+
+
+@pytest.mark.parametrize("kind", ["TRC", "C3D"])
+def test_joints_are_exported_as_they_show(
+    take: bpy.types.PropertyGroup, shown_points: ShownPoints, tmp_path: Path, kind: str
+) -> None:
+    scene = bpy.context.scene
+    scene.render.fps = 25
+    bpy.ops.keymark.bake_motion()
+    path = tmp_path / f"wave{FORMATS[kind].suffix}"
+    assert bpy.ops.keymark.export_motion(format=kind, filepath=str(path)) == {"FINISHED"}
+    points, rate = read_points(path)
+    assert rate == 25.0 and [file.name for file in tmp_path.iterdir()] == [path.name]
+    assign_action(take.armature, take.finish.action)
+    first = int(take.finish.action.frame_range[0])
+    for index in (0, len(points) - 1):
+        scene.frame_set(first + index)
+        np.testing.assert_allclose(points[index], shown_points(take.armature), atol=1e-5)
+
+
+def test_a_saved_motion_is_what_the_actor_shows(
+    take: bpy.types.PropertyGroup, wave_motion: Motion, shown_points: ShownPoints, tmp_path: Path
+) -> None:
+    bpy.context.scene.render.fps = 25
+    path = tmp_path / "wave.json"
+    assert bpy.ops.keymark.export_motion(format="KEYMARK", filepath=str(path)) == {"FINISHED"}
+    saved = read_motion(path)
+    assert saved.points == pytest.approx(wave_motion.points, abs=1e-4)
+    assert (saved.fps, saved.frame_start) == (25.0, 1)
+    bpy.context.scene.frame_set(7)
+    assert saved.points[6] == pytest.approx(shown_points(take.armature), abs=1e-4)
 
 
 def way(armature_object: bpy.types.Object, bone: str, later: int = 0) -> np.ndarray:
@@ -223,7 +255,7 @@ def test_the_operator_is_made_from_the_registry_of_formats() -> None:
     properties = bpy.ops.keymark.export_motion.get_rna_type().properties
     menu = [(item.identifier, item.name, item.description) for item in properties["format"].enum_items]
     assert menu == [(kind, each.name, each.description) for kind, each in FORMATS.items()]
-    assert properties["filter_glob"].default == "*.bvh;*.fbx;*.glb;*.usdc"
+    assert properties["filter_glob"].default == "*.json;*.bvh;*.fbx;*.glb;*.usdc;*.trc;*.c3d"
 
 
 @pytest.mark.usefixtures("registered")
@@ -232,7 +264,7 @@ def test_a_final_action_of_an_earlier_motion_says_so(tiny_take: Take, tmp_path: 
     take = active_take(bpy.context.scene)
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()
-    assert not take.finish.outdated and next_step(take) == "Next: review, then finish"
+    assert not take.finish.outdated and next_step(take) == "Next: review, then a character"
     bpy.ops.keymark.bake_motion()
     assert not take.finish.outdated
     bpy.ops.keymark.reconstruct()

@@ -118,7 +118,7 @@ def test_a_correction_in_the_picture_holds_there_and_leaves_the_depth_to_the_res
         run(estimate_whole_clip(BODY, CAMERA, Seen(film(TRUTH, 0.3), SEGMENTS), believed)).posture
         for believed in (
             Believed(prior, POSED, np.where(middle, 0.0, scale)),
-            Believed(prior, POSED, scale, middle),
+            Believed(prior, POSED, scale, corrected=middle),
         )
     ]
     off = [BODY.points(BODY.pose(motion[POSED[3]])) - BODY.points(BODY.pose(nearer)) for motion in motions]

@@ -3,7 +3,8 @@
 import numpy as np
 from _scene import BODY
 from keymark.core.body.posture import Posture
-from keymark.core.finish.planted_feet import FADE_S, Contact, find_contacts, plant_feet
+from keymark.core.finish.contacts import Contact, find_contacts
+from keymark.core.finish.planted_feet import FADE_S, plant_feet
 from keymark.core.progress import run
 
 FPS = 30.0

@@ -14,6 +14,7 @@ HEAVIEST_KB = 500.0
 PICTURE = re.compile(r"!\[[^\]]+\]\((pictures/[^)]+)\)")
 PLACES = re.compile(r"(?:^|[\s'\"])(?:/(?:home|root|usr|tmp|var|opt)/|[A-Za-z]:\\\\?Users)")
 BUNDLED = {"opencv-python-headless": "OpenCV", "scipy": "SciPy", "threadpoolctl": "threadpoolctl"}
+BUNDLED |= {"c3d": "c3d"}
 
 
 @pytest.fixture(scope="module")

@@ -3,14 +3,15 @@
 import numpy as np
 from _characters import plain_character, plain_map
 from _performances import joints, quality, soles, solved, source_joints, steps
+from keymark.core.finish.foot_ground import floor_notes
 from keymark.core.retarget.character_motion import FootRest
 from keymark.core.retarget.quality import (
     Quality,
+    depths_m,
     direction_errors_deg,
     farthest_mm,
     hand_distances_mm,
     measured,
-    penetration_mm,
     skate_mm,
 )
 
@@ -25,20 +26,40 @@ def test_directions_are_measured_to_a_ten_thousandth_of_a_degree() -> None:
 
 
 def test_skate_counts_in_rests_alone() -> None:
-    path = np.zeros((10, 3))
-    path[:, 0] = 0.002 * np.arange(10)
+    path = np.zeros((10, 1, 3))
+    path[:, 0, 0] = 0.002 * np.arange(10)
     path[0] = 1.0
     rests = [FootRest("leg.L", 2, 6), FootRest("leg.R", 0, 9)]
-    np.testing.assert_allclose(skate_mm({"leg.L": path}, rests), [2.0] * 4)
-    assert skate_mm({}, rests).size == 0
+    np.testing.assert_allclose(skate_mm({"leg.L": path}, rests, 0.01), [2.0] * 4)
+    assert skate_mm({}, rests, 0.01).size == 0
 
 
-def test_penetration_is_under_each_foots_own_ground() -> None:
-    heights = {"foot.L": np.array([[0.3, 0.095]]), "toe.R": np.array([[0.0]])}
-    ground = {"leg.L": np.array([0.1]), "leg.R": np.array([0.0])}
-    found = penetration_mm(heights, ground)
-    assert found is not None and abs(found - 5.0) < 1e-9
-    assert penetration_mm({}, ground) is None
+def test_a_heel_that_turns_about_a_still_ankle_slides_and_toes_in_the_air_do_not() -> None:
+    still = np.tile([[0.0, 0.0, 0.08], [0.0, 0.05, 0.0], [0.0, -0.15, 0.005], [0.0, -0.15, 0.03]], (5, 1, 1))
+    heel, lifted = still.copy(), still.copy()
+    heel[:, 1, 0] = 0.003 * np.arange(5)
+    lifted[:, 3, 0] = 0.003 * np.arange(5)
+    rests = [FootRest("leg.L", 0, 4)]
+    np.testing.assert_allclose(skate_mm({"leg.L": heel}, rests, 0.01), [3.0] * 4)
+    np.testing.assert_allclose(skate_mm({"leg.L": lifted}, rests, 0.01), [0.0] * 4)
+
+
+def test_depth_is_under_each_foots_own_ground() -> None:
+    heights = {"foot.L": np.array([[0.3, 0.095]]), "toe.L": np.array([[0.12]]), "toe.R": np.array([[0.02]])}
+    found = depths_m(heights, {"leg.L": np.array([0.1]), "leg.R": np.array([0.0])})
+    np.testing.assert_allclose(found["leg.L"], 0.005)
+    np.testing.assert_allclose(found["leg.R"], -0.02)
+    assert depths_m({}, {"leg.L": np.array([0.1])}) == {}
+
+
+def test_a_foot_in_the_floor_is_named_with_its_frames_and_depth() -> None:
+    depth = np.zeros(118)
+    depth[[3, 4, 5, 9]] = 0.004, 0.0123, 0.003, 0.0025
+    frames = 11.0 + np.arange(118)
+    note = "The left foot of 'Anna' is up to 12.3 mm below the floor, in frames 14 to 16, 20"
+    assert floor_notes({"L": depth, "R": -depth}, frames, " of 'Anna'") == (note,)
+    assert floor_notes({"L": 0.1 * depth}, frames) == ()
+    assert floor_notes({"L": 0.1 * depth}, frames, size=0.1) != ()
 
 
 def test_hands_and_limbs_are_compared_where_both_are() -> None:
@@ -63,7 +84,7 @@ def test_a_spoiled_motion_has_worse_figures() -> None:
     sunk = {
         role: points + wobble[:, None] for role, points in soles(character, character_map, motion).items()
     }
-    bad = measured(source_joints(steps()), motion, shown, sunk)
+    bad = measured(source_joints(steps()), motion, shown, sunk).quality
     assert good.skate_mm is not None and bad.skate_mm is not None and bad.skate_mm > 4.0 > good.skate_mm
     assert good.penetration_mm is not None and bad.penetration_mm is not None
     assert 9.9 < bad.penetration_mm < 10.2 and good.penetration_mm < 0.1

@@ -23,8 +23,6 @@ from keymark.core.retarget.controls.point_tolerances import (
     PointKind,
     ToleranceRules,
     held_points,
-    pole_tolerance_m,
-    reach_tolerance_m,
 )
 from keymark.core.retarget.controls.reduction import FollowingControls, control_stages
 from keymark.core.retarget.maps.character_map import CharacterMap
@@ -122,13 +120,34 @@ def test_resting_and_low_feet_are_held_more_tightly() -> None:
 
 
 def test_straight_limbs_are_held_by_what_their_knees_do() -> None:
+    rules = ToleranceRules(still_motion(()), np.arange(2) / 30.0, np.array([0.0, 0.0, 1.0]), 0.005)
     root, end = np.zeros((2, 3)), np.array([[0.0, 0.0, -0.8], [0.0, 0.0, -0.6]])
     middle = np.array([[0.0, -0.01, -0.4], [0.0, -0.26, -0.3]])
-    reach = reach_tolerance_m((root, middle, end), 0.005)
+    reach = rules.reach_m((root, middle, end))
     assert reach[0] < 0.0003 < reach[1] <= 0.005
-    pole = pole_tolerance_m((root, middle, end), 0.5, 0.005)
+    pole = rules.pole_m((root, middle, end), 0.5)
     assert pole[0] == pytest.approx(0.04 * 0.51)
     assert pole[1] == pytest.approx(0.005 * 0.76 / 0.26)
+
+
+def test_tolerances_are_in_proportion_to_the_character() -> None:
+    rests, time_s, up = (FootRest("leg.L", 5, 9),), np.arange(FRAMES) / 30.0, np.array([0.0, 0.0, 1.0])
+    path = np.linspace(0.0, 0.3, FRAMES)[:, None] * up
+    limb = (
+        np.zeros((2, 3)),
+        np.array([[0.0, -0.01, -0.4], [0.0, -0.26, -0.3]]),
+        np.array([[0.0, 0.0, -0.8]] * 2),
+    )
+    usual = ToleranceRules(still_motion(rests), time_s, up, 0.005)
+    tiny = ToleranceRules(replace(still_motion(rests), size=0.01), time_s, up, 0.005)
+    for kind in PointKind:
+        point = HeldPoint("foot.L", np.zeros(3), kind, "leg.L")
+        for shown in (True, False):
+            allowed = usual.of(point, path, shown, SWITCH_M)
+            np.testing.assert_allclose(tiny.of(point, 0.01 * path, shown, SWITCH_M), 0.01 * allowed)
+    small = tuple(0.01 * joint for joint in limb)
+    np.testing.assert_allclose(tiny.reach_m(small), 0.01 * usual.reach_m(limb))
+    np.testing.assert_allclose(tiny.pole_m(small, 0.005), 0.01 * usual.pole_m(limb, 0.5))
 
 
 @pytest.mark.parametrize("offset_rad", [0.0, 0.7, np.pi])

@@ -1,0 +1,328 @@
+"""What a reference motion tells of a take: whether it is of this performance, how far it errs, keyframes.
+
+A network's error is a bias that wanders: it lasts for some tenths of a second, is larger along the line of
+sight, and a posed keyframe tells it nearby.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+from scipy.special import ndtr
+
+from ..arrays import Array, BoolArray, IndexArray
+from ..body.human import HUMAN
+from ..body.posture import Posture
+from ..body.posture_fit import fit_posture
+from ..errors import pluralize
+from ..footage.keypoints.keypoints import Keypoints
+from ..footage.keypoints.performer import principal_keypoints
+from ..footage.region_tracks import RegionTracks
+from ..numerics.robust import DEGREES
+from ..numerics.vectors import gaussian, usual_step
+from ..prior.keyframes import Keyframe, Matched
+from ..prior.texts import REFERENCE
+from ..take.performer_keypoints import performer_keypoints
+from ..take.reference import ReferenceMotion
+from ..take.take import Take
+from .reference_alignment import AlignedReference, about_hips, align
+from .reference_placement import SeenPoints, place
+from .terms.reference import ExpectedPoints
+
+USUAL_STD_M = {
+    "hip": 0.015,
+    "shoulder": 0.025,
+    "head": 0.03,
+    "elbow": 0.035,
+    "knee": 0.035,
+    "ankle": 0.045,
+    "wrist": 0.05,
+}
+"""Usual error of a network's point about the hips, along each axis across the line of sight [m]."""
+STD_M = np.array([USUAL_STD_M[name.partition(".")[0]] for name in HUMAN.point_names])
+LIMBS = np.array([name.startswith(("elbow", "wrist", "knee", "ankle")) for name in HUMAN.point_names])
+
+
+@dataclass(frozen=True)
+class ReferenceOptions:
+    """How far a reference motion is believed."""
+
+    along: float = 2.2  # error along the line of sight, in those across it
+    memory_s: float = 0.4
+    least_factor: float = 0.7
+    most_factor: float = 3.0
+    smooth_s: float = 0.09  # of the local quadratic that takes its jitter away
+    keyframe_s: float = 0.4  # time between the keyframes found in it
+    keyframe_width: float = 4.0  # of their error, in a usual difference between performers
+    from_posed_s: float = 0.3
+    # Its bias over time, as posed keyframes tell it: the share that lasts all along the clip, the time in
+    # which the rest fades, and a person's own error beside it. What is left is believed no more for it: with
+    # a smaller deviation beside keyframes posed by hand, slow motions came out worse than without it.
+    constant_share: float = 0.3
+    correlation_s: float = 0.5
+    posed_variance: float = 0.1
+    usual_count: float = 3.0  # posed keyframes that the error in the picture weighs as much as
+    # Right motions cost .1 to .3 of what the same motion costs at other times, others more than .7.
+    least_gain: float = 0.29
+    other_times: int = 21
+    most_frames: int = 400  # that are asked for the gain
+    left_out_s: float = 0.3  # time over which frames are judged together
+    same_guess_m: float = (
+        0.02  # median distance from the detector's own guess in space within which it is that
+    )
+
+
+OPTIONS = ReferenceOptions()
+USUAL_ERROR_M = float(STD_M.mean() * np.sqrt(2.0 + OPTIONS.along**2))  # of a point in space
+
+
+@dataclass(frozen=True, eq=False)
+class ReferenceEvidence:
+    """What a believed reference motion tells of F frames."""
+
+    expected: ExpectedPoints
+    keyframes: tuple[Keyframe, ...]  # found in it, away from posed ones
+    left_out: BoolArray  # (F,) where it is of something else
+    factor: float  # its error in usual ones
+    gain: float  # 1 less its cost relative to that of the same motion at other times
+    name: str  # for sentences
+    notes: tuple[str, ...]  # sentences for people
+
+    @property
+    def confidence(self) -> float:
+        """Probability that its postures are right to 10 cm."""
+        return _confidence(self.factor)
+
+
+@dataclass(frozen=True, eq=False)
+class NoReference:
+    """A reference motion that is set aside, and why."""
+
+    notes: tuple[str, ...]
+
+
+def reference_evidence(take: Take, tracks: RegionTracks) -> ReferenceEvidence | NoReference:
+    """What a take's reference motion tells; its posed keyframes correct it."""
+    assert take.reference is not None
+    name = Path(take.reference.file).name or "the reference motion"
+    posed = tuple(key for key in take.keyframes if key.matched is None)
+    keypoints = performer_keypoints(replace(take, keyframes=posed), None, tracks)
+    if _is_own_guess(take.reference, keypoints):
+        return NoReference(
+            (
+                f"{name}: is set aside, since it is the guess in space that came with the keypoints, whose "
+                "errors it shares",
+            )
+        )
+    seen = SeenPoints.of(take.camera, keypoints, tracks, take.marker_segments)
+    aligned = align(take.reference, take.body, seen, tracks.time_s, take.fps)
+    cost, usual = own_and_usual_cost(aligned, seen)
+    gain = 1.0 - cost / usual
+    if gain < OPTIONS.least_gain:
+        return NoReference(
+            (
+                f"{name}: is set aside, since it fits the footage hardly better than the same motion at "
+                f"other times ({gain:.2f}); it must be of this clip",
+            )
+        )
+    left_out = _left_out(aligned, usual, tracks.time_s)
+    points = smoothed(aligned.points, tracks.time_s, OPTIONS.smooth_s)
+    points[left_out] = np.nan
+    factor = error_factor(aligned, seen)
+    hips = aligned.hips
+    if posed:
+        index = np.array([key.index for key in posed])
+        true = take.body.points(take.body.pose(Posture.stack([key.posture for key in posed])))
+        offset = about_hips(true) - points[index]
+        told = np.isfinite(offset).all(axis=(1, 2))
+        if told.any():
+            index, offset, middle = index[told], offset[told], (true - about_hips(true))[told, 0]
+            factor = _with_posed(factor, offset, _whitening(take, hips, STD_M)[index])
+            share = _bias(tracks.time_s[index], tracks.time_s)
+            points = points + np.einsum("fk,kpi->fpi", share, offset)
+            hips = hips + share @ (middle - hips[index])
+    expected = ExpectedPoints(
+        np.where(aligned.known[:, None, None], points, np.nan),
+        _whitening(take, hips, factor * STD_M),
+        OPTIONS.memory_s,
+    )
+    found = _keyframes(
+        take,
+        points + hips[:, None],
+        posed,
+        tracks.time_s,
+        Matched(REFERENCE, name, False, _confidence(factor)),
+    )
+    notes = [
+        f"{name}: a motion from elsewhere is followed; its points are about "
+        f"{100.0 * factor * USUAL_ERROR_M:.0f} cm off by what is seen"
+    ]
+    for count, what in (
+        (aligned.exchanged.sum(), "left and right are exchanged back"),
+        (left_out.sum(), "is of something else and left out"),
+    ):
+        notes += [f"{name}: {what} in {pluralize(int(count), 'frame')}"] if count else []
+    if aligned.lag:
+        notes.append(
+            f"{name}: is {pluralize(abs(aligned.lag), 'frame')} {'late' if aligned.lag > 0 else 'early'}, "
+            "which is taken back"
+        )
+    return ReferenceEvidence(expected, found, left_out, factor, gain, name, tuple(notes))
+
+
+def with_reference(take: Take, said: ReferenceEvidence) -> Take:
+    """The take with the keyframes found in its reference motion; others found stay where it is silent."""
+    kept = [key for key in take.keyframes if key.matched is None or _stays(key, said)]
+    return replace(take, keyframes=tuple(sorted((*kept, *said.keyframes), key=lambda key: key.index)))
+
+
+def _stays(key: Keyframe, said: ReferenceEvidence) -> bool:
+    return key.matched is not None and not key.matched.is_referred and bool(said.left_out[key.index])
+
+
+def _confidence(factor: float) -> float:
+    """Probability that a network's posture is right to 10 cm, given its error in usual ones.
+
+    Mean errors of single postures are spread by half an octave, about log-normally.
+    """
+    return float(np.clip(ndtr(np.log(0.1 / (factor * USUAL_ERROR_M)) / 0.4), 0.02, 0.98))
+
+
+def _is_own_guess(reference: ReferenceMotion, keypoints: Keypoints) -> bool:
+    """Whether a reference motion is what the detector guessed with its keypoints: it errs as they do."""
+    hint = principal_keypoints(keypoints).hint_m if keypoints.names else np.zeros((0, len(STD_M), 3))
+    frames = min(len(hint), len(reference.points_m))
+    one, other = about_hips(reference.points_m[:frames]), about_hips(hint[:frames])
+    told = np.isfinite(one).all(axis=(1, 2)) & np.isfinite(other).all(axis=(1, 2))
+    if told.sum() < 2:
+        return False
+    one, other = one[told].reshape(-1, 3), other[told].reshape(-1, 3)
+    turn, _ = Rotation.align_vectors(other, one)
+    one = turn.apply(one)
+    size = float((one * other).sum() / max((one * one).sum(), 1e-9))
+    return bool(np.median(np.linalg.norm(size * one - other, axis=-1)) < OPTIONS.same_guess_m)
+
+
+def _left_out(aligned: AlignedReference, usual: float, time_s: Array) -> BoolArray:
+    """(F,) where a motion fits no better than at other times."""
+    told = np.isfinite(aligned.placed.cost)
+    width = OPTIONS.left_out_s / usual_step(time_s)
+    near = gaussian(np.where(told, aligned.placed.cost, 0.0), width) / np.maximum(
+        gaussian(1.0 * told, width), 1e-9
+    )
+    return np.asarray(near > (1.0 - OPTIONS.least_gain) * usual)
+
+
+def _with_posed(factor: float, offset: Array, whitening: Array) -> float:
+    """The error in usual ones, by posed keyframes too, of which `offset` (K, 13, 3) is left."""
+    squared = np.mean((whitening @ offset[..., None])[..., 0] ** 2, axis=(1, 2))
+    total = OPTIONS.usual_count * factor**2 + squared.sum()
+    learned = float(np.sqrt(total / (OPTIONS.usual_count + len(squared))))
+    return float(np.clip(learned, OPTIONS.least_factor, OPTIONS.most_factor))
+
+
+def _whitening(take: Take, hips: Array, std_m: Array) -> Array:
+    """(F, 13, 3, 3) inverse standard deviations, larger along the line of sight; `std_m` (13,) across."""
+    sight = take.camera.sight(hips, np.arange(len(hips)))
+    along = sight[:, :, None] * sight[:, None, :]
+    shape = np.eye(3) - along * (1.0 - 1.0 / OPTIONS.along)
+    return np.asarray(shape[:, None] / std_m[:, None, None])
+
+
+def _keyframes(
+    take: Take, points: Array, posed: tuple[Keyframe, ...], time_s: Array, matched: Matched
+) -> tuple[Keyframe, ...]:
+    """Keyframes at even times, where all points are known and no posed keyframe is near."""
+    count = max(1, round((time_s[-1] - time_s[0]) / OPTIONS.keyframe_s)) + 1
+    asked = np.unique(np.linspace(0, len(points) - 1, count).round().astype(np.intp))
+    near = np.array([key.index for key in posed], dtype=np.intp)
+    apart = np.abs(time_s[asked][:, None] - time_s[near]).min(axis=1, initial=np.inf)
+    asked = asked[(apart > OPTIONS.from_posed_s) & np.isfinite(points[asked]).all(axis=(1, 2))]
+    if not len(asked):
+        return ()
+    posture = fit_posture(take.body, points[asked]).posture
+    return tuple(Keyframe(int(frame), posture[row], matched=matched) for row, frame in enumerate(asked))
+
+
+def _bias(at_s: Array, time_s: Array) -> Array:
+    """(F, K) weights that tell a bias at other times by what it is at K."""
+
+    def covariance(one: Array, other: Array) -> Array:
+        alike = np.exp(-np.abs(one[:, None] - other) / OPTIONS.correlation_s)
+        return np.asarray(OPTIONS.constant_share + (1.0 - OPTIONS.constant_share) * alike)
+
+    known = covariance(at_s, at_s) + OPTIONS.posed_variance * np.eye(len(at_s))
+    return np.asarray(np.linalg.solve(known, covariance(at_s, time_s)).T)
+
+
+# --- Its worth
+
+
+def own_and_usual_cost(aligned: AlignedReference, seen: SeenPoints) -> tuple[float, float]:
+    """What the footage costs given the motion, and given it at other times, forward and backward."""
+    inside = np.einsum("fji,fpj->fpi", seen.rotation, aligned.points)
+    told = np.flatnonzero(np.isfinite(aligned.placed.cost))
+    if len(told) < 2:
+        return 1.0, 1.0
+    told = told[np.unique(np.linspace(0, len(told) - 1, OPTIONS.most_frames).round().astype(int))]
+    some, part, count = inside[told], seen[told], len(told)
+    others = []
+    for number in range(OPTIONS.other_times):
+        order = np.arange(count)[:: 1 - 2 * (number % 2)]
+        other = np.roll(order, round((number + 1) * count / (OPTIONS.other_times + 1)))
+        others.append(float(np.nanmean(place(some[other], part).cost)))
+    return float(np.nanmean(place(some, part).cost)), max(float(np.median(others)), 1e-9)
+
+
+def error_factor(aligned: AlignedReference, seen: SeenPoints) -> float:
+    """The motion's error in usual ones, by how far limbs' points are off in the picture."""
+    squared = (aligned.placed.residual_m**2).sum(axis=-1)  # (F, A) of two axes
+    told = np.isfinite(squared).any(axis=0)
+    usual = seen.mean @ STD_M
+    limb = told & (seen.mean @ LIMBS > 0.99)
+    if not limb.any():
+        return 1.0
+    # The median of two axes' square is 2 log 2 variances.
+    size = np.sqrt(np.nanmedian(squared[:, limb], axis=0) / (2.0 * np.log(2.0))) / usual[limb]
+    return float(np.clip(np.median(size), OPTIONS.least_factor, OPTIONS.most_factor))
+
+
+# --- Its jitter
+
+
+def smoothed(points: Array, time_s: Array, width_s: float) -> Array:
+    """Points (F, N, 3) by a local quadratic under a Gaussian of `width_s` (Savitzky & Golay; Cleveland 1979).
+
+    Robust: points far from their own curve count for less. NaN only where fewer than three frames are near.
+    """
+    reach = max(1, round(3.0 * width_s / usual_step(time_s)))
+    offsets = np.arange(-reach, reach + 1)
+    known = np.isfinite(points).all(axis=-1)
+    value = np.where(known[..., None], points, 0.0)
+    trust: Array = known.astype(np.float64)
+    result = points
+    for _ in range(3):
+        result = _quadratic(value, trust, time_s, offsets, width_s)
+        off = np.where(known, np.linalg.norm(value - result, axis=-1), np.nan)
+        usual = np.nanmedian(off, axis=0) if known.any() else np.ones(points.shape[1])
+        trust = np.where(known, DEGREES / (DEGREES + np.nan_to_num(off / np.maximum(usual, 1e-4)) ** 2), 0.0)
+    return result
+
+
+def _quadratic(value: Array, trust: Array, time_s: Array, offsets: IndexArray, width_s: float) -> Array:
+    frames = len(value)
+    normal = np.zeros((*trust.shape, 3, 3))
+    right = np.zeros((*trust.shape, 3, 3))
+    enough = np.zeros(trust.shape)
+    for offset in offsets:
+        at = np.arange(max(0, -offset), min(frames, frames - offset))
+        away = (time_s[at + offset] - time_s[at]) / width_s
+        weight = np.exp(-0.5 * away**2)[:, None] * trust[at + offset]
+        basis = np.stack([np.ones_like(away), away, away**2], axis=-1)
+        normal[at] += weight[..., None, None] * (basis[:, :, None] * basis[:, None, :])[:, None]
+        right[at] += weight[..., None, None] * basis[:, None, :, None] * value[at + offset][..., None, :]
+        enough[at] += weight
+    normal += 1e-6 * np.eye(3)
+    result = np.linalg.solve(normal, right)[..., 0, :]
+    return np.where((enough > 0.5)[..., None], result, np.nan)

@@ -1,0 +1,182 @@
+"""Where a motion of known shape and turn is, frame by frame: robust least squares of points seen.
+
+A network's own distance is not believed; the picture's is smoothed over time.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..arrays import Array, BoolArray, IndexArray
+from ..body.human import HUMAN
+from ..footage.camera import Camera
+from ..footage.keypoints.keypoints import Keypoints
+from ..footage.keypoints.performer import principal_keypoints
+from ..footage.region_tracks import RegionTracks
+from ..numerics.robust import DEGREES, multivariate_cost
+from ..numerics.vectors import gaussian
+
+POINTS = HUMAN.point_names
+HIPS, SHOULDERS = (tuple(POINTS.index(f"{part}.{side}") for side in "LR") for part in ("hip", "shoulder"))
+CHAINS = (("shoulder", "elbow", "upper_arm"), ("elbow", "wrist", "forearm")) + (
+    ("hip", "knee", "thigh"),
+    ("knee", "ankle", "shin"),
+)
+"""Near and far end of each limb's segments, from the body outwards."""
+
+
+@dataclass(frozen=True)
+class PlacementOptions:
+    """How exactly a motion's points are seen."""
+
+    point_std_m: float = 0.06  # the detector's error, where it has joints, and the network's own
+    marker_std_m: float = 0.09  # of a marker's middle from its segment's
+    nearest_m: float = 0.5  # distance of the hips
+    farthest_m: float = 100.0
+    distance_std: float = 0.05  # usual error of a frame's own distance, as a share
+    rounds: int = 6  # of reweighting; the last two with the distances smoothed
+
+
+PLACEMENT = PlacementOptions()
+
+
+@dataclass(frozen=True, eq=False)
+class SeenPoints:
+    """A places in each of F pictures, each a mean of principal points."""
+
+    camera: Camera
+    mean: Array  # (A, 13) weights of the principal points
+    slope: Array  # (F, A, 2) x and y of the sight at unit depth, in camera axes; NaN where not seen
+    confidence: Array  # (F, A) 0 where not seen
+    std_m: Array  # (A,)
+
+    @classmethod
+    def of(
+        cls, camera: Camera, keypoints: Keypoints, tracks: RegionTracks, segments: Sequence[str]
+    ) -> "SeenPoints":
+        """The performer's keypoints, and the middles of the markers' regions."""
+        points = principal_keypoints(keypoints) if keypoints.names else None
+        frames = tracks.frame_count
+        mean, pixel, score, std = [np.eye(len(POINTS))], [], [], [np.full(len(POINTS), PLACEMENT.point_std_m)]
+        pixel.append(points.pixel if points else np.full((frames, len(POINTS), 2), np.nan))
+        score.append(points.score if points else np.zeros((frames, len(POINTS))))
+        if len(segments):
+            mean.append(np.array([_middle_of(segment) for segment in segments]))
+            pixel.append(tracks.centroid)
+            score.append(np.where(tracks.visible, tracks.quality, 0.0))
+            std.append(np.full(len(segments), PLACEMENT.marker_std_m))
+        pixels, scores = np.concatenate(pixel, axis=1), np.nan_to_num(np.concatenate(score, axis=1))
+        frame = np.arange(frames)
+        _, ray = camera.rays(pixels, frame[:, None])
+        rotation = _rotations(camera, frames)
+        ray = np.einsum("fji,faj->fai", rotation, ray)
+        slope = ray[..., :2] / -ray[..., 2:]
+        seen = np.isfinite(slope).all(axis=-1) & (scores > 0.0)
+        # What is never seen at all is no column.
+        kept = seen.any(axis=0)
+        confidence = np.where(seen, np.clip(scores, 0.1, 1.0), 0.0)
+        return cls(
+            camera,
+            np.concatenate(mean)[kept],
+            np.where(seen[..., None], slope, np.nan)[:, kept],
+            confidence[:, kept],
+            np.concatenate(std)[kept],
+        )
+
+    @cached_property
+    def rotation(self) -> Array:
+        """(F, 3, 3) the camera's axes as columns."""
+        return _rotations(self.camera, len(self.slope))
+
+    def __getitem__(self, frames: IndexArray) -> "SeenPoints":
+        part = SeenPoints(self.camera, self.mean, self.slope[frames], self.confidence[frames], self.std_m)
+        part.__dict__["rotation"] = self.rotation[frames]
+        return part
+
+
+def _rotations(camera: Camera, frames: int) -> Array:
+    rotation, _ = camera.pose(np.arange(frames))
+    return np.array(np.broadcast_to(rotation, (frames, 3, 3)))
+
+
+def _middle_of(segment: str) -> Array:
+    weights = np.zeros(len(POINTS))
+    stem, _, side = segment.partition(".")
+    ends = next(([f"{near}.{side}", f"{far}.{side}"] for near, far, name in CHAINS if name == stem), None)
+    if ends is None:
+        joint = {"hand": "wrist", "foot": "ankle"}.get(stem)
+        ends = [f"{joint}.{side}"] if joint else ["head"] if stem == "head" else None
+    index = [POINTS.index(end) for end in ends] if ends else [*HIPS, *SHOULDERS]
+    weights[index] = 1.0 / len(index)
+    return weights
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """Where a motion is in each of F frames, given how it is turned."""
+
+    place: Array  # (..., F, 3) of its hips, in camera axes [m]
+    residual_m: Array  # (..., F, A, 2) across the view [m]; NaN where not seen
+    cost: Array  # (..., F) mean of a seen point's; NaN where nothing is compared
+
+
+def place(points: Array, seen: SeenPoints, smooth_frames: float = 0.0) -> Placed:
+    """Place a motion in each frame by what is seen there.
+
+    `points` (..., F, 13, 3): about the hips, in camera axes [m]; NaN where absent. `smooth_frames`: time over
+    which its distance is smoothed, 0 for none.
+    """
+    relative = seen.mean @ np.where(np.isfinite(points), points, 0.0)  # (..., F, A, 3)
+    absent = ~np.isfinite(points).all(axis=(-1, -2))
+    slope = np.where(seen.confidence[..., None] > 0.0, seen.slope, 0.0)
+    base = seen.confidence / seen.std_m**2 * ~absent[..., None]
+    weight, distance = base, None
+    found = np.zeros((*points.shape[:-2], 3))
+    for number in range(PLACEMENT.rounds):
+        if number == PLACEMENT.rounds - 2 and smooth_frames > 0.0:
+            distance = _smoothed(found[..., 2], absent | (base.sum(axis=-1) == 0.0), smooth_frames)
+        found = _least_squares(relative, slope, weight, distance)
+        depth = relative[..., 2] + found[..., None, 2]
+        residual = relative[..., :2] + found[..., None, :2] + slope * depth[..., None]
+        squared = (residual**2).sum(axis=-1) / seen.std_m**2 * seen.confidence
+        weight = base * (DEGREES + 2.0) / (DEGREES + squared)
+    used = base > 0.0
+    count = used.sum(axis=-1)
+    each = np.where(used, multivariate_cost(squared, DEGREES, 2), 0.0)
+    cost = np.where(count >= 2, each.sum(axis=-1) / np.maximum(count, 1), np.nan)
+    return Placed(found, np.where(used[..., None], residual, np.nan), cost)
+
+
+def _least_squares(relative: Array, slope: Array, weight: Array, distance: Array | None) -> Array:
+    """Places (..., F, 3) with (T + r)_xy + slope (T + r)_z = 0; `distance` (..., F): known T_z."""
+    wanted = -(relative[..., :2] + slope * relative[..., 2:])  # (..., F, A, 2)
+    total = weight.sum(axis=-1)[..., None]
+    if distance is not None:
+        short = wanted - slope * distance[..., None, None]
+        across = (weight[..., None] * short).sum(axis=-2) / np.maximum(total, 1e-9)
+        return np.concatenate([across, distance[..., None]], axis=-1)
+    total = np.maximum(total, 1e-9)
+    mean = (weight[..., None] * slope).sum(axis=-2) / total
+    goal = (weight[..., None] * wanted).sum(axis=-2) / total
+    off, ahead = slope - mean[..., None, :], wanted - goal[..., None, :]
+    top = (weight[..., None] * off * ahead).sum(axis=(-1, -2))
+    under = (weight[..., None] * off**2).sum(axis=(-1, -2))
+    # In front of the camera, and no farther than a performer can be told from a dot.
+    depth = np.clip(top / np.maximum(under, 1e-9), -PLACEMENT.farthest_m, -PLACEMENT.nearest_m)
+    return np.concatenate([goal - mean * depth[..., None], depth[..., None]], axis=-1)
+
+
+def _smoothed(depth: Array, unknown: BoolArray, frames: float) -> Array:
+    """Distances (F,) smoothed in their logarithm over frames that tell one."""
+    logarithm = np.where(unknown, 0.0, np.log(-np.minimum(depth, -1e-3)))
+    told = np.where(unknown, 1e-6, 1.0)
+    middle = np.median(logarithm[~unknown]) if (~unknown).any() else 0.0
+    logarithm = np.where(unknown, middle, logarithm)
+    smooth = logarithm
+    for _ in range(3):
+        smooth = gaussian(told * logarithm, frames) / np.maximum(gaussian(told, frames), 1e-9)
+        doubt = ((logarithm - smooth) / PLACEMENT.distance_std) ** 2
+        told = np.where(unknown, 1e-6, 1.0 / (1.0 + doubt / DEGREES))
+    return np.asarray(-np.exp(smooth))

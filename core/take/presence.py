@@ -1,0 +1,148 @@
+"""Presence: in which frames of a clip the performer is there, so that nothing is invented in the others.
+
+He is there where a marker or a keypoint of him is seen. Short gaps are bridged. Where a person has posed on
+both sides of a gap, or inside it, the pictures decide: a detector may have failed there.
+"""
+
+import cv2
+import numpy as np
+
+from ..arrays import Array, BoolArray, IndexArray
+from ..body.human import LIMBS, limb_of
+from ..files.fields import listed
+from ..footage.clips.album import Album, changed_pixels
+from ..footage.keypoints.keypoints import Keypoints
+from ..footage.reading import Reading
+from ..footage.region_tracks import RegionTracks
+from ..numerics.vectors import runs, usual_step
+from .take import Take
+
+BRIDGED_S = 0.5
+"""Longest gap in which the motion goes on: about a step, after which nothing tells any more where he went."""
+LATE_S = 0.1
+"""Frames that a detector needs at either end of a clip to find somebody, or to lose him."""
+LOOKS = 5
+"""Frames in which he is seen that a picture without evidence is compared with."""
+AROUND = 0.3
+"""Margin around what is seen of him, in its larger side: hands, feet and hair beyond markers and joints."""
+ELSEWHERE = 0.25
+"""Change of the picture outside of where he was, relative to that inside, from which he may be elsewhere."""
+LEAST_SCORE = 0.05
+"""Of a keypoint that counts: what detectors that always answer say of an empty picture."""
+SELDOM = 0.05
+"""Share of frames below which a limb is seldom seen: detectors take other things for one now and then."""
+MOST_NAMED = 3
+
+
+def presence(take: Take, reading: Reading, keypoints: Keypoints) -> BoolArray:
+    """(F,) whether the performer is there; everywhere where nothing but contours would tell.
+
+    `keypoints` are the performer's. Without a picture to ask, frames between posed keyframes count.
+    """
+    tracks = reading.tracks
+    sure = keypoints.seen & (keypoints.score > LEAST_SCORE)
+    seen = tracks.visible.any(axis=1) | sure.any(axis=1)
+    there = np.ones(tracks.frame_count, dtype=np.bool_)
+    if not seen.any():
+        return there
+    posed = np.array([key.index for key in take.keyframes if key.matched is None], dtype=np.intp)
+    frames = np.arange(tracks.frame_count)
+    vouched = np.zeros_like(there)
+    if len(posed):
+        vouched = (frames >= posed.min()) & (frames <= posed.max())
+    step_s = usual_step(tracks.time_s)
+    for first, last in runs(~seen):
+        at_end = first == 0 or last == tracks.frame_count
+        if (last - first) * step_s <= (LATE_S if at_end else BRIDGED_S):
+            continue
+        own = slice(first, last)
+        if not vouched[own].any():
+            there[own] = False
+        elif reading.album is not None and is_empty(reading.album, tracks, keypoints, (first, last)):
+            there[own] = False
+        else:
+            there[own] = vouched[own]
+    return there
+
+
+def unseen_limbs(take: Take, tracks: RegionTracks, keypoints: Keypoints, there: BoolArray) -> tuple[str, ...]:
+    """Limbs, as in `LIMBS`, that keypoints seldom show though they show the performer, and no marker covers.
+
+    Where anything is posed a person says what is not seen; there are none then. `there` (F,) as `presence`.
+    """
+    if not keypoints.names or any(key.matched is None for key in take.keyframes):
+        return ()
+    names = (*take.marker_segments, *keypoints.names)
+    seen = np.concatenate([tracks.visible, keypoints.seen & (keypoints.score > LEAST_SCORE)], axis=1)[there]
+    own = {limb: [column for column, name in enumerate(names) if limb_of(name) == limb] for limb in LIMBS}
+    return tuple(limb for limb in LIMBS if seen[:, own[limb]].any(axis=1).mean() < SELDOM)
+
+
+def is_empty(album: Album, tracks: RegionTracks, keypoints: Keypoints, run: tuple[int, int]) -> bool:
+    """Whether the pictures of a run of frames without evidence show nobody.
+
+    Beside pictures in which he is seen they have changed where he was, and nowhere else. A picture that
+    changes everywhere, as before a camera that moves, tells nothing.
+    """
+    places = np.concatenate([tracks.centroid, keypoints.pixel], axis=1)
+    seen = np.flatnonzero(np.isfinite(places[..., 0]).any(axis=1))
+    nearest = seen[np.argsort(np.minimum(abs(seen - run[0]), abs(seen - run[1])), kind="stable")]
+    some = [int(frame) for frame in _spread(nearest, LOOKS) if int(frame) in album]
+    asked = [int(frame) for frame in _spread(np.arange(*run), LOOKS) if int(frame) in album]
+    outside = [_changed_elsewhere(album, places[there], there, empty) for there in some for empty in asked]
+    return bool(outside) and float(np.median(outside)) < ELSEWHERE
+
+
+def _spread(frames: IndexArray, most: int) -> IndexArray:
+    return frames[np.unique(np.linspace(0, len(frames) - 1, min(most, len(frames))).astype(np.intp))]
+
+
+def _changed_elsewhere(album: Album, places: Array, seen: int, empty: int) -> float:
+    """Energy of two pictures' change that lies outside of where he is seen, relative to that inside."""
+    one, other = (cv2.cvtColor(album.picture(frame), cv2.COLOR_BGR2GRAY) for frame in (seen, empty))
+    difference = one.astype(np.float64) - other
+    changed = np.where(changed_pixels(difference), difference**2, 0.0)  # squared, shadows hardly count
+    known = places[np.isfinite(places).all(axis=-1)] / album.factor
+    low, high = known.min(axis=0), known.max(axis=0)
+    margin = AROUND * float((high - low).max())
+    left, top = np.maximum(np.floor(low - margin), 0).astype(int)
+    right, bottom = np.ceil(high + margin).astype(int)
+    inside = float(changed[top:bottom, left:right].sum())
+    return float(changed.sum() - inside) / inside if inside else np.inf
+
+
+def absence_notes(take: Take, there: BoolArray) -> tuple[str, ...]:
+    """Notes on frames in which the performer is not there, and on keyframes posed in them."""
+    if there.all():
+        return ()
+    empty = [(first + take.frame_start, last - 1 + take.frame_start) for first, last in runs(~there)]
+    named = [str(first) if first == last else f"{first} to {last}" for first, last in empty]
+    count = len(runs(there))
+    what = "the motion is left empty there" + (f" and has {count} stretches" if count > 1 else "")
+    notes = [f"nobody is seen in frame {listed(named, MOST_NAMED)}: {what}"]
+    lost = [k.index + take.frame_start for k in take.keyframes if k.matched is None and not there[k.index]]
+    if lost:
+        which = listed([str(frame) for frame in lost], MOST_NAMED)
+        what = f"keyframe {which} is" if len(lost) == 1 else f"keyframes {which} are"
+        notes.append(f"{what} posed where the picture shows nobody, and left aside; pose where he is seen")
+    return tuple(notes)
+
+
+def unseen_notes(limbs: tuple[str, ...]) -> tuple[str, ...]:
+    """A note on limbs that are never seen."""
+    if not limbs:
+        return ()
+    return (f"{named_limbs(limbs)} never seen and stay at rest; pose keyframes where that is wrong",)
+
+
+def named_limbs(limbs: tuple[str, ...]) -> str:
+    """Some limbs as the beginning of a sentence, with its verb: `the legs are`."""
+    kinds = {kind: [limb for limb in limbs if limb.startswith(kind)] for kind in ("arm", "leg")}
+    sides = {"L": "left", "R": "right"}
+    words = [
+        f"the {kind}s" if len(own) == 2 else f"the {sides[own[0][-1]]} {kind}"
+        for kind, own in kinds.items()
+        if own
+    ]
+    are = "is" if len(limbs) == 1 else "are"
+    return f"{' and '.join(words)} {are}"

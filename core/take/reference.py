@@ -1,0 +1,74 @@
+"""A reference motion: a 3D motion of the same performance from elsewhere, as its file has it.
+
+Axes, scale, place and time are its own (`estimate/reference_alignment` finds them); here everything has Z up.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..arrays import Array
+from ..body.human import HUMAN
+from ..errors import InputError
+from ..files.fields import listed
+from ..files.json_file import ENDING
+from ..files.paths import regular_file_size
+from .motion import read_motion
+from .point_files import POINT_ENDINGS, read_points
+
+REFERENCE_ENDINGS = (*POINT_ENDINGS, ENDING)
+ARMATURE_ENDINGS = (".bvh", ".fbx", ".glb", ".gltf", ".vrm", ".usd", ".usda", ".usdc", ".usdz", ".blend")
+"""Of files with an animated armature, which Blender reads."""
+
+
+@dataclass(frozen=True, eq=False)
+class ReferenceMotion:
+    """The principal points of a motion of R frames."""
+
+    points_m: Array  # (R, 13, 3) in the skeleton's order, about in meters, Z up; NaN where absent
+    fps: float | None = None  # frames a second; None where the file does not say, for the clip's own
+    file: str = ""  # for sentences
+
+    def __post_init__(self) -> None:
+        shape = self.points_m.shape
+        if len(shape) != 3 or shape[1:] != (len(HUMAN.point_names), 3):
+            raise ValueError(f"points must have the shape (R, 13, 3), not {shape}")
+
+
+def reference_of_take(
+    path: Path | None, read_armature: Callable[[Path], ReferenceMotion] | None
+) -> ReferenceMotion | None:
+    """The reference motion that a take names; None without one, and of an armature where nobody can read it.
+
+    Raises:
+        InputError: See `read_reference`.
+    """
+    if path is None or path.suffix.lower() not in ARMATURE_ENDINGS:
+        return None if path is None else read_reference(path)
+    regular_file_size(path, "a reference motion")
+    return None if read_armature is None else read_armature(path)
+
+
+def read_reference(path: Path) -> ReferenceMotion:
+    """Read a reference motion: points by name, as MHR-70's csv and FreeMoCap have them, or a motion.json.
+
+    Raises:
+        InputError: The file is none of these or damaged, or fewer than two of its frames have a performer.
+    """
+    ending = path.suffix.lower()
+    if ending not in REFERENCE_ENDINGS:
+        raise InputError(
+            f"{path}: is no reference motion; it must end in {listed(REFERENCE_ENDINGS)}: points by name, "
+            f"or a motion.json; or be an armature's, in {listed(ARMATURE_ENDINGS)}"
+        )
+    if ending == ENDING:
+        motion = read_motion(path)
+        reference = ReferenceMotion(motion.points, motion.fps, str(path))
+    else:
+        reference = ReferenceMotion(*read_points(path), str(path))
+    known = np.isfinite(reference.points_m).all(axis=(1, 2))
+    if known.sum() < 2:
+        raise InputError(f"{path}: a performer is in {int(known.sum())} of its frames; at least 2 are needed")
+    return reference

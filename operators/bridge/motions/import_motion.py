@@ -1,0 +1,249 @@
+"""Import an animated armature from a file: its Action on whole frames, its rate, and a person's size."""
+
+import re
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ....core.errors import InputError
+from ....core.files.fields import listed
+from ....core.files.paths import real_path, regular_file_size
+from ....core.numerics.vectors import unit
+from ....core.progress import run
+from ....core.retarget.maps.map_registry import ChosenMap
+from ....core.retarget.mended_armature import ArmaturePoints
+from ....core.retarget.solve.rest_body import RestBody
+from ....core.retarget.solve.two_bone import smallest_rotation
+from ....core.take.conversion_settings import CharacterFile
+from ....core.take.reference import ARMATURE_ENDINGS, ReferenceMotion
+from ..actions import assign_action, existing_channelbag
+from ..blend_files import own_scene, showing_scene
+from ..character.import_character import ImportedCharacter, import_character
+from ..character.read_character import read_character
+from ..keys import mark_generated
+from .read_poses import action_frames, animated_action, motion_map, read_poses
+
+MOTION_ENDINGS = ARMATURE_ENDINGS
+SLOWEST, FASTEST = 1.0, 1000.0  # frames a second of a motion
+LARGEST_BVH = 2**29
+UNITS = (1.0, 0.01, 0.1, 0.001, 0.0254, 0.3048, 100.0)
+"""Meters that a file's unit may have: m, cm, dm, mm, inches, feet; and characters in hundreds of meters."""
+SHORTEST_LEG_M, LONGEST_LEG_M = 0.35, 1.5  # of a child and of a giant
+_RATE = re.compile(r"Frame\s+Time:\s*(\S+)", re.IGNORECASE)
+_FRAMES = re.compile(r"Frames:\s*(\S+)", re.IGNORECASE)
+
+
+def import_motion(
+    file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = ()
+) -> tuple[ImportedCharacter, ChosenMap]:
+    """Import an animated armature into a scene, which gets the motion's rate, and recognize its bones.
+
+    Its keys count as Keymark's own, so that those that a person sets later are known. An armature in other
+    units is scaled to a person's size.
+
+    Raises:
+        InputError: Blender cannot read it, it has no armature of a person, no Action, or no usable rate.
+    """
+    suffix = file.path.suffix.lower()
+    if suffix not in MOTION_ENDINGS:
+        raise InputError(f"{file.path}: is no motion of an armature; it must end in {listed(MOTION_ENDINGS)}")
+    if suffix == ".bvh":
+        _check_bvh(file.path)
+    elif suffix.startswith(".usd") and not bpy.app.build_options.usd:
+        raise InputError(f"{file.path}: this Blender is built without USD; export the motion as BVH or FBX")
+    imported = import_character(file, scene, animated=True)
+    armature = imported.armature
+    action = _action(armature)
+    if action is None:
+        raise InputError(f"{file.path}: its armature '{armature.name}' has no Action, so it has no motion")
+    if suffix.startswith(".usd"):
+        _set_rate(scene, _usd_rate(file.path))
+    elif suffix == ".blend":
+        _set_rate(scene, _blend_rate(file.path))
+    _set_to_keys(scene, armature, action, file.path)
+    try:
+        chosen = motion_map(armature, maps)
+        body = RestBody.of(read_character(armature), chosen.character_map)
+    except InputError as error:
+        raise InputError(f"{file.path}: {error}") from error
+    if suffix == ".bvh":
+        _stand_up(armature, body)
+    leg_m = body.leg_m
+    meters = min(UNITS, key=lambda meters: abs(np.log(leg_m * meters / 0.85)))
+    if not SHORTEST_LEG_M <= leg_m <= LONGEST_LEG_M and meters != 1.0:
+        if not SHORTEST_LEG_M <= leg_m * meters <= LONGEST_LEG_M:
+            raise InputError(
+                f"{file.path}: its legs are {leg_m:.3g} m long, which are no person's in any unit"
+            )
+        armature.scale = np.array(armature.scale) * meters
+        armature.location = np.array(armature.location) * meters
+        scene.view_layers[0].update()
+    bag = existing_channelbag(action, armature)
+    if bag is not None:
+        mark_generated(bag)
+    return imported, chosen
+
+
+def _stand_up(armature: bpy.types.Object, body: RestBody) -> None:
+    """Turn an armature that lies at rest upright: a BVH does not tell which axis is up, Y or as here Z."""
+    turn = np.array(armature.matrix_world, dtype=np.float64)[:3, :3]
+    up = unit(turn @ body.stance.T @ [0.0, 0.0, 1.0])
+    if up[2] < np.cos(np.radians(45.0)):
+        upright = smallest_rotation(up, np.array([0.0, 0.0, 1.0]))
+        armature.matrix_world = Matrix(upright).to_4x4() @ armature.matrix_world
+        bpy.context.view_layer.update()
+
+
+def load_motion(file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = ()) -> bpy.types.Object:
+    """Bring an animated armature into a scene, which keeps its rate and range; returns the armature object.
+
+    The motion begins at the scene's first frame and takes as long as in the file.
+
+    Raises:
+        InputError: See `import_motion`; nothing is added then.
+    """
+    before = {block.as_pointer() for block in bpy.data.user_map()}
+    meanwhile = bpy.data.scenes.new("Motion")
+    try:
+        imported, _ = import_motion(file, meanwhile, maps)
+        armature = imported.armature
+        action = armature.animation_data.action
+        factor = scene.render.fps / scene.render.fps_base
+        factor /= meanwhile.render.fps / meanwhile.render.fps_base
+        bag = existing_channelbag(action, armature)
+        if bag is not None:
+            _retime(bag, meanwhile.frame_start, factor, scene.frame_start)
+        for collection in list(meanwhile.collection.children):
+            scene.collection.children.link(collection)
+    except BaseException:
+        bpy.data.scenes.remove(meanwhile)
+        made = [block for block in bpy.data.user_map() if block.as_pointer() not in before]
+        bpy.data.batch_remove(made)
+        raise
+    bpy.data.scenes.remove(meanwhile)
+    return armature
+
+
+def armature_reference(path: Path, maps: Sequence[Path] = ()) -> ReferenceMotion:
+    """The joints of a file's animated armature as a reference motion; the scene is as before afterwards.
+
+    Raises:
+        InputError: See `import_motion`.
+    """
+    with own_scene("Motion") as scene, showing_scene(scene):
+        imported, chosen = import_motion(CharacterFile(path), scene, maps)
+        armature = imported.armature
+        points = ArmaturePoints.of(RestBody.of(read_character(armature), chosen.character_map))
+        action = animated_action(armature)
+        poses, _ = run(read_poses(armature, action, action_frames(armature, action), points.bones))
+        return ReferenceMotion(points.of_poses(poses), scene.render.fps / scene.render.fps_base, str(path))
+
+
+def _retime(bag: bpy.types.ActionChannelbag, first: float, factor: float, start: float) -> None:
+    """Let keys begin at `start` instead of `first`, and follow at `factor` times their distance."""
+    for curve in bag.fcurves:
+        for key in curve.keyframe_points:
+            for handle in (key.co, key.handle_left, key.handle_right):
+                handle[0] = start + (handle[0] - first) * factor
+        curve.update()
+
+
+def _check_bvh(path: Path) -> None:
+    """Refuse a BVH whose header lies about its rate or frames, which Blender would believe."""
+    if regular_file_size(path, "a BVH") > LARGEST_BVH:
+        raise InputError(f"{path}: is larger than {LARGEST_BVH // 2**20} MB; a motion must be smaller")
+    text = path.read_text(encoding="utf-8", errors="replace")
+    head, _, rest = text.partition("MOTION")
+    found = [pattern.search(rest[:1000]) for pattern in (_FRAMES, _RATE)]
+    if "HIERARCHY" not in head[:1000] or any(one is None for one in found):
+        raise InputError(f"{path}: is no BVH; it must have HIERARCHY, MOTION, Frames and Frame Time")
+    frames, step = (one[1] if one is not None else "" for one in found)
+    seconds = _number(step)
+    if not 1.0 / FASTEST <= seconds <= 1.0 / SLOWEST:
+        raise InputError(
+            f"{path}: Frame Time is {step[:20]}; {1.0 / FASTEST:g} to {1.0 / SLOWEST:g} s are valid"
+        )
+    rows = sum(1 for line in rest[found[1].end() if found[1] else 0 :].splitlines() if line.strip())
+    if _number(frames) != rows:
+        raise InputError(f"{path}: Frames is {frames[:20]}, but it has {rows} rows of numbers")
+
+
+def _number(text: str) -> float:
+    with suppress(ValueError):
+        return float(text)
+    return float("nan")
+
+
+def _action(armature: bpy.types.Object) -> bpy.types.Action | None:
+    """The Action of an armature, or else of the first strip of its NLA, which is assigned then."""
+    data = armature.animation_data
+    if data is None:
+        return None
+    if data.action is None:
+        strips = [strip for track in data.nla_tracks for strip in track.strips if strip.action is not None]
+        if not strips:
+            return None
+        assign_action(armature, strips[0].action)
+    for track in data.nla_tracks:
+        track.mute = True
+    return data.action
+
+
+def _usd_rate(path: Path) -> float:
+    """The rate of a USD's time codes; Blender's importer leaves the scene's as it is."""
+    with suppress(ImportError, AttributeError, RuntimeError):
+        bpy.utils.expose_bundled_modules()
+        from pxr import Usd
+
+        return float(Usd.Stage.Open(str(path)).GetTimeCodesPerSecond())
+    return 24.0  # USD's own default
+
+
+def _blend_rate(path: Path) -> float:
+    """The rate of the first scene of a .blend."""
+    with bpy.data.libraries.load(str(real_path(path)), link=True) as (inside, wanted):
+        wanted.scenes = list(inside.scenes)[:1]
+    rates = [scene.render.fps / scene.render.fps_base for scene in wanted.scenes if scene is not None]
+    for scene in wanted.scenes:
+        if scene is not None:
+            bpy.data.libraries.remove(scene.library)
+    return rates[0] if rates else 24.0
+
+
+def _set_rate(scene: bpy.types.Scene, rate: float) -> None:
+    scene.render.fps = max(1, round(rate))
+    scene.render.fps_base = scene.render.fps / rate
+
+
+def _set_to_keys(
+    scene: bpy.types.Scene, armature: bpy.types.Object, action: bpy.types.Action, path: Path
+) -> None:
+    """Give the scene the rate of an Action's keys and its range; keys between frames come to lie on them."""
+    bag = existing_channelbag(action, armature)
+    curves = [] if bag is None else [curve for curve in bag.fcurves if len(curve.keyframe_points) > 1]
+    if not curves:
+        raise InputError(f"{path}: Action '{action.name}' has no keys over two frames, so it has no motion")
+    densest = max(curves, key=lambda curve: len(curve.keyframe_points))
+    times = np.empty(2 * len(densest.keyframe_points), np.float32)
+    densest.keyframe_points.foreach_get("co", times)
+    times = times[::2]
+    step = float(np.median(np.diff(times)))
+    rate = scene.render.fps / scene.render.fps_base
+    between = not np.allclose(times, np.round(times), atol=1e-2)
+    if between and step > 0.0:  # the file has a rate of its own, and Blender put its seconds into frames
+        if not SLOWEST <= rate / step <= FASTEST:
+            raise InputError(
+                f"{path}: its keys follow at {rate / step:.4g} a second; {SLOWEST:g} to {FASTEST:g} are valid"
+            )
+        first = float(times[0])
+        if bag is not None:
+            _retime(bag, first, 1.0 / step, 1.0)
+        rate /= step
+    # A step of 0.033333 s means 30 frames a second.
+    _set_rate(scene, float(round(rate)) if abs(rate - round(rate)) < 5e-4 * rate else rate)
+    scene.frame_start, scene.frame_end = (round(value) for value in action.frame_range)
+    scene.frame_set(scene.frame_start)

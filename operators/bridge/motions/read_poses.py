@@ -1,0 +1,182 @@
+"""Any armature's bones by role, the poses that an Action gives it, and which of them a person posed."""
+
+from collections.abc import Collection, Iterable, Sequence
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from ....core.arrays import Array
+from ....core.body.skeleton import SIDES
+from ....core.errors import InputError
+from ....core.finish.mend_motion import MOST_FRAMES
+from ....core.progress import Part, run
+from ....core.retarget.character import ARM, LEG
+from ....core.retarget.controls.control_spaces import unscaled
+from ....core.retarget.maps.character_map import CharacterMap, RoleBones
+from ....core.retarget.maps.map_registry import ChosenMap, choose_map
+from ....core.retarget.mended_armature import ArmaturePoints, Poses
+from ....core.retarget.retarget_record import RECOGNIZED
+from ....core.retarget.solve.rest_body import RestBody
+from ....core.take.conversion_settings import AUTO
+from ..actions import existing_channelbag
+from ..actor_bones import is_actor
+from ..character.read_character import read_character
+from ..keys import animator_frames, generated_frames
+from ..object_space import evaluated, joint_places, object_space
+from ..rotation_modes import ALL_PATHS, bone_path
+from ..scene_frames import at_scene_frame, showing_action
+
+FRAMES_A_YIELD = 10  # frames shown between two reports of progress; in between the scene is as it was
+MOST_POSED = 0.5  # share of keyed frames from which keys are a motion's own, not a person's
+
+ACTOR_BONES = {
+    **{"hips": "pelvis", "spine": "chest", "head": "head"},
+    **{
+        f"{role}.{side}": f"{'girdle' if role == 'shoulder' else role}.{side}"
+        for role in (*ARM, *LEG[:3])
+        for side in SIDES
+    },
+}
+"""The bones of Keymark's actor by the role that they play."""
+
+
+def motion_map(armature_object: bpy.types.Object, maps: Sequence[Path]) -> ChosenMap:
+    """The roles of an armature's bones: of Keymark's actor by its bones, of any other as a character's.
+
+    Raises:
+        InputError: It is no person's.
+    """
+    if is_actor(armature_object):
+        roles = {role: RoleBones((bone,)) for role, bone in ACTOR_BONES.items()}
+        return ChosenMap(CharacterMap("Actor", roles), RECOGNIZED)
+    return choose_map(read_character(armature_object), AUTO, maps)
+
+
+def animated_action(armature_object: bpy.types.Object) -> bpy.types.Action:
+    """The Action that animates an armature.
+
+    Raises:
+        InputError: There is none, or it has no curve of a bone.
+    """
+    data = armature_object.animation_data
+    action = data.action if data is not None else None
+    if action is None:
+        raise InputError(
+            f"armature '{armature_object.name}' has no Action; load a motion, or choose the Action "
+            "that moves it"
+        )
+    return action
+
+
+def action_frames(armature_object: bpy.types.Object, action: bpy.types.Action) -> Array:
+    """(F,) whole scene frames from the first to the last key of an Action's bones.
+
+    Raises:
+        InputError: It moves no bone over three frames, or over too many.
+    """
+    ranges = [curve.range() for curve in _bone_curves(armature_object, action)]
+    first = int(np.ceil(min((r[0] for r in ranges), default=0.0) - 1e-3))
+    last = int(np.floor(max((r[1] for r in ranges), default=0.0) + 1e-3))
+    if not 3 <= last - first + 1 <= MOST_FRAMES:
+        raise InputError(
+            f"Action '{action.name}' moves the bones of '{armature_object.name}' over "
+            f"{max(last - first + 1, 0) if ranges else 0} frames; 3 to {MOST_FRAMES} can be mended"
+        )
+    return np.arange(first, last + 1, dtype=np.float64)
+
+
+def _bone_curves(armature_object: bpy.types.Object, action: bpy.types.Action) -> list[bpy.types.FCurve]:
+    channelbag = existing_channelbag(action, armature_object)
+    curves = channelbag.fcurves if channelbag is not None else ()
+    return [
+        curve
+        for curve in curves
+        if curve.data_path.startswith("pose.bones[") and not curve.is_empty and not curve.mute
+    ]
+
+
+def posed_frames(
+    armature_object: bpy.types.Object, action: bpy.types.Action, bones: Iterable[str], frames: Array
+) -> tuple[int, ...]:
+    """Indices of the frames (F,) that a person posed, by the keys of some bones.
+
+    They have a key that is neither Keymark's nor of the kind of most others: one of the type Keyframe among
+    generated ones, or one that Keymark made and a person changed. Where most frames have one, the motion
+    itself was keyed so and nobody posed it.
+    """
+    paths = {bone_path(bone, channel) for bone in bones for channel in (*ALL_PATHS, "location")}
+    curves = [curve for curve in _bone_curves(armature_object, action) if curve.data_path in paths]
+    own: set[int] = set()
+    every: set[int] = set()
+    for curve in curves:
+        keyed = {round(key.co[0]) for key in curve.keyframe_points}
+        made = {round(frame) for frame in generated_frames(curve)}
+        every |= keyed
+        if made:
+            own |= keyed - made
+        else:
+            own |= {round(frame) for frame in animator_frames(curve)} & _of_type_keyframe(curve)
+    if len(own) > MOST_POSED * len(every):
+        return ()
+    first = round(frames[0])
+    return tuple(sorted(frame - first for frame in own if 0 <= frame - first < len(frames)))
+
+
+def _of_type_keyframe(curve: bpy.types.FCurve) -> set[int]:
+    return {round(key.co[0]) for key in curve.keyframe_points if key.type == "KEYFRAME"}
+
+
+def read_poses(
+    armature_object: bpy.types.Object, action: bpy.types.Action, frames: Array, bones: Collection[str]
+) -> Part[tuple[Poses, Array]]:
+    """Poses (F, 4, 4) of bones in the world [m] at scene frames (F,), and the object's matrices (F, 4, 4).
+
+    Nothing in the scene stays changed.
+
+    Raises:
+        InputError: A pose is not a number, or the object is scaled unevenly.
+    """
+    scene = next(iter(armature_object.users_scene), bpy.context.scene)
+    found, objects = [], []
+    for first in range(0, len(frames), FRAMES_A_YIELD):
+        with at_scene_frame(scene) as go_to, showing_action(armature_object, action):
+            for frame in frames[first : first + FRAMES_A_YIELD]:
+                go_to(frame)
+                space, shown = object_space(armature_object), evaluated(armature_object)
+                matrices = np.array([shown.pose.bones[name].matrix for name in bones], dtype=np.float64)
+                matrices[:, :3, :3] = space.rotation @ unscaled(matrices[:, :3, :3])
+                matrices[:, :3, 3] = space.to_world(matrices[:, :3, 3])
+                found.append(matrices)
+                objects.append(np.array(shown.matrix_world, dtype=np.float64))
+        yield min(first + FRAMES_A_YIELD, len(frames)) / len(frames)
+    paths = np.array(found)
+    if not np.isfinite(paths).all():
+        raise InputError(
+            f"Action '{action.name}' gives '{armature_object.name}' poses that are not numbers; delete the "
+            "keys that are no numbers"
+        )
+    return {name: paths[:, number] for number, name in enumerate(bones)}, np.array(objects)
+
+
+def joint_paths(armature_object: bpy.types.Object) -> tuple[Array, float]:
+    """(F, 13, 3) the principal points over the frames of an armature's scene [m], and their rate.
+
+    Raises:
+        InputError: It has no Action, or is no person's.
+    """
+    scene = next(iter(armature_object.users_scene), bpy.context.scene)
+    frames = np.arange(scene.frame_start, scene.frame_end + 1, dtype=np.float64)
+    rate = scene.render.fps / scene.render.fps_base
+    if is_actor(armature_object):
+        places = []
+        with at_scene_frame(scene) as go_to:
+            for frame in frames:
+                go_to(frame)
+                places.append(joint_places(armature_object))
+        return np.array(places), rate
+    character_map = motion_map(armature_object, ()).character_map
+    points = ArmaturePoints.of(RestBody.of(read_character(armature_object), character_map))
+    bones = tuple(dict.fromkeys(points.bones))
+    poses, _ = run(read_poses(armature_object, animated_action(armature_object), frames, bones))
+    return points.of_poses(poses), rate

@@ -1,0 +1,158 @@
+"""Motions from elsewhere: loaded from a file, and mended without footage."""
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.errors import InputError
+from ...core.progress import run as run_job
+from ..shell.base_operator import BaseOperator, browse, chosen_file, warn
+from ..shell.job_operator import JobOperator
+from ..shell.requirements import bones_editable, idle
+from .map_conversion import map_of
+from .recognition import map_folders
+
+if TYPE_CHECKING:
+    from ...core.progress import Job
+    from ...core.retarget.maps.character_map import CharacterMap
+    from ..bridge.motions.mend_action import MendedAction
+
+ONTO = (
+    (
+        "ARMATURE",
+        "Same Armature",
+        "A new Action on the armature itself; fingers, face and toes move as before",
+    ),
+    ("ACTOR", "Actor", "A new Keymark actor, whose Action any character can be given in this step"),
+)
+FILTER = "*.bvh;*.fbx;*.glb;*.gltf;*.vrm;*.usd;*.usda;*.usdc;*.usdz;*.blend;*.csv;*.npy;*.trc;*.c3d;*.json"
+
+
+def animated(context: bpy.types.Context) -> str | None:
+    """The active object is an armature with an Action."""
+    active = context.view_layer.objects.active
+    if active is None or active.type != "ARMATURE":
+        return "Select the armature whose motion is to be mended first, or load a motion"
+    data = active.animation_data
+    moving = data is not None and data.action is not None
+    return None if moving else f"'{active.name}' has no Action; choose the one that moves it first"
+
+
+class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
+    """Load a motion that another program made: an animated armature, or points by name"""
+
+    bl_idname = "keymark.load_motion"
+    bl_label = "Load Motion"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (bones_editable, idle)
+
+    filepath: bpy.props.StringProperty(
+        name="File", description="The motion's file", subtype="FILE_PATH", options={"SKIP_SAVE"}
+    )
+    object: bpy.props.StringProperty(
+        name="Armature", description="Name of its armature, where the file has several", options={"SKIP_SAVE"}
+    )
+    filter_glob: bpy.props.StringProperty(default=FILTER, options={"HIDDEN"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        return browse(self, context)
+
+    def run(self, context: bpy.types.Context) -> None:
+        from ...core.finish.mend_motion import MendOptions, mend_motion
+        from ...core.take.conversion_settings import CharacterFile
+        from ...core.take.reference import REFERENCE_ENDINGS, read_reference
+        from ..bridge.motions.import_motion import load_motion
+        from ..bridge.motions.mend_action import add_actor
+
+        path, scene = chosen_file(self, "a motion, such as a .bvh or .fbx"), context.scene
+        active = context.view_layer.objects.active
+        if active is not None and active.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        if path.suffix.lower() in REFERENCE_ENDINGS:
+            reference = read_reference(path)
+            rate = reference.fps or scene.render.fps / scene.render.fps_base
+            mended = run_job(mend_motion(reference.points_m, rate, MendOptions()))
+            loaded = add_actor(scene, mended.motion, path.stem, scene.frame_start)
+            for note in mended.notes:
+                warn(self, note)
+        else:
+            loaded = load_motion(CharacterFile(path, self.object or None), scene, map_folders())
+        _select(context, loaded)
+        self.report({"INFO"}, f"'{loaded.name}' moves as {path.name} says")
+
+
+class KEYMARK_OT_mend_motion(JobOperator, bpy.types.Operator):
+    """Mend the active armature's motion: jitter, sliding feet, exchanged sides; frames you posed stay"""
+
+    bl_idname = "keymark.mend_motion"
+    bl_label = "Mend Motion"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (animated, idle)
+
+    onto: bpy.props.EnumProperty(name="Onto", description="What is to move so", items=ONTO)
+    posed: bpy.props.StringProperty(
+        name="Posed Frames",
+        description="Frames that you posed, with commas between them, as in 12, 40, 88; those in which you "
+        "set keys on a loaded motion are known",
+    )
+    plant_feet: bpy.props.BoolProperty(
+        name="Plant Feet", description="Hold resting feet still; the hips go as the feet say", default=True
+    )
+    floor: bpy.props.BoolProperty(
+        name="On the Floor", description="Bring the height on which the feet stand to zero", default=True
+    )
+
+    def start(self, scene: bpy.types.Scene) -> "Job[tuple[int, MendedAction]]":
+        from ..bridge.motions.mend_action import mend_action
+
+        active = bpy.context.view_layer.objects.active
+        frames = _frames(self.posed)
+        character_map = _map_of(active)
+        found = yield from mend_action(active, character_map, frames, self.plant_feet, self.floor)
+        return active.session_uid, found
+
+    def finish(self, scene: bpy.types.Scene, result: "tuple[int, MendedAction]") -> None:
+        from ..bridge.motions.mend_action import add_actor, write_mended
+
+        uid, found = result
+        armature = next((one for one in bpy.data.objects if one.session_uid == uid), None)
+        if armature is None:
+            raise InputError("the armature was removed while the job ran; nothing was changed")
+        if self.onto == "ACTOR":
+            actor = add_actor(scene, found.mended.motion, f"{armature.name} Actor")
+            name = actor.animation_data.action.name
+            _select(bpy.context, actor)
+        else:
+            name = write_mended(armature, found).name
+        for note in found.mended.notes:
+            warn(self, note)
+        posed = f", {len(found.posed)} posed" if found.posed else ""
+        self.report({"INFO"}, f"'{name}' has the mended motion, {len(found.frames)} frames{posed}")
+
+
+def _frames(text: str) -> tuple[int, ...]:
+    try:
+        return tuple(int(word) for word in text.split(",") if word.strip())
+    except ValueError as error:
+        raise InputError(f"Posed Frames is {text}; frames with commas between them are valid") from error
+
+
+def _map_of(armature_object: bpy.types.Object) -> "CharacterMap":
+    """The map of an armature: that of a character that it is in a take, else the one found."""
+    from ..bridge.motions.read_poses import motion_map
+
+    for take in (take for scene in bpy.data.scenes for take in scene.keymark.takes):
+        for character in take.characters:
+            if character.armature == armature_object and len(character.character_map.roles):
+                return map_of(character.character_map)
+    return motion_map(armature_object, map_folders()).character_map
+
+
+def _select(context: bpy.types.Context, chosen: bpy.types.Object) -> None:
+    for one in list(context.view_layer.objects.selected):
+        one.select_set(False)
+    chosen.select_set(True)
+    context.view_layer.objects.active = chosen
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_motion, KEYMARK_OT_mend_motion))

@@ -1,0 +1,243 @@
+"""`keymark mend`: mend a motion from elsewhere, without footage."""
+
+import argparse
+import re
+from pathlib import Path
+
+from ....core.errors import InputError
+from ....core.files.output_folder import output_folder
+from ....core.files.paths import absolute_path, real_path
+from ....core.finish.mend_motion import Mended, MendOptions, mend_motion
+from ....core.pipeline.result import (
+    AS_MADE,
+    BVH,
+    CHARACTER_BLEND,
+    CHARACTER_PICTURE,
+    MOTION,
+    changed_files,
+    kept_note,
+    write_made_digests,
+)
+from ....core.progress import run
+from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
+from ....core.take.conversion_record import RECORD_FILE as CONVERSION
+from ....core.take.conversion_settings import CharacterFile, CharacterSettings
+from ....core.take.motion import write_motion
+from ....core.take.reference import REFERENCE_ENDINGS, read_reference
+from ..blender_silence import blender_silence
+from ..console import Console, arguments_console
+from ..conversion.blender_files import hidden_files, refuse_unsupported_output
+from ..conversion.character_result import (
+    EXPORTS,
+    FORMAT,
+    check_exporters,
+    export_formats,
+    silenced,
+    write_character_result,
+)
+from ..library_search_path import library_folders
+from ..options import CHARACTER_HELP, MAP_HELP, RETARGET_OPTIONS, character_options, output
+from ..parser import Command, UsageError, argument, require_blender
+
+FILES = (MOTION, BVH, CHARACTER_BLEND, RETARGET, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
+USUAL_RATE = 30.0
+
+
+def mend_command(arguments: argparse.Namespace) -> None:
+    """Mend the motion that the command line names, and list the files that were made."""
+    require_blender("mending a motion needs")
+    settings = None
+    if arguments.character:
+        character = CharacterFile.parse(arguments.character)
+        settings = CharacterSettings(character, arguments.map, character_options(arguments))
+    formats = export_formats(arguments.format)
+    posed = _posed(arguments.posed)
+    file = _motion_file(arguments.motion)
+    folder: Path = arguments.output
+    refuse_unsupported_output(folder)
+    if (folder / CONVERSION).exists():
+        raise InputError(f"{folder}: holds the result of a conversion; name another folder for the motion")
+    if arguments.fps is not None and not 1.0 <= arguments.fps <= 1000.0:
+        raise UsageError(f"--fps is {arguments.fps:g}; 1 to 1000 frames a second are valid")
+    with arguments_console(arguments) as console:
+        kept: dict[str, str] = {}
+        notes: tuple[str, ...] = ()
+        with output_folder(folder, (*FILES, AS_MADE), MOTION, kept) as staging:
+            if file.path.suffix.lower() in REFERENCE_ENDINGS:
+                mended = _mend_points(file, posed, arguments, console)
+            else:
+                own = None if settings is not None else (staging, real_path(folder), formats)
+                mended, notes = _mend_armature(file, posed, arguments, console, own)
+            motion = mended.motion
+            console.stage("Writing the motion")
+            write_motion(motion, staging / MOTION)
+            with blender_silence(arguments.debug):
+                from ...bridge.motions.mend_action import write_actor_bvh
+
+                write_actor_bvh(motion, staging / BVH)
+            if settings is not None:
+                notes = (
+                    *notes,
+                    *_onto_character(settings, mended, file, (staging, folder), console, arguments),
+                )
+            made = [name for name in FILES if (staging / name).exists()]
+            write_made_digests(staging, made)
+            before = {MOTION: ""} if (folder / AS_MADE).exists() else {}
+            kept.update(changed_files(folder, staging, FILES, (CHARACTER_BLEND,), before))
+        said = (*mended.notes, *notes, *(kept_note(*names) for names in kept.items()))
+        files = [str(folder / name) for name in made]
+        summary = {
+            "frames": len(motion.time_s),
+            "frame_start": motion.frame_start,
+            "fps": motion.fps,
+            "posed": [index + motion.frame_start for index in motion.keyframe_indices],
+            "exchanged": int(mended.exchanged.sum()),
+            "rests": len(mended.contacts),
+            "notes": list(said),
+            "files": files,
+        }
+        lines = [f"Note: {note.rstrip('.')}." for note in said]
+        lines.append(
+            f"{len(motion.time_s)} frames at {motion.fps:g} a second, {len(mended.contacts)} rests of feet:"
+        )
+        console.finish(summary, "\n".join([*lines, *(f"  {name}" for name in files)]))
+
+
+def _mend_points(
+    file: CharacterFile, posed: tuple[int, ...], arguments: argparse.Namespace, console: Console
+) -> Mended:
+    console.stage("Reading the motion")
+    reference = read_reference(file.path)
+    rate = arguments.fps or reference.fps or USUAL_RATE
+    options = MendOptions(
+        tuple(frame - 1 for frame in posed), not arguments.no_plant_feet, not arguments.no_floor
+    )
+    try:
+        return run(mend_motion(reference.points_m, rate, options), console.progress)
+    except InputError as error:
+        raise InputError(f"{file.path}: {error}") from error
+
+
+def _mend_armature(
+    file: CharacterFile,
+    posed: tuple[int, ...],
+    arguments: argparse.Namespace,
+    console: Console,
+    own: tuple[Path, Path, tuple[str, ...]] | None,
+) -> tuple[Mended, tuple[str, ...]]:
+    """Mend an armature's motion; where `own` says so, it is written on the same armature."""
+    debug: bool = arguments.debug
+    console.stage("Reading the motion")
+    with blender_silence(debug):
+        from ...bridge.blend_files import own_scene, showing_scene
+        from ...bridge.character.import_character import write_character_files
+        from ...bridge.motions.import_motion import import_motion
+        from ...bridge.motions.mend_action import mend_action, write_mended
+    check_exporters(own[2] if own is not None else ())
+    with own_scene("Motion") as scene, showing_scene(scene):
+        with blender_silence(debug):
+            imported, chosen = import_motion(file, scene, library_folders())
+        plant, floor = not arguments.no_plant_feet, not arguments.no_floor
+        job = mend_action(imported.armature, chosen.character_map, posed, plant, floor)
+        try:
+            found = run(silenced(job, debug), console.progress)
+        except InputError as error:
+            raise InputError(f"{file.path}: {error}") from error
+        if own is not None:
+            staging, folder, formats = own
+            exports = {EXPORTS[word][0]: EXPORTS[word][1] for word in formats}
+            names = (CHARACTER_BLEND, *exports.values())
+            with blender_silence(debug), hidden_files(names, staging, folder) as hidden:
+                action = write_mended(imported.armature, found)
+                paths = {name: hidden[other] for name, other in exports.items()}
+                write_character_files(scene, imported, action, hidden[CHARACTER_BLEND], paths)
+    return found.mended, (*imported.notes, *chosen.doubts)
+
+
+def _onto_character(
+    settings: CharacterSettings,
+    mended: Mended,
+    file: CharacterFile,
+    folders: tuple[Path, Path],
+    console: Console,
+    arguments: argparse.Namespace,
+) -> tuple[str, ...]:
+    from ...bridge.character.source import show_result
+
+    staging, folder = folders
+    record = write_character_result(
+        settings,
+        mended.motion,
+        absolute_path(file.path).stem,
+        lambda scene, shown: show_result(scene, None, shown),
+        (staging, real_path(folder)),
+        console,
+        arguments.debug,
+        export_formats(arguments.format),
+        picture=False,
+    )
+    return (*record.doubts, *record.notes)
+
+
+def _motion_file(text: str) -> CharacterFile:
+    """A motion's file, and after a colon the name of its armature."""
+    with blender_silence(False):
+        from ...bridge.motions.import_motion import MOTION_ENDINGS
+
+    endings = "|".join(map(re.escape, (*MOTION_ENDINGS, *REFERENCE_ENDINGS)))
+    found = re.fullmatch(rf"(.*?(?:{endings}))(?::(.+))?", text, re.IGNORECASE | re.DOTALL)
+    if found is None:
+        raise InputError(
+            f"{text}: is no motion; it must be a file that ends in "
+            f"{', '.join((*MOTION_ENDINGS, *REFERENCE_ENDINGS))}, and after a colon the name of its armature "
+            "where it has several"
+        )
+    return CharacterFile(Path(found[1]), found[2])
+
+
+def _posed(text: str) -> tuple[int, ...]:
+    try:
+        return tuple(sorted({int(word) for word in text.split(",") if word.strip()}))
+    except ValueError as error:
+        raise UsageError(
+            f"--posed is {text}; frames with commas between them are valid, as in 12,40,88"
+        ) from error
+
+
+MEND = Command(
+    name="mend",
+    description=(
+        "Mends a motion that another program made, without footage: its jitter, exchanged sides, sliding "
+        "feet and floor. DIR then holds motion.json and motion.bvh, and character.blend: the armature of the "
+        "file itself with its fingers, face and toes as they were, or the character that --character names. "
+        "DIR changes only once all files are complete. Needs Blender."
+    ),
+    arguments=(
+        argument(
+            "motion",
+            metavar="FILE[:OBJECT]",
+            help="an animated armature (.bvh, .fbx, .glb, .vrm, .usd, .blend), and after a colon its name "
+            "where there are several; or points by name (.csv, .npy, .trc, .c3d), or a motion.json",
+        ),
+        *output("DIR", "folder for the result, new or old"),
+        argument("--character", "-c", metavar="FILE[:OBJECT]", help=CHARACTER_HELP),
+        argument("--map", metavar="TITLE|FILE|auto|none", default="auto", help=MAP_HELP),
+        argument(
+            "--posed",
+            metavar="FRAMES",
+            default="",
+            help="frames that you have posed, with commas between them; those with keys of their own are "
+            "found. They stay, and the motion beside them follows",
+        ),
+        argument(
+            "--fps",
+            metavar="RATE",
+            type=float,
+            help="frames a second of points whose file does not tell (default: 30)",
+        ),
+        argument("--no-floor", action="store_true", help="leave the motion at its height"),
+        FORMAT,
+        *RETARGET_OPTIONS,
+    ),
+    run=mend_command,
+)

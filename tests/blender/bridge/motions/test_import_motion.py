@@ -1,0 +1,93 @@
+"""Animated armatures out of files: at their own rate, in a person's size, recognized or refused."""
+
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from keymark.core.errors import InputError
+from keymark.core.take.conversion_settings import CharacterFile
+from keymark.operators.bridge.blend_files import own_scene, showing_scene
+from keymark.operators.bridge.export_formats import FORMATS, export_motion
+from keymark.operators.bridge.motions.import_motion import import_motion, load_motion
+from keymark.operators.bridge.motions.read_poses import joint_paths
+
+
+@pytest.fixture
+def exported(shaken: bpy.types.Object, tmp_path: Path) -> Path:
+    """The shaken armature as a file of every kind, at 60 frames a second."""
+    bpy.context.scene.render.fps = 60
+    for kind in ("BVH", "FBX", "USD"):
+        chosen = FORMATS[kind]
+        path = tmp_path / f"motion{chosen.suffix}"
+        export_motion(bpy.context.scene, shaken, shaken.animation_data.action, (1, 45), chosen, path)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "motion.blend"), copy=True)
+    return tmp_path
+
+
+@pytest.mark.parametrize("ending", ["bvh", "fbx", "usdc", "blend"])
+def test_rate_size_and_joints_are_the_files(exported: Path, shaken: bpy.types.Object, ending: str) -> None:
+    bpy.context.scene.frame_start, bpy.context.scene.frame_end = 1, 45
+    wanted, _ = joint_paths(shaken)
+    with own_scene("Motion") as scene, showing_scene(scene):
+        imported, chosen = import_motion(CharacterFile(exported / f"motion.{ending}"), scene)
+        assert scene.render.fps / scene.render.fps_base == pytest.approx(60.0)
+        assert scene.frame_end - scene.frame_start == 44 and scene.frame_start in (1, 2)
+        assert chosen.character_map.bone("forearm.L") in ("forearm.L", "forearm_L")
+        points, rate = joint_paths(imported.armature)
+        legs = [np.linalg.norm(each[:, 9] - each[:, 11], axis=1) for each in (points, wanted)]
+        np.testing.assert_allclose(*legs, atol=2e-3)
+        bends = [np.linalg.norm(each[:, 5] - each[:, 1], axis=1) for each in (points, wanted)]
+        np.testing.assert_allclose(*bends, atol=6e-3)
+    assert "Motion" not in bpy.data.scenes
+
+
+def test_a_loaded_motion_takes_as_long_as_in_its_file_and_the_scene_stays(exported: Path) -> None:
+    scene = bpy.context.scene
+    scene.render.fps, scene.frame_start, scene.frame_end = 24, 10, 200
+    loaded = load_motion(CharacterFile(exported / "motion.bvh"), scene)
+    assert loaded.name in scene.objects
+    first, last = loaded.animation_data.action.frame_range
+    assert first == pytest.approx(10.0) and last == pytest.approx(10.0 + 44 * 24 / 60, abs=1e-3)
+    assert (scene.render.fps, scene.frame_start, scene.frame_end) == (24, 10, 200)
+    keys = loaded.animation_data.action.layers[0].strips[0].channelbags[0].fcurves[0].keyframe_points
+    assert {key.type for key in keys} == {"GENERATED"}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("Frame Time: 0.016667", "Frame Time: 0", "Frame Time is 0; 0.001 to 1 s are valid"),
+        ("Frame Time: 0.016667", "Frame Time: soon", "Frame Time is soon"),
+        ("Frames: 45", "Frames: 45000", "Frames is 45000, but it has 45 rows"),
+        ("HIERARCHY", "HIER", "is no BVH"),
+        ("OFFSET", "OFFSET nan", "cannot read it|not a number|no person|too few|bones"),
+    ],
+)
+def test_a_bvh_that_lies_is_refused_and_nothing_is_added(
+    exported: Path, old: str, new: str, said: str
+) -> None:
+    file = exported / "motion.bvh"
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new))
+    before = {block.as_pointer() for block in bpy.data.user_map()}
+    with pytest.raises(InputError, match=said):
+        load_motion(CharacterFile(file), bpy.context.scene)
+    assert {block.as_pointer() for block in bpy.data.user_map()} == before
+
+
+def test_what_is_no_moving_person_is_refused(exported: Path, shaken: bpy.types.Object) -> None:
+    with pytest.raises(InputError, match="is no motion of an armature"):
+        load_motion(CharacterFile(exported / "motion.txt"), bpy.context.scene)
+    bpy.ops.object.select_all(action="DESELECT")
+    shaken.animation_data_clear()
+    bpy.ops.wm.save_as_mainfile(filepath=str(exported / "still.blend"), copy=True)
+    with pytest.raises(InputError, match="has no Action, so it has no motion"):
+        load_motion(CharacterFile(exported / "still.blend"), bpy.context.scene)
+    snake = "HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 3 Xrotation Yrotation Zrotation\nJOINT B\n{\n"
+    snake += "OFFSET 0 10 0\nCHANNELS 3 Xrotation Yrotation Zrotation\nEnd Site\n{\nOFFSET 0 10 0\n}\n}\n}\n"
+    snake += "MOTION\nFrames: 3\nFrame Time: 0.033333\n" + "0 0 0 0 0 0\n1 0 0 0 0 0\n2 0 0 0 0 0\n"
+    (exported / "snake.bvh").write_text(snake)
+    with pytest.raises(InputError, match=r"snake.bvh: .*(character|bones)"):
+        load_motion(CharacterFile(exported / "snake.bvh"), bpy.context.scene)
