@@ -179,8 +179,8 @@ def without_corrections(problem: ClipProblem) -> ClipProblem:
     """The problem with every keyframe as doubtful as a found one; the same where all are, or none is.
 
     A keyframe that a person put right lies beside frames whose evidence has a foot a little elsewhere. Feet
-    that move from frame to frame are released, so the one frame would jump there and back. Where feet rest is
-    therefore asked before the keyframe is believed, and holds afterwards: the correction moves the whole rest.
+    that move from frame to frame are released, so the one frame would jump there and back. Where feet rest
+    is therefore asked before the keyframe is believed, and holds afterwards: a correction moves all of it.
     """
     decided = ~problem.matched | problem.corrected
     if not problem.matched.any() or not decided.any():
