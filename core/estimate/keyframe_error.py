@@ -38,6 +38,16 @@ def posing_covariance(body: Body, pose: Pose) -> Array:
     return np.asarray(0.5 * (covariance + np.swapaxes(covariance, -1, -2)))
 
 
+def picture_information(body: Body, camera: Camera, posture: Posture, frame: IndexArray) -> Array:
+    """(K, D, D) what a person's usual care in the picture alone tells of the posture's tangent."""
+    pose = body.pose(posture)
+    sight = camera.sight(body.points(pose), frame[:, None])
+    across = np.eye(3) - sight[..., :, None] * sight[..., None, :]
+    count = body.skeleton.dof_count
+    rows = (across @ body.points_jacobian(pose)).reshape(len(frame), -1, count) / POINT_STD_M
+    return np.asarray(np.swapaxes(rows, -1, -2) @ rows)
+
+
 def velocities(keyframes: Posture, frame: IndexArray) -> Array:
     """Velocities of K keyframes' postures, (K, D) of the tangent per frame: of the parabola through three."""
     if len(frame) < 2:

@@ -121,6 +121,7 @@ class SeenAtKeyframes:
     keypoints: KeypointEvidence | None = None  # usual evidence of the N keypoints; None for none
     points: ObservedKeypoints | None = None  # those seen
     contours: ContourReader | None = None  # reads rows at some keyframes; None where contours judge none
+    posing: Array | None = None  # (K, D, D) their usual errors; None for those of keyframes posed in space
 
     def __getitem__(self, index: IndexArray) -> "SeenAtKeyframes":
         """Some of the keyframes."""
@@ -131,6 +132,7 @@ class SeenAtKeyframes:
             observed=self.observed[index],
             width_px=self.width_px[index],
             points=None if self.points is None else self.points[index],
+            posing=None if self.posing is None else self.posing[index],
         )
 
 
@@ -139,7 +141,7 @@ def read_keyframes(
 ) -> Generator[None, None, KeyframeEvidence]:
     """Calibrate markers and keypoints on posed keyframes and judge the keyframes by them."""
     posture, frame, points, contours = at.posture, at.frame, at.points, at.contours
-    posing = posing_covariance(model.body, model.body.pose(posture))
+    posing = posing_covariance(model.body, model.body.pose(posture)) if at.posing is None else at.posing
     velocity = velocities(posture, frame)
     keypoints = at.keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
     believed = points is not None and points.only(keypoints.trust > 0.0).seen.any()

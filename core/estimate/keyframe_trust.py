@@ -1,8 +1,8 @@
 """Evidence of posed and matched keyframes together: only posed ones calibrate markers and lens.
 
-Placements, lens and posing error are calibrated on keyframes that a person has posed. Matched ones err by
-more than any of these, and all in the same direction: calibrated on them, sleeves would make up for another
-performer's gait.
+Placements, lens and posing error are calibrated on keyframes that a person has posed, in the picture at
+least. Matched ones err by more than any of these, and all in the same direction: calibrated on them, sleeves
+would make up for another performer's gait.
 """
 
 from collections.abc import Generator
@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array, chunks
+from ..arrays import Array, BoolArray, chunks
 from ..body.posture import Posture
 from ..evidence.regions import RegionModel, RegionNoise
 from ..footage.keypoints.keypoints import Keypoints, mirrored_point
@@ -19,28 +19,35 @@ from ..footage.region_tracks import RegionTracks
 from ..numerics.vectors import columns_at
 from ..prior.keyframes import Keyframe, interpolate, leave_one_out_residuals
 from .clip_problem import KeyframeEvidence, uncalibrated
-from .keyframe_error import match_covariance, posing_covariance
+from .keyframe_error import match_covariance, picture_information, posing_covariance
 from .keyframe_evidence import SeenAtKeyframes, read_keyframes
 
 FEWEST_POSED = 2  # fewer posed keyframes calibrate nothing
 
 
 def read_mixed_keyframes(
-    model: RegionModel, noise: RegionNoise, at: SeenAtKeyframes, match_scale: Array
+    model: RegionModel, noise: RegionNoise, at: SeenAtKeyframes, match_scale: Array, corrected: BoolArray
 ) -> Generator[None, None, KeyframeEvidence]:
     """Evidence of keyframes of which some may be matched.
 
     `match_scale` (K,): size of the matched ones' error, relative to a usual difference between performers; 0
-    for posed ones.
+    for posed ones; `corrected` (K,): which of these a person vouches for in the picture, which calibrates
+    too.
     """
     if not match_scale.any():
         return (yield from read_keyframes(model, noise, at))
     posed = np.flatnonzero(match_scale == 0.0)
     information = np.linalg.inv(match_covariance(at.posture, model.camera, at.frame))
     information /= np.where(match_scale > 0.0, match_scale, 1.0)[:, None, None] ** 2
-    if len(posed) >= FEWEST_POSED:
-        evidence = yield from read_keyframes(model, noise, at[posed])
-        information[posed] = evidence.information
+    seen = np.flatnonzero((match_scale == 0.0) | corrected)
+    if len(seen) >= FEWEST_POSED:
+        posing = posing_covariance(model.body, model.body.pose(at.posture))
+        if corrected.any():
+            there = at[np.flatnonzero(corrected)]
+            pictured = picture_information(model.body, model.camera, there.posture, there.frame)
+            posing[corrected] = np.linalg.inv(information[corrected] + pictured)
+        evidence = yield from read_keyframes(model, noise, replace(at, posing=posing)[seen])
+        information[posed] = evidence.information[np.isin(seen, posed)]
         return replace(evidence, information=information)
     if len(posed):
         information[posed] = np.linalg.inv(posing_covariance(model.body, model.body.pose(at.posture[posed])))
@@ -78,8 +85,10 @@ def select_keyframes(
     keypoints: Keypoints | None = None,
 ) -> tuple[Keyframe, ...]:
     """The posed keyframes, and those matched ones that are better than interpolation between them."""
-    posed = tuple(keyframe for keyframe in keyframes if keyframe.matched is None)
-    compared = tuple(key for key in keyframes if key.matched is None or not key.matched.is_composed)
+    posed = tuple(keyframe for keyframe in keyframes if keyframe.is_posed)
+    compared = tuple(
+        key for key in keyframes if key.is_posed or (key.matched is not None and not key.matched.is_composed)
+    )
     if len(posed) < FEWEST_POSED or len(posed) == len(compared):
         return keyframes
     library_m = _library_error_m(compared, posed, model, fps)

@@ -224,11 +224,13 @@ def _believed(
     if _is_composed(take):
         ankle = found_ankle_m(take.body, prior[index], index, prior.batch[0])
     expected = None if referred is None else referred.expected
-    return Believed(prior, take.keyframe_indices, match_scale, ankle, unseen, expected)
+    corrected = np.array([keyframe.depth_found for keyframe in take.keyframes])
+    return Believed(prior, take.keyframe_indices, match_scale, ankle, unseen, expected, corrected)
 
 
 def _is_composed(take: Take) -> bool:
-    return all(key.matched is not None and key.matched.is_composed for key in take.keyframes)
+    found = [key.matched for key in take.keyframes if key.matched is not None]
+    return all(each.is_composed for each in found) and not all(key.is_posed for key in take.keyframes)
 
 
 def _solved(

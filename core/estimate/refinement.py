@@ -23,7 +23,9 @@ from .clip_problem import ClipProblem
 from .clip_state import ClipState, Window, spliced
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_search import all_located, contour_schedule, points_locate
+from .keyframe_error import match_covariance
 from .second_look import find_lost
+from .terms.assembly import stillness_term
 from .turn_choice import choose_turns
 from .warm_start import changed_gaps
 from .window_problem import WindowProblem
@@ -168,3 +170,33 @@ def _learned(
     posture = spliced(problem.prior, spans, solved)
     learning = learn_contours(problem.body, camera, album, posture, problem.keyframes, schedule)
     return (yield from scaled(learning, 0.0, 1.0))
+
+
+# --- Rests of the feet, which a corrected keyframe amid found ones does not tear
+
+
+def without_corrections(problem: ClipProblem) -> ClipProblem:
+    """The problem with every keyframe as doubtful as a found one; the same where all are, or none is.
+
+    A keyframe that a person put right lies beside frames whose evidence has a foot a little elsewhere. Feet
+    that move from frame to frame are released, so the one frame would jump there and back. Where feet rest
+    is therefore asked before the keyframe is believed, and holds afterwards: a correction moves all of it.
+    """
+    decided = ~problem.matched | problem.corrected
+    if not problem.matched.any() or not decided.any():
+        return problem
+    information = problem.evidence.information.copy()
+    frame = problem.keyframes[decided]
+    information[decided] = np.linalg.inv(match_covariance(problem.prior[frame], problem.camera, frame))
+    evidence = replace(problem.evidence, information=information)
+    return replace(problem, evidence=evidence, corrected=np.zeros_like(decided))
+
+
+def rests_of(problem: ClipProblem, spans: list[Window], states: list[ClipState]) -> Array:
+    """(F - 1, A) how far each ankle that is seen stands in states of some windows, 0 to 1; 0 elsewhere."""
+    terms = [stillness_term(problem, window) for window in spans]
+    rests = np.zeros((problem.frames - 1, len(terms[0].points) if terms else 0))
+    for window, term, state in zip(spans, terms, states, strict=True):
+        if window.last - window.first > 1 and term.points:
+            rests[window.first : window.last - 1] = term.standing(state)
+    return rests

@@ -155,6 +155,8 @@ def _changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
         changed |= earlier.reference.differ(now.reference)
     changed |= (earlier.depth_std_m != now.depth_std_m) | _ankle_heights_differ(earlier, now)
     changed[np.setxor1d(earlier.keyframes, now.keyframes)] = True
+    corrected = earlier.keyframes[earlier.corrected], now.keyframes[now.corrected]
+    changed[np.setxor1d(*corrected)] = True
     both, before, after = np.intersect1d(earlier.keyframes, now.keyframes, return_indices=True)
     information, other = earlier.evidence.information[before], now.evidence.information[after]
     scale = np.abs(other).max(axis=(1, 2))

@@ -36,7 +36,7 @@ from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import doubted_at_changes, exchanged_back, find_swaps, keypoint_trust
 from .performer_placement import lower_ankle_m
-from .refinement import refine
+from .refinement import refine, rests_of, without_corrections
 from .terms.reference import ExpectedPoints
 from .warm_start import blend_weight, continued, revised_windows
 from .window_problem import WindowProblem
@@ -77,6 +77,7 @@ class Believed:
     lower_ankle: Array | None = None  # (F,) where all keyframes are matched [m]; by soles where None
     unseen: tuple[str, ...] = ()  # limbs that are never seen, whose feet say nothing of the place
     reference: ExpectedPoints | None = None  # where a motion from elsewhere has the points; None without one
+    corrected: BoolArray | None = None  # (K,) which of the keyframes a person vouches for in the picture
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +130,8 @@ def estimate_whole_clip(
     swapped = _swaps(usual.model, keypoints, prior, index, tracks.time_s)
     keypoints = doubted_at_changes(exchanged_back(keypoints, swapped), swapped, tracks.time_s)
     points = ObservedKeypoints.of(keypoints)
-    posed = index[~matched]
+    corrected = np.zeros_like(matched) if believed.corrected is None else believed.corrected
+    posed = index[~matched | corrected]
     if keypoints.names and len(posed):
         said = keypoint_trust(usual.model, usual.sources, points, body.pose(prior[posed]), posed)
         usual = replace(usual, trust=said.trust, lag={name: lag for name, lag in said.lag.items() if lag})
@@ -142,9 +144,9 @@ def estimate_whole_clip(
     at = SeenAtKeyframes(
         index, prior[index], observed[index], width_px[index], usual, points[index], outlines
     )
-    reading = read_mixed_keyframes(model, options.regions, at, match_scale)
+    reading = read_mixed_keyframes(model, options.regions, at, match_scale, corrected)
     ankle_height_m = None  # posed keyframes say where the floor is, and better
-    if matched.all():
+    if matched.all() or believed.lower_ankle is not None:
         ankle_height_m = believed.lower_ankle
         if ankle_height_m is None:
             ankle_height_m = lower_ankle_m(body, prior[index], index, prior.batch[0])
@@ -154,6 +156,7 @@ def estimate_whole_clip(
         noise=options.regions,
         keyframes=index,
         matched=matched,
+        corrected=corrected,
         evidence=(yield from scaled(reading, 0.0, 0.0)),
         factor=process_noise_factor(prior[index], tracks.time_s[index]),
         interpolated=prior,
@@ -162,6 +165,7 @@ def estimate_whole_clip(
         depth_std_m=depth_std_m(index, matched, tracks.frame_count),
         ankle_height_m=ankle_height_m,
         limb_size=np.ones(body.skeleton.dof_count),
+        rests=None,
         depth_factor=np.ones((tracks.frame_count, len(body.skeleton.points))),
         observed=observed,
         tracked=observed,
@@ -241,10 +245,17 @@ def _solve_windows(
     stretches = list(zip(spans, shares[:-1], shares[1:], strict=True))
     # All windows by their markers first: contours learned from the whole clip then join them without a seam.
     states = []
+    doubted = without_corrections(problem)
     for window, begun, ended in stretches:
-        part = WindowProblem(problem, window, problem.start(window))
+        part = WindowProblem(doubted, window, problem.start(window))
         yield from scaled(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
         states.append(part.state.without_cache())
+    if doubted is not problem:
+        problem = replace(problem, rests=rests_of(doubted, spans, states))
+        for row, (window, _, ended) in enumerate(stretches):
+            part = WindowProblem(problem, window, states[row])
+            yield from scaled(part.converge(), MARKERS_SHARE * ended, MARKERS_SHARE * ended)
+            states[row] = part.state.without_cache()
     if earlier is None:
         refining = refine(problem, spans, states, album, anew, contours)
     else:

@@ -1,5 +1,6 @@
 """Candidate postures of a frame, and the confidence in each."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,7 +78,12 @@ def composed_candidates(
         found.append(
             Candidate(everyone[rank], name, flipped, confidence(share, explained, OTHER if rank else CHOSEN))
         )
-    return MatchedFrame(index, tuple(found))
+    return MatchedFrame(index, by_confidence(found))
+
+
+def by_confidence(found: Sequence[Candidate]) -> tuple[Candidate, ...]:
+    """Candidates in the order of their confidence, but for the chosen one, which stays first."""
+    return (*found[:1], *sorted(found[1:], key=lambda each: -each.confidence))
 
 
 def confidence(share: float, explained: float, coefficients: tuple[float, float, float]) -> float:

@@ -10,6 +10,8 @@ from ..body.human import TRUNK, limb_of
 from ..body.kinematics import Body
 from ..body.mirror import other_side
 from ..body.posture import Posture
+from ..body.skeleton import SIDES
+from ..estimate.performer_placement import SHOE_M, standing_ankle_m
 from .inverse_kinematics import Pull, SightLine, pulled
 from .limb_chain import LimbChain, aimed, limb_chain, limb_excess_rad, limb_points, part_lengths_m, swing
 
@@ -20,6 +22,8 @@ HELD_M = 0.05  # joints that should stay where they are, but may give way to the
 PLANTED_M = 0.005  # ankles of a body whose trunk is dragged
 FLAT_M = 0.01  # difference in depth of a limb's middle from its root below which it is on neither side [m]
 HIPS = ("hip.L", "hip.R")
+LEVEL = 0.1  # sine of the angle below the horizon under which a view looks level: depth tells no height
+RAISES = 3  # times that a joint is brought to the floor along its sight, then as often straight up
 
 Freedom = Mapping[str, float]
 
@@ -28,7 +32,13 @@ _HEAD: Freedom = MappingProxyType({"neck": 1.0, "waist": 0.1})
 
 
 def dragged(
-    body: Body, posture: Posture, point: str, place: Array, sight: Array, pushed: bool = False
+    body: Body,
+    posture: Posture,
+    point: str,
+    place: Array,
+    sight: Array,
+    pushed: bool = False,
+    floor_m: float | None = None,
 ) -> Posture:
     """A posture with one joint dragged to a place; lengths are exact, and joint limits are springs.
 
@@ -43,7 +53,28 @@ def dragged(
         sight: (3,) unit direction in which the view looks there. Seen along it the joint comes to lie on
             `place`; in depth it comes as near as lengths allow.
         pushed: Whether it is dragged along the line of sight: then depth counts as much as the image.
+        floor_m: Height of the floor [m], through which no ankle is dragged: it stops there on its line of
+            sight, or above where the view looks level. None where it is not known.
     """
+    moved = _dragged(body, posture, point, place, sight, pushed)
+    stem, _, side = point.partition(".")
+    carried = SIDES if stem == "hip" else (side,) if stem in ("knee", "ankle") else ()
+    if floor_m is None or not carried:
+        return moved
+    ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in carried]
+    least = floor_m + standing_ankle_m(body) - SHOE_M
+    steep = -float(sight[2])
+    for attempt in range(2 * RAISES):
+        below = least - float(body.points(body.pose(moved))[ankles, 2].min())
+        if below <= 0.0:
+            break
+        nearer = steep > LEVEL and attempt < RAISES  # as long as reach allows
+        place = place + below * (-sight / steep if nearer else np.array([0.0, 0.0, 1.0]))
+        moved = _dragged(body, posture, point, place, sight, pushed)
+    return moved
+
+
+def _dragged(body: Body, posture: Posture, point: str, place: Array, sight: Array, pushed: bool) -> Posture:
     start = dict(zip(body.skeleton.point_names, body.points(body.pose(posture)), strict=True))
     if point in HIPS:
         shift = np.zeros(body.skeleton.dof_count)

@@ -13,7 +13,7 @@ from ..estimate.single_frame import FrameFit, fit_frame, frame_residuals
 from ..evidence.keypoints import JOINT_ERROR_STD_M, USUAL_PLACES
 from ..prior.frame_prior import FramePrior, unrelated_std
 from ..prior.library import Library
-from .candidates import ABOUT_RIGHT_M, DISTINCT_M, PROBABILITY_BOUNDS, Candidate, distinct_rows
+from .candidates import ABOUT_RIGHT_M, DISTINCT_M, PROBABILITY_BOUNDS, Candidate, by_confidence, distinct_rows
 from .frame_search import FrameShown, Hypotheses, Knowledge, knowledge, points_from_hips, refined, search
 from .known_motions import PARTS, part_shapes
 
@@ -206,7 +206,7 @@ def _candidates(
         name, flipped = _nearest(known, posture)
         sure = _confidence(float(share[chosen[rank]]), float(final.cost[rank]))
         made.append(Candidate(posture, name, flipped, sure))
-    return tuple(made)
+    return by_confidence(made)
 
 
 def _confidence(share: float, cost: float) -> float:

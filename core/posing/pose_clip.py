@@ -107,9 +107,12 @@ def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[Whol
     sampled = given.sampled
     scale = np.full(len(sampled), 1.0 / np.sqrt(tempering(given.time_s)))  # neighbors err alike
     own = [composed.posture[row] for row in range(len(sampled))]
-    for frame, posture in zip(given.posed.frames, given.posed.postures, strict=True):
+    corrected = np.zeros(len(sampled), dtype=bool)
+    posed = given.posed
+    for frame, posture, depth_found in zip(posed.frames, posed.postures, posed.depth_found, strict=True):
         row = int(np.searchsorted(sampled, frame))
-        own[row], scale[row] = posture, 0.0
+        own[row], corrected[row] = posture, depth_found
+        scale[row] = 1.0 if depth_found else 0.0
     tracks = given.evidence.tracks
     keyframes = tuple(Keyframe(int(frame), posture) for frame, posture in zip(sampled, own, strict=True))
     return estimate_whole_clip(
@@ -122,6 +125,7 @@ def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[Whol
             scale,
             found_ankle_m(given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m),
             given.unseen,
+            corrected=corrected,
         ),
     )
 

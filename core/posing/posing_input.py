@@ -32,13 +32,15 @@ class PosedFrames:
     body: Body
     frames: IndexArray  # (K,) indices in the clip
     postures: tuple[Posture, ...]
+    depth_found: BoolArray  # (K,) which of them a person vouches for in the picture only
 
     @classmethod
     def of(cls, body: Body, keyframes: Sequence[Keyframe]) -> "PosedFrames":
         """Those of some keyframes that a person has posed."""
         posed = sorted((each for each in keyframes if each.matched is None), key=lambda each: each.index)
         frames = np.array([each.index for each in posed], dtype=np.intp)
-        return cls(body, frames, tuple(each.posture for each in posed))
+        depth_found = np.array([each.depth_found for each in posed], dtype=bool)
+        return cls(body, frames, tuple(each.posture for each in posed), depth_found)
 
     @cached_property
     def hips(self) -> Array:
@@ -52,10 +54,10 @@ class PosedFrames:
         return np.asarray(self.body.points(self.body.pose(batch)) - self.hips[:, None])
 
     def floor_m(self) -> float | None:
-        """Height of the lowest sole [m]; None where nothing is posed."""
-        if not self.postures:
+        """Height of the lowest sole [m]; None where nothing is posed in space."""
+        if self.depth_found.all():
             return None
-        batch = Posture.stack(list(self.postures))
+        batch = Posture.stack([self.postures[row] for row in np.flatnonzero(~self.depth_found)])
         return float(sole_heights_m(self.body, self.body.pose(batch)).min())
 
 
@@ -166,7 +168,9 @@ def stretch_of(whole: PosingInput, first: int, last: int) -> PosingInput:
             _tracks(evidence.tracks, own), evidence.segments, _keypoints(evidence.keypoints, own)
         ),
         keyframes=inside - first,
-        posed=PosedFrames(whole.body, held - first, tuple(posed.postures[row] for row in rows)),
+        posed=PosedFrames(
+            whole.body, held - first, tuple(posed.postures[row] for row in rows), posed.depth_found[rows]
+        ),
         keypoints=_keypoints(whole.keypoints, own),
         there=np.ones(last + 1 - first, dtype=np.bool_),  # a person asks for them
         first=whole.first + first,

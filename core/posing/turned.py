@@ -187,5 +187,6 @@ def take_around(take: Take, section: Section) -> Take:
     for keyframe in take.keyframes:
         bounds = keyframe.index in (section.first, section.last) and keyframe.index not in section.changed
         if keyframe.matched is None or bounds:
-            kept.append(replace(keyframe, matched=None))
+            found = keyframe.matched is not None or keyframe.depth_found
+            kept.append(replace(keyframe, matched=None, depth_found=found))
     return replace(take, keyframes=tuple(kept))

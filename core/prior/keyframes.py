@@ -57,6 +57,13 @@ class Keyframe:
     posture: Posture  # a single posture
     residual_m: float = 0.0  # mean distance of the points it was read from [m]; 0 where posed
     matched: Matched | None = None  # what was found; None for a keyframe that a person has posed or corrected
+    depth_found: bool = False
+    """Whether a person vouches for the picture only: corrected in the camera's view, at the depth found."""
+
+    @property
+    def is_posed(self) -> bool:
+        """Whether a person vouches for its place in space."""
+        return self.matched is None and not self.depth_found
 
 
 # --- Turns the other way round
@@ -143,10 +150,10 @@ def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyf
     With (K,) the offset's remaining standard deviation relative to its prior one: 1 where nothing was posed,
     less near posed keyframes, and 0 at these.
     """
-    posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
-    found = [keyframe for keyframe in keyframes if keyframe.matched is not None]
+    posed = [keyframe for keyframe in keyframes if keyframe.is_posed]
+    found = [keyframe for keyframe in keyframes if not keyframe.is_posed]
     matched = [key for key in found if key.matched is not None and not key.matched.is_composed]
-    doubt = np.array([0.0 if keyframe.matched is None else 1.0 for keyframe in keyframes])
+    doubt = np.array([0.0 if keyframe.is_posed else 1.0 for keyframe in keyframes])
     if not posed or not found:
         return keyframes, doubt
     difference, beyond_s = _differences(posed, matched or found, fps)

@@ -14,7 +14,7 @@ from ..body.posture import FARTHEST_M, Posture, PostureValues, rounded
 from ..body.posture_fit import fit_posture
 from ..errors import InputError
 from ..files.json_file import read_json, write_json
-from ..files.kinds import ByName, Items, Number
+from ..files.kinds import ByName, Choice, Items, Number
 from ..files.records import Record
 from ..prior.keyframes import Keyframe, Matched
 from .evidence import Frame
@@ -23,6 +23,8 @@ FEWEST_KEYFRAMES = 2
 """Fewest that can be interpolated."""
 MOST_KEYFRAMES = 20_000
 """Ten a hundred frames in two hours of film."""
+FOUND = "found"
+DEPTHS = (FOUND,)
 SMALLEST_EXTENT_M = 0.05
 """Largest distance of a point from their mean, below which all points are one."""
 PLACE = f"[x, y, z] in meters, each within {FARTHEST_M:g} m of the origin"
@@ -49,9 +51,13 @@ class KeyframeRow(Record):
     """The thirteen joint centers [m], world axes."""
     matched: Matched | None = None
     """Where the posture was found; null for a posed one."""
+    depth: Annotated[str, Choice(DEPTHS)] | None = None
+    """Of a posed one: found where a person put it right in the picture alone; null where in depth too."""
 
     def mistake(self) -> str:
         """See `Record`."""
+        if self.depth is not None and self.matched is not None:
+            return "has both matched and depth; depth is only of keyframes that a person put right"
         if self.points is None:
             return (
                 "" if self.posture is not None else "has neither points nor posture; it must have one of them"
@@ -99,7 +105,9 @@ def write_keyframes(path: Path, keyframes: Sequence[Keyframe], body: Body, frame
     for keyframe in keyframes:
         points = rounded(body.points(body.pose(keyframe.posture)))
         named = dict(zip(body.skeleton.point_names, points, strict=True))
-        rows.append(KeyframeRow(keyframe.index + frame_start, keyframe.posture, named, keyframe.matched))
+        depth = FOUND if keyframe.depth_found else None
+        frame = keyframe.index + frame_start
+        rows.append(KeyframeRow(frame, keyframe.posture, named, keyframe.matched, depth))
     write_json(path, KeyframeFile(tuple(rows)).to_json(), indent=1)
 
 
@@ -133,5 +141,6 @@ def _keyframes(rows: Sequence[KeyframeRow], frame_start: int, body: Body) -> lis
     for index, row in enumerate(rows):
         error = np.linalg.norm(body.points(body.pose(postures[index])) - points[index], axis=-1)
         residual_m = float(np.nan_to_num(error.mean()))
-        keyframes.append(Keyframe(row.frame - frame_start, postures[index], residual_m, row.matched))
+        at, found = row.frame - frame_start, row.depth is not None
+        keyframes.append(Keyframe(at, postures[index], residual_m, row.matched, found))
     return keyframes

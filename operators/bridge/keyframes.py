@@ -1,6 +1,6 @@
 """Keyframes of an actor, posed by the animator or found in the footage, read and written."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -21,6 +21,7 @@ from .keys import (
     animator_frames,
     generated_frames,
     give_to_animator,
+    picture_frames,
     remove_keys,
     set_matched_keys,
     set_posed_keys,
@@ -45,6 +46,25 @@ def untouched_frames(
     armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton
 ) -> tuple[float, ...]:
     """Scene frames whose found posture is unchanged, in order."""
+    return _frames_of_all(
+        armature_object, action, skeleton, lambda curve: generated_frames(curve, matched=True)
+    )
+
+
+def picture_corrected_frames(
+    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton
+) -> tuple[float, ...]:
+    """Scene frames whose posture a person put right in the picture alone, unchanged since, in order."""
+    return _frames_of_all(armature_object, action, skeleton, picture_frames)
+
+
+def _frames_of_all(
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action,
+    skeleton: Skeleton,
+    marked: Callable[[bpy.types.FCurve], Array],
+) -> tuple[float, ...]:
+    """Scene frames that are marked on the curves of all bones with degrees of freedom, in order."""
     channelbag = existing_channelbag(action, armature_object)
     if channelbag is None:
         return ()
@@ -55,7 +75,7 @@ def untouched_frames(
         fcurve = channelbag.fcurves.find(path, index=index)
         if fcurve is None:
             return ()
-        frames = set(np.round(generated_frames(fcurve, matched=True), DIGITS).tolist())
+        frames = set(np.round(marked(fcurve), DIGITS).tolist())
         found = frames if found is None else found & frames
         if not found:
             return ()
@@ -86,7 +106,7 @@ def remove_keyframes(
 def take_over(
     armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, frames: Collection[float]
 ) -> None:
-    """Turn found keyframes into the animator's own, as if posed by hand."""
+    """Turn found keyframes into the animator's own, put right in the picture alone."""
     channelbag = existing_channelbag(action, armature_object)
     if channelbag is not None:
         give_to_animator(channelbag, moved_paths(armature_object, skeleton), np.array(sorted(frames)))
@@ -173,6 +193,7 @@ def read_keyframes(
     notes: list[str] = []
     found: dict[int, tuple[float, Keyframe]] = {}
     outside: list[str] = []
+    pictured = set(picture_corrected_frames(armature_object, action, body.skeleton))
     with showing_action(armature_object, action), at_scene_frame(scene) as go_to:
         for frame in keyed_frames(armature_object, action, body.skeleton):
             index = int(np.argmin(np.abs(clip_frames - frame)))
@@ -189,20 +210,29 @@ def read_keyframes(
                 )
             if index not in found or apart < found[index][0]:
                 residual = float(np.mean(reading.distance_m))
-                found[index] = (apart, Keyframe(index, reading.posture, residual, matches.get(frame)))
+                matched = matches.get(frame)
+                depth_found = matched is None and frame in pictured
+                found[index] = (apart, Keyframe(index, reading.posture, residual, matched, depth_found))
     if outside:
         notes.append(f"Keys at {', '.join(outside)} lie outside the footage and are not used")
     return PosedKeyframes(tuple(found[index][1] for index in sorted(found)), tuple(notes))
 
 
 def store_pose(
-    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, frame: float
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action,
+    skeleton: Skeleton,
+    frame: float,
+    depth_found: bool = False,
 ) -> None:
-    """Key the armature's pose as it stands, hands and feet included, in `action` at a scene frame."""
+    """Key the armature's pose as it stands, hands and feet included, in `action` at a scene frame.
+
+    `depth_found`: whether it was put right in the picture alone.
+    """
     channelbag = channelbag_for(action, armature_object)
     at = np.array([frame])
     for model, path, index, value in _channels(armature_object, skeleton):
-        set_posed_keys(channelbag, path, index, model.name, at, np.array([value]))
+        set_posed_keys(channelbag, path, index, model.name, at, np.array([value]), depth_found)
 
 
 def write_keyframes(
@@ -219,9 +249,12 @@ def write_keyframes(
     channelbag = channelbag_for(action, armature_object)
     postures = Posture.stack([keyframe.posture for keyframe in keyframes])
     posed = np.array([keyframe.matched is None for keyframe in keyframes])
+    pictured = np.array([keyframe.depth_found for keyframe in keyframes])
     for path, index, bone, column in posture_columns(armature_object, postures):
-        if posed.any():
-            set_posed_keys(channelbag, path, index, bone, frames[posed], column[posed])
+        for depth_found in (False, True):
+            own = posed & (pictured == depth_found)
+            if own.any():
+                set_posed_keys(channelbag, path, index, bone, frames[own], column[own], depth_found)
     if not posed.all():
         matched = [keyframe.posture for keyframe in keyframes if keyframe.matched is not None]
         write_matched(armature_object, action, frames[~posed], matched)

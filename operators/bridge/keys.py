@@ -3,7 +3,8 @@
 Only keys of the type GENERATED are ever replaced or removed, and of these not the ones that the animator has
 given another value: Blender leaves their type as it was. `back`, a number which only the interpolation of
 that name uses, holds the value that a key was made with, so that a changed key is recognized. `amplitude`
-marks the keys of a found keyframe, which stands beside the animator's own.
+marks the keys of a found keyframe, which stands beside the animator's own, and those of one that the
+animator put right in the picture alone.
 """
 
 from collections.abc import Iterable, Iterator
@@ -18,6 +19,7 @@ Keys = dict[str, NDArray[np.generic]]  # properties of N keys by name: (N,), or 
 
 UNMARKED = 0.0  # `back` of a key without a record of its first value, as earlier versions made all
 MATCH_AMPLITUDE = -1.0  # `amplitude` of the keys of a found keyframe; users cannot set one below zero
+PICTURE_AMPLITUDE = -2.0  # `amplitude` of the animator's keys whose depth is as it was found
 SAME_FRAME = 1e-3  # keys nearer than this [frames] lie on the same frame
 FLOATS = ("back", "amplitude", "period")
 PAIRS = ("co", "handle_left", "handle_right")
@@ -121,6 +123,16 @@ def animator_frames(fcurve: bpy.types.FCurve) -> Array:
     return np.asarray(coordinates[counted, 0], dtype=np.float64)
 
 
+def picture_frames(fcurve: bpy.types.FCurve) -> Array:
+    """Frames (N,) of the keys that were put right in the picture alone and not changed since."""
+    if not len(fcurve.keyframe_points):
+        return np.zeros(0)
+    keys = _read_keys(fcurve)
+    unchanged = (keys["amplitude"] == PICTURE_AMPLITUDE) & (keys["back"] == _value_mark(keys))
+    unchanged &= keys["type"] != _enum_value("type", "GENERATED")
+    return np.asarray(keys["co"][unchanged, 0], dtype=np.float64)
+
+
 def generated_frames(fcurve: bpy.types.FCurve, matched: bool = False) -> Array:
     """Frames (N,) of the GENERATED keys that are unchanged, or of those of found keyframes among them."""
     if not len(fcurve.keyframe_points):
@@ -171,13 +183,24 @@ def _add_between(fcurve: bpy.types.FCurve, keys: Keys) -> None:
 
 
 def set_posed_keys(
-    channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, values: Array
+    channelbag: bpy.types.ActionChannelbag,
+    path: str,
+    index: int,
+    group: str,
+    frames: Array,
+    values: Array,
+    depth_found: bool = False,
 ) -> None:
     """Set keys of the animator's own type at scene frames (K,), with Blender's usual smooth interpolation.
 
-    Keys on the same frames are replaced, all others stay.
+    Keys on the same frames are replaced, all others stay; `depth_found` marks those put right in the picture
+    alone.
     """
-    _set_keys(ensure_fcurve(channelbag, path, index, group), _new_keys(frames, values, "KEYFRAME", "BEZIER"))
+    keys = _new_keys(frames, values, "KEYFRAME", "BEZIER")
+    if depth_found:
+        keys["amplitude"] = np.full(len(frames), PICTURE_AMPLITUDE, np.float32)
+        keys["back"] = _value_mark(keys)
+    _set_keys(ensure_fcurve(channelbag, path, index, group), keys)
 
 
 def set_matched_keys(
@@ -208,13 +231,15 @@ def remove_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], fr
 
 
 def give_to_animator(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
-    """Turn keys of found keyframes on frames (K,) into the animator's own; values and curves stay."""
+    """Turn keys of found keyframes on frames (K,) into the animator's own; values and curves stay.
+
+    The animator vouches for the picture alone: nobody has touched the depth.
+    """
     for fcurve, keys, there in _keys_on(channelbag, paths, frames):
         there = there & (keys["amplitude"] == MATCH_AMPLITUDE)
         if there.any():
             given = _as_animators(keys)
-            usual = bpy.types.Keyframe.bl_rna.properties["amplitude"].default
-            given["amplitude"] = np.full(len(there), usual, np.float32)
+            given["amplitude"] = np.full(len(there), PICTURE_AMPLITUDE, np.float32)
             for name, column in keys.items():
                 column[there] = given[name][there]
             _write_keys(fcurve, keys)

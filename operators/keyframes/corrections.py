@@ -10,13 +10,20 @@ from ...core.errors import InputError
 from ..follow.evidence import points_to_follow, scene_evidence
 from ..shell.base_operator import BaseOperator
 from ..shell.job_progress import job_is_running
-from ..shell.keyed_frames import SAME_FRAME, has_frame, invalidate_keyed_frames, keyframes_of, show_keyframes
+from ..shell.keyed_frames import (
+    SAME_FRAME,
+    depth_is_found,
+    has_frame,
+    invalidate_keyed_frames,
+    keyframes_of,
+    show_keyframes,
+)
 from ..shell.requirements import actor, camera, footage, idle, keyframes
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of, redraw_footage
 from .flip_ways import TITLES, limb_selected, next_way, selected_limbs
 from .found_keyframes import known_matches
-from .store_keyframe import key_pose
+from .store_keyframe import key_pose, note_corrected
 
 if TYPE_CHECKING:
     from ...core.body.kinematics import Body
@@ -49,10 +56,12 @@ def set_corrected(
     context: bpy.types.Context,
     take: bpy.types.PropertyGroup,
     posture: "Posture",
+    in_depth: bool,
 ) -> None:
     """Give the actor a corrected posture; where this frame holds a keyframe, that is the new one at once.
 
-    A found keyframe counts as posed from then on, and the operator reports how many around it were improved.
+    A found keyframe is the person's from then on, in space too where it was moved `in_depth`, and the
+    operator reports how many around it were improved.
     """
     from ..bridge.pose import write_posture
 
@@ -60,9 +69,11 @@ def set_corrected(
     write_posture(take.armature, posture)
     invalidate_keyed_frames()
     redraw_footage(context)
-    if take.keyframe_action is None or not has_frame(keyframes_of(take), context.scene.frame_current_final):
+    frame = context.scene.frame_current_final
+    if take.keyframe_action is None or not has_frame(keyframes_of(take), frame):
+        note_corrected(take, frame, in_depth)
         return
-    improved = key_pose(context, take)
+    improved = key_pose(context, take, depth_found=not in_depth and depth_is_found(take, frame))
     if improved:
         operator.report({"INFO"}, f"{improved} found keyframes around this one were posed anew")
 
@@ -106,7 +117,8 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
         with showing_action(take.armature, take.keyframe_action), at_scene_frame(scene) as go_to:
             go_to(neighbor)
             there = read_posture(take.armature, body).posture
-        set_corrected(self, context, take, Posture(HUMAN, here.translation, there.rotations, there.angles))
+        posture = Posture(HUMAN, here.translation, there.rotations, there.angles)
+        set_corrected(self, context, take, posture, in_depth=not depth_is_found(take, neighbor))
         self.report({"INFO"}, f"Pose of frame {neighbor:g}, at the place of this one")
         return None
 
@@ -168,7 +180,7 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
         # A fit may turn the performer on: what faces elsewhere is not what was asked for.
         fitted = next((each for each in found if facing_of(each, seen) is facing), None)
         chosen = fitted or min(ways, key=lambda way: way.strain).posture
-        set_corrected(self, context, take, chosen)
+        set_corrected(self, context, take, chosen, in_depth=True)
         said = next(name for value, name, _ in FACINGS if value == self.facing)
         fits = f"Turned and fitted: {said}"
         self.report({"INFO"}, fits if fitted is not None else f"Turned: {said}; not fitted to the footage")
@@ -244,7 +256,7 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
                 {"WARNING"}, "The selected part lies flat in the picture, or its joints allow no other way"
             )
             return {"CANCELLED"}
-        set_corrected(self, context, take, posture)
+        set_corrected(self, context, take, posture, in_depth=True)
         self.report({"INFO"}, "; ".join(said))
         return None
 

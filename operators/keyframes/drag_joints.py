@@ -16,7 +16,7 @@ from ..shell.footage_clicks import NAVIGATION, WorldInRegion, view_under
 from ..shell.job_progress import job_is_running
 from ..shell.requirements import actor, all_met, idle
 from ..shell.takes import active_take, find_take, redraw_editors, redraw_sidebars_soon
-from .corrections import DRAGGING, set_corrected, shown_pose
+from .corrections import DRAGGING, camera_now, set_corrected, shown_pose
 
 if TYPE_CHECKING:
     from ...core.body.kinematics import Body
@@ -97,8 +97,21 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
         body, posture = shown_pose(take)
         sight = np.array(self.sight, dtype=np.float64)
         sight /= max(float(np.linalg.norm(sight)), 1e-9)
-        moved = dragged(body, posture, self.joint, np.array(self.place), sight, self.pushed)
-        set_corrected(self, context, take, moved)
+        place, floor_m = np.array(self.place), take.matching.known_floor_m
+        moved = dragged(body, posture, self.joint, place, sight, self.pushed, floor_m)
+        in_depth = self.pushed or _shows_depth(context, take, sight, place)
+        set_corrected(self, context, take, moved, in_depth)
+
+
+ASIDE = np.cos(np.radians(10.0))
+"""A view turned by more than this from the camera's shows depth: of a drag of 10 cm 17 mm or more."""
+
+
+def _shows_depth(
+    context: bpy.types.Context, take: bpy.types.PropertyGroup, sight: Array, place: Array
+) -> bool:
+    """Whether a view that looks in a direction (3,) at a place shows the depth that the camera does not."""
+    return take.camera is None or bool(camera_now(context.scene, take).sight(place) @ sight < ASIDE)
 
 
 ENDING = {"RET", "NUMPAD_ENTER", "RIGHTMOUSE", "ESC"}
@@ -262,7 +275,8 @@ def _preview(take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
     from ...core.posing.dragged import dragged
     from ..bridge.pose import write_posture
 
-    moved = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, drag.depth_m != 0.0)
+    pushed, floor_m = drag.depth_m != 0.0, take.matching.known_floor_m
+    moved = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, pushed, floor_m)
     write_posture(take.armature, moved)
 
 

@@ -15,6 +15,7 @@ from ..shell.results import reading_of
 from ..shell.takes import active_take, find_take, footage_of
 from .candidate_buttons import candidate_title
 from .found_keyframes import known_matches
+from .store_keyframe import note_corrected
 
 if TYPE_CHECKING:
     from ...core.posing.candidates import Candidate
@@ -119,12 +120,14 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
         take = active_take(scene)
         frame = frame_in_footage(footage_of(scene, take), scene_evidence(take), reading_of(take))
         libraries = () if self.start == "POSE" else all_libraries()
-        known, floor_m = known_matches(take), _floor_m(take.matching)
+        known, floor_m = known_matches(take), take.matching.known_floor_m
         actor_and_keys = take.armature, take.keyframe_action
         found = fit_to_frame(frame, *actor_and_keys, self.start, known, libraries, floor_m)
         show_keyframes(take)
         write_posture(take.armature, found.candidates[0].posture)
         offer_poses(take, scene.frame_current_final, found.candidates)
+        take.matching.corrected_in_depth = False
+        note_corrected(take, scene.frame_current_final, in_depth=False)
         note_contradictions(take, scene.frame_current_final, found.contradictions)
         if found.contradictions:
             names = ", ".join(found.contradictions)
@@ -142,13 +145,6 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
             off = f"Off by {float(np.nanmean(found.residual_px)):.1f} pixels"
             advice = "look at it from the side too, as little tells the depth, then store it"
             self.report({"INFO"}, f"{off}; {advice}")
-
-
-def _floor_m(matching: bpy.types.PropertyGroup) -> float | None:
-    """Height of the floor where it is given or was found [m]."""
-    if matching.floor == "HEIGHT":
-        return float(matching.floor_height)
-    return float(matching.floor_found) if matching.is_property_set("floor_found") else None
 
 
 def _to_pose_mode(context: bpy.types.Context, armature_object: bpy.types.Object) -> None:

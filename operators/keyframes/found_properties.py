@@ -186,6 +186,25 @@ class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
         subtype="DISTANCE",
         precision=4,
     )
+    corrected_frame: bpy.props.FloatProperty(
+        name="Corrected Frame",
+        description="The frame without a key whose pose was corrected last",
+        default=-1e6,
+        options={"HIDDEN"},
+    )
+    corrected_in_depth: bpy.props.BoolProperty(
+        name="Corrected in Depth",
+        description="Whether that pose was moved in depth, and not in the camera's picture alone",
+        options={"HIDDEN"},
+    )
+
+    @property
+    def known_floor_m(self) -> float | None:
+        """Height of the floor where it is given or was found [m]."""
+        if self.floor == "HEIGHT":
+            return float(self.floor_height)
+        return float(self.floor_found) if self.is_property_set("floor_found") else None
+
     matches: bpy.props.CollectionProperty(type=KEYMARK_PG_match)
     active_match: bpy.props.IntProperty(
         name="Last Chosen", description="The found keyframe that was chosen last", min=0, options={"HIDDEN"}

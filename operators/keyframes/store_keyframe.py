@@ -17,7 +17,11 @@ from ..follow.ignored_regions import ignored_regions
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.contradictions import note_contradictions
 from ..shell.keyed_frames import (
+    SAME_FRAME,
+    depth_is_found,
+    has_frame,
     invalidate_keyed_frames,
+    keyframes_of,
     match_at,
     new_keyframe_action,
     shows_keyframes,
@@ -30,7 +34,12 @@ from ..shell.takes import active_take, footage_of
 from .found_keyframes import SceneClip, known_matches, read_known_take, undecided_matches
 
 if TYPE_CHECKING:
+    from ...core.body.kinematics import Body
+    from ...core.body.posture import Posture
     from ...core.footage.reading import Reading
+
+
+SAME_POSE = 1e-3  # change of a pose below which nobody changed it [m, rad]
 
 
 def improve_neighbors(context: bpy.types.Context, take: bpy.types.PropertyGroup, frame: float) -> int:
@@ -104,15 +113,39 @@ def _waiting(context: bpy.types.Context) -> Iterator[None]:
             window.cursor_modal_restore()
 
 
-def key_pose(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> int:
+def note_corrected(take: bpy.types.PropertyGroup, frame: float, in_depth: bool) -> None:
+    """Remember that the pose shown at a frame without a key was corrected, and whether in depth as well."""
+    matching = take.matching
+    before = matching.corrected_in_depth and abs(matching.corrected_frame - frame) < SAME_FRAME
+    matching.corrected_frame, matching.corrected_in_depth = frame, in_depth or before
+
+
+def _depth_found(take: bpy.types.PropertyGroup, body: "Body", posture: "Posture", frame: float) -> bool:
+    """Whether the pose shown has the depth that was found: corrected in the picture alone, or as keyed."""
+    from ..bridge.pose import read_posture
+    from ..bridge.scene_frames import at_scene_frame, showing_action
+
+    if take.keyframe_action is None or not depth_is_found(take, frame):
+        return False
+    if not has_frame(keyframes_of(take), frame):
+        matching = take.matching
+        return abs(matching.corrected_frame - frame) < SAME_FRAME and not matching.corrected_in_depth
+    with showing_action(take.armature, take.keyframe_action), at_scene_frame(take.id_data) as go_to:
+        go_to(frame)
+        keyed = read_posture(take.armature, body).posture
+    return float(np.abs(posture.minus(keyed)).max()) < SAME_POSE
+
+
+def key_pose(context: bpy.types.Context, take: bpy.types.PropertyGroup, depth_found: bool = False) -> int:
     """Key the actor's pose as it stands, in the take's keyframe Action at the current frame.
 
-    Returns how many found keyframes around it were posed anew.
+    `depth_found`: whether it was put right in the picture alone. Returns how many found keyframes around it
+    were posed anew.
     """
     from ..bridge.keyframes import store_pose
 
     frame = context.scene.frame_current_final
-    store_pose(take.armature, take.keyframe_action, HUMAN, frame)
+    store_pose(take.armature, take.keyframe_action, HUMAN, frame, depth_found)
     assign_action(take.armature, take.keyframe_action)
     note_contradictions(take, frame, ())
     take.offered.candidates.clear()
@@ -136,16 +169,18 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         scene = context.scene
         take = active_take(scene)
         armature_object = take.armature
-        read = read_posture(armature_object, read_body(armature_object, HUMAN))
+        body = read_body(armature_object, HUMAN)
+        read = read_posture(armature_object, body)
         if take.keyframe_action is None:
             take.keyframe_action = new_keyframe_action(armature_object)
         frame = scene.frame_current_final
         switched = not shows_keyframes(take)
         straighten_unposed(take)
         was_found = frame in known_matches(take)
+        depth_found = _depth_found(take, body, read.posture, frame)
         about = f"pose at {frame:g}"
         give_notices(take, "keyframes", about)
-        improved = key_pose(context, take)
+        improved = key_pose(context, take, depth_found)
         if read.furthest_m > NOTICEABLE_M:
             sentence = (
                 f"Stored at frame {frame:g}; the pose goes {1000.0 * read.furthest_m:.0f} mm beyond "

@@ -10,7 +10,12 @@ from ..bridge.object_space import evaluated
 from ..bridge.scene_frames import at_scene_frame, showing_action
 from ..footage.camera_view import look_through, viewports
 from ..shell.base_operator import BaseOperator
-from ..shell.keyed_frames import invalidate_keyed_frames, new_keyframe_action, straighten_unposed
+from ..shell.keyed_frames import (
+    depth_is_found,
+    invalidate_keyed_frames,
+    new_keyframe_action,
+    straighten_unposed,
+)
 from ..shell.requirements import actor, camera, idle, motion, weak_frames
 from ..shell.takes import active_take
 
@@ -92,7 +97,7 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         with showing_action(take.armature, take.motion_action), at_scene_frame(scene) as go_to:
             go_to(frame)
             straighten_unposed(take)
-            store_pose(take.armature, action, HUMAN, frame)
+            store_pose(take.armature, action, HUMAN, frame, depth_is_found(take, frame))
         take.keyframe_action = action
         assign_action(take.armature, action)
         whole = int(frame // 1.0)

@@ -70,6 +70,7 @@ class KeyedFrames:
 
     all: tuple[float, ...] = ()
     untouched: tuple[float, ...] = ()  # those whose keys are unchanged since they were found
+    pictured: tuple[float, ...] = ()  # those that a person put right in the picture alone
 
 
 _keyed: dict[tuple[int, int], KeyedFrames] = {}
@@ -93,16 +94,27 @@ def posed_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
     return tuple(frame for frame in keyframes_of(take) if frame not in matched)
 
 
+def depth_is_found(take: bpy.types.PropertyGroup, frame: float) -> bool:
+    """Whether a pose made from what a frame has is only as deep as it was found: nobody posed it in space.
+
+    Where nothing is keyed that holds of every clip some of whose keyframes were found.
+    """
+    found = sorted({*matched_frames(take), *_keyed_of(take).pictured})
+    return has_frame(found if has_frame(keyframes_of(take), frame) else found and [frame], frame)
+
+
 def _keyed_of(take: bpy.types.PropertyGroup) -> KeyedFrames:
     if take.armature is None or take.keyframe_action is None:
         return KeyedFrames()
     key = take.armature.session_uid, take.keyframe_action.session_uid
     if key not in _keyed:
-        from ..bridge.keyframes import keyed_frames, untouched_frames
+        from ..bridge.keyframes import keyed_frames, picture_corrected_frames, untouched_frames
 
         source = take.armature, take.keyframe_action, HUMAN
         try:
-            _keyed[key] = KeyedFrames(keyed_frames(*source), untouched_frames(*source))
+            _keyed[key] = KeyedFrames(
+                keyed_frames(*source), untouched_frames(*source), picture_corrected_frames(*source)
+            )
         except InputError:  # an armature of other bones
             _keyed[key] = KeyedFrames()
     return _keyed[key]

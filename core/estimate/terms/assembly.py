@@ -10,14 +10,15 @@ import numpy as np
 from ...arrays import Array
 from ...body.kinematics import Body
 from ...evidence import keypoints as depths
-from ...evidence.keypoints import LEAST_CONFIDENCE, ObservedKeypoints
+from ...evidence.keypoints import LEAST_CONFIDENCE, KeypointModel, ObservedKeypoints
 from ...evidence.regions import ObservedRegions, RegionNoise
 from ...prior.frame_prior import REFERENCE_STEP_S, FramePrior
 from ..clip_problem import ClipProblem, KeyframeEvidence
 from ..clip_state import ClipState, Window
+from ..keyframe_error import POINT_STD_M
 from ..keypoint_evidence import KeypointEvidence
-from ..performer_placement import ANKLE_HEIGHT_STD_M, standing_ankle_m
-from .contact import BalanceTerm, GroundTerm, StillnessTerm
+from ..performer_placement import ANKLE_HEIGHT_STD_M, SHOE_M, standing_ankle_m
+from .contact import BalanceTerm, FloorTerm, GroundTerm, StillnessTerm
 from .keypoints import DepthHintTerm, KeypointTerm
 from .motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
 from .reference import ReferenceTerm
@@ -35,8 +36,7 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     step_s = clip.step_s[window.first : window.last - 1]
     pace = float(np.median(step_s)) / REFERENCE_STEP_S if len(step_s) else 1.0
     prior_depth = depths.evaluate(clip.body, clip.camera, clip.body.pose(state.prior), state.frame)
-    seen = [leg not in clip.unseen for leg in LEGS]
-    ankles = tuple(ankle for ankle, own in zip(_ankles(clip.body), seen, strict=True) if own)
+    ankles = _seen_ankles(clip)
     evidence = clip.evidence
     terms: list[Term] = [
         _prior_term(clip, window, step_s),
@@ -53,18 +53,32 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
         LimitTerm(),
     ]
     if ankles:
-        loose = LOOSE_FEET if clip.reference is not None else {}
-        terms.append(StillnessTerm(clip.camera, ankles, step_s, **loose))
+        terms.append(stillness_term(clip, window))
     if evidence.keypoints.model.names:
         terms.append(_keypoint_term(clip, window, step_s))
     if np.isfinite(clip.points.depth_m).any():
         terms.append(_hint_term(clip, window, step_s))
+    if clip.corrected.any():
+        terms.append(_picture_term(clip, window))
     if clip.ankle_height_m is not None and ankles:
         terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
     if clip.reference is not None:
         kept = np.exp(-step_s / clip.reference.memory_s)[:, None]
         terms.append(ReferenceTerm(clip.reference[frames], kept))
     return terms
+
+
+def stillness_term(clip: ClipProblem, window: Window) -> StillnessTerm:
+    """Ankles of legs that are seen, and stand."""
+    pairs = slice(window.first, window.last - 1)
+    rests = None if clip.rests is None else clip.rests[pairs]
+    loose = LOOSE_FEET if clip.reference is not None else {}
+    return StillnessTerm(clip.camera, _seen_ankles(clip), clip.step_s[pairs], rests, **loose)
+
+
+def _seen_ankles(clip: ClipProblem) -> tuple[int, ...]:
+    seen = [leg not in clip.unseen for leg in LEGS]
+    return tuple(ankle for ankle, own in zip(_ankles(clip.body), seen, strict=True) if own)
 
 
 def frame_terms(
@@ -121,7 +135,8 @@ def free_frame_terms(
         BalanceTerm(body),
     ]
     if floor_m is not None:
-        terms.append(GroundTerm(_ankles(body), floor_m + standing_ankle_m(body)))
+        standing_m = floor_m + standing_ankle_m(body)
+        terms += [GroundTerm(_ankles(body), standing_m), FloorTerm(_ankles(body), standing_m - SHOE_M)]
     if points is not None and evidence.keypoints.model.names:
         terms += _frame_point_terms(evidence.keypoints, points, starts)
     return BeliefTerm.of(starts, body.skeleton.dof_count, bias_std), terms
@@ -148,6 +163,18 @@ def _keypoint_term(clip: ClipProblem, window: Window, step_s: Array) -> Keypoint
     evidence = clip.evidence.keypoints
     kept = np.exp(-step_s / evidence.memory_s)[:, None]
     return KeypointTerm(evidence.model, clip.points[window.frames], evidence.error_m, kept)
+
+
+def _picture_term(clip: ClipProblem, window: Window) -> KeypointTerm:
+    """Points of keyframes that were corrected in the picture, which is as sure as a posed one's."""
+    model = KeypointModel.usual(clip.body, clip.camera, clip.body.skeleton.point_names)
+    frame = clip.keyframes[clip.corrected]
+    pixel = np.full((clip.frames, len(model.names), 2), np.nan)
+    pixel[frame] = model.pixels(clip.body.pose(clip.prior[frame]), frame)
+    seen = np.isfinite(pixel).all(axis=-1)
+    observed = ObservedKeypoints(pixel, seen.astype(np.float64), np.full(seen.shape, np.nan))
+    std_m = np.full(len(model.names), POINT_STD_M)
+    return KeypointTerm(model, observed[window.frames], std_m, None)
 
 
 def _hint_term(clip: ClipProblem, window: Window, step_s: Array) -> DepthHintTerm:

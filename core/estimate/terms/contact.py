@@ -31,6 +31,7 @@ class StillnessTerm:
     camera: Camera
     points: tuple[int, ...]  # indices of the principal points it is about
     step_s: Array  # (F - 1,) time between frames [s]
+    rests: Array | None = None  # (F - 1, points) how far each is known to stand, whatever its speed, 0 to 1
     release_speed_m_s: float = 0.2  # across the line of sight, c, at which rows count a quarter
     depth_share: float = 0.3  # how much motion along the line of sight counts to that speed
     release_height_m: float = 0.04  # above the lowest point, at which rows count a quarter
@@ -72,7 +73,13 @@ class StillnessTerm:
     def _standing(self, travel: Array, middle: Array, frame: IndexArray) -> Array:
         """(F - 1, points) how far each point is taken to stand, 0 to 1."""
         speed, height = self._moving(travel, middle, frame)
-        return np.asarray(_kernel(speed) * _kernel(height))
+        standing = _kernel(speed) * _kernel(height)
+        return np.asarray(standing if self.rests is None else np.maximum(standing, HELD * self.rests**4))
+
+    def standing(self, state: ClipState) -> Array:
+        """(F - 1, points) how far each point is taken to stand in a state, 0 to 1."""
+        places = state.body.points(state.pose)[:, list(self.points)]
+        return self._standing(np.diff(places, axis=0), 0.5 * (places[1:] + places[:-1]), state.frame[1:])
 
     def _moving(self, travel: Array, middle: Array, frame: IndexArray) -> tuple[Array, Array]:
         """(F - 1, points) speed and height, in those at which rows count a quarter."""
@@ -84,9 +91,39 @@ class StillnessTerm:
         return speed / self.release_speed_m_s, height / self.release_height_m
 
 
+HELD = 5.0
+"""Weight of a foot that is known to rest: 3 mm from frame to frame add up over a rest in which a corrected
+keyframe has it elsewhere. The fourth power leaves out feet of which that is not sure."""
+
+
 def _kernel(x: Array) -> Array:
     """Weight of the Geman-McClure kernel, a quarter at 1."""
     return np.asarray((1.0 + x**2) ** -2.0)
+
+
+@dataclass(frozen=True)
+class FloorTerm:
+    """A one-sided spring on every point below a height: nobody stands in the floor."""
+
+    points: tuple[int, ...]  # which of the principal points: the ankles
+    least_m: float  # how low they come [m]
+    std_m: float = 0.01  # how exactly a floor is level
+    robust: ClassVar[bool] = False
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add a row for each point, zero above the height."""
+        below = self._below(state)
+        jacobian = state.body.points_jacobian(state.pose)[:, list(self.points), 2] @ state.tangent_jacobian
+        equations.add_rows(below, jacobian * ((below != 0.0) / self.std_m)[..., None])
+
+    def cost(self, state: ClipState) -> Array:
+        """(F,) half the sum of squares."""
+        return np.asarray(0.5 * (self._below(state) ** 2).sum(-1))
+
+    def _below(self, state: ClipState) -> Array:
+        """(F, points) how far each is below [standard deviations], negative; 0 above."""
+        heights = state.body.points(state.pose)[:, list(self.points), 2]
+        return np.asarray(np.minimum(heights - self.least_m, 0.0) / self.std_m)
 
 
 DEGREES = 3.0  # of Student's t: leaps and stairs are forgiven

@@ -25,6 +25,7 @@ from keymark.operators.bridge.keyframes import (
     untouched_frames,
     write_matched,
 )
+from keymark.operators.bridge.keys import MATCH_AMPLITUDE
 from keymark.operators.bridge.pose import read_posture
 from keymark.operators.bridge.take_from_scene import read_scene_take
 from keymark.operators.follow.evidence import scene_evidence
@@ -97,6 +98,25 @@ def test_matches_survive_the_blend_file(take: bpy.types.PropertyGroup, matched_t
     assert matched_in(active_take(bpy.context.scene)) == [None, MATCHED, None]
 
 
+def test_a_correction_in_the_picture_is_kept_by_files_until_someone_changes_it(
+    take: bpy.types.PropertyGroup, matched_take: Take
+) -> None:
+    bpy.context.scene.frame_set(7)
+    store_pose(take.armature, take.keyframe_action, HUMAN, 7.0, depth_found=True)
+    assert [keyframe.depth_found for keyframe in keyframes_in(take)] == [False, True, False]
+    bpy.ops.keymark.save_take(directory=str(matched_take.folder / "again"))
+    again = read_take(matched_take.folder / "again")
+    assert [keyframe.depth_found for keyframe in again.keyframes] == [False, True, False]
+    bpy.ops.keymark.open_take(filepath=str(matched_take.folder / "again" / "take.json"))
+    file = str(matched_take.folder / "scene.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    bpy.ops.wm.open_mainfile(filepath=file)
+    opened = active_take(bpy.context.scene)
+    assert [keyframe.depth_found for keyframe in keyframes_in(opened)] == [False, True, False]
+    key_at(opened, 'pose.bones["forearm.L"].rotation_euler', 0, 7.0).co[1] += 0.01
+    assert not any(keyframe.depth_found for keyframe in keyframes_in(opened))
+
+
 def test_a_changed_key_makes_the_keyframe_posed(take: bpy.types.PropertyGroup) -> None:
     key = key_at(take, 'pose.bones["forearm.L"].rotation_euler', 0, 7.0)
     before = key.co[1]
@@ -149,7 +169,7 @@ def test_matched_keyframes_are_taken_over_and_removed(take: bpy.types.PropertyGr
     assert untouched_frames(armature_object, action, HUMAN) == ()
     assert read_at(take, 7).minus(before) == pytest.approx(0.0, abs=1e-6)
     key = key_at(take, 'pose.bones["chest"].rotation_quaternion', 0, 7.0)
-    assert key.type == "KEYFRAME" and key.amplitude >= 0.0
+    assert key.type == "KEYFRAME" and key.amplitude != MATCH_AMPLITUDE
     remove_keyframes(armature_object, action, HUMAN, (7.0,))
     invalidate_keyed_frames()
     assert keyed_frames(armature_object, action, HUMAN) == keyframes_of(take) == (1.0, 13.0)

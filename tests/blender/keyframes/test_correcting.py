@@ -11,12 +11,12 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.posing.turned import Facing, facing_of
 from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.keyframes import keyed_frames
+from keymark.operators.bridge.keyframes import keyed_frames, picture_corrected_frames
 from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.keyframes.corrections import camera_now
 from keymark.operators.keyframes.flip_ways import selected_limbs
-from keymark.operators.shell.keyed_frames import posed_frames
+from keymark.operators.shell.keyed_frames import matched_frames, posed_frames
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -196,3 +196,46 @@ def test_undo_takes_a_correction_back(opened: bpy.types.Scene) -> None:
     scene.frame_set(1)
     scene.frame_set(7)
     np.testing.assert_allclose(posture_of(scene).minus(before), 0.0, atol=1e-5)
+
+
+def pictured(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
+    """Frames that count as put right in the picture alone."""
+    return picture_corrected_frames(take.armature, take.keyframe_action, HUMAN)
+
+
+def test_a_drag_in_the_cameras_view_vouches_for_the_picture_and_one_in_depth_for_more(
+    found: bpy.types.PropertyGroup,
+) -> None:
+    scene = bpy.context.scene
+    found.matching.improve_neighbors = False
+    (frame, *_) = matched_frames(found)
+    scene.frame_set(int(frame))
+
+    def drag(pushed: bool = False, aside: bool = False) -> None:
+        wrist = points_of(scene)[HUMAN.point_names.index("wrist.R")]
+        sight = camera_now(scene, found).sight(wrist)
+        sight = np.array([sight[1], -sight[0], 0.0]) if aside else sight
+        place = wrist + [0.0, 0.0, 0.03]
+        bpy.ops.keymark.move_joint(joint="wrist.R", place=place, sight=sight, pushed=pushed)
+
+    drag()
+    assert pictured(found) == (frame,) and frame not in matched_frames(found)
+    bpy.ops.keymark.store_keyframe()  # as it is
+    assert pictured(found) == (frame,)
+    drag(aside=True)
+    assert pictured(found) == ()
+    drag()  # its depth stays vouched for
+    assert pictured(found) == () and frame in posed_frames(found)
+
+
+def test_a_found_keyframe_that_is_accepted_keeps_its_depth_as_sure_as_it_was(
+    found: bpy.types.PropertyGroup,
+) -> None:
+    found.matching.improve_neighbors = False
+    (frame, *_) = matched_frames(found)
+    bpy.context.scene.frame_set(int(frame))
+    bpy.ops.keymark.accept_match()
+    assert pictured(found) == (frame,) and frame in posed_frames(found)
+    reaching(bpy.context.scene)
+    bpy.ops.keymark.store_keyframe()  # posed by hand
+    assert pictured(found) == ()

@@ -82,9 +82,9 @@ def test_posed_keyframes_calibrate_and_matched_ones_beside_them_do_not() -> None
     postures, observed = off(), ObservedRegions.from_tracks(TRACKS)[INDEX]
     width = limb_widths(MODEL, postures.translation, INDEX)
     every = SeenAtKeyframes(INDEX, postures, observed, width)
-    mixed = run(read_mixed_keyframes(MODEL, RegionNoise(), every, match_scale))
+    mixed = run(read_mixed_keyframes(MODEL, RegionNoise(), every, match_scale, match_scale < 0.0))
     posed = np.flatnonzero(match_scale == 0.0)
-    alone = run(read_mixed_keyframes(MODEL, RegionNoise(), every[posed], np.zeros(len(posed))))
+    alone = run(read_mixed_keyframes(MODEL, RegionNoise(), every[posed], np.zeros(len(posed)), posed < 0))
     np.testing.assert_array_equal(
         placement_values(mixed.model.placements), placement_values(alone.model.placements)
     )

@@ -8,7 +8,7 @@ from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_state import ClipState
-from keymark.core.estimate.terms.contact import GroundTerm, StillnessTerm
+from keymark.core.estimate.terms.contact import HELD, FloorTerm, GroundTerm, StillnessTerm
 from keymark.core.estimate.terms.motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
 from keymark.core.estimate.terms.regions import RegionTerm
 from keymark.core.estimate.terms.term import NormalEquations, QuadraticBuilder, Term, total_cost
@@ -67,6 +67,24 @@ def test_the_ground_term_pulls_the_lower_ankle_to_its_height() -> None:
     assert_gradient(term, lambda at: term.cost(at).sum(), state(size=0.02))
     lifted = [float(GroundTerm((11, 12), height).cost(state(size=0.0)).sum()) for height in (0.1, -0.5, -1.0)]
     assert lifted[0] < lifted[1] < lifted[2] < 1.4 * lifted[1]
+
+
+def test_the_floor_pushes_up_what_is_below_it_and_nothing_else() -> None:
+    at = state(size=0.0)
+    ankles = BODY.points(at.pose)[:, [11, 12], 2]
+    between = FloorTerm((11, 12), float(ankles.mean()))
+    assert_gradient(between, lambda s: between.cost(s).sum(), at)
+    assert between.cost(at).max() > 0.0
+    assert np.abs(gradient(FloorTerm((11, 12), float(ankles.min()) - 0.001), at)).max() == 0.0
+
+
+def test_a_foot_that_is_known_to_rest_is_held_however_fast_it_moves() -> None:
+    at, step_s = state(size=0.5), np.full(FRAMES - 1, 1.0 / 30.0)
+    free = StillnessTerm(CAMERA, (11, 12), step_s)
+    known = replace(free, rests=np.ones((FRAMES - 1, 2)))
+    assert free.standing(at).max() < 0.5
+    np.testing.assert_array_equal(known.standing(at), HELD)
+    assert np.abs(gradient(known, at)).max() > 10.0 * np.abs(gradient(free, at)).max()
 
 
 def test_the_depth_term_pulls_towards_the_priors_depths() -> None:

@@ -10,11 +10,12 @@ from keymark.core.estimate.keyframe_error import posing_covariance
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
-from keymark.core.progress import Preview
+from keymark.core.progress import Preview, run
 
 FRAMES = 46
 POSED = (0, 9, 18, 27, 36, 45)
 TRUTH = exercise(FRAMES)
+TURNS = np.where(np.arange(BODY.skeleton.dof_count) < 3, 0.0, 1.0)
 
 
 def solve(prior: Posture, tracks: RegionTracks) -> WholeClipResult:
@@ -102,6 +103,30 @@ def test_one_frame_of_a_region_far_off_is_not_believed(exact: WholeClipResult) -
         BODY.points(BODY.pose(result.posture)) - BODY.points(BODY.pose(exact.posture)), axis=-1
     )
     assert moved.max() < 0.03
+
+
+def test_a_correction_in_the_picture_holds_there_and_leaves_the_depth_to_the_rest() -> None:
+    found = prior_from(TRUTH[np.array(POSED)].plus(np.tile(0.05 * TURNS, (len(POSED), 1))))
+    scale, middle = np.ones(len(POSED)), np.arange(len(POSED)) == 3
+    nearer = TRUTH[POSED[3]]
+    away = 0.3 * CAMERA.sight(nearer.translation, np.array(0))
+    nearer = Posture(nearer.skeleton, nearer.translation - away, nearer.rotations, nearer.angles)
+    keyframes = [Keyframe(index, found[index]) for index in POSED]
+    keyframes[3] = Keyframe(POSED[3], nearer)
+    prior = interpolate(tuple(keyframes), FRAMES)
+    motions = [
+        run(estimate_whole_clip(BODY, CAMERA, Seen(film(TRUTH, 0.3), SEGMENTS), believed)).posture
+        for believed in (
+            Believed(prior, POSED, np.where(middle, 0.0, scale)),
+            Believed(prior, POSED, scale, corrected=middle),
+        )
+    ]
+    off = [BODY.points(BODY.pose(motion[POSED[3]])) - BODY.points(BODY.pose(nearer)) for motion in motions]
+    sight = CAMERA.sight(BODY.points(BODY.pose(nearer)), np.array(0))
+    along = [float(np.abs((each * sight).sum(-1)).mean()) for each in off]
+    assert along[0] < 0.05 < along[1]  # posed, it stays; corrected in the picture, the rest tells
+    seen = [CAMERA.project(BODY.points(BODY.pose(posture)))[0] for posture in (motions[1][POSED[3]], nearer)]
+    assert np.linalg.norm(seen[0] - seen[1], axis=-1).mean() < 2.5
 
 
 def test_footage_without_any_marker_gives_the_prior_back() -> None:

@@ -18,6 +18,7 @@ from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.human import HUMAN, TRUNK, limb_of
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import hinge
+from keymark.core.estimate.performer_placement import SHOE_M, standing_ankle_m
 from keymark.core.posing.dragged import dragged
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -49,6 +50,33 @@ def _roots(dof: str, part: str) -> bool:
     """Whether a degree of freedom is of the ball that a limb hangs on."""
     kind, _, side = part.partition(".")
     return dof.startswith({"arm": "shoulder", "leg": "hip"}.get(kind, "neck") + (f".{side}" if side else "."))
+
+
+@pytest.mark.parametrize("point", ["ankle.L", "hip.R"])
+def test_no_ankle_is_dragged_through_the_floor(point: str) -> None:
+    standing = standing_posture(BODY)
+    lowered = standing.translation - [0.0, 0.0, 0.2]
+    posture = Posture(standing.skeleton, lowered, standing.rotations, standing.angles)
+    for side in "LR":  # with bent knees
+        ankle = points(posture)[POINT[f"ankle.{side}"]] + [0.0, 0.0, 0.2]
+        posture = dragged(BODY, posture, f"ankle.{side}", ankle, ACROSS)
+    down = np.array([0.0, 0.94, -0.34]) / np.hypot(0.94, 0.34)
+    place = points(posture)[POINT[point]] + [0.0, 0.0, -0.25]
+    free = points(dragged(BODY, posture, point, place, down))[:, 2]
+    held = dragged(BODY, posture, point, place, down, floor_m=0.0)
+    ankles = [POINT["ankle.L"], POINT["ankle.R"]]
+    least = standing_ankle_m(BODY) - SHOE_M
+    assert free[ankles].min() < least - 0.05
+    assert points(held)[ankles, 2].min() > least - 0.002
+    if point == "hip.R":  # seen where it was dragged to: it only comes nearer
+        assert np.linalg.norm(np.cross(points(held)[POINT[point]] - place, down)) < 0.02
+
+
+def test_dragging_above_the_floor_asks_for_none() -> None:
+    posture = standing_posture(BODY)
+    place = points(posture)[POINT["ankle.L"]] + [0.1, 0.0, 0.2]
+    without, with_floor = (dragged(BODY, posture, "ankle.L", place, ACROSS, floor_m=f) for f in (None, 0.0))
+    np.testing.assert_array_equal(without.angles, with_floor.angles)
 
 
 @pytest.mark.parametrize("point", ["wrist.L", "ankle.R", "elbow.R", "knee.L"])

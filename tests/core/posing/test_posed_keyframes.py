@@ -51,6 +51,7 @@ def test_what_bounds_a_section_holds_like_a_posed_keyframe(tmp_path_factory: pyt
     mixed = sorted(keyframes([12], [2, 6, 16, 22]), key=lambda each: each.index)
     held = take_around(replace(take, keyframes=tuple(mixed)), Section(2, 23, (6, 16, 22))).keyframes
     assert [(each.index, each.matched) for each in held] == [(2, None), (12, None)]
+    assert [each.depth_found for each in held] == [True, False]
 
 
 BODY = Body(Actor.from_stature(1.7))
@@ -68,3 +69,4 @@ def test_only_what_a_person_posed_counts_as_posed() -> None:
     assert lowest is not None
     assert posed.floor_m() == pytest.approx(lowest + 0.4)
     assert PosedFrames.of(BODY, []).floor_m() is None
+    assert PosedFrames.of(BODY, [Keyframe(0, low, depth_found=True)]).floor_m() is None

@@ -202,6 +202,15 @@ POSING_MISTAKES: list[tuple[str, Callable[[dict[str, Any]], object], str]] = [
     ("point null", lambda v: v["keyframes"][1]["points"].update(head=[0, 1, None]), "head is"),
     ("point far", lambda v: v["keyframes"][1]["points"].update(head=[0, 1, 1e7]), "head is.*1000 m"),
     ("one place", keyframe_change(points=named(np.zeros((13, 3)))), "in one place"),
+    ("depth", keyframe_change(depth="posed"), "depth is 'posed'; it must be one of found"),
+    (
+        "found twice",
+        keyframe_change(
+            depth="found",
+            matched={"library": "walking", "posture": "Step", "mirrored": False, "confidence": 0.5},
+        ),
+        "both matched and depth",
+    ),
     ("posture short", keyframe_change(posture={"waist.rotation_x": 0.1}), "pelvis.location_x is missing"),
     ("posture unknown", keyframe_change(posture={"tail.wag": 0.1}), "unknown degree of freedom 'tail.wag'"),
 ]
