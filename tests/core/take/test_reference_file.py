@@ -8,6 +8,7 @@ import pytest
 from keymark.core.errors import InputError
 from keymark.core.take.reference import ReferenceMotion, read_reference
 
+
 def test_other_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="must end in"):
         read_reference(tmp_path / "motion.xyz")
