@@ -6,7 +6,7 @@
 OUTPUT ?= out/demo
 TESTS ?=
 ZIPS ?=
-BENCHMARKS ?= camera accuracy evidence keyframe_economy sensitivity posing_all frame_poses finishing mend retargeting waiting batch detection
+BENCHMARKS ?= camera animate accuracy evidence keyframe_economy sensitivity posing_all frame_poses finishing mend retargeting waiting batch detection
 
 find_python := sh tools/find_python.sh
 # Variables, because a comma would end an argument of `call`.

@@ -1,6 +1,6 @@
 """What the network that finds keypoints is off by, beside a take's own file of a detector.
 
-Usage: detection.py [TAKE ...]; see README.md beside this file.
+Usage: detection.py [--wrong] [TAKE ...]; see README.md beside this file.
 """
 
 import json
@@ -16,13 +16,16 @@ from takes import chosen_takes, load_project, write_results
 load_project()
 
 from keymark.core.arrays import Array  # noqa: E402
+from keymark.core.footage.clips.album import Glimpses  # noqa: E402
 from keymark.core.footage.clips.clip import Clip  # noqa: E402
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.footage.keypoints.keypoints import People  # noqa: E402
+from keymark.core.footage.picture_check import check_by_pictures  # noqa: E402
 from keymark.core.footage.pose_network import PoseNetwork  # noqa: E402
 from keymark.core.footage.pose_tracking import find_people  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402
+from wrong_keypoints import NOT_OF_THE_PICTURE  # noqa: E402
 
 LIMBS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 POINTS = tuple(f"{limb}.{side}" for limb in LIMBS for side in "LR")
@@ -104,10 +107,34 @@ def table(rows: list[Row]) -> str:
     return "\n".join(lines)
 
 
+def checked(folder: Path, network: PoseNetwork) -> dict[str, str]:
+    """What the pictures say of a take's own file with one thing wrong each."""
+    clip = Clip.open(read_take(folder, whole=False).clip)
+    glimpses = Glimpses.of(clip)
+    for index, _, picture in clip.frames():
+        glimpses.add(index, picture)
+    file = next(folder / one for one in FILES if (folder / one).is_file())
+    people = read_keypoints(file, None, clip.size)
+    found = {}
+    for wrong, change in NOT_OF_THE_PICTURE.items():
+        finding = run(check_by_pictures(change(people), glimpses, network, clip.fps))
+        away = [frame for frame, there in finding.looked.items() if not there]
+        said = [f"elsewhere in {len(away)} of {len(finding.looked)}"] if away else []
+        said += ["mirrored"] if finding.mirrored else []
+        said += [f"scaled by {finding.scale[0]:.3f}, {finding.scale[1]:.3f}"] if finding.is_scaled else []
+        found[wrong] = finding.refusal or ", ".join(said) or "believed"
+    return found
+
+
 def main(wanted: list[str]) -> int:
     """Measure, print and write the results."""
     cv2.setNumThreads(1)
     network = PoseNetwork()
+    if "--wrong" in wanted:
+        for name, folder in chosen_takes([one for one in wanted if one != "--wrong"], plain=True).items():
+            for wrong, said in checked(folder, network).items():
+                print(f"| {name} | {wrong} | {said} |", flush=True)
+        return 0
     rows: list[Row] = []
     for name, folder in chosen_takes(wanted, plain=True).items():
         rows += rows_of(name, folder, network)

@@ -59,8 +59,8 @@ def read_file(file: Path) -> tuple[Array, Array | None]:
     from keymark.operators.bridge.blend_files import own_scene, showing_scene
     from keymark.operators.bridge.character.read_character import read_character
     from keymark.operators.bridge.motions.import_motion import import_motion
-    from keymark.operators.bridge.motions.joint_paths import joint_paths
     from keymark.operators.bridge.motions.mend_action import mend_action
+    from keymark.operators.bridge.motions.read_poses import joint_paths
 
     with own_scene("Motion") as scene, showing_scene(scene):
         imported, chosen = import_motion(CharacterFile(file), scene)

@@ -1,4 +1,4 @@
-"""Keypoints that are wrong in one way each: shuffled, mirrored, someone else's, random, shifted, late."""
+"""Keypoints that are wrong in one way each: shuffled, someone else's, late, of another size, mirrored."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -85,3 +85,65 @@ WRONG: Mapping[str, Callable[[People], People]] = {
     "ten frames late": late,
 }
 """What a detector may do, by the name in tables."""
+
+
+def resized(scale: float) -> Callable[[People], People]:
+    """All points are those of a copy of the clip of another size."""
+
+    def changed(people: People) -> People:
+        return _moved(people, lambda pixel: scale * pixel)
+
+    return changed
+
+
+def of_mirrored_copy(people: People) -> People:
+    """All points are those of a mirrored copy of the clip."""
+    flip = [people.size[0], 0.0]
+    return left_for_right(_moved(people, lambda pixel: np.array(flip) + pixel * [-1.0, 1.0]))
+
+
+def at_rate(rate: float) -> Callable[[People], People]:
+    """Frame by frame of a copy at another frame rate; where that ends, it goes on from the beginning."""
+
+    def changed(people: People) -> People:
+        count = len(people.frames)
+        rows = (np.arange(count) / rate).astype(int) % count
+        return replace(people, frames=tuple(people.frames[row] for row in rows))
+
+    return changed
+
+
+def jumping(people: People) -> People:
+    """For a fifth of the clip someone else, who walks the other way."""
+    count = len(people.frames)
+    gone = range(2 * count // 5, 3 * count // 5)
+    mirrored = of_mirrored_copy(people).frames
+    other = tuple(mirrored[count - 1 - row] if row in gone else people.frames[row] for row in range(count))
+    return replace(people, frames=other)
+
+
+def _moved(people: People, change: Callable[[Array], Array]) -> People:
+    """The points elsewhere; those outside the picture are not seen."""
+    frames = []
+    for seen in people.frames:
+        pixel = change(seen.pixel)
+        inside = ((pixel >= 0.0) & (pixel <= np.array(people.size))).all(axis=-1)
+        place = np.where(inside[..., None], pixel, np.nan)
+        frames.append(SeenPeople(place, np.where(inside, seen.score, 0.0), seen.hint_m))
+    return replace(people, frames=tuple(frames))
+
+
+NOT_OF_THE_PICTURE: Mapping[str, Callable[[People], People]] = {
+    "as it is": lambda people: people,
+    "half size": resized(0.5),
+    "three quarters": resized(0.75),
+    "1.2 times": resized(1.2),
+    "1.5 times": resized(1.5),
+    "mirrored copy": of_mirrored_copy,
+    "half the rate": at_rate(0.5),
+    "twice the rate": at_rate(2.0),
+    "ten frames late": late,
+    "another person": another_person,
+    "someone in between": jumping,
+}
+"""What a file may be of, by the name in tables."""

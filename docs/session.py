@@ -64,7 +64,7 @@ def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
 
 
 def load_footage(scene: bpy.types.Scene) -> None:
-    """Step 1, footage: load the clip and put its camera where the real one stood."""
+    """Step 1, clip: load the clip and put its camera where the real one stood."""
     bpy.ops.keymark.load_footage(filepath=str(DEMO / "clip.mp4"))
     take = active_take(scene)
     take.camera.location, take.camera.rotation_euler = CAMERA_LOCATION, CAMERA_ROTATION
@@ -72,7 +72,7 @@ def load_footage(scene: bpy.types.Scene) -> None:
 
 
 def pick_markers(take: bpy.types.PropertyGroup) -> None:
-    """Step 2, what to follow: pick the usual five markers, each by one click on the footage in frame 1.
+    """Step 2, what is followed: pick the usual five markers, each by one click on the footage in frame 1.
 
     In plain clothes `bpy.ops.keymark.load_keypoints(filepath=...)` takes its place.
     """
@@ -83,7 +83,7 @@ def pick_markers(take: bpy.types.PropertyGroup) -> None:
 
 
 def build_actor(take: bpy.types.PropertyGroup) -> None:
-    """Step 3, actor: build it from the height, where the performer stands; then set the measured lengths."""
+    """Step 2, performer: build the actor from the height, where they stand; then set the measured lengths."""
     bpy.ops.keymark.build_actor(stature=HEIGHT_M)
     for name, length in LENGTHS_M.items():
         setattr(take.lengths, name, length)
@@ -104,7 +104,7 @@ def animator(scene: bpy.types.Scene) -> tuple[bpy.types.Object, list[int]]:
 
 
 def pose_keyframes(scene: bpy.types.Scene) -> None:
-    """Step 4, keyframes: propose frames; then fit, correct and store the pose of each."""
+    """Step 3, poses: propose frames; then fit, correct and store the pose of each."""
     bpy.ops.keymark.propose_keyframes()
     print("Proposed:", sorted(proposal.frame for proposal in active_take(scene).proposals))
     hand, frames = animator(scene)
@@ -119,7 +119,7 @@ def pose_keyframes(scene: bpy.types.Scene) -> None:
 
 
 def find_keyframes(scene: bpy.types.Scene, library: str) -> None:
-    """Step 4 without posing: keyframes found with all libraries or a named one; correct the doubtful ones."""
+    """Step 3 without posing: keyframes found with all libraries or a named one; correct the doubtful ones."""
     bpy.ops.keymark.pose_all(library=library)
     for match in active_take(scene).matching.matches:
         print(f"Frame {match.frame:g}: {match.candidate.name}, {match.confidence:.0%}")
@@ -143,7 +143,7 @@ def build_child(scene: bpy.types.Scene) -> bpy.types.Object:
 
 
 def let_perform(character: bpy.types.Object) -> None:
-    """Step 8, character: recognize its bones, and give it the newest motion as an Action of its own."""
+    """Step 5, character: recognize its bones, and give it the newest motion as an Action of its own."""
     bpy.ops.keymark.add_character(armature=character.name)
     added = active_take(bpy.context.scene).characters[0]
     for role in added.character_map.roles:
@@ -154,7 +154,7 @@ def let_perform(character: bpy.types.Object) -> None:
 
 
 def session(scene: bpy.types.Scene, folder: Path, library: str = "") -> bpy.types.PropertyGroup:
-    """All eight steps; returns the take."""
+    """All six steps; returns the take."""
     load_footage(scene)
     pick_markers(active_take(scene))
     build_actor(active_take(scene))
@@ -162,12 +162,12 @@ def session(scene: bpy.types.Scene, folder: Path, library: str = "") -> bpy.type
         find_keyframes(scene, library)
     else:
         pose_keyframes(scene)
-    bpy.ops.keymark.reconstruct()  # step 5: a new Action; the keyframes stay in theirs
+    bpy.ops.keymark.reconstruct()  # step 4: a new Action; the keyframes stay in theirs
     take = active_take(scene)
-    for weak in take.review.weak_frames:  # step 6, review
+    for weak in take.review.weak_frames:  # the review
         print(f"Frame {weak.frame} is worth another keyframe")
     take.finish.tolerance_mm = 5.0
-    bpy.ops.keymark.bake_motion()  # step 7, finish: few keys, resting feet stand still
+    bpy.ops.keymark.bake_motion()  # step 6, export: few keys, resting feet stand still
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "session.blend"))  # catalogs lie beside the file
     bpy.ops.keymark.mark_asset()
     bpy.ops.keymark.export_motion(format="BVH", filepath=str(folder / "motion.bvh"))

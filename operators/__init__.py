@@ -19,8 +19,8 @@ STEPS = (
     "reconstruct",
     "review",
     "overlays",
-    "finish",
     "character",
+    "finish",
     "library",
 )
 """The steps of the work, in the order in which the sidebar shows their panels."""
@@ -30,7 +30,13 @@ def modules() -> Iterator[str]:
     """Yield the modules to register in order: all properties, then the operators and panels that use them."""
     for folder in ("shell", *STEPS, "takes"):  # a take's properties contain those of the steps
         yield from (f"{folder}.{name}" for name in _listed(folder, "PROPERTIES"))
-    for folder in ("shell", "takes", *STEPS, "cli"):  # the main panel comes before the panels inside it
+    for folder in (
+        "shell",
+        "takes",
+        *STEPS,
+        "animate",
+        "cli",
+    ):  # the main panel comes before the panels inside it
         yield from (f"{folder}.{name}" for name in _listed(folder, "MODULES"))
 
 

@@ -16,6 +16,7 @@ from _synthetic_take import (
     write_json,
     write_keyframes,
 )
+from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.posture import Posture
 
 FPS = 30.0
@@ -61,6 +62,12 @@ def write_shoot(folder: Path, takes: int = 3, frames: int = 8) -> Path:
 def write_video(path: Path, posture: Posture, seed: int = 7) -> None:
     """Film postures as a video."""
     write_frames(path, list(drawn_frames(posture, seed)))
+
+
+def gliding(frames: int = 40) -> Posture:
+    """Somebody glides toward the camera, upright."""
+    ways = np.linspace(-0.2, 0.3, frames), np.linspace(0.9, -0.2, frames)
+    return Posture.stack([standing_posture(BODY, np.array([x, y, 0.0])) for x, y in zip(*ways, strict=True)])
 
 
 def write_frames(path: Path, images: list[np.ndarray]) -> None:

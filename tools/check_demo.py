@@ -3,8 +3,9 @@
 OUTPUT must hold a complete motion, the files that Blender and other programs open, pictures that are not
 blank, a motion near the take's truth, and a character whose feet stand still on the floor; and once more,
 from contours and keypoints instead of markers, such a motion, files and pictures. Both motions must come
-nearer to the truth than straight lines between the keyframes. The exit status is 1 on errors, with one line
-for each.
+nearer to the truth than straight lines between the keyframes. A bare clip that was animated must be a take
+whose camera and poses were found, near its own truth once both are laid over each other, on a character. The
+exit status is 1 on errors, with one line for each.
 """
 
 import json
@@ -20,6 +21,9 @@ LARGEST_SHARE = {".": 0.6, "without_markers": 0.75}
 PICTURES_AT_LEAST = 2
 LARGEST_MM = {"skate_mm": 0.05, "penetration_mm": 2.0, "ik_fk_mm": 1.0}
 """Of the figures of the character's motion."""
+LARGEST_ANIMATED_M = 0.12
+"""Of the motion from a bare clip: what nothing posed is usually off, and half as much again."""
+ANIMATED_FILES = ("take.json", "keypoints.json", "keyframes.json", "motion.json", "conversion.json")
 BLEND_STARTS = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")
 """A plain .blend, and one compressed by Zstandard or gzip."""
 
@@ -89,6 +93,40 @@ def check_evidence(folder: Path) -> list[str]:
     return wrong + ([] if evidence["keypoints"] else [f"{file}: it was held against no keypoints"])
 
 
+def check_animated(folder: Path, truth_file: Path) -> list[str]:
+    """Errors of what was made from a bare clip and a height."""
+    missing = [name for name in ANIMATED_FILES if not (folder / name).is_file()]
+    if missing:
+        return [f"{folder} holds no {missing[0]}"]
+    found = json.loads((folder / "take.json").read_text(encoding="utf-8"))["//found"]
+    wrong = (
+        [] if found[0].startswith("Keypoints: ") else [f"{folder / 'take.json'} says nothing of keypoints"]
+    )
+    motion = json.loads((folder / "motion.json").read_text(encoding="utf-8"))
+    truth = json.loads(truth_file.read_text(encoding="utf-8"))
+    names = sorted(truth["points"])
+    points = np.array([motion["points"][name] for name in names], dtype=float)
+    true = np.array([truth["points"][name] for name in names], dtype=float)
+    if points.shape != true.shape or not np.isfinite(points).all():
+        return [*wrong, f"{folder / 'motion.json'} has no finite place in each frame"]
+    error_m = laid_over_m(points.reshape(-1, 3), true.reshape(-1, 3))
+    if error_m > LARGEST_ANIMATED_M:
+        wrong.append(
+            f"{folder / 'motion.json'}: the mean error is {error_m:.4f} m, over {LARGEST_ANIMATED_M}"
+        )
+    return wrong + check_files(folder, points.shape[1]) + check_pictures(folder / "report")
+
+
+def laid_over_m(points: np.ndarray, true: np.ndarray) -> float:
+    """Mean distance of points (N, 3) from true ones after one similarity transform (Umeyama 1991) [m]."""
+    middle, true_middle = points.mean(axis=0), true.mean(axis=0)
+    left, values, right = np.linalg.svd((true - true_middle).T @ (points - middle))
+    sign = np.array([1.0, 1.0, np.sign(np.linalg.det(left @ right))])
+    scale = (values * sign).sum() / ((points - middle) ** 2).sum()
+    there = scale * (points - middle) @ (left @ np.diag(sign) @ right).T + true_middle
+    return float(np.linalg.norm(there - true, axis=-1).mean())
+
+
 def check_pictures(folder: Path) -> list[str]:
     """Errors of the pictures: blank ones, or too few."""
     files = sorted(folder.rglob("*.png"))
@@ -121,6 +159,9 @@ def main(arguments: list[str]) -> int:
         wrong += check_pictures(folder / "report")
     if not wrong:
         wrong = check_character(output) + check_evidence(output / "without_markers")
+        animated = output / "animated"
+        wrong += check_animated(animated, take_folder.with_name("greeting") / "truth.json")
+        wrong += check_character(animated)
     for sentence in wrong:
         print(sentence, file=sys.stderr)
     return 1 if wrong else 0

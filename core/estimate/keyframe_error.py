@@ -113,7 +113,7 @@ def place_depth_std_m(points: Array, ankles: Array | None, camera: Camera) -> Ar
 
     Sizes tell a distance, and so does the floor, the better the more the camera looks down on it.
 
-    `points` (F, P, 3) in the world and `ankles` (F,), heights of the lower one [m]; None where legs are unseen.
+    `points` (F, P, 3) in the world and `ankles` (F,), heights of the lower one [m], None where unseen.
     """
     frame = np.arange(len(points))
     middle = points.mean(axis=1)

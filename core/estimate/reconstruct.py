@@ -21,6 +21,7 @@ from ..footage.region_tracks import RegionTracks
 from ..prior.keyframe_proposals import evidence_speed
 from ..prior.keyframes import interpolate, with_offset
 from ..progress import Job, Progress, stretch, within
+from ..take.checked_keypoints import with_checked_keypoints
 from ..take.clip_check import check_frame_count, check_in_front
 from ..take.conversion_settings import METHODS
 from ..take.motion import Motion
@@ -134,6 +135,7 @@ def _reconstruct(
         begun = EXTRACTION_SHARE
     else:
         _check_tracks(take, reading.tracks)
+    take = yield from with_checked_keypoints(take, reading, begun)
     tracks, referred = reading.tracks, None
     if take.reference is not None and method == "map":
         said = said or reference_evidence(take, tracks)
@@ -198,7 +200,7 @@ def _present(take: Take, there: BoolArray) -> Take:
     kept = tuple(key for key in take.keyframes if there[key.index])
     if len(kept) < 2:
         raise InputError(
-            f"{take.name} has {len(kept)} keyframes in frames in which somebody is seen; at least 2 are needed"
+            f"{take.name} has {len(kept)} keyframes in frames that show somebody; at least 2 are needed"
         )
     return replace(take, keyframes=kept)
 

@@ -164,10 +164,7 @@ def _learned(
     schedule = contour_schedule(
         problem.body, camera, album.factor, segments, problem.prior, problem.keypoints
     )
-    posture = spliced(
-        problem.prior,
-        spans,
-        [state.posture[window.kept] for state, window in zip(states, spans, strict=True)],
-    )
+    solved = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
+    posture = spliced(problem.prior, spans, solved)
     learning = learn_contours(problem.body, camera, album, posture, problem.keyframes, schedule)
     return (yield from scaled(learning, 0.0, 1.0))

@@ -133,13 +133,32 @@ def _parse(text: str, where: str, parse_constant: Callable[[str], Any]) -> Any:
         )
     except json.JSONDecodeError as error:
         raise InputError(
-            f"{where}: line {error.lineno}, column {error.colno} is no valid JSON ({error.msg}); "
-            "the file may be cut off or edited by mistake"
+            f"{where}: line {error.lineno}, column {error.colno} is no valid JSON ({error.msg})"
+            f"{_reason(text, error)}"
         ) from error
     except ValueError as error:
         raise InputError(f"{where}: {error}") from error
     _check_surrogates(text, value, where)
     return value
+
+
+_TABLE = re.compile(r"[^\n\[{,;\t]*([,;\t])[^\n\[{]*\n[^\n\[{]*\1")
+_PYTHON = re.compile(r"'|None\b|True\b|False\b|nan\b|\(|array\(")
+
+
+def _reason(text: str, error: json.JSONDecodeError) -> str:
+    """What text that is no JSON is instead, to end a sentence; empty where that is not known."""
+    if not text.strip():
+        return "; the file is empty"
+    if error.pos >= len(text.rstrip()) or error.msg.startswith("Unterminated"):
+        return "; the file is cut off, or is still being written"
+    if error.msg == "Extra data" and text[: error.pos].rstrip(" \t\r").endswith("\n"):
+        return "; a value a line is JSON Lines, and the file must hold one value: a list of them, [..., ...]"
+    if _TABLE.match(text):
+        return "; it is a table (CSV), and must be JSON"
+    if _PYTHON.match(text, error.pos):
+        return "; it is what Python prints, and must be written by json.dump"
+    return ""
 
 
 def write_json(path: Path, value: Any, indent: int | None = None) -> None:

@@ -239,6 +239,16 @@ def guess_lens(size: tuple[int, int]) -> LensGuess:
     return LensGuess(round(lens_mm, 1), FULL_FRAME_MM * width / max(width, height), reason)
 
 
+def lens_of_equivalent(equivalent_mm: float, size: tuple[int, int]) -> tuple[float, float]:
+    """Focal length and sensor width [mm] of a full-frame equivalent, for a picture of this size [px].
+
+    It is an equivalent by the diagonal (CIPA DCG-001).
+    """
+    width, height = size
+    sensor_mm = FULL_FRAME_MM / max(width, height)
+    return equivalent_mm * hypot(width, height) * sensor_mm / hypot(36.0, 24.0), sensor_mm * width
+
+
 def default_camera_pose(lens_mm: float, sensor_width_mm: float, size: tuple[int, int]) -> Array:
     """Initial pose of a camera: (4, 4) camera to world [m].
 

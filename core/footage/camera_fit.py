@@ -27,6 +27,8 @@ from .camera_fields import CameraPlacement
 
 HEIGHT, TILT, ROLL, LENS = "height", "tilt", "roll", "lens"
 PARAMETERS = (HEIGHT, TILT, ROLL, LENS)
+UNITS = {HEIGHT: (2, " m"), TILT: (1, "°"), ROLL: (1, "°"), LENS: (1, " mm")}
+"""Decimals and unit of each in sentences."""
 BELIEVED_STD = np.array([0.4, np.radians(15.0), np.radians(4.0), 0.35])
 """Of the logarithm of the height (from 0.6 to 3 m about 1.4 m, twice that deviation), tilt and roll (held in
 hands, or on a slanting support), and of the logarithm of the focal length (17 to 70 mm about 35)."""
@@ -57,6 +59,24 @@ class CameraFit:
     def placement(self) -> CameraPlacement:
         """Height, tilt and roll found."""
         return CameraPlacement.of(self.camera.matrix_world)
+
+    def said(self, name: str) -> str:
+        """One of `PARAMETERS` in words, as `tilt -3.1 ± 0.6°`, with its deviation where it was found."""
+        placement = self.placement
+        digits, unit = UNITS[name]
+        value = {
+            HEIGHT: placement.height_m,
+            TILT: float(np.degrees(placement.tilt_rad)),
+            ROLL: float(np.degrees(placement.roll_rad)),
+            LENS: self.camera.lens_mm,
+        }[name]
+        spread = f" ± {self.spread(name)}" if name not in self.kept else ""
+        return f"{name} {value:.{digits}f}{spread}{unit}"
+
+    def spread(self, name: str) -> str:
+        """The standard deviation of one of `PARAMETERS` in its unit."""
+        digits, unit = UNITS[name]
+        return f"{np.degrees(self.std[name]) if unit == '°' else self.std[name]:.{digits}f}"
 
 
 def fit_camera(camera: Camera, evidence: CameraEvidence, lens_is_known: bool = False) -> CameraFit:

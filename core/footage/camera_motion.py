@@ -1,8 +1,8 @@
 """A camera that was said to stand still, as its background shows it: hand-held, panned, zoomed or carried.
 
 Corners of the background are followed from an anchor frame (Lucas & Kanade 1981, pyramids as Bouguet 2000
-describes them) and held against a camera that only turns and zooms about its place, which maps pictures of any
-scene by a homography K Z R K⁻¹ (Hartley & Zisserman 2004, §8.4). Where too few corners agree with one the
+describes them) and held against a camera that only turns and zooms about its place, which maps pictures of
+any scene by a homography K Z R K⁻¹ (Hartley & Zisserman 2004, §8.4). Where too few corners agree with one the
 camera has moved from its place.
 """
 
@@ -27,12 +27,14 @@ LOST = 0.5
 """Share of an anchor's corners below which the next frame becomes the anchor."""
 MARGIN = 0.15
 """Around what is seen of the performer, in its larger side: what of him moves beyond his joints."""
-WINDOW: dict[str, Any] = {"winSize": (21, 21), "maxLevel": 3}
+STEP = 1e-6
+"""Of the turn [rad] and the zoom's logarithm, for differences."""
+WINDOW: dict[str, Any] = {"winSize": (21, 21), "maxLevel": 3, "flags": cv2.OPTFLOW_USE_INITIAL_FLOW}
 NOTICED = 0.006
 """Movement of the picture, as a share of its width, from which on a camera counts as moving: 2 px in 320.
 Compression and noise move corners by a tenth of that; at four meters it puts a performer off by 2 cm."""
 ZOOMING = 0.08
-"""Change of size from which on it zooms; breathing of an autofocus, and turns by some degrees, change less."""
+"""Change of size from which on it zooms: more than an autofocus that breathes, or some degrees of a turn."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +106,7 @@ def moved(homography: Array, points: Array) -> Array:
 def _followed(
     album: Album, frames: IndexArray, places: Array, matrix: Array
 ) -> Iterator[tuple[Array, float]]:
-    """For each frame the homography from the first and the share of corners that agree; ends where none do."""
+    """For each frame the homography from the first and the share of corners that agree, as far as known."""
     gray = _gray(album, int(frames[0]))
     anchor, base = gray, np.eye(3)
     corners = _corners(gray, places[frames[0]])
@@ -115,14 +117,10 @@ def _followed(
             return
         gray = _gray(album, int(frame))
         start = moved(last, corners.astype(np.float64)).astype(np.float32)
-        ends, there, _ = cv2.calcOpticalFlowPyrLK(
-            anchor,
-            gray,
-            corners[:, None],
-            start[:, None].copy(),
-            flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
-            **WINDOW,
+        found, there, _ = cv2.calcOpticalFlowPyrLK(
+            anchor, gray, corners[:, None], start[:, None].copy(), **WINDOW
         )
+        ends = np.asarray(found, dtype=np.float32)
         kept = (there[:, 0] > 0) & ~_covered(ends[:, 0], places[frame])
         if kept.sum() < FEWEST_CORNERS:
             return
@@ -163,7 +161,7 @@ def _corners(gray: Image, places: Array) -> NDArray[np.float32]:
         left, top, right, bottom = np.clip(box, 0, 1e6).astype(int)
         mask[top:bottom, left:right] = 0
     found = cv2.goodFeaturesToTrack(gray, MOST_CORNERS, 0.01, 5, mask=mask)
-    return np.zeros((0, 2), dtype=np.float32) if found is None else found[:, 0]
+    return np.zeros((0, 2), dtype=np.float32) if found is None else np.asarray(found[:, 0], dtype=np.float32)
 
 
 def _turned(begun: NDArray[np.float32], ended: NDArray[np.float32], matrix: Array) -> tuple[Array, BoolArray]:
@@ -175,9 +173,8 @@ def _turned(begun: NDArray[np.float32], ended: NDArray[np.float32], matrix: Arra
     rough = np.eye(3) if first is None else np.vstack([first, [0.0, 0.0, 1.0]])
     near = np.linalg.norm(moved(rough, begun.astype(np.float64)) - ended, axis=-1)
     inverse, values = np.linalg.inv(matrix), np.zeros(4)
-    zoom = np.sqrt(np.linalg.det(rough[:2, :2]))
-    centre = moved(inverse, moved(rough, matrix[:2, 2][None]))[0]
-    values[:] = [-centre[1], centre[0], 0.0, np.log(zoom)]
+    center = moved(inverse, moved(rough, matrix[:2, 2][None]))[0]
+    values[:] = [-center[1], center[0], 0.0, 0.5 * np.log(np.abs(np.linalg.det(rough[:2, :2])))]
 
     def mapped(values: Array) -> Array:
         own = np.diag([np.exp(values[3]), np.exp(values[3]), 1.0])
@@ -186,11 +183,8 @@ def _turned(begun: NDArray[np.float32], ended: NDArray[np.float32], matrix: Arra
     points, agree = begun.astype(np.float64), near < 4.0 * AGREEING_PX
     for _ in range(6):
         residual = moved(mapped(values), points) - ended
-        step = 1e-6
-        jacobian = np.stack(
-            [(moved(mapped(values + step * axis), points) - ended - residual) / step for axis in np.eye(4)],
-            axis=-1,
-        )
+        nearby = [moved(mapped(values + STEP * axis), points) - ended for axis in np.eye(4)]
+        jacobian = np.stack([(one - residual) / STEP for one in nearby], axis=-1)
         own = agree if agree.sum() >= FEWEST_CORNERS else np.ones(len(points), dtype=np.bool_)
         rows, right = jacobian[own].reshape(-1, 4), residual[own].reshape(-1)
         values = values - np.linalg.lstsq(rows, right, rcond=None)[0]

@@ -45,10 +45,7 @@ def find_people(clip: Clip, network: PoseNetwork, longest: int) -> Job[People]:
     Raises:
         InputError: It is a picture, has no frames or too many, or nobody is in it.
     """
-    if clip.frame_count == 1 and not clip.knows_its_rate:
-        raise InputError(
-            f"{clip.path}: is a single picture; it must be a video, or a folder of the pictures of one"
-        )
+    refuse_picture(clip)
     scale = min(1.0, LARGEST_SIDE_PX / max(clip.size))
     tracking = _Tracking(network)
     seen: list[list[_Sighting]] = []
@@ -69,6 +66,14 @@ def find_people(clip: Clip, network: PoseNetwork, longest: int) -> Job[People]:
         )
     frames = tuple(_people(frame, clip.size, scale) for frame in kept)
     return People(LAYOUT.names, NAME, clip.size, frames)
+
+
+def refuse_picture(clip: Clip) -> None:
+    """Refuse a single picture in place of a clip."""
+    if clip.frame_count == 1 and not clip.knows_its_rate:
+        raise InputError(
+            f"{clip.path}: is a single picture; it must be a video, or a folder of the pictures of one"
+        )
 
 
 def _stretches(clip: Clip, scale: float) -> Iterator[list[Image]]:
@@ -167,6 +172,11 @@ def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[P
         if found and not known and number:  # somebody else may be one size smaller
             break
     return [pose for pose in found if pose.crop.side > SMALLEST * largest]
+
+
+def find_in_picture(network: PoseNetwork, picture: Image) -> list[Pose]:
+    """Whoever is seen in a single picture, the surest first."""
+    return _scan(network, picture, [])
 
 
 def _grid(picture: Image, side: float) -> Iterator[Crop]:

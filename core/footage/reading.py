@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..errors import InputError
 from ..files.digest import digest, file_fingerprint
-from .clips.album import Album, watch_clip
+from .clips.album import Album, Glimpses, watch_clip
 from .clips.clip import Clip
 from .clips.frame_checks import NO_FINDINGS, FrameChecks, FrameFindings
 from .clips.image_sequence import find_images
@@ -30,7 +30,8 @@ class Reading:
     detections: Detections | None = None  # all regions of the markers' colors; None where they were not kept
     notes: tuple[str, ...] = ()  # sentences on possible faults of the clip
     key: str = ""  # cache key of the clip and the settings, see `reading_key`; empty where unknown
-    frame_findings: FrameFindings = NO_FINDINGS  # blank frames, cuts and interlacing
+    frame_findings: FrameFindings = NO_FINDINGS  # blank and repeated frames, cuts and interlacing
+    glimpses: Glimpses | None = None  # a few larger pictures; None where it was not read from a clip
     steady: Array | None = None  # (F, 3, 3) from what it shows to the clip's pixels, see `steady_camera`
 
 
@@ -48,6 +49,7 @@ def reading_arrays(reading: Reading) -> Arrays:
         "notes": _text(reading.notes),
         "noticed.blank": np.array(findings.blank, dtype=np.int64),
         "noticed.cuts": np.array(findings.cuts, dtype=np.int64),
+        "noticed.repeated": np.array(findings.repeated, dtype=np.int64),
         "noticed.rest": np.array([findings.frames, findings.interlaced], dtype=np.int64),
         "tracks.names": _text(tracks.names),
         "tracks.notes": _text(tracks.notes),
@@ -55,6 +57,8 @@ def reading_arrays(reading: Reading) -> Arrays:
     }
     if reading.album is not None:
         arrays |= {f"album.{name}": array for name, array in reading.album.to_arrays().items()}
+    if reading.glimpses is not None:
+        arrays |= {f"glimpses.{name}": array for name, array in reading.glimpses.to_arrays().items()}
     if reading.detections is not None:
         arrays |= {f"seen.{name}": array for name, array in _detections_arrays(reading.detections).items()}
     return arrays
@@ -72,9 +76,13 @@ def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
     album = Album.from_arrays(_under("album", arrays)) if "album.picture" in arrays else None
     seen = _detections(_under("seen", arrays), tracks) if "seen.start" in arrays else None
     frames, interlaced = arrays["noticed.rest"].tolist()
-    blank, cuts = (tuple(arrays[f"noticed.{name}"].tolist()) for name in ("blank", "cuts"))
-    findings = FrameFindings(frames, blank, cuts, bool(interlaced))
-    return Reading(tracks, album, seen, tuple(arrays["notes"].tolist()), str(arrays["key"]), findings)
+    blank, cuts, repeated = (
+        tuple(arrays[f"noticed.{name}"].tolist()) for name in ("blank", "cuts", "repeated")
+    )
+    findings = FrameFindings(frames, blank, cuts, bool(interlaced), repeated)
+    glimpses = Glimpses.from_arrays(_under("glimpses", arrays)) if "glimpses.picture" in arrays else None
+    notes = tuple(arrays["notes"].tolist())
+    return Reading(tracks, album, seen, notes, str(arrays["key"]), findings, glimpses)
 
 
 def _under(name: str, arrays: Mapping[str, NDArray[Any]]) -> Arrays:
@@ -114,7 +122,7 @@ def _detections(arrays: Arrays, tracks: RegionTracks) -> Detections:
     return Detections(regions, tracks.time_s, tracks.size, learning_rounds, samples)
 
 
-FORMAT = 2  # version of the reading's algorithm and arrays; raised whenever either changes
+FORMAT = 3  # version of the reading's algorithm and arrays; raised whenever either changes
 
 
 def reading_key(
@@ -180,16 +188,20 @@ def read_clip(
         seen = kept.detections
         same = seen is not None and of_same_footage(kept.key, key)
         if seen is not None and same and still_valid(seen, styles, expected, ignored):
-            return replace(kept, tracks=assign_detections(seen, styles, expected), key=key)
-    album, checks = Album() if with_album else None, FrameChecks()
-    watched = watch_clip(clip, checks, album)
+            tracks = _each_once(assign_detections(seen, styles, expected), kept.frame_findings)
+            return replace(kept, tracks=tracks, key=key)
+    album, checks, glimpses = Album() if with_album else None, FrameChecks(), Glimpses.of(clip)
+    watched = watch_clip(clip, checks, album, glimpses)
     if not styles:
         time_s: list[float] = []
         for _, stamp, _ in watched.frames():
             time_s.append(stamp)
             yield min(len(time_s) / clip.frame_count, 1.0)
         tracks = RegionTracks.unmarked(np.array(time_s), clip.size)
-        return Reading(tracks, album, key=key, frame_findings=checks.findings())
+        findings = checks.findings()
+        if album is not None:
+            album.without(findings.repeated)
+        return Reading(tracks, album, key=key, frame_findings=findings, glimpses=glimpses)
     try:
         seen = yield from detect_markers(watched, styles, expected, ignored)
     except InputError as error:
@@ -200,8 +212,23 @@ def read_clip(
             raise InputError("; ".join([str(error), *clip.notes])) from error
         raise
     yield 1.0
-    tracks = assign_detections(seen, styles, expected)
-    return Reading(tracks, album, seen, key=key, frame_findings=checks.findings())
+    findings = checks.findings()
+    if album is not None:
+        album.without(findings.repeated)
+    tracks = _each_once(assign_detections(seen, styles, expected), findings)
+    return Reading(tracks, album, seen, key=key, frame_findings=findings, glimpses=glimpses)
+
+
+def _each_once(tracks: RegionTracks, findings: FrameFindings) -> RegionTracks:
+    """The tracks without those of repeated pictures, which show no other moment."""
+    if not findings.repeated:
+        return tracks
+    again = list(findings.repeated)
+    nothing = {"centroid": np.nan, "second_moment": np.nan, "area": np.nan, "quality": 0.0, "clipped": False}
+    arrays: dict[str, Any] = {name: np.array(getattr(tracks, name)) for name in nothing}
+    for name, value in nothing.items():
+        arrays[name][again] = value
+    return replace(tracks, **arrays)
 
 
 MOST_CLIPS = 8  # clips whose times are remembered: those of the takes at hand

@@ -2,7 +2,8 @@
 
 import os
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,7 @@ from ..take.description import KEYFRAME_FILE, Description
 from ..take.keyframe_file import write_keyframes
 from ..take.motion import write_motion
 from ..take.take import Take
+from ..take.take_file import write_take
 from .convert import FoundReconstruction
 
 MOTION, BLEND, BVH, REPORT = "motion.json", "motion.blend", "motion.bvh", "report"
@@ -123,6 +125,32 @@ def write_motion_files(folder: Path, made: FoundReconstruction) -> None:
         write_keyframes(folder / KEYFRAME_FILE, take.keyframes, take.body, take.frame_start)
 
 
+def own_files(description: Description, output: Path) -> tuple[str, ...]:
+    """Names of all files that a conversion into a folder may make or remove.
+
+    Those that make it a take are among them where an earlier conversion has made them, but for this take.
+    """
+    record = find_record(output)
+    is_itself = os.path.realpath(description.folder) == os.path.realpath(output)
+    made = () if record is None or is_itself else set(record.files) - {KEYFRAME_FILE}
+    return tuple(dict.fromkeys((*RESULT_FILES, AS_MADE, *sorted(made))))
+
+
+def write_take_files(folder: Path, made: FoundReconstruction, evidence: Sequence[str] | None) -> None:
+    """Write what makes the folder of a result a take: the camera and the actor as found, and the clip.
+
+    The clip is another name of the same file, where the disk has such names, and a copy elsewhere.
+    """
+    take = replace(made.take, keypoints=made.keypoints)
+    clip = folder / take.clip.name
+    if take.clip.is_file():
+        with suppress(OSError):
+            os.link(take.clip, clip)
+    take = replace(take, clip=clip) if clip.exists() else take
+    floor = {} if made.floor_m is None else {"floor_m": made.floor_m}
+    write_take(take, folder, evidence, {"//found": list(made.findings), **floor})
+
+
 def finish_result(
     made: FoundReconstruction,
     libraries: tuple[Library, ...],
@@ -146,10 +174,11 @@ def finish_result(
         kept_names: Receives the names under which files that a person has changed are kept.
     """
     (description, settings, digest), (staging_folder, output) = input_of, folders
-    written = [name for name in (*RESULT_FILES, KEYFRAME_FILE) if (staging_folder / name).exists()]
+    others = sorted(file.name for file in staging_folder.iterdir() if file.is_file() and file.name != AS_MADE)
+    replaced = tuple(dict.fromkeys((*RESULT_FILES, KEYFRAME_FILE, *others)))
+    written = [name for name in replaced if (staging_folder / name).is_file()]
     record = find_record(output)
     recorded = {} if record is None else record.files
-    replaced = (*RESULT_FILES, KEYFRAME_FILE)
     kept_names.update(changed_files(output, staging_folder, replaced, EDITABLE_FILES, recorded))
     conversion = Conversion(
         made.take,
@@ -158,6 +187,7 @@ def finish_result(
         found=made.found,
         libraries=libraries,
         conversion_notes=(
+            *made.findings,
             *_unused_keyframes_note(description, settings),
             *notes,
             *(kept_note(*names) for names in kept_names.items()),

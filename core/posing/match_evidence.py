@@ -36,6 +36,9 @@ POINT_STD_M = {
 }
 """The same of points: halfway between those of the segments that meet there."""
 LEAST_QUALITY = 0.05
+BRIDGED_S = 1.0
+"""Longest time without anything seen over which points are taken to go straight on: about a step."""
+BRIDGED_QUALITY = 0.5  # of the points at its ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +54,7 @@ class MatchEvidence:
         """Evidence of markers and of keypoints in any layout."""
         found = _without_leaps(principal_keypoints(keypoints), tracks.time_s)
         known = np.flatnonzero(found.seen.any(axis=0))
-        return cls(tracks, segments, _selected(found, known))
+        return cls(tracks, segments, _bridged(_selected(found, known), tracks))
 
     @property
     def marker_count(self) -> int:
@@ -135,6 +138,36 @@ def _without_leaps(keypoints: Keypoints, time_s: Array) -> Keypoints:
         off = np.linalg.norm(keypoints.pixel[frame, known] - usual, axis=-1)
         leaps = known[off > 0.3 * np.linalg.norm(np.ptp(usual, axis=0))]  # of the body's size
         pixel[frame, leaps], score[frame, leaps] = np.nan, 0.0
+    return replace(keypoints, pixel=pixel, score=score)
+
+
+def _bridged(keypoints: Keypoints, tracks: RegionTracks) -> Keypoints:
+    """The keypoints, in short stretches in which nothing at all is seen on the straight way in between.
+
+    At the clip's ends they stay where they are.
+
+    A detector that looks at some frames only says nothing of the others, where any posture anywhere would do.
+    """
+    seen, time_s = keypoints.seen, tracks.time_s
+    empty = ~(seen.any(axis=1) | tracks.visible.any(axis=1))
+    if not empty.any() or not seen.any():
+        return keypoints
+    pixel, score = keypoints.pixel.copy(), keypoints.score.copy()
+    frames = np.flatnonzero(empty)
+    for point in range(len(keypoints.names)):
+        known = np.flatnonzero(seen[:, point])
+        if not len(known):
+            continue
+        place = np.searchsorted(known, frames)
+        before, after = known[np.maximum(place - 1, 0)], known[np.minimum(place, len(known) - 1)]
+        apart_s = np.where(
+            before < after, time_s[after] - time_s[before], np.abs(time_s[frames] - time_s[after])
+        )
+        near = apart_s <= np.where(before < after, BRIDGED_S, 0.5 * BRIDGED_S)
+        at, before, after = frames[near], before[near], after[near]
+        for axis in range(2):
+            pixel[at, point, axis] = np.interp(time_s[at], time_s[known], keypoints.pixel[known, point, axis])
+        score[at, point] = BRIDGED_QUALITY * np.minimum(score[before, point], score[after, point])
     return replace(keypoints, pixel=pixel, score=score)
 
 

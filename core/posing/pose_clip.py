@@ -21,6 +21,7 @@ from ..prior.keyframes import Keyframe, interpolate
 from ..prior.library import Library
 from ..prior.texts import COMPOSED
 from ..progress import Job, Part, Progress, stretch, within
+from ..take.checked_keypoints import with_checked_keypoints
 from ..take.take import Take
 from .candidates import MatchedFrame, composed_candidates
 from .compose_clip import Composition, compose_frames
@@ -55,11 +56,13 @@ def pose_clip(
         frames: Indices of the frames to find keyframes at, instead of `keyframe_count` proposed ones.
 
     Raises:
-        InputError: There is no library, none has a posture, or neither a marker nor a keypoint is seen.
+        InputError: There is no library, none has a posture, neither a marker nor a keypoint is seen, or the
+            keypoints are not of this clip.
     """
     usable = [library for library in libraries if library.postures]
     if not usable:
         raise InputError("no keyframe library with a posture is given; at least one is needed to find poses")
+    take = yield from with_checked_keypoints(take, reading)
     with threadpool_limits(limits=1, user_api="blas"):
         given = posing_input(take, reading, keyframe_count)
         if frames is not None:

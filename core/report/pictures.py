@@ -24,7 +24,7 @@ from .stick_figure import draw_figure, legend, stick_figure
 
 
 def footage_frames(clip: Clip, frames: Sequence[int], reading: Reading | None = None) -> dict[int, Image]:
-    """Frames of a clip by their index, rising, as a steady camera shows them; unreadable ones are left out."""
+    """Frames of a clip by their index, rising, as a steady camera shows them, but unreadable ones."""
     shown = clip.source.at(list(frames))
     if reading is None or reading.steady is None:
         return {frame: _reduced(image) for frame, image in shown}

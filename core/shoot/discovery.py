@@ -14,7 +14,7 @@ from ..files.json_file import parse_json, shown
 from ..files.kinds import safe_path
 from ..files.paths import check_symlinks, regular_file_size
 from ..footage.clips.image_sequence import is_image, stem_of_number
-from ..take.conversion_record import RECORD_FILE
+from ..take.conversion_record import RECORD_FILE, find_record
 from ..take.conversion_settings import NO_SETTINGS, ConversionSettings
 from ..take.description import (
     SETTING_FIELDS,
@@ -270,7 +270,8 @@ class _Search:
             return
         described = described or SHOOT_FILE in names
         if TAKE_FILE in names:
-            self._add(folder)
+            if depth == 0 or RECORD_FILE not in names or not is_result_take(folder):
+                self._add(folder)
             return
         if RECORD_FILE in names and SHOOT_FILE not in names:
             return
@@ -291,6 +292,15 @@ class _Search:
         self.takes.append(ShootTake(take_name(relative), path))
         if len(self.takes) > MOST_TAKES:
             raise InputError(f"{self.folder}: holds more than {MOST_TAKES} takes; name a folder of fewer")
+
+
+def is_result_take(folder: Path) -> bool:
+    """Whether a conversion has made the take in a folder, as where it found the camera: it is a result."""
+    try:
+        record = find_record(folder)
+    except InputError:
+        return False
+    return record is not None and TAKE_FILE in record.files
 
 
 def _is_sequence(inside: list[Path], alone: bool) -> bool:

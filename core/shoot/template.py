@@ -72,6 +72,11 @@ class ClipSurvey:
         return any(MARKERS in clip.evidence for clip in self.clips)
 
     @property
+    def any_posed(self) -> bool:
+        """Whether any clip has keyframes, which need the camera that they were posed through."""
+        return self.unposed < len(self.clips)
+
+    @property
     def unposed(self) -> int:
         """Number of clips without keyframes."""
         return sum(not clip.posed for clip in self.clips)
@@ -129,6 +134,17 @@ NO_MARKERS = [
 ]
 
 
+FOUND_CAMERA = [
+    "left out, for it is found in each clip by the performer, who must stand or walk upright at two moments.",
+    "More exact is to state it, inside braces: lens_mm and sensor_width_mm, and where it stood still,",
+    "height_m above the floor and tilt_deg, negative where it looked down; the lens alone helps as well.",
+]
+FLOOR = {
+    "//floor_m": "height of the floor in the world; 0 where height_m above is the height over it",
+    "floor_m": 0.0,
+}
+
+
 def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
     """The fields of a new `shoot.json` in order; `below_another`: it inherits from a parent folder's."""
     fields: dict[str, Any] = {
@@ -144,7 +160,7 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
     if not below_another:
         fields |= {"//root": "nothing above this folder is inherited", "root": True}
     fields |= _rate(survey)
-    fields["camera"] = _camera(survey)
+    fields |= {"camera": _camera(survey)} if survey.any_posed else {"//camera": FOUND_CAMERA}
     fields["//evidence"] = [
         "what a motion is held against: markers, keypoints, depth_hints, contours; all there is, unless",
         '"evidence" says which. What the clips have:',
@@ -214,7 +230,7 @@ def _camera(survey: ClipSurvey) -> dict[str, Any]:
     camera["//height_m"] = [
         "height of the camera above the floor in meters; a phone in standing hands is at about",
         f"{EYE_HEIGHT_M:g}. Blender finds it with any of the clips: Load Footage, then From Lines or",
-        "From the Performer in the step Footage.",
+        "From the Performer in the step Clip.",
     ]
     camera["height_m"] = None
     camera["//tilt_deg"] = [
@@ -241,7 +257,9 @@ def evidence_lines(survey: ClipSurvey) -> list[str]:
         seen = {True: "strong colors, as of markers", False: "no garments in strong colors", None: ""}
         found = "keypoints beside it" if detected else ""
         words = " and ".join(filter(None, (seen[colored], found))) or "not looked at for colors"
-        advice = "; keypoints of a detector (keymark detect), else contours alone"
+        detected_later = "; keypoints are detected when it is converted"
+        own = "; keypoints of a detector (keymark detect), else contours alone"
+        advice = own if survey.any_posed else detected_later
         words += "" if detected or colored else advice
         lines.append(f"{pluralize(len(names), 'clip')}: {words} ({listed(names, MOST_NAMED)})")
     return lines
@@ -278,8 +296,7 @@ def _keyframes(survey: ClipSurvey) -> dict[str, Any]:
             "beside found ones a few are enough.",
         ],
         "keyframes": EVERY_LIBRARY,
-        "//floor_m": "height of the floor in the world; 0 where height_m above is the height over it",
-        "floor_m": 0.0,
+        **(FLOOR if survey.any_posed else {}),
     }
 
 

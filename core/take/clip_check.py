@@ -49,7 +49,7 @@ def picture_count(path: Path, fps: float) -> int:
     clip = open_footage(path, fps)
     if not isinstance(clip.source, VideoFile):
         return clip.frame_count
-    packets = read_packets(path)
+    packets = None if clip.source.is_trimmed else read_packets(path)
     if packets is not None and packets.complete:
         return len(packets.time_s)
     return sum(1 for _ in islice(clip.source.time_stamps(), LONGEST_FRAMES + 1))
@@ -151,7 +151,8 @@ def clip_notes(take: Take, clip: Clip, reading: Reading) -> tuple[str, ...]:
     rate = rate_note(take, clip)
     notes = [*clip.notes] if rate is None else [*clip.notes, rate]
     tracks = reading.tracks
-    short = tracks.frame_count < clip.frame_count
+    trimmed = isinstance(clip.source, VideoFile) and clip.source.is_trimmed
+    short = tracks.frame_count < clip.frame_count and not trimmed
     if short and tracks.time_s[-1] * clip.fps < clip.frame_count - 1.5:
         notes.append(
             f"{clip.path.name} claims {clip.frame_count} frames, of which {tracks.frame_count} can "

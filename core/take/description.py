@@ -26,6 +26,8 @@ SETTING_FIELDS = (
     *("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence"),
     "reference",
 )
+ASSUMED = "(assumed)"
+"""Location of fields that nobody has said, for sentences."""
 FILE_FIELDS = ("$schema", "schema_version", "root")
 """Fields about the file itself; editors read the first."""
 KEYFRAMES = "keyframes"
@@ -91,11 +93,12 @@ class Description:
     """The keyframe file, which may not exist."""
     keypoints: tuple[Path, ...]
     """Files or folders of keypoints: those that are named, else `keypoints.json` or `NAME.keypoints.json`
-    where that is there."""
+    where that is there (`keypoints_beside`)."""
     fields: Fields
     settings: ConversionSettings
     inherits: bool
-    """Whether a `shoot.json` describes it; then rate and size may come from the clip itself."""
+    """Whether a `shoot.json` describes it, or it is a bare clip; then rate and size may come from the clip
+    itself."""
 
     def file_called(self, name: Path) -> Path:
         """The take's own file of a name that every take has: in its folder, or beside its bare clip."""
@@ -116,7 +119,7 @@ def describe(
     own_file = _own_file(path)
     folder, is_folder = own_file.parent, own_file.name == TAKE_FILE
     shared = find_shoot_files(folder)
-    if not os.path.isfile(own_file) and not is_folder and not shared:
+    if not os.path.isfile(own_file) and not is_folder and not shared and not overrides:
         raise InputError(
             f"{path}: nothing describes this clip; {own_file.name} beside it, or {SHOOT_FILE} there "
             "or in a folder above, must say what camera and actor it shows, and which markers if any"
@@ -131,7 +134,7 @@ def describe(
     inherited = InheritedFields()
     for location, _, values in layers:
         inherited = inherited.overridden_by(with_auto_as_library(values, inherited, location), location)
-    fields = Fields(inherited, str(files[-1]))
+    fields = Fields(inherited, str(files[-1] if files else path))
     settings = read_settings(fields, {location: base for location, base, _ in layers})
     if is_folder:
         clip = safe_path(fields, "clip", folder, CLIP_VALID) if fields.has("clip") else folder / CLIP_FILE
@@ -144,12 +147,12 @@ def describe(
     if settings.keypoints is not None and said_in in shared:  # names that every take has
         own = (_own_name(folder, bare, file.relative_to(said_in.parent)) for file in settings.keypoints)
         settings = replace(settings, keypoints=tuple(own))
+    usual = _own_name(folder, bare, Path(KEYPOINT_FILE)) if is_folder else keypoints_beside(path)
+    keypoints = settings.keypoints or ((usual,) if usual is not None and os.path.lexists(usual) else ())
     said_in = Path(fields.source_of("reference"))
     if settings.reference is not None and said_in in shared:
         own_reference = _own_name(folder, bare, settings.reference.relative_to(said_in.parent))
         settings = replace(settings, reference=own_reference)
-    usual = _own_name(folder, bare, Path(KEYPOINT_FILE))
-    keypoints = settings.keypoints or ((usual,) if os.path.lexists(usual) else ())
     used = [*files, clip, keyframes, *keypoints, *filter(None, [settings.reference])]
     used += [link for within in (clip, *keypoints) for link in _links(within)]
     if settings.library is not None and settings.library.endswith(".json"):
@@ -162,15 +165,30 @@ def describe(
         path=path,
         name=absolute_path(path).name if is_folder else clip_name(path),
         folder=folder,
-        file=files[-1],
+        file=files[-1] if files else path,
         files=tuple(files),
         clip=clip,
         keyframes=keyframes,
         keypoints=keypoints,
         fields=fields,
         settings=settings,
-        inherits=bool(shared),
+        inherits=bool(shared) or not files,
     )
+
+
+def keypoints_beside(clip: Path) -> Path | None:
+    """The file of a bare clip's keypoints: `NAME.keypoints.json`, or `keypoints.json` of the only clip there.
+
+    None where there is none.
+    """
+    own = sidecar_file(clip, KEYPOINT_FILE)
+    if os.path.lexists(own):
+        return own
+    plain = clip.with_name(KEYPOINT_FILE)
+    if not os.path.lexists(plain):
+        return None
+    others = (file for file in clip.parent.iterdir() if file.suffix.lower() == clip.suffix.lower())
+    return plain if all(file.name == clip.name for file in others) else None
 
 
 def effective_settings(

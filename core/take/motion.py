@@ -206,8 +206,10 @@ def write_motion(motion: Motion, path: Path) -> None:
     A method that has no covariance (all NaN) leaves `sigma_m` and `covariance_mm2` out.
     """
     _check_finite(motion)
-    names, posture = motion.body.skeleton.point_names, posture_to_json(motion.posture)
-    empty = motion.empty
+    names, empty = motion.body.skeleton.point_names, motion.empty
+    posture: dict[str, Any] = posture_to_json(motion.posture)
+    places: Any = _rows(rounded(np.swapaxes(motion.points, 0, 1)), empty)
+    angles: Any = _rows(list(posture.values()), empty)
     file = MotionFile(
         fps=motion.fps,
         frame_start=motion.frame_start,
@@ -215,8 +217,8 @@ def write_motion(motion: Motion, path: Path) -> None:
         method=motion.method,
         keyframes=tuple(index + motion.frame_start for index in motion.keyframe_indices),
         time_s=rounded(motion.time_s),
-        points=dict(zip(names, _rows(rounded(np.swapaxes(motion.points, 0, 1)), empty), strict=True)),
-        posture=dict(zip(posture, _rows(list(posture.values()), empty), strict=True)),
+        points=dict(zip(names, places, strict=True)),
+        posture=dict(zip(posture, angles, strict=True)),
         actor=motion.body.actor,
         diagnostics={name: _significant(rows) for name, rows in sorted(motion.diagnostics.items())},
         unseen=motion.unseen,

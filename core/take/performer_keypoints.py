@@ -4,12 +4,15 @@ Where the performer is, a person says by clicks or Blender's tracks, else the ke
 between them. A take with none of these has the keypoints of whoever is largest and there longest.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
 from ..errors import pluralize
-from ..footage.keypoints.keypoints import FACE, Keypoints, People
+from ..footage.keypoints.continuity import same_person
+from ..footage.keypoints.keypoints import FACE, Keypoints, People, SeenPeople
 from ..footage.keypoints.performer import NOBODY, Expected, Sightings, choose_performer, person_size
 from ..footage.region_tracks import RegionTracks
 from ..prior.frame_prior import SPEED_M_PER_S
@@ -50,9 +53,14 @@ def performer_keypoints(take: Take, prior: Posture | None, tracks: RegionTracks 
     """
     frames = _frame_count(take, prior, tracks)
     hand = [people for people in take.keypoints if people.by_hand]
+    posed = any(keyframe.matched is None for keyframe in take.keyframes)
+    vouched = posed or hand or (tracks is not None and tracks.visible.any())
     parts = []
     for people in take.keypoints:
         chosen, notes = np.zeros(frames, dtype=np.intp), people.notes
+        if not vouched and people.most_people == 1:
+            people, jumped = _of_same_person(people, chosen, take.fps)
+            notes += jumped
         if not people.by_hand:
             points, seen = _with_middles(people, take, tracks, frames)
             expected = _expected(take, prior, tracks, hand, points, seen, frames)
@@ -63,6 +71,9 @@ def performer_keypoints(take: Take, prior: Posture | None, tracks: RegionTracks 
                     notes += (_elsewhere(people.source),)
                 else:
                     notes += _notes(people, chosen, _said_by(take, prior, tracks, hand))
+            if not vouched and people.most_people > 1:
+                people, jumped = _of_same_person(people, chosen, take.fps)
+                notes += jumped
         parts.append(_of_one(people, chosen, notes, frames))
     return Keypoints.side_by_side(parts, frames)
 
@@ -209,6 +220,22 @@ def _elsewhere(source: str) -> str:
         f"{source}: nobody in it is where most of the posed keyframes have the performer, so it is left "
         "out; it must be of this clip"
     )
+
+
+def _of_same_person(people: People, chosen: IndexArray, fps: float) -> tuple[People, tuple[str, ...]]:
+    """The people without frames in which those chosen are somebody else than in most, and a note on them."""
+    path = _of_one(people, chosen, (), len(chosen)).pixel
+    jumped = np.flatnonzero(np.isfinite(path).any(axis=(1, 2)) & ~same_person(path, fps, people.looked))
+    if not len(jumped):
+        return people, ()
+    frames = list(people.frames)
+    for index in jumped:
+        frames[index] = SeenPeople.nobody(len(people.names))
+    note = (
+        f"{people.source}: jumps to somebody else, farther than a person moves from one frame to the next; "
+        f"the {pluralize(len(jumped), 'frame')} that show him are left out"
+    )
+    return replace(people, frames=tuple(frames)), (note,)
 
 
 def _notes(people: People, chosen: IndexArray, why: str) -> tuple[str, ...]:

@@ -99,10 +99,8 @@ def _spread(frames: IndexArray, most: int) -> IndexArray:
 
 def _changed_elsewhere(album: Album, places: Array, seen: int, empty: int) -> float:
     """Energy of two pictures' change that lies outside of where he is seen, relative to that inside."""
-    pair = [
-        cv2.cvtColor(album.picture(frame), cv2.COLOR_BGR2GRAY).astype(np.float64) for frame in (seen, empty)
-    ]
-    difference = pair[0] - pair[1]
+    one, other = (cv2.cvtColor(album.picture(frame), cv2.COLOR_BGR2GRAY) for frame in (seen, empty))
+    difference = one.astype(np.float64) - other
     changed = np.where(changed_pixels(difference), difference**2, 0.0)  # squared, shadows hardly count
     known = places[np.isfinite(places).all(axis=-1)] / album.factor
     low, high = known.min(axis=0), known.max(axis=0)
@@ -124,8 +122,8 @@ def absence_notes(take: Take, there: BoolArray) -> tuple[str, ...]:
     notes = [f"nobody is seen in frame {listed(named, MOST_NAMED)}: {what}"]
     lost = [k.index + take.frame_start for k in take.keyframes if k.matched is None and not there[k.index]]
     if lost:
-        named = listed([str(frame) for frame in lost], MOST_NAMED)
-        what = f"keyframe {named} is" if len(lost) == 1 else f"keyframes {named} are"
+        which = listed([str(frame) for frame in lost], MOST_NAMED)
+        what = f"keyframe {which} is" if len(lost) == 1 else f"keyframes {which} are"
         notes.append(f"{what} posed where the picture shows nobody, and left aside; pose where he is seen")
     return tuple(notes)
 
@@ -134,9 +132,7 @@ def unseen_notes(limbs: tuple[str, ...]) -> tuple[str, ...]:
     """A note on limbs that are never seen."""
     if not limbs:
         return ()
-    return (
-        f"{named_limbs(limbs)} never seen, rest, and are little believed; pose a keyframe where that is wrong",
-    )
+    return (f"{named_limbs(limbs)} never seen and stay at rest; pose keyframes where that is wrong",)
 
 
 def named_limbs(limbs: tuple[str, ...]) -> str:

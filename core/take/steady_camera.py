@@ -79,8 +79,8 @@ def camera_notes(take: Take, reading: Reading) -> tuple[str, ...]:
     if found is None:
         return ()
     return (
-        f"the camera moves, by {found.moved_px:.0f} px of the picture, and is taken to stand still; the command "
-        "line follows one that only turns or zooms, Blender's camera solver one that walks",
+        f"the camera moves, by {found.moved_px:.0f} px of the picture, and is taken to stand still; the "
+        "command line follows one that only turns or zooms, Blender's camera solver one that walks",
     )
 
 
@@ -118,15 +118,12 @@ def _people(people: People, back: Array) -> People:
 
 
 def _tracks(tracks: RegionTracks, back: Array) -> RegionTracks:
-    centroid = moved(back[:, None], tracks.centroid)
-    step = 0.5 * np.eye(2)
-    columns = [
-        moved(back[:, None], tracks.centroid + axis) - moved(back[:, None], tracks.centroid - axis)
-        for axis in step
-    ]
-    local = np.stack(columns, axis=-1)  # (F, M, 2, 2)
-    moment = local @ tracks.second_moment @ np.swapaxes(local, -1, -2)
-    area = tracks.area * np.abs(np.linalg.det(np.nan_to_num(local)))
+    place, around = tracks.centroid, 0.5 * np.eye(2)
+    ends = [(moved(back[:, None], place + side), moved(back[:, None], place - side)) for side in around]
+    local = np.stack([after - before for after, before in ends], axis=-1)  # (F, M, 2, 2)
     return replace(
-        tracks, centroid=centroid, second_moment=moment, area=np.where(np.isfinite(tracks.area), area, np.nan)
+        tracks,
+        centroid=moved(back[:, None], place),
+        second_moment=local @ tracks.second_moment @ np.swapaxes(local, -1, -2),
+        area=tracks.area * np.abs(np.linalg.det(np.nan_to_num(local))),
     )

@@ -46,6 +46,10 @@ MARKER_NAME = Text(
 )
 
 
+SHORTEST_M, TALLEST_M = 0.5, 3.0
+"""Of a performer."""
+USUAL_HEIGHT_M = 1.75
+"""Of a performer whose height nobody says."""
 FRAME_RATE = Number(1.0, 1000.0, "frames per second")
 FRAME_START = Whole(-(10**6), 10**6)
 
@@ -83,7 +87,7 @@ class ActorFields(Record):
     Of segments_m and height_m the one in the nearer file counts; in the same file, segments_m.
     """
 
-    height_m: Annotated[float, Number(0.5, 3.0, "m")] | None = None
+    height_m: Annotated[float, Number(SHORTEST_M, TALLEST_M, "m")] | None = None
     """Height [m], for a body of average proportions."""
     segments_m: Segments | None = None
     """Lengths of the segments [m]: joint to joint; shoulder_width and hip_width join the two joints' centers,
@@ -226,13 +230,22 @@ def _keypoints(
     return tuple(read_keypoints(file, frame_count, camera.resolution, fps, frame_start) for file in files)
 
 
-def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) -> None:
+NOTHING_MORE: Mapping[str, Any] = {}
+
+
+def write_take(
+    take: Take,
+    folder: Path,
+    evidence: Sequence[str] | None = None,
+    more: Mapping[str, Any] = NOTHING_MORE,
+) -> None:
     """Write a take that `read_take` reads back: `take.json`, `keyframes.json`, keypoints and the clip.
 
-    Every file is written atomically; a clip or keypoints that lie in the folder stay as they are.
+    Every file is written atomically; a clip or keypoints that lie in the folder stay as they are. `more`
+    are fields that a take does not hold.
     """
     clip = _copied(take.clip, folder)
-    fields: dict[str, Any] = {"fps": take.fps, "frame_start": take.frame_start}
+    fields: dict[str, Any] = {**more, "fps": take.fps, "frame_start": take.frame_start}
     if take.frame_count is not None:
         fields["frame_count"] = take.frame_count
     fields["clip"] = clip

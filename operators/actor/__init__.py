@@ -1,4 +1,4 @@
-"""Step 3, the actor: the performer's armature, built from a height or measured in the footage."""
+"""Step 2, the performer: the performer's armature, built from a height or measured in the footage."""
 
 PROPERTIES = ("properties",)
 MODULES = ("build_actor", "panel")

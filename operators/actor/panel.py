@@ -1,43 +1,50 @@
-"""The panels of step 3: the actor and its lengths."""
+"""The panel of the second step: the performer's actor, and what of the performer is followed in the clip."""
 
 import bpy
 
 from ..bridge.actor_bones import is_actor
-from ..shell.panel import TakePanel, draw_sentence
+from ..follow.panel import draw_evidence, followed
+from ..shell.panel import Popover, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, has_lost_actor, kept_actions
 from .properties import MIDDLE, SIDED, length_property
 
 
 class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
-    """The armature, and the operators that build or measure it."""
+    """The performer's height and armature, and the kinds of evidence."""
 
-    bl_label = "Actor"
+    bl_label = "Performer"
     step = "actor"
+    options = "KEYMARK_PT_actor_options"
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        return "" if take.armature is None else f"{take.stature:.4g} m"
+        return followed(take) if take.armature is None else f"{take.stature:.4g} m"
 
     @classmethod
     def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
         return has_lost_actor(take) or (take.armature is not None and not is_actor(take.armature))
 
-    def draw_step(self, context: bpy.types.Context) -> None:
-        take, column = active_take(context.scene), self.column()
+    @classmethod
+    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+        return ("keymark.build_actor", "Build Actor") if take.armature is None else ("", "")
+
+    def draw_step(
+        self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup
+    ) -> None:
+        column = body.column()
         if has_lost_actor(take):
             _draw_lost(column, context, take)
-        column.prop(take, "stature")
-        row = column.row(align=True)
-        row.scale_y = 1.2
-        text = "Build Actor" if take.armature is None else "Use Average Proportions"
-        row.operator("keymark.build_actor", text=text, icon="OUTLINER_OB_ARMATURE", translate=False)
-        column.operator("keymark.measure_actor", text="Measure in This Frame", icon="ARROW_LEFTRIGHT")
-        column.separator()
-        column.prop(take, "armature")
-        if take.armature is not None and not is_actor(take.armature):
+        elif take.armature is None:
+            column.prop(take, "stature")
+            row = column.row()
+            row.scale_y = 1.4
+            row.operator("keymark.build_actor", icon="OUTLINER_OB_ARMATURE")
+        elif not is_actor(take.armature):
             sentence = "This is no actor of Keymark's; choose it in the step Character instead"
             draw_sentence(column, context, sentence, "ERROR")
+            column.prop(take, "armature")
+        draw_evidence(body, context, take)
 
 
 def _draw_lost(layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
@@ -53,19 +60,21 @@ def _draw_lost(layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy
     box.operator("keymark.apply_lengths", text="Bring Actor Back", icon="LOOP_BACK")
 
 
-class KEYMARK_PT_actor_lengths(TakePanel, bpy.types.Panel):
-    """The lengths of the actor's segments."""
+class KEYMARK_PT_actor_options(Popover, bpy.types.Panel):
+    """The actor's height and lengths."""
 
-    bl_label = "Lengths"
-    bl_parent_id = "KEYMARK_PT_actor"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return super().poll(context) and active_take(context.scene).armature is not None
+    bl_label = "Performer Options"
 
     def draw(self, context: bpy.types.Context) -> None:
-        lengths, column = active_take(context.scene).lengths, self.column()
+        take, column = active_take(context.scene), self.column()
+        column.operator("keymark.measure_actor", text="Measure in This Frame", icon="ARROW_LEFTRIGHT")
+        column.prop(take, "armature")
+        if take.armature is None:
+            return
+        column.prop(take, "stature")
+        column.operator("keymark.build_actor", text="Resize to Height", icon="OUTLINER_OB_ARMATURE")
+        column.separator()
+        lengths = take.lengths
         column.prop(lengths, "symmetric")
         for name in MIDDLE:
             column.prop(lengths, length_property(name))
@@ -76,8 +85,7 @@ class KEYMARK_PT_actor_lengths(TakePanel, bpy.types.Panel):
                 continue
             group.prop(lengths, length_property(f"{part}.L"))
             group.prop(lengths, length_property(f"{part}.R"))
-        column.separator()
         column.operator("keymark.apply_lengths", icon="CHECKMARK")
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PT_actor, KEYMARK_PT_actor_lengths))
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_PT_actor, KEYMARK_PT_actor_options))

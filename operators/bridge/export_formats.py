@@ -79,7 +79,7 @@ def _written_by(exporter: str, **options: object) -> Callable[[bpy.types.Object,
 def _write_trc(armature_object: bpy.types.Object, path: Path) -> None:
     """Write the joints of an armature over its scene's frames."""
     from ...core.take.point_files import write_trc
-    from .motions.joint_paths import joint_paths
+    from .motions.read_poses import joint_paths
 
     points, rate = joint_paths(armature_object)
     write_trc(path, points, rate)
@@ -88,13 +88,29 @@ def _write_trc(armature_object: bpy.types.Object, path: Path) -> None:
 def _write_c3d(armature_object: bpy.types.Object, path: Path) -> None:
     """Write the joints of an armature over its scene's frames."""
     from ...core.take.point_files import write_c3d
-    from .motions.joint_paths import joint_paths
+    from .motions.read_poses import joint_paths
 
     points, rate = joint_paths(armature_object)
     write_c3d(path, points, rate)
 
 
+def _write_keymark(armature_object: bpy.types.Object, path: Path) -> None:
+    """Write an actor's motion as `motion.json`, which the command line retargets and learns from."""
+    from ...core.take.motion import write_motion
+    from .rig import shown_motion
+
+    action = armature_object.animation_data.action
+    write_motion(shown_motion(armature_object.users_scene[0], armature_object, action), path)
+
+
 FORMATS = {
+    "KEYMARK": ExportFormat(
+        "Keymark Motion",
+        ".json",
+        "Write motion.json, as Keymark keeps it, for its command line and programs of your own",
+        _write_keymark,
+        built_in=True,
+    ),
     "BVH": ExportFormat(
         "BVH",
         ".bvh",

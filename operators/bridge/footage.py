@@ -97,7 +97,7 @@ def clip_path(clip: bpy.types.MovieClip) -> Path:
     path = Path(bpy.path.abspath(clip.filepath, library=clip.library))
     if not path.exists():
         raise InputError(
-            f"{path}: the footage is not there; say where it is now with Find Clip in the Footage panel"
+            f"{path}: the footage is not there; say where it is now with Find Clip in the step Clip"
         )
     return path
 

@@ -29,7 +29,7 @@ VIEW_TRANSFORM = "Standard"
 def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | None = None) -> str:
     """Write a motion as a .blend and, if asked for, as a BVH; returns the SHA-256 of the Action's curves.
 
-    The .blend holds the actor's armature with the motion as its Action, a simple body in the markers'
+    The .blend holds the actor's armature with the motion as its Action, a skin in the markers'
     colors, and the camera with the clip behind it; the clip's path is relative where the drives allow.
     A failure may leave half a file at these paths: the caller passes a staging folder and moves the files
     when both are complete, as `operators/cli/conversion` does.

@@ -7,14 +7,17 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.body_volume import sole_offsets
+from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.rotations import continuous_quaternions
 from ...core.body.skeleton import SIDES
 from ...core.errors import InputError
 from ...core.finish.rig import Rig, RigBone, RigPose, channel_count
+from ...core.progress import run, within
+from ...core.take.motion import Motion
 from .actions import existing_channelbag
-from .actor_lengths import skeleton_bones
+from .actor_lengths import read_body, skeleton_bones
 from .armature import BoneModel, bone_models
 from .fcurves import moved_paths
 from .object_space import ObjectSpace, object_space
@@ -112,11 +115,7 @@ def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, b
     Raises:
         InputError: It has fewer than two.
     """
-    channelbag = existing_channelbag(action, armature_object)
-    wanted = set(moved_paths(armature_object, body.skeleton))
-    curves = channelbag.fcurves if channelbag is not None else ()
-    keyed = [curve for curve in curves if curve.data_path in wanted and not curve.is_empty]
-    ranges = [curve.range() for curve in keyed]
+    ranges = [curve.range() for curve in _keyed(armature_object, action, body)]
     first = int(
         np.ceil(min((r[0] for r in ranges), default=0.0) - 1e-3)
     )  # keys as near as this lie on the frame
@@ -127,6 +126,36 @@ def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, b
             "reconstruct the motion first"
         )
     return np.arange(first, last + 1, dtype=np.float64)
+
+
+def _keyed(armature_object: bpy.types.Object, action: bpy.types.Action, body: Body) -> list[bpy.types.FCurve]:
+    channelbag = existing_channelbag(action, armature_object)
+    wanted = set(moved_paths(armature_object, body.skeleton))
+    curves = channelbag.fcurves if channelbag is not None else ()
+    return [curve for curve in curves if curve.data_path in wanted and not curve.is_empty]
+
+
+def present_frames(
+    armature_object: bpy.types.Object, action: bpy.types.Action, body: Body, longest: float
+) -> Array:
+    """(F,) the frames of `motion_frames` without those between two stretches of a motion.
+
+    Such a stretch has keys on every frame, so that a gap of more than `longest` frames is one in which the
+    performer is not there; an Action of few keys has no stretches.
+    """
+    frames = motion_frames(armature_object, action, body)
+    keys = []
+    for curve in _keyed(armature_object, action, body):
+        places = np.empty(2 * len(curve.keyframe_points))
+        curve.keyframe_points.foreach_get("co", places)
+        keys.append(places[::2])
+    times = np.unique(np.concatenate(keys))
+    steps = np.diff(times)
+    if np.median(steps) > 1.5:
+        return frames
+    after = np.clip(np.searchsorted(times, frames - 1e-3), 1, len(times) - 1)
+    on_key = np.abs(frames[:, None] - times[[after - 1, after]].T).min(axis=1) < 1e-3
+    return frames[on_key | (steps[after - 1] <= longest)]
 
 
 def read_values(
@@ -174,3 +203,22 @@ def nearest_postures(models: tuple[BoneModel, ...], rig: Rig, shown: RigPose, bo
     turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}
     hips = shown.points[:, rig.point_slices[0].start] - body.offsets[0]
     return posture_from_frames(body.skeleton, models, turns, hips)
+
+
+def shown_motion(
+    scene: bpy.types.Scene,
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action,
+    most_frames: int | None = None,
+) -> Motion:
+    """The motion that an Action holds for an actor, in every frame or in as many; no deviations are known."""
+    body = read_body(armature_object, HUMAN)
+    rig, frames = read_rig(armature_object, body), motion_frames(armature_object, action, body)
+    if most_frames is not None:
+        frames = frames[np.unique(np.linspace(0, len(frames) - 1, most_frames).astype(np.intp))]
+    values = run(within("Reading the motion", read_values(armature_object, action, rig, frames), 0.0, 1.0))
+    posture = shown_postures(armature_object, rig, rig.pose(values), body)
+    points = body.points(body.pose(posture))
+    rate, unknown = scene.render.fps / scene.render.fps_base, np.full((*points.shape, 3), np.nan)
+    time_s = (frames - frames[0]) / rate
+    return Motion(body, rate, int(frames[0]), time_s, posture, points, unknown, (), "interpolation")

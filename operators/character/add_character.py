@@ -80,6 +80,31 @@ def rigify(context: bpy.types.Context) -> str | None:
     return None if has_rigify() else "This Blender comes without the add-on Rigify; install Rigify first"
 
 
+def add_rigify_character(context: bpy.types.Context) -> bpy.types.PropertyGroup:
+    """Add a Rigify rig of the performer's size as the active take's character; enables Rigify.
+
+    Raises:
+        InputError: Rigify cannot make the rig.
+    """
+    active = context.view_layer.objects.active
+    if active is not None and active.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    try:
+        if not is_rigify_enabled():
+            enable_rigify()
+        rig = add_rigify_human(active_take(context.scene).stature)
+    except RuntimeError as error:  # an operator's own error report
+        reason = str(error).removeprefix("Error: ").strip()
+        raise InputError(
+            f"Rigify could not make the rig ({reason}); add one by Add > Armature, and choose it here"
+        ) from error
+    chosen = find_character(context.scene)
+    if chosen is None or chosen.armature is not None:
+        return add_character(active_take(context.scene), rig)
+    chosen.armature = rig
+    return chosen
+
+
 class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
     """Add a Rigify rig of the performer's size as the character; asks first where Rigify is not enabled"""
 
@@ -100,27 +125,11 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
         )
 
     def run(self, context: bpy.types.Context) -> None:
-        active = context.view_layer.objects.active
-        if active is not None and active.mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")
-        try:
-            if not is_rigify_enabled():
-                enable_rigify()
-            rig = add_rigify_human(active_take(context.scene).stature)
-        except RuntimeError as error:  # an operator's own error report
-            reason = str(error).removeprefix("Error: ").strip()
-            raise InputError(
-                f"Rigify could not make the rig ({reason}); add one by Add > Armature, and choose it here"
-            ) from error
-        chosen = find_character(context.scene)
-        if chosen is None or chosen.armature is not None:
-            chosen = add_character(active_take(context.scene), rig)
-        else:
-            chosen.armature = rig
+        chosen = add_rigify_character(context)
         if chosen.problem:
             warn(self, chosen.problem)
         else:
-            self.report({"INFO"}, f"Recognized the bones of '{rig.name}'")
+            self.report({"INFO"}, f"Recognized the bones of '{chosen.armature.name}'")
 
 
 class KEYMARK_OT_remove_character(BaseOperator, bpy.types.Operator):

@@ -160,7 +160,7 @@ def missing_source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyG
     if kind == "MOTION" and take.motion_action is None:
         return "Reconstruct the motion first"
     if actor is None:
-        return "The motion's actor is gone; choose its armature in the step Actor"
+        return "The motion's actor is gone; choose its armature in the step Performer"
     if not is_actor(actor):
         return f"'{actor.name}' is no actor of Keymark's; choose the motion's actor"
     return None

@@ -62,7 +62,7 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
         from ...core.take.conversion_settings import CharacterFile
         from ...core.take.reference import REFERENCE_ENDINGS, read_reference
         from ..bridge.motions.import_motion import load_motion
-        from ..bridge.motions.write_actor import add_actor
+        from ..bridge.motions.mend_action import add_actor
 
         path, scene = chosen_file(self, "a motion, such as a .bvh or .fbx"), context.scene
         active = context.view_layer.objects.active
@@ -112,8 +112,7 @@ class KEYMARK_OT_mend_motion(JobOperator, bpy.types.Operator):
         return active.session_uid, found
 
     def finish(self, scene: bpy.types.Scene, result: "tuple[int, MendedAction]") -> None:
-        from ..bridge.motions.mend_action import write_mended
-        from ..bridge.motions.write_actor import add_actor
+        from ..bridge.motions.mend_action import add_actor, write_mended
 
         uid, found = result
         armature = next((one for one in bpy.data.objects if one.session_uid == uid), None)

@@ -4,10 +4,17 @@ import bpy
 from bpy.types import Armature, Context, PropertyGroup, UILayout
 
 from ..bridge.character.read_character import needs_override
-from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
+from ..shell.panel import Popover, RowList, TakePanel, draw_progress, draw_sentence
 from ..shell.step_panel import StepPanel
-from ..shell.takes import active_take
-from .characters import active_character, find_character, full_title, is_shown, missing_roles, shown_result
+from .characters import (
+    active_character,
+    find_character,
+    full_title,
+    is_shown,
+    may_be_character,
+    missing_roles,
+    shown_result,
+)
 from .map_properties import PART_TITLES, PARTS, SOURCE_WORDS, is_chain, role_title
 from .requirements import recognized
 
@@ -137,7 +144,7 @@ def _draw_control(column: UILayout, armature: Armature, owner: PropertyGroup, na
     field.prop_search(owner, name, armature, "bones", text="", icon="BONE_DATA")
 
 
-# --- The panel of step 8
+# --- The panel of the step
 
 
 MOST_LINES_PANEL = 6  # lines of a sentence
@@ -160,19 +167,36 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
 
     bl_label = "Character"
     step = "character"
+    options = "KEYMARK_PT_retarget_options"
 
-    def draw_step(self, context: Context) -> None:
-        take, character = active_take(context.scene), find_character(context.scene)
-        elsewhere = self.body.row(align=True)
+    @classmethod
+    def summary(cls, take: PropertyGroup) -> str:
+        performing = sum(any(result.action for result in each.results) for each in take.characters)
+        return "" if not len(take.characters) else f"{performing} of {len(take.characters)}"
+
+    @classmethod
+    def is_wrong(cls, take: PropertyGroup) -> bool:
+        return any(each.problem or any(r.outdated for r in each.results) for each in take.characters)
+
+    @classmethod
+    def action(cls, take: PropertyGroup) -> tuple[str, str]:
+        if len(take.characters) or take.motion_action is None:
+            return "keymark.retarget", "Retarget"
+        free = any(may_be_character(each) for each in bpy.context.view_layer.objects)
+        return ("keymark.add_character", "Add") if free else ("keymark.add_rigify_human", "Add Human")
+
+    def draw_step(self, context: Context, body: UILayout, take: PropertyGroup) -> None:
+        character = find_character(context.scene)
+        elsewhere = body.row(align=True)
         elsewhere.operator("keymark.load_motion", icon="IMPORT")
         elsewhere.operator("keymark.mend_motion", icon="MOD_SMOOTH")
         if character is None:
-            buttons = self.body.column()
+            buttons = body.column()
             buttons.scale_y = 1.2
             buttons.operator("keymark.add_character", icon="COMMUNITY")
             buttons.operator("keymark.add_rigify_human", icon="ARMATURE_DATA")
             return
-        column = _draw_choice(self, take, character)
+        column = _draw_choice(body, take, character)
         if character.armature is None:
             draw_sentence(column, context, "Choose the armature that is to move", "FORWARD")
             column.operator("keymark.add_rigify_human", icon="ARMATURE_DATA")
@@ -184,21 +208,16 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
             draw_sentence(column, context, character.problem, "ERROR", MOST_LINES_PANEL)
         elif (unmet := recognized(context)) is not None:
             draw_sentence(column, context, unmet, "ERROR", MOST_LINES_PANEL)
-        column.prop(character, "source")
-        if character.source == "ACTION":
-            column.prop(character, "source_action")
-            column.prop(character, "source_actor")
         row = column.row()
         row.scale_y = 1.4
         if not draw_progress(row, context, "keymark.retarget"):
             row.operator("keymark.retarget", icon="COMMUNITY")
         if len(character.results):
-            column.prop(character, "keep_earlier")
             _draw_results(column, context, character)
 
 
-def _draw_choice(panel: KEYMARK_PT_character, take: PropertyGroup, character: PropertyGroup) -> UILayout:
-    row = panel.body.row()
+def _draw_choice(body: UILayout, take: PropertyGroup, character: PropertyGroup) -> UILayout:
+    row = body.row()
     single = len(take.characters) == 1
     if single:
         buttons = row.row(align=True)
@@ -210,7 +229,7 @@ def _draw_choice(panel: KEYMARK_PT_character, take: PropertyGroup, character: Pr
         buttons = row.column(align=True)
     buttons.operator("keymark.add_character", text="", icon="ADD")
     buttons.operator("keymark.remove_character", text="", icon="REMOVE")
-    column = panel.column()
+    column = body.column()
     if not single:
         column.prop(character, "armature")
     return column
@@ -240,25 +259,22 @@ def _draw_results(column: UILayout, context: Context, character: PropertyGroup) 
     column.operator("keymark.mark_result_asset", icon="ASSET_MANAGER")
 
 
-class CharacterPart(TakePanel):
-    """Base of the sub-panels; hidden without an armature."""
+class KEYMARK_PT_retarget_options(Popover, bpy.types.Panel):
+    """Which motion is performed, and how."""
 
-    bl_parent_id = "KEYMARK_PT_character"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: Context) -> bool:
-        character = find_character(context.scene)
-        return super().poll(context) and character is not None and character.armature is not None
-
-
-class KEYMARK_PT_retarget_options(CharacterPart, bpy.types.Panel):
-    """Options of retargeting."""
-
-    bl_label = "Options"
+    bl_label = "Options of the Character"
 
     def draw(self, context: Context) -> None:
-        column, options = self.column(), active_character(context.scene).options
+        column, character = self.column(), find_character(context.scene)
+        if character is None:
+            column.label(text="Add a character first", icon="INFO")
+            return
+        column.prop(character, "source")
+        if character.source == "ACTION":
+            column.prop(character, "source_action")
+            column.prop(character, "source_actor")
+        column.prop(character, "keep_earlier")
+        options = character.options
         for name in ("arms", "legs", "root_motion", "placement", "plant_feet", "reach_hands", "keys"):
             column.prop(options, name)
         few = column.column()
@@ -266,10 +282,17 @@ class KEYMARK_PT_retarget_options(CharacterPart, bpy.types.Panel):
         few.prop(options, "tolerance_mm")
 
 
-class KEYMARK_PT_character_map(CharacterPart, bpy.types.Panel):
+class KEYMARK_PT_character_map(TakePanel, bpy.types.Panel):
     """The bones that play a role."""
 
     bl_label = "Bones"
+    bl_parent_id = "KEYMARK_PT_character"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Context) -> bool:
+        character = find_character(context.scene)
+        return super().poll(context) and character is not None and character.armature is not None
 
     def draw_header(self, context: Context) -> None:
         character = active_character(context.scene)

@@ -33,7 +33,7 @@ KEYS = (
 SOURCES = (
     (
         "NEWEST",
-        "Final, Else Motion",
+        "Newest",
         "The final Action, unless there is none or the reconstructed motion is newer",
     ),
     ("FINAL", "Final", "The take's final Action"),

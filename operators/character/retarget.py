@@ -31,6 +31,47 @@ if TYPE_CHECKING:
     from ...core.retarget.quality import Quality
 
 
+def retarget_take(scene: bpy.types.Scene) -> "Job[tuple[Any, ...]]":
+    """Put the motion of the active take onto its chosen character; the scene stays as it is."""
+    from ..bridge.character.retarget import retarget
+    from ..bridge.character.source import read_source
+
+    take = active_take(scene)
+    character = active_character(scene)
+    motion = source_of(take, character)
+    identifier, armature_object = take.identifier, character.armature
+    uids = armature_object.session_uid, motion.action.session_uid, motion.actor.session_uid
+    character_map, options = map_of(character.character_map), options_of(character.options)
+    del take, character  # Blender may move them while the job runs
+    source, frames = yield from stretch(read_source(motion.actor, motion.action), 0.0, 0.1)
+    job = retarget(armature_object, source, frames, character_map, options)
+    retargeted = yield from stretch(job, 0.1, 1.0)
+    return identifier, uids, motion.kind, motion.title, retargeted
+
+
+def keep_retargeted(operator: bpy.types.Operator, scene: bpy.types.Scene, result: tuple[Any, ...]) -> str:
+    """Let the character perform the motion; returns a sentence on it."""
+    identifier, uids, kind, title, retargeted = result
+    take = take_by_identifier(scene, identifier)
+    character = next((each for each in take.characters if _uid(each.armature) == uids[0]), None)
+    source_action = next((each for each in bpy.data.actions if _uid(each) == uids[1]), None)
+    actor = next((each for each in bpy.data.objects if _uid(each) == uids[2]), None)
+    if character is None or source_action is None or actor is None:
+        raise InputError(
+            "the character or its motion was removed while the job ran; nothing was changed, run it again"
+        )
+    earlier = None
+    if not character.keep_earlier:
+        earlier = result_to_replace(character, kind, source_action)
+    into = earlier.action if earlier is not None else f"{title} {character.armature.name}"
+    action = retargeted.write(scene, into)
+    listed = add_result(character, SourceMotion(kind, source_action, actor, title), action)
+    show_lines(listed, figures(retargeted.quality), retargeted.notes)
+    for note in retargeted.notes:
+        warn(operator, note)
+    return f"'{character.armature.name}' performs '{action.name}'"
+
+
 class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
     """Let the character perform the motion, as an Action of its own"""
 
@@ -40,41 +81,11 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
     requirements = (source, editable, recognized, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[tuple[Any, ...]]":
-        from ..bridge.character.retarget import retarget
-        from ..bridge.character.source import read_source
-
-        take = active_take(scene)
-        character = active_character(scene)
-        motion = source_of(take, character)
-        identifier, armature_object = take.identifier, character.armature
-        uids = armature_object.session_uid, motion.action.session_uid, motion.actor.session_uid
-        character_map, options = map_of(character.character_map), options_of(character.options)
-        del take, character  # Blender may move them while the job runs
-        source, frames = yield from stretch(read_source(motion.actor, motion.action), 0.0, 0.1)
-        job = retarget(armature_object, source, frames, character_map, options)
-        retargeted = yield from stretch(job, 0.1, 1.0)
-        return identifier, uids, motion.kind, motion.title, retargeted
+        return (yield from retarget_take(scene))
 
     def finish(self, scene: bpy.types.Scene, result: tuple[Any, ...]) -> None:
-        identifier, uids, kind, title, retargeted = result
-        take = take_by_identifier(scene, identifier)
-        character = next((each for each in take.characters if _uid(each.armature) == uids[0]), None)
-        source_action = next((each for each in bpy.data.actions if _uid(each) == uids[1]), None)
-        actor = next((each for each in bpy.data.objects if _uid(each) == uids[2]), None)
-        if character is None or source_action is None or actor is None:
-            raise InputError(
-                "the character or its motion was removed while the job ran; nothing was changed, run it again"
-            )
-        earlier = None
-        if not character.keep_earlier:
-            earlier = result_to_replace(character, kind, source_action)
-        into = earlier.action if earlier is not None else f"{title} {character.armature.name}"
-        action = retargeted.write(scene, into)
-        listed = add_result(character, SourceMotion(kind, source_action, actor, title), action)
-        show_lines(listed, figures(retargeted.quality), retargeted.notes)
-        for note in retargeted.notes:
-            warn(self, note)
-        self.report({"INFO"}, f"'{character.armature.name}' performs '{action.name}'")
+        said = keep_retargeted(self, scene, result)
+        self.report({"INFO"}, said)
 
 
 def options_of(group: bpy.types.PropertyGroup) -> RetargetOptions:
@@ -149,7 +160,7 @@ class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
 
 
 class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
-    """Mark the character's motion as an asset, with the catalog, tags and details in the step Finish"""
+    """Mark the character's motion as an asset, with the catalog, tags and details of the step Export"""
 
     bl_idname = "keymark.mark_result_asset"
     bl_label = "Mark Asset"

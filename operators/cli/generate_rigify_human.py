@@ -8,6 +8,7 @@ as a module), so this one ends at once.
 import os
 import sys
 import traceback
+from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
@@ -23,9 +24,7 @@ def load() -> Any:
     assert spec is not None and spec.loader is not None
     sys.modules["keymark"] = module_from_spec(spec)
     spec.loader.exec_module(sys.modules["keymark"])
-    from keymark.operators.bridge.character import rigify_human
-
-    return rigify_human
+    return import_module("keymark.operators.bridge.character.rigify_human")
 
 
 def main(path: str) -> int:

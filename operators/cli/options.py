@@ -6,10 +6,12 @@ from pathlib import Path, PureWindowsPath
 from ...core.prior.texts import EVERY_LIBRARY
 from ...core.take.conversion_settings import (
     HIGHEST_FLOOR_M,
+    LARGEST_TOLERANCE_MM,
     LIMB_KEYS,
     METHODS,
     PLACEMENTS,
     ROOT_MOTIONS,
+    CharacterOptions,
     ConversionSettings,
 )
 from ...core.take.evidence import EVIDENCE, evidence_mistake, in_order
@@ -166,6 +168,35 @@ RETARGET_OPTIONS = (
     ),
 )
 """How a motion is put onto a character."""
+
+
+def character_options(arguments: argparse.Namespace) -> CharacterOptions:
+    """How a motion is put onto a character, by the command line."""
+    usual = CharacterOptions()
+    return CharacterOptions(
+        root_motion=arguments.root_motion,
+        place=arguments.place,
+        arms=arguments.arms or arguments.limbs or usual.arms,
+        legs=arguments.legs or arguments.limbs or usual.legs,
+        plant_feet=not arguments.no_plant_feet,
+        reach_hands=not arguments.no_reach_hands,
+        tolerance_mm=_tolerance_mm(arguments.tolerance),
+    )
+
+
+def _tolerance_mm(text: str) -> float:
+    if text.strip().lower() == "none":
+        return 0.0
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0.0 < value <= LARGEST_TOLERANCE_MM:
+        raise UsageError(
+            f"--tolerance is {text}; millimeters above 0 and up to {LARGEST_TOLERANCE_MM:g} are valid, "
+            "or none for a key on every frame"
+        )
+    return value
 
 
 def given_settings(arguments: argparse.Namespace) -> ConversionSettings:

@@ -95,6 +95,7 @@ DESCRIPTION = "Turns one video of a performer, in colored markers or any clothes
 EXAMPLES = """\
 examples:
   {program} demo
+  {program} animate clip.mp4 --height 1.78 --character anna.blend --output out/clip
   {program} convert takes/walk --output out/walk
   {program} convert takes/walk --output out/walk --keyframes posed.json --method ekf --json
   {program} convert takes/walk --output out/walk --library walking --floor 0

@@ -59,6 +59,45 @@ class FinishedTake:
     finished: "Finished"
 
 
+def bake(scene: bpy.types.Scene) -> "Job[FinishedTake]":
+    """Finish the motion of the active take; the scene stays as it is."""
+    from ..bridge.finish_motion import FinishOptions, finish_motion
+
+    take = active_take(scene)
+    settings, identifier = take.finish, take.identifier
+    options = FinishOptions(
+        tolerance_m=settings.tolerance_mm / 1000.0 if settings.keys == "TOLERANCE" else None,
+        whole_pose=settings.shared == "WHOLE_POSE",
+        stray_m=settings.stray_mm / 1000.0 if settings.plant_feet else None,
+    )
+    frame_s = scene.render.fps_base / scene.render.fps
+    job = finish_motion(take.armature, take.motion_action, take.keyframe_action, options, frame_s)
+    del take, settings  # Blender may move them while the job runs
+    return FinishedTake(identifier, (yield from job))
+
+
+def keep_baked(operator: bpy.types.Operator, scene: bpy.types.Scene, result: FinishedTake) -> str:
+    """Write the final Action; returns a sentence on it."""
+    take, finished = take_by_identifier(scene, result.take), result.finished
+    settings, armature_object = take.finish, actor_of(take)
+    if take.motion_action is None:
+        raise InputError("the motion has been deleted meanwhile; nothing was changed")
+    if settings.action is None:
+        settings.action = bpy.data.actions.new(f"{armature_object.name} Final")
+    settings.action.use_fake_user = True
+    settings.keys_after = finished.write(armature_object, take.motion_action, settings.action)
+    settings.keys_before, settings.outdated = finished.keys_before, False
+    settings.furthest_mm, settings.rests = 1000.0 * finished.furthest_m, len(finished.contacts)
+    finished_again(take)
+    assign_action(armature_object, settings.action)
+    scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+    give_notices(take, "finish", "bake", [warn(operator, note) for note in finished.notes])
+    return (
+        f"Baked {settings.keys_after} keys of {settings.keys_before} into '{settings.action.name}', "
+        f"at most {settings.furthest_mm:.1f} mm off"
+    )
+
+
 class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     """Make the final Action, anew: your corrected motion with few keys, its resting feet standing still"""
 
@@ -68,40 +107,11 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     requirements = (actor, motion, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[FinishedTake]":
-        from ..bridge.finish_motion import FinishOptions, finish_motion
-
-        take = active_take(scene)
-        settings, identifier = take.finish, take.identifier
-        options = FinishOptions(
-            tolerance_m=settings.tolerance_mm / 1000.0 if settings.keys == "TOLERANCE" else None,
-            whole_pose=settings.shared == "WHOLE_POSE",
-            stray_m=settings.stray_mm / 1000.0 if settings.plant_feet else None,
-        )
-        frame_s = scene.render.fps_base / scene.render.fps
-        job = finish_motion(take.armature, take.motion_action, take.keyframe_action, options, frame_s)
-        del take, settings  # Blender may move them while the job runs
-        return FinishedTake(identifier, (yield from job))
+        return (yield from bake(scene))
 
     def finish(self, scene: bpy.types.Scene, result: FinishedTake) -> None:
-        take, finished = take_by_identifier(scene, result.take), result.finished
-        settings, armature_object = take.finish, actor_of(take)
-        if take.motion_action is None:
-            raise InputError("the motion has been deleted meanwhile; nothing was changed")
-        if settings.action is None:
-            settings.action = bpy.data.actions.new(f"{armature_object.name} Final")
-        settings.action.use_fake_user = True
-        settings.keys_after = finished.write(armature_object, take.motion_action, settings.action)
-        settings.keys_before, settings.outdated = finished.keys_before, False
-        settings.furthest_mm, settings.rests = 1000.0 * finished.furthest_m, len(finished.contacts)
-        finished_again(take)
-        assign_action(armature_object, settings.action)
-        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-        give_notices(take, "finish", "bake", [warn(self, note) for note in finished.notes])
-        self.report(
-            {"INFO"},
-            f"Baked {settings.keys_after} keys of {settings.keys_before} into '{settings.action.name}', "
-            f"at most {settings.furthest_mm:.1f} mm off",
-        )
+        said = keep_baked(self, scene, result)
+        self.report({"INFO"}, said)
 
 
 class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
@@ -131,6 +141,7 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         name="Format",
         description="Format of the file",
         items=[(kind, listed.name, listed.description) for kind, listed in FORMATS.items()],
+        default="BVH",
     )
     filepath: bpy.props.StringProperty(name="File", description="File to write", subtype="FILE_PATH")
     filter_glob: bpy.props.StringProperty(

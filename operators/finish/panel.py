@@ -1,20 +1,21 @@
-"""Panels of the finish: final Action, asset, library and export; formats are listed in `export_formats`."""
+"""The panel of the last step: final Action, asset and files; formats are listed in `export_formats`."""
 
 import bpy
 
 from ..bridge.export_formats import FORMATS
 from ..reconstruct.panel import draw_shown_action
 from ..shell.base_operator import capitalized
-from ..shell.panel import TakePanel, draw_sentence
+from ..shell.panel import Popover, draw_progress, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 
 
 class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
-    """The final Action."""
+    """The motion for other programs and other files, and its final Action."""
 
-    bl_label = "Finish"
+    bl_label = "Export"
     step = "finish"
+    options = "KEYMARK_PT_finish_options"
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
@@ -25,23 +26,29 @@ class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
     def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
         return bool(take.finish.outdated)
 
-    def draw_step(self, context: bpy.types.Context) -> None:
-        take, column = active_take(context.scene), self.column()
-        settings = take.finish
+    @classmethod
+    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+        return "keymark.bake_motion", "Bake"
+
+    def draw_step(
+        self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup
+    ) -> None:
+        column = body.column()
         row = column.row()
         row.scale_y = 1.4
-        row.operator("keymark.bake_motion", icon="ACTION")
-        column.prop(settings, "keys")
-        few = column.column()
-        few.active = settings.keys == "TOLERANCE"
-        few.prop(settings, "tolerance_mm")
-        few.prop(settings, "shared")
-        column.prop(settings, "plant_feet")
-        feet = column.column()
-        feet.active = settings.plant_feet
-        feet.prop(settings, "stray_mm")
-        if settings.action is not None and take.armature is not None:
+        if not draw_progress(row, context, "keymark.bake_motion"):
+            row.operator("keymark.bake_motion", icon="ACTION")
+        if take.finish.action is not None and take.armature is not None:
             _draw_result(column, context, take)
+        column.popover("KEYMARK_PT_asset", icon="ASSET_MANAGER")
+        grid = column.grid_flow(columns=2, even_columns=True, align=True)
+        missing = {}
+        for kind, listed in FORMATS.items():
+            each, missing[kind] = grid.row(), listed.missing()
+            each.enabled = missing[kind] is None
+            each.operator("keymark.export_motion", text=listed.name, icon="EXPORT").format = kind
+        for sentence in filter(None, missing.values()):
+            draw_sentence(column, context, capitalized(sentence), "INFO")
 
 
 def _draw_result(
@@ -62,17 +69,28 @@ def _draw_result(
         draw_sentence(lines, context, f"Feet planted: {settings.rests} rests", "PINNED")
 
 
-class FinishPart(TakePanel):
-    """Base of the sub-panels, closed by default."""
+class KEYMARK_PT_finish_options(Popover, bpy.types.Panel):
+    """How the final Action is made."""
 
-    bl_parent_id = "KEYMARK_PT_finish"
-    bl_options = {"DEFAULT_CLOSED"}
+    bl_label = "Options of the Final Action"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings, column = active_take(context.scene).finish, self.column()
+        column.prop(settings, "keys")
+        few = column.column()
+        few.active = settings.keys == "TOLERANCE"
+        few.prop(settings, "tolerance_mm")
+        few.prop(settings, "shared")
+        column.prop(settings, "plant_feet")
+        feet = column.column()
+        feet.active = settings.plant_feet
+        feet.prop(settings, "stray_mm", text="Feet May Sway (mm)")
 
 
-class KEYMARK_PT_asset(FinishPart, bpy.types.Panel):
+class KEYMARK_PT_asset(Popover, bpy.types.Panel):
     """The motion as an asset."""
 
-    bl_label = "Asset"
+    bl_label = "Mark as Asset"
 
     def draw(self, context: bpy.types.Context) -> None:
         settings, column = active_take(context.scene).finish, self.column()
@@ -81,36 +99,6 @@ class KEYMARK_PT_asset(FinishPart, bpy.types.Panel):
         column.operator("keymark.mark_asset", icon="ASSET_MANAGER")
 
 
-class KEYMARK_PT_export(FinishPart, bpy.types.Panel):
-    """The motion for other programs."""
-
-    bl_label = "Export"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        column = self.column()
-        for kind, listed in FORMATS.items():
-            missing = listed.missing()
-            row = column.row()
-            row.enabled = missing is None
-            row.operator("keymark.export_motion", text=listed.name, icon="EXPORT").format = kind
-            if missing is not None:
-                column.label(text=capitalized(missing), icon="INFO", translate=False)
-
-
-class KEYMARK_PT_learn(FinishPart, bpy.types.Panel):
-    """The motion as a keyframe library."""
-
-    bl_label = "Keyframe Library"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        column = self.column()
-        lines = column.column(align=True)
-        lines.scale_y = 0.85
-        lines.label(text="The next take of its kind")
-        lines.label(text="then needs fewer keyframes")
-        column.operator("keymark.learn_library", icon="ASSET_MANAGER")
-
-
 register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_PT_finish, KEYMARK_PT_asset, KEYMARK_PT_learn, KEYMARK_PT_export)
+    (KEYMARK_PT_finish, KEYMARK_PT_finish_options, KEYMARK_PT_asset)
 )

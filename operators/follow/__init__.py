@@ -1,4 +1,4 @@
-"""Step 2, what to follow: colored markers, keypoints, tracks, clicked points, contours; the panels."""
+"""What is followed, in step 2: colored markers, keypoints, tracks, clicked points, contours."""
 
 PROPERTIES = ("marker_properties", "keypoint_properties")
 MODULES = (

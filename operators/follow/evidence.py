@@ -81,7 +81,7 @@ def anything_to_follow(context: bpy.types.Context) -> str | None:
         return None  # a take without footage says so itself
     if take.follow.use_contours and take.camera is not None:
         return "Load keypoints, assign tracks or add markers first: contours need a camera that stands still"
-    return "Switch on the contours, load keypoints, assign tracks or add markers first (What to Follow)"
+    return "Switch on the contours, load keypoints, assign tracks or add markers first (step Performer)"
 
 
 def keypoint_files(context: bpy.types.Context) -> str | None:

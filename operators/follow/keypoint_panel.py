@@ -1,24 +1,15 @@
-"""The panels of keypoints, tracks and contours in step 2, in the 3D viewport and the Movie Clip editor."""
+"""The settings of keypoints, tracks and contours."""
 
 import bpy
 
 from ..bridge.footage_camera import may_move
 from ..shell.base_operator import capitalized
 from ..shell.footage_view import clip_index
-from ..shell.panel import RowList, draw_progress, draw_sentence, property_column
+from ..shell.panel import RowList, draw_progress, draw_sentence
 from ..shell.takes import active_take
 from .evidence import clip_frame, keypoint_path
-from .frame_keypoints import (
-    clicked_label,
-    contours_label,
-    keypoint_reading,
-    keypoints_label,
-    people_at,
-    seen_label,
-    tracks_label,
-)
+from .frame_keypoints import clicked_label, keypoint_reading, people_at, seen_label
 from .marker_properties import segment_title
-from .panel import evidence_panels
 from .tracks import assigned_tracks, point_of
 
 FEWEST_ROWS, MOST_ROWS = 2, 5
@@ -88,7 +79,7 @@ class KEYMARK_UL_clicked_points(RowList, bpy.types.UIList):
         row.operator("keymark.remove_clicks", text="", icon="X", emboss=False).point = item.point
 
 
-def _draw_keypoints(
+def draw_keypoints(
     layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> None:
     """Draw files of detectors, and points that are clicked on."""
@@ -97,7 +88,7 @@ def _draw_keypoints(
     _draw_clicks(layout, take)
 
 
-def _draw_tracks(
+def draw_tracks(
     layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> None:
     """Draw the motion tracks of each tracking object that has any, and what they follow."""
@@ -117,7 +108,7 @@ def _draw_tracks(
     layout.label(text=text, translate=False)
 
 
-def _draw_contours(
+def draw_contours(
     layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> None:
     """Draw whether the outline of the body can be followed, and why."""
@@ -186,9 +177,8 @@ def _draw_file(
 
 
 def _draw_clicks(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """Draw the next point to click on, and those of this frame."""
-    follow, column = take.follow, property_column(layout.column())
-    column.prop(follow, "clicked_point")
+    """Draw the button that asks for points, and those of this frame."""
+    follow, column = take.follow, layout.column()
     column.operator("keymark.click_point", icon="RESTRICT_SELECT_OFF")
     if not len(follow.clicks):
         return
@@ -200,12 +190,5 @@ def _draw_clicks(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> N
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_UL_keypoint_files,
-        KEYMARK_UL_tracks,
-        KEYMARK_UL_clicked_points,
-        *evidence_panels("keypoints", keypoints_label, _draw_keypoints),
-        *evidence_panels("tracks", tracks_label, _draw_tracks, closed=(True, False)),
-        *evidence_panels("contours", contours_label, _draw_contours, closed=(True, True)),
-    )
+    (KEYMARK_UL_keypoint_files, KEYMARK_UL_tracks, KEYMARK_UL_clicked_points)
 )

@@ -122,6 +122,39 @@ class Detected:
     frame_start: int
 
 
+def detect(scene: bpy.types.Scene) -> "Job[Detected]":
+    """Find everybody in the active take's clip; the scene stays as it is."""
+    from ...core.footage.pose_network import PoseNetwork
+    from ...core.footage.pose_tracking import find_people
+    from ...core.take.clip_check import LONGEST_FRAMES, open_footage
+
+    take = active_take(scene)
+    identifier, source = take.identifier, footage_of(scene, take)
+    output, first = _output(take, source.path), source.first_frame
+    clip = open_footage(source.path, source.rate)
+    people = yield from find_people(clip, PoseNetwork(), LONGEST_FRAMES)
+    return Detected(identifier, output, people, clip.fps, first)
+
+
+def keep_detected(scene: bpy.types.Scene, found: Detected) -> str:
+    """Write the keypoints beside the clip and let the take follow them; returns a sentence on them."""
+    from ...core.footage.keypoints.keypoint_file import write_keypoints
+
+    take, people = take_by_identifier(scene, found.take), found.people
+    write_keypoints(found.output, people, found.frame_start, found.fps)
+    follow_file(take, found.output)
+    seen = f"Somebody is seen in {people.seen_frames} of {len(people.frames)} frames"
+    return f"{seen}; the keypoints are in {found.output.name}"
+
+
+def follow_file(take: bpy.types.PropertyGroup, path: Path) -> None:
+    """Let a take follow the keypoints in a file."""
+    add_keypoint_file(take, path)
+    take.follow.use_keypoints = True
+    clear_readings()
+    redraw_footage(bpy.context)
+
+
 class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
     """Find points of the body of everybody in the whole clip"""
 
@@ -131,29 +164,11 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
     requirements = (footage, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Detected]":
-        from ...core.footage.pose_network import PoseNetwork
-        from ...core.footage.pose_tracking import find_people
-        from ...core.take.clip_check import LONGEST_FRAMES, open_footage
-
-        take = active_take(scene)
-        identifier, source = take.identifier, footage_of(scene, take)
-        output, first = _output(take, source.path), source.first_frame
-        clip = open_footage(source.path, source.rate)
-        people = yield from find_people(clip, PoseNetwork(), LONGEST_FRAMES)
-        return Detected(identifier, output, people, clip.fps, first)
+        return (yield from detect(scene))
 
     def finish(self, scene: bpy.types.Scene, result: Detected) -> None:
-        from ...core.footage.keypoints.keypoint_file import write_keypoints
-
-        take = take_by_identifier(scene, result.take)
-        people = result.people
-        write_keypoints(result.output, people, result.frame_start, result.fps)
-        add_keypoint_file(take, result.output)
-        take.follow.use_keypoints = True
-        clear_readings()
-        redraw_footage(bpy.context)
-        seen = f"Somebody is seen in {people.seen_frames} of {len(people.frames)} frames"
-        self.report({"INFO"}, f"{seen}; the keypoints are in {result.output.name}")
+        said = keep_detected(scene, result)
+        self.report({"INFO"}, said)
 
 
 def _output(take: bpy.types.PropertyGroup, clip: Path) -> Path:

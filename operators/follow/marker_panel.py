@@ -1,11 +1,9 @@
-"""The markers in step 2, in the sidebars of the 3D viewport and of the Movie Clip editor."""
+"""The settings of markers: their list, the chosen one, and what is never a marker."""
 
 import bpy
 
 from ..shell.panel import RowList, draw_progress, draw_sentence, is_roomy, property_column, side_by_side
 from ..shell.takes import active_take
-from .marker_styles import markers_label
-from .panel import evidence_panels
 
 
 class KEYMARK_UL_markers(RowList, bpy.types.UIList):
@@ -50,7 +48,7 @@ class KEYMARK_UL_ignored_regions(RowList, bpy.types.UIList):
         status.label(text=text, translate=False)
 
 
-def _draw_markers(
+def draw_markers(
     layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> None:
     """Draw the list, the active marker, and the operators of both."""
@@ -119,7 +117,6 @@ def _draw_marker(
     """Draw the active marker: its properties and its readout."""
     column = property_column(layout.column())
     column.prop(marker, "segment")
-    column.prop(marker, "color")
     if not marker.has_readout(take):
         return
     readout = layout.column(align=True)
@@ -139,10 +136,4 @@ def _row(layout: bpy.types.UILayout, name: str, value: str) -> None:
     row.label(text=value, translate=False)
 
 
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_UL_markers,
-        KEYMARK_UL_ignored_regions,
-        *evidence_panels("markers", markers_label, _draw_markers),
-    )
-)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_markers, KEYMARK_UL_ignored_regions))

@@ -1,4 +1,4 @@
-"""Step 1, the footage: the clip, the camera it was filmed with, and how a viewport shows it."""
+"""Step 1, the clip, the camera it was filmed with, and how a viewport shows it."""
 
 PROPERTIES = ("properties",)
 MODULES = ("load_footage", "panel")

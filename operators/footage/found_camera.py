@@ -3,7 +3,6 @@
 from typing import TYPE_CHECKING
 
 import bpy
-import numpy as np
 
 from ...core.errors import InputError
 from ..bridge.camera_placement import still_camera, write_found_camera
@@ -22,7 +21,6 @@ HINTS = {
     "lens": "Lens is kept: level lines that run away from a tilted camera would tell it",
 }
 """What would determine each part of the camera that a picture does not determine."""
-UNITS = {"height": (2, " m"), "tilt": (1, "°"), "roll": (1, "°"), "lens": (1, " mm")}  # Decimals and unit
 MOST_EXCESS = 3.0
 """Ratio of the variance of the distances to the expected one beyond which lines contradict each other."""
 NOTHING_FOUND = (
@@ -61,31 +59,17 @@ def write_fit(take: bpy.types.PropertyGroup, fit: "CameraFit") -> None:
 
 def values(fit: "CameraFit") -> str:
     """The camera found, with the deviations of what the picture determines."""
-    placement = fit.placement
-    found = {
-        "height": placement.height_m,
-        "tilt": float(np.degrees(placement.tilt_rad)),
-        "roll": float(np.degrees(placement.roll_rad)),
-        "lens": fit.camera.lens_mm,
-    }
-    parts = []
-    for name, value in found.items():
-        digits, unit = UNITS[name]
-        spread, sure = (f" ± {_spread(fit, name)}", "") if name not in fit.kept else ("", " (kept)")
-        parts.append(f"{name.title()} {value:.{digits}f}{spread}{unit}{sure}")
-    return "   ".join(parts)
+    kept = {name: " (kept)" if name in fit.kept else "" for name in HINTS}
+    said = (fit.said(name) + kept[name] for name in HINTS)
+    return "   ".join(part[:1].upper() + part[1:] for part in said)
 
 
 def deviations(fit: "CameraFit") -> str:
     """The deviations alone, of what the picture determines."""
-    found = (f"{name} ± {_spread(fit, name)}{UNITS[name][1]}" for name in UNITS if name not in fit.kept)
+    from ...core.footage.camera_fit import UNITS
+
+    found = (f"{name} ± {fit.spread(name)}{UNITS[name][1]}" for name in UNITS if name not in fit.kept)
     return f"Found: {', '.join(found)}"
-
-
-def _spread(fit: "CameraFit", name: str) -> str:
-    """Standard deviation of a part of the camera in its unit; those of angles are in radians."""
-    digits, unit = UNITS[name]
-    return f"{np.degrees(fit.std[name]) if unit == '°' else fit.std[name]:.{digits}f}"
 
 
 def doubts(fit: "CameraFit", lens_is_guess: bool) -> list[str]:

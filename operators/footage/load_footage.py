@@ -111,6 +111,21 @@ def hide_startup_cube(context: bpy.types.Context) -> None:
         cube.hide_set(True)
 
 
+def load_into_take(context: bpy.types.Context, path: Path, as_new_take: bool) -> bpy.types.PropertyGroup:
+    """Load a clip behind the camera of a take, a new one or the active one, and show it."""
+    from ..bridge.footage_to_scene import load_footage
+
+    scene = context.scene
+    clip = load_footage(path)
+    take = None if as_new_take else find_take(scene)
+    take = take or add_take(scene, take_name(path))
+    give_footage(take, clip)
+    hide_startup_cube(context)
+    look_through_camera(context, take)
+    show_range(context)
+    return take
+
+
 PATTERNS = ";".join(f"*{extension}" for extension in VIDEOS + IMAGES)
 
 
@@ -146,17 +161,8 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         return self.execute(context)
 
     def run(self, context: bpy.types.Context) -> None:
-        from ..bridge.footage_to_scene import load_footage
-
-        scene = context.scene
         path = chosen_file(self, "a video, or one image of a numbered sequence")
-        clip = load_footage(path)
-        take = None if self.as_new_take else find_take(scene)
-        take = take or add_take(scene, take_name(path))
-        give_footage(take, clip)
-        hide_startup_cube(context)
-        look_through_camera(context, take)
-        show_range(context)
+        take = load_into_take(context, path, self.as_new_take)
         clip, extent = (
             take.clip,
             f"{take.clip.frame_duration} frames of {take.clip.size[0]} x {take.clip.size[1]}",
@@ -164,7 +170,7 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, f"Loaded {clip.name}: {extent} pixels")
         if lens_is_guess(take):
             guess = f"The lens is a guess: {take.guessed_lens_mm:.1f} mm"
-            self.report({"INFO"}, f"{guess}; set it in the Footage panel if you know it")
+            self.report({"INFO"}, f"{guess}; set it in the step Clip if you know it")
 
 
 class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):

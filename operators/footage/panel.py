@@ -1,34 +1,30 @@
-"""The camera in the panel of step 1: its fields, whether they are guesses, and how it can be found."""
+"""The panel of the first step: the clip, its camera, whether that is a guess, and how it can be found."""
 
 import bpy
 
 from ..bridge.camera_placement import fixed_reason
 from ..bridge.footage_camera import may_move, solver_constraint
-from ..shell.panel import draw_sentence, side_by_side
+from ..shell.panel import Popover, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, find_take, placement_is_guess
 from .drawn_lines import HEIGHT, VERTICAL
 from .take_footage import lens_is_guess
 
 
-def draw_camera(
+def _draw_camera(
     column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> None:
-    """Draw the lens, the camera's place, whether they are guesses, and the tools that find them."""
+    """Draw the lens and the camera's place, whether that is a guess, and the tools that find it."""
     scene, camera = context.scene, take.camera
-    column.prop(camera.data, "lens")
-    column.prop(camera.data, "sensor_width")
     if camera.name not in scene.objects:
         column.label(text="Camera is not in the scene", icon="ERROR")
-    if lens_is_guess(take):
-        text = f"Lens is a guess: {take.guessed_lens_mm:.1f} mm"
-        _draw_guess(column, text, "keymark.keep_lens")
     reason = fixed_reason(camera)
-    fields = column.column()
-    fields.enabled = reason is None
-    fields.prop(take, "camera_height")
-    fields.prop(take, "camera_tilt")
-    fields.prop(take, "camera_roll")
+    fields = column.column(align=True)
+    fields.prop(camera.data, "lens")
+    placed = fields.column(align=True)
+    placed.enabled = reason is None
+    placed.prop(take, "camera_height")
+    placed.prop(take, "camera_tilt")
     if take.clip is not None and solver_constraint(scene, camera, take.clip):
         column.label(text="Camera moves as the clip was solved", icon="CON_CAMERASOLVER")
     elif may_move(camera):
@@ -36,21 +32,13 @@ def draw_camera(
     elif reason is not None:
         draw_sentence(column, context, reason, "LINKED")
     else:
-        _draw_tools(column, context, take)
-    column.prop(scene.keymark.overlays, "show_floor_grid")
-
-
-def _draw_tools(
-    column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-) -> None:
-    """Draw whether the place is a guess, the tools that find it, and what they found."""
-    if placement_is_guess(take):
-        _draw_guess(column, "Height and tilt are a guess", "keymark.keep_camera")
-    buttons = column.column(align=True)
-    buttons.operator("keymark.camera_from_lines", text="From Lines", icon="MOD_EDGESPLIT").kind = VERTICAL
-    buttons.operator("keymark.camera_from_lines", text="From the Performer", icon="USER").kind = HEIGHT
-    for index, sentence in enumerate(take.camera_findings.splitlines()):
-        draw_sentence(column, context, sentence, "DOT" if index else "CHECKMARK")
+        if placement_is_guess(take):
+            _draw_guess(column, "Height and tilt are a guess", "keymark.keep_camera")
+        found = column.column(align=True)
+        found.operator("keymark.camera_from_lines", text="From Lines", icon="MOD_EDGESPLIT").kind = VERTICAL
+        found.operator("keymark.camera_from_lines", text="From the Performer", icon="USER").kind = HEIGHT
+        for index, sentence in enumerate(take.camera_findings.splitlines()):
+            draw_sentence(column, context, sentence, "DOT" if index else "CHECKMARK")
 
 
 def _draw_guess(column: bpy.types.UILayout, text: str, operator: str) -> None:
@@ -60,10 +48,11 @@ def _draw_guess(column: bpy.types.UILayout, text: str, operator: str) -> None:
 
 
 class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
-    """Clip, camera and the take's files."""
+    """The clip, and the camera that it was filmed with."""
 
-    bl_label = "Footage"
+    bl_label = "Clip"
     step = "footage"
+    options = "KEYMARK_PT_footage_options"
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
@@ -73,21 +62,42 @@ class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
     def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
         return bool(take.clip_state.missing)
 
-    def draw_step(self, context: bpy.types.Context) -> None:
-        take, column = active_take(context.scene), self.column()
-        column.prop(take, "clip")
+    def draw_step(
+        self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup
+    ) -> None:
+        column = body.column()
         if take.clip is not None:
             _draw_clip(column, context, take)
-        column.separator()
+        else:
+            row = column.row(align=True)
+            row.operator("keymark.load_footage", icon="FILE_MOVIE")
+            row.menu("KEYMARK_MT_clips", text="", icon="DOWNARROW_HLT")
+        if take.camera is not None:
+            _draw_camera(column, context, take)
+        else:
+            column.prop(take, "camera")
+
+
+class KEYMARK_PT_footage_options(Popover, bpy.types.Panel):
+    """Another clip or camera, what is seldom known of it, and the take's files."""
+
+    bl_label = "Clip Options"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        take, column = active_take(context.scene), self.column()
+        column.prop(take, "clip")
+        row = column.row(align=True)
+        row.operator("keymark.load_footage", text="Replace Clip", icon="FILE_MOVIE")
+        row.menu("KEYMARK_MT_clips", text="", icon="DOWNARROW_HLT")
         column.prop(take, "camera")
         if take.camera is not None:
-            draw_camera(column, context, take)
-        column.separator()
+            column.prop(take.camera.data, "sensor_width")
+            roll = column.row()
+            roll.enabled = fixed_reason(take.camera) is None
+            roll.prop(take, "camera_roll")
+            if lens_is_guess(take):
+                _draw_guess(column, f"Lens is a guess: {take.guessed_lens_mm:.1f} mm", "keymark.keep_lens")
         row = column.row(align=True)
-        text = "Load Footage" if take.clip is None else "Replace Clip"
-        row.operator("keymark.load_footage", text=text, icon="FILE_MOVIE", translate=False)
-        row.menu("KEYMARK_MT_clips", text="", icon="DOWNARROW_HLT")
-        row = side_by_side(column)
         row.operator("keymark.open_take", icon="FILE_FOLDER")
         row.operator("keymark.save_take", icon="FILE_TICK")
 
@@ -116,11 +126,12 @@ def _draw_clip(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy
         return  # Blender knows no size of a missing clip
     facts = column.column(align=True)
     facts.active = False
-    size = f"{clip.size[0]} x {clip.size[1]} px"
-    extent = f"{clip.frame_duration} frames at {state.rate:.5g} fps"
-    draw_sentence(facts, context, f"{size}, {extent}", "INFO")
+    size = f"{clip.size[0]} x {clip.size[1]} px at {state.rate:.5g} fps"
+    draw_sentence(facts, context, size, "INFO")
     if state.variable_rate:
         draw_sentence(column, context, "Variable rate: keys lie between frames", "ERROR")
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_MT_clips, KEYMARK_PT_footage))
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_MT_clips, KEYMARK_PT_footage, KEYMARK_PT_footage_options)
+)

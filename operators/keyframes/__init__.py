@@ -1,4 +1,4 @@
-"""Step 4, the keyframes: poses found in the footage or posed by hand, proposed frames, corrections."""
+"""Step 3, the poses: poses found in the footage or posed by hand, proposed frames, corrections."""
 
 PROPERTIES = ("found_properties",)
 MODULES = (

@@ -65,7 +65,6 @@ def draw_candidates_head(
     """Draw which frame they are of, and how they are looked at."""
     head = layout.row(align=True)
     head.label(text=f"Frame {match.frame:g} may show", translate=False)
-    head.prop(context.scene.keymark.overlays, "show_candidates", text="", icon="GHOST_ENABLED")
     aside = context.space_data.region_3d.view_perspective != "CAMERA"
     head.operator("keymark.look_from_side", text="", icon="AXIS_SIDE", depress=aside)
 

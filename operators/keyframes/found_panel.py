@@ -1,11 +1,11 @@
-"""Panel of found keyframes: the list, the candidates of a frame, and what finding assumes."""
+"""Found keyframes in the panel of poses: the list, and the candidates of a frame."""
 
 import bpy
 
 from ...core.prior.texts import COMPOSED
 from ..shell.contradictions import contradictions_at
 from ..shell.keyed_frames import DOUBTFUL, count_found, state_of
-from ..shell.panel import RowList, TakePanel, draw_sentence
+from ..shell.panel import RowList
 from ..shell.takes import active_take
 from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
 
@@ -51,56 +51,27 @@ def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> t
     return ("CHECKMARK", "sure") if match.confidence >= 0.8 else ("DOT", "likely")
 
 
-class KEYMARK_PT_found(TakePanel, bpy.types.Panel):
-    """Found keyframes, and the choice among a frame's candidates."""
-
-    bl_label = "Found Keyframes"
-    bl_parent_id = "KEYMARK_PT_keyframes"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        take, column = active_take(context.scene), self.column()
-        matching = take.matching
-        if len(matching.matches):
-            _draw_counts(column, context, take)
-            column.template_list(
-                "KEYMARK_UL_matches", "", matching, "matches", matching, "shown_match", rows=3, maxrows=5
-            )
-            _draw_jumps(column, take)
-            _draw_candidates(column, context, take)
-        column.prop(matching, "library")
-        column.prop(matching, "improve_neighbors")
-        column.prop(matching, "floor")
-        if matching.floor == "HEIGHT":
-            column.prop(matching, "floor_height")
-        elif matching.is_property_set("floor_found"):
-            found = column.row()
-            found.enabled = False
-            found.prop(matching, "floor_found")
-        if len(matching.matches):
-            column.operator("keymark.remove_found", icon="TRASH")
+def draw_found(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    """Draw found keyframes, the way to the next doubtful one, and the choice among a frame's candidates."""
+    matching = take.matching
+    _draw_counts(column, take)
+    column.template_list(
+        "KEYMARK_UL_matches", "", matching, "matches", matching, "shown_match", rows=3, maxrows=3
+    )
+    doubtful = count_found(take)[1]
+    going = column.row()
+    going.enabled = doubtful > 0
+    words = f"Next Doubtful ({doubtful})" if doubtful else "None Doubtful"
+    jump = going.operator("keymark.jump_to_match", text=words, translate=False, icon="NEXT_KEYFRAME")
+    jump.direction, jump.only_doubtful = "NEXT", True
+    _draw_candidates(column, context, take)
 
 
-def _draw_counts(
-    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-) -> None:
-    """Draw how many were found, how many of them are in doubt, and the reason that was given."""
+def _draw_counts(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+    """Draw how many were found, and how many of them are in doubt."""
     count, doubtful = count_found(take)
     words = f"{count} found, {doubtful or 'none'} of them doubtful"
     layout.label(text=words, icon="QUESTION" if doubtful else "CHECKMARK", translate=False)
-    if take.matching.reason:
-        draw_sentence(layout, context, take.matching.reason, "BLANK1")
-
-
-def _draw_jumps(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    row = layout.row(align=True)
-    row.operator("keymark.jump_to_match", text="", icon="PREV_KEYFRAME").direction = "PREVIOUS"
-    doubtful = count_found(take)[1]
-    going = row.row(align=True)
-    going.enabled = doubtful > 0
-    words = f"Next Doubtful ({doubtful})" if doubtful else "None Doubtful"
-    jump = going.operator("keymark.jump_to_match", text=words, translate=False)
-    jump.direction, jump.only_doubtful = "NEXT", True
-    row.operator("keymark.jump_to_match", text="", icon="NEXT_KEYFRAME").direction = "NEXT"
 
 
 def _draw_candidates(
@@ -122,4 +93,4 @@ def _draw_candidates(
     row.operator("keymark.remove_match", icon="X")
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_matches, KEYMARK_PT_found))
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_matches,))

@@ -27,6 +27,45 @@ READ, MEASURED = 0.5, 0.55
 """Shares of the job at which the clip is read, and the speed measured where no frames are proposed yet."""
 
 
+def find_poses(scene: bpy.types.Scene, library: str, floor_m: float | None) -> "Job[FoundResult]":
+    """Read the active take, propose frames where none are proposed, and find their postures.
+
+    `library` is the only one that is used, the panel's where empty; the scene stays as it is.
+    """
+    from ...core.posing.pose_clip import pose_clip
+    from ..library.registry_files import named_libraries
+    from .found_result import FoundResult, found_keyframes
+
+    settings = active_take(scene)
+    identifier, count = settings.identifier, settings.keyframe_count or None
+    libraries = named_libraries(library or settings.matching.library_name or EVERY_LIBRARY)
+    proposed = proposed_frames(settings)
+    clip = yield from stretch(read_scene_clip(scene, settings), 0.0, READ)
+    proposals = None if proposed else (yield from stretch(_propose(clip, count), READ, MEASURED))
+    if proposals is None:
+        shown = shown_index(clip.frames, np.array(proposed, dtype=np.float64))
+        wanted = {int(index) for index in shown if index >= 0}
+    else:
+        wanted = set(proposals.indices)
+    decided = {keyframe.index for keyframe in clip.take.keyframes}
+    if wanted <= decided:
+        raise InputError("every proposed frame is posed; propose more, or remove keyframes first")
+    job = pose_clip(clip.take, clip.reading, libraries, floor_m, frames=sorted(wanted - decided))
+    found = yield from stretch(job, MEASURED, 1.0)
+    return FoundResult(identifier, clip, found, found_keyframes(clip.take, found), proposals)
+
+
+def keep_poses(scene: bpy.types.Scene, result: "FoundResult") -> tuple[str, bool]:
+    """Key the found postures; returns a sentence on them, and whether any is doubtful."""
+    take = result.write(scene)
+    scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+    count, doubtful = count_found(take)
+    if not doubtful:
+        return f"{count} keyframes found, none of them doubtful", False
+    take.matching.shown_match = doubtful_matches(take)[0]
+    return f"{count} keyframes found, {doubtful} of them doubtful; the most doubtful one is shown", True
+
+
 class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
     """Find the actor's pose in every proposed frame, and key it as found; what you posed or chose stays"""
 
@@ -47,43 +86,15 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
         return super().invoke(context, event)
 
     def start(self, scene: bpy.types.Scene) -> "Job[FoundResult]":
-        """Read the scene's take, propose frames where none are proposed, and find their postures."""
-        from ...core.posing.pose_clip import pose_clip
-        from ..library.registry_files import named_libraries
-        from .found_result import FoundResult, found_keyframes
-
-        settings = active_take(scene)
-        identifier, count = settings.identifier, settings.keyframe_count or None
         floor_m = float(self.floor_height) if self.floor == "HEIGHT" else None
-        libraries = named_libraries(self.library or settings.matching.library_name or EVERY_LIBRARY)
-        proposed = proposed_frames(settings)
-        clip = yield from stretch(read_scene_clip(scene, settings), 0.0, READ)
-        proposals = None if proposed else (yield from stretch(_propose(clip, count), READ, MEASURED))
-        if proposals is None:
-            shown = shown_index(clip.frames, np.array(proposed, dtype=np.float64))
-            wanted = {int(index) for index in shown if index >= 0}
-        else:
-            wanted = set(proposals.indices)
-        decided = {keyframe.index for keyframe in clip.take.keyframes}
-        if wanted <= decided:
-            raise InputError("every proposed frame is posed; propose more, or remove keyframes first")
-        job = pose_clip(clip.take, clip.reading, libraries, floor_m, frames=sorted(wanted - decided))
-        found = yield from stretch(job, MEASURED, 1.0)
-        return FoundResult(identifier, clip, found, found_keyframes(clip.take, found), proposals)
+        return (yield from find_poses(scene, self.library, floor_m))
 
     def finish(self, scene: bpy.types.Scene, result: "FoundResult") -> None:
-        take = result.write(scene)
-        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+        said, doubtful = keep_poses(scene, result)
         for note in result.clip.notes:
             warn(self, note)
-        self.report({"INFO"}, take.matching.reason)
-        count, doubtful = count_found(take)
-        if doubtful:
-            take.matching.shown_match = doubtful_matches(take)[0]
-            said = f"{count} keyframes found, {doubtful} of them doubtful; the most doubtful one is shown"
-            self.report({"WARNING"}, said)
-        else:
-            self.report({"INFO"}, f"{count} keyframes found, none of them doubtful")
+        self.report({"INFO"}, active_take(scene).matching.reason)
+        self.report({"WARNING" if doubtful else "INFO"}, said)
 
 
 def _propose(clip: SceneClip, count: int | None) -> "Job[Proposals]":

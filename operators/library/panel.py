@@ -1,8 +1,8 @@
-"""The panel of keyframe libraries: all at hand, loaded, saved and edited as pose assets."""
+"""The popover of keyframe libraries."""
 
 import bpy
 
-from ..shell.panel import RowList, SubPanel, draw_sentence
+from ..shell.panel import Popover, RowList, draw_sentence
 from .registry import chosen_entry, own_folder
 
 MOST_LINES = 4  # Lines of a library's description, or of its problem
@@ -24,11 +24,10 @@ class KEYMARK_UL_shelf(RowList, bpy.types.UIList):
             facts.label(text=str(item.postures), translate=False)
 
 
-class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
-    """The libraries at hand."""
+class KEYMARK_PT_libraries(Popover, bpy.types.Panel):
+    """The libraries at hand: loaded, saved, learned from the motion, and edited as pose assets."""
 
     bl_label = "Libraries"
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         registry, layout = context.window_manager.keymark_shelf, self.layout
@@ -37,6 +36,8 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
             "KEYMARK_UL_shelf", "", registry, "libraries", registry, "active", rows=4, maxrows=6
         )
         buttons = row.column(align=True)
+        buttons.operator("keymark.import_library", text="", icon="IMPORT")
+        buttons.operator("keymark.export_library", text="", icon="EXPORT")
         buttons.operator("keymark.refresh_shelf", text="", icon="FILE_REFRESH")
         buttons.operator("wm.path_open", text="", icon="FILE_FOLDER").filepath = str(own_folder())
         item, column = chosen_entry(context), layout.column()
@@ -45,9 +46,7 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
         elif item is not None:
             _draw_facts(column, context, item)
             column.operator("keymark.edit_library", icon="ASSET_MANAGER").library = item.name
-        row = column.row(align=True)
-        row.operator("keymark.import_library", icon="IMPORT")
-        row.operator("keymark.export_library", icon="EXPORT")
+        column.operator("keymark.learn_library", icon="ACTION")
 
 
 def _draw_facts(

@@ -9,10 +9,12 @@ import bpy
 import gpu
 
 from ...core.errors import KeymarkError
+from ..shell.job_progress import job_is_running
 from . import candidates, mask, motion, timeline, tools
 
 DrawFunction = Callable[[bpy.types.Context], None]
 
+DRAGGING = "keymark.drag_joints"
 logger = logging.getLogger(__name__)
 
 
@@ -23,20 +25,21 @@ class Overlay:
     name: str  # as users see it
     draw: DrawFunction
     space: str  # of the editor, a class of `bpy.types`
+    correcting: bool = True  # whether it is drawn while joints are dragged, too
 
 
-def _in_both(name: str, draw: DrawFunction) -> tuple[Overlay, Overlay]:
+def _in_both(name: str, draw: DrawFunction, correcting: bool = True) -> tuple[Overlay, Overlay]:
     return (
-        Overlay(f"{name} in the Viewport", draw, "SpaceView3D"),
-        Overlay(f"{name} in the Clip Editor", draw, "SpaceClipEditor"),
+        Overlay(f"{name} in the Viewport", draw, "SpaceView3D", correcting),
+        Overlay(f"{name} in the Clip Editor", draw, "SpaceClipEditor", correcting),
     )
 
 
 OVERLAYS = (
     *_in_both("Masks", mask.draw),
     *_in_both("Ignored Regions", mask.draw_ignored),
-    *_in_both("Keypoints", motion.draw_keypoints),
-    *_in_both("Candidates", candidates.draw),
+    *_in_both("Keypoints", motion.draw_keypoints, correcting=False),
+    *_in_both("Candidates", candidates.draw, correcting=False),
     Overlay("Motion in the Viewport", motion.draw_viewport, "SpaceView3D"),
     Overlay("Motion in the Clip Editor", motion.draw_clip_editor, "SpaceClipEditor"),
     *_in_both("Floor Grid", tools.draw_floor_grid),
@@ -59,7 +62,7 @@ def guarded(overlay: Overlay) -> Callable[[], None]:
     """
 
     def handler() -> None:
-        if overlay in _failures:
+        if overlay in _failures or (not overlay.correcting and job_is_running(bpy.context, DRAGGING)):
             return
         gpu.state.blend_set("ALPHA")
         try:

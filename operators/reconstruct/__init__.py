@@ -1,3 +1,3 @@
-"""Step 5, the reconstruction: from keyframes and footage to the motion."""
+"""Step 4, the motion: from keyframes and footage to the motion."""
 
 MODULES = ("reconstruct", "panel")

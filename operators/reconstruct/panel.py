@@ -1,29 +1,44 @@
-"""Panel of the reconstruction."""
+"""The panel of the fourth step: the motion, and the review of it."""
 
 import bpy
 
-from ..shell.panel import TakePanel, draw_progress, draw_sentence
+from ..review.panel import draw_review
+from ..shell.panel import Popover, draw_progress, draw_sentence
 from ..shell.step_panel import StepPanel
-from ..shell.takes import active_take, find_take
+from ..shell.takes import active_take
 
 
 class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
-    """Reconstruction, and the Action on the actor."""
+    """Reconstruction, the Action on the actor, and how sure the motion is."""
 
-    bl_label = "Reconstruct"
+    bl_label = "Motion"
     step = "reconstruct"
+    options = "KEYMARK_PT_reconstruct_options"
 
-    def draw_step(self, context: bpy.types.Context) -> None:
-        take, column = active_take(context.scene), self.column()
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        believed = take.review.confidence
+        return f"{100.0 * believed:.0f} %" if believed >= 0.0 else ""
+
+    @classmethod
+    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+        return "keymark.reconstruct", "Reconstruct"
+
+    def draw_step(
+        self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup
+    ) -> None:
+        column = body.column()
         row = column.row()
         row.scale_y = 1.4
         if not draw_progress(row, context, "keymark.reconstruct"):
             row.operator("keymark.reconstruct", icon="ARMATURE_DATA")
-        column.prop(take, "method")
-        column.prop(take, "live_preview")
         if take.armature is not None and take.motion_action is not None:
-            actions = {"KEYFRAMES": take.keyframe_action, "MOTION": take.motion_action}
-            draw_shown_action(column, take, actions)
+            draw_shown_action(column, take, {"KEYFRAMES": take.keyframe_action, "MOTION": take.motion_action})
+        if len(take.notes):
+            text = "1 Note" if len(take.notes) == 1 else f"{len(take.notes)} Notes"
+            column.popover("KEYMARK_PT_reconstruct_notes", text=text, icon="INFO", translate=False)
+        if take.review.frame_count:
+            draw_review(column, context, take)
 
 
 def draw_shown_action(
@@ -39,19 +54,21 @@ def draw_shown_action(
         button.which = which
 
 
-class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_reconstruct_options(Popover, bpy.types.Panel):
+    """How the motion is made."""
+
+    bl_label = "Options of the Motion"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        take, column = active_take(context.scene), self.column()
+        column.prop(take, "method")
+        column.prop(take, "live_preview")
+
+
+class KEYMARK_PT_reconstruct_notes(Popover, bpy.types.Panel):
     """Notes of the last reconstruction."""
 
     bl_label = "Notes"
-    bl_parent_id = "KEYMARK_PT_reconstruct"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        take = find_take(context.scene)
-        return super().poll(context) and take is not None and len(take.notes) > 0
-
-    def draw_header(self, context: bpy.types.Context) -> None:
-        self.layout.label(text="", icon="INFO")
 
     def draw(self, context: bpy.types.Context) -> None:
         column = self.layout.column()
@@ -60,5 +77,5 @@ class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_PT_reconstruct, KEYMARK_PT_reconstruct_notes)
+    (KEYMARK_PT_reconstruct, KEYMARK_PT_reconstruct_options, KEYMARK_PT_reconstruct_notes)
 )

@@ -18,12 +18,59 @@ from ..shell.results import last_reconstruction, reading_of
 from ..shell.takes import active_take, footage_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ...core.progress import Job, Progress
-    from .live_preview import ReconstructionResult
+    from .live_preview import LivePreview, ReconstructionResult
 
 
 TIMES, READ, SOLVED = 0.05, 0.4, 0.97
 """Shares of the job at which the clip's times are read, its pictures, and the motion is found."""
+
+
+def reconstruct_take(
+    scene: bpy.types.Scene, show: "Callable[[LivePreview], None]"
+) -> "Job[ReconstructionResult]":
+    """Read the active take and reconstruct it, starting from the last reading and reconstruction.
+
+    `show` gets the preview, where the take wants one; the scene stays as it is.
+    """
+    from ...core.estimate.reconstruct import check_reconstructible, reconstruct
+    from ...core.review.review import review
+    from ...core.take.read_footage import read_footage
+    from ..bridge.take_from_scene import read_scene_take
+    from .live_preview import LivePreview, ReconstructionResult
+
+    settings = active_take(scene)
+    identifier, method, armature = settings.identifier, settings.method, settings.armature
+    watched, kept, earlier = settings.live_preview, reading_of(settings), last_reconstruction(settings)
+    evidence, known = scene_evidence(settings), known_matches(settings)
+    source, keys = footage_of(scene, settings), settings.keyframe_action
+    reading_scene = read_scene_take(source, armature, keys, evidence, known, kept)
+    take, notes = yield from stretch(reading_scene, 0.0, TIMES)
+    if take.reference is None or method != "map":
+        _check_enough(len(take.keyframes), notes)
+    check_reconstructible(take, method)
+    reading = yield from stretch(read_footage(take, kept), TIMES, READ)
+    frames = scene_frames(reading.tracks.time_s, take.frame_start, take.fps)
+    if watched:
+        show(LivePreview(scene, armature, frames))
+    result = yield from stretch(reconstruct(take, method, reading, earlier), READ, SOLVED)
+    judged = yield from stretch(review(take, result, frames), SOLVED, 1.0)
+    return ReconstructionResult(identifier, frames, result, judged, (*notes, *result.notes))
+
+
+def keep_reconstruction(
+    operator: bpy.types.Operator, scene: bpy.types.Scene, result: "ReconstructionResult"
+) -> str:
+    """Write the motion; the keyframes stay in their own Action. Returns a sentence on it."""
+    take = result.write(scene)
+    scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+    take.notes.clear()
+    for note in result.notes:
+        take.notes.add().text = warn(operator, note)
+    count = len(result.reconstruction.motion.keyframe_indices)
+    return f"Reconstructed {len(result.frames)} frames from {count} keyframes"
 
 
 class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
@@ -37,29 +84,10 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     """The running `LivePreview`; not named as type, since Blender evaluates annotations of its classes."""
 
     def start(self, scene: bpy.types.Scene) -> "Job[ReconstructionResult]":
-        """Read the scene's take and reconstruct it, starting from the last reading and reconstruction."""
-        from ...core.estimate.reconstruct import check_reconstructible, reconstruct
-        from ...core.review.review import review
-        from ...core.take.read_footage import read_footage
-        from ..bridge.take_from_scene import read_scene_take
-        from .live_preview import LivePreview, ReconstructionResult
+        def keep(preview: "LivePreview") -> None:
+            self.preview = preview
 
-        settings = active_take(scene)
-        identifier, method, armature = settings.identifier, settings.method, settings.armature
-        watched, kept, earlier = settings.live_preview, reading_of(settings), last_reconstruction(settings)
-        evidence, known = scene_evidence(settings), known_matches(settings)
-        source, keys = footage_of(scene, settings), settings.keyframe_action
-        reading_scene = read_scene_take(source, armature, keys, evidence, known, kept)
-        take, notes = yield from stretch(reading_scene, 0.0, TIMES)
-        if take.reference is None or method != "map":
-            _check_enough(len(take.keyframes), notes)
-        check_reconstructible(take, method)
-        reading = yield from stretch(read_footage(take, kept), TIMES, READ)
-        frames = scene_frames(reading.tracks.time_s, take.frame_start, take.fps)
-        self.preview = LivePreview(scene, armature, frames) if watched else None
-        result = yield from stretch(reconstruct(take, method, reading, earlier), READ, SOLVED)
-        judged = yield from stretch(review(take, result, frames), SOLVED, 1.0)
-        return ReconstructionResult(identifier, frames, result, judged, (*notes, *result.notes))
+        return (yield from reconstruct_take(scene, keep))
 
     def watch(self, progress: "Progress") -> None:
         if self.preview is not None and progress.preview is not None:
@@ -71,17 +99,8 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             self.preview = None
 
     def finish(self, scene: bpy.types.Scene, result: "ReconstructionResult") -> None:
-        """Write the result; the keyframes stay in their own Action."""
-        take = result.write(scene)
-        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-        take.notes.clear()
-        for note in result.notes:
-            take.notes.add().text = warn(self, note)
-        count = len(result.reconstruction.motion.keyframe_indices)
-        self.report(
-            {"INFO"},
-            f"Reconstructed {len(result.frames)} frames from {count} keyframes",
-        )
+        said = keep_reconstruction(self, scene, result)
+        self.report({"INFO"}, said)
 
 
 def _check_enough(count: int, notes: tuple[str, ...]) -> None:

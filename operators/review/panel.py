@@ -1,11 +1,10 @@
-"""Panels of the review: confidence, weak frames, and the overlay of the Timeline."""
+"""The review in the panel of the motion: confidence, and weak frames."""
 
 import bpy
 
 from ..follow.marker_properties import segment_title
 from ..shell.keyed_frames import is_posed
 from ..shell.panel import RowList, draw_sentence
-from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 
 
@@ -36,36 +35,25 @@ def reason_words(item: bpy.types.PropertyGroup) -> str:
     return f"{words}: {what}" if what else words
 
 
-class KEYMARK_PT_review(StepPanel, bpy.types.Panel):
-    """Confidence and weak frames."""
-
-    bl_label = "Review"
-    step = "review"
-
-    @classmethod
-    def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        believed = take.review.confidence
-        return f"{100.0 * believed:.0f} %" if believed >= 0.0 else ""
-
-    def draw_step(self, context: bpy.types.Context) -> None:
-        review, column = active_take(context.scene).review, self.column()
-        if review.frame_count == 0:
-            column.label(text="Reconstruct the motion first", icon="INFO")
-            return
-        if review.confidence >= 0.0:
-            words = f"Confidence {100.0 * review.confidence:.0f} %"
-            column.progress(factor=review.confidence, text=words, type="BAR")
-        if not len(review.weak_frames):
-            draw_sentence(column, context, "No frame needs another keyframe", "CHECKMARK")
-            return
-        column.label(text="Worth Another Keyframe")
-        column.template_list(
-            "KEYMARK_UL_weak_frames", "", review, "weak_frames", review, "active_weak_frame", rows=4
-        )
-        row = column.row(align=True)
-        row.operator("keymark.jump_to_weak_frame", text="", icon="TRIA_UP").direction = "PREVIOUS"
-        row.operator("keymark.pose_from_motion", icon="KEY_HLT").where = "WEAK"
-        row.operator("keymark.jump_to_weak_frame", text="", icon="TRIA_DOWN").direction = "NEXT"
+def draw_review(
+    column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Draw how sure the motion is, and the frames worth another keyframe."""
+    review = take.review
+    if review.confidence >= 0.0:
+        words = f"Confidence {100.0 * review.confidence:.0f} %"
+        column.progress(factor=review.confidence, text=words, type="BAR")
+    if not len(review.weak_frames):
+        draw_sentence(column, context, "No frame needs another keyframe", "CHECKMARK")
+        return
+    column.label(text="Worth Another Keyframe")
+    column.template_list(
+        "KEYMARK_UL_weak_frames", "", review, "weak_frames", review, "active_weak_frame", rows=4
+    )
+    row = column.row(align=True)
+    row.operator("keymark.jump_to_weak_frame", text="", icon="TRIA_UP").direction = "PREVIOUS"
+    row.operator("keymark.pose_from_motion", icon="KEY_HLT").where = "WEAK"
+    row.operator("keymark.jump_to_weak_frame", text="", icon="TRIA_DOWN").direction = "NEXT"
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_weak_frames, KEYMARK_PT_review))
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_weak_frames,))

@@ -11,7 +11,7 @@ import bpy
 from .contradictions import contradictions_at
 from .job_progress import job_is_running, steady_frame
 from .steps import is_open
-from .takes import active_take, find_take
+from .takes import find_take
 
 ROOMY_PX = 270.0
 """Width of a sidebar, at a UI scale of 1, in which names and values, or two buttons, fit side by side."""
@@ -37,6 +37,14 @@ class SubPanel(SidebarPanel):
     def column(self) -> bpy.types.UILayout:
         """The panel's column of properties."""
         return property_column(self.layout)
+
+
+class Popover(SubPanel):
+    """A panel that a button opens beside itself."""
+
+    bl_parent_id = ""
+    bl_options = {"INSTANCED"}
+    bl_ui_units_x = 14
 
 
 class TakePanel(SubPanel):
@@ -152,33 +160,11 @@ def draw_contradictions(
         draw_sentence(layout, context, said, "ERROR")
 
 
-# --- Bases of the panels inside What to Follow
-
-
-class FollowPanel(TakePanel):
-    """A panel inside What to Follow in the viewport's sidebar."""
-
-    bl_parent_id = "KEYMARK_PT_follow"
-
-
-class ClipFollowPanel:
-    """The same in the Movie Clip editor."""
-
-    bl_space_type = "CLIP_EDITOR"
-    bl_region_type = "UI"
-    bl_category = "Keymark"
-    bl_parent_id = "KEYMARK_PT_clip_follow"
-
-
-def draw_switch(layout: bpy.types.UILayout, context: bpy.types.Context, switch: str) -> None:
-    """Draw the switch of a kind of evidence."""
-    layout.prop(active_take(context.scene).follow, switch, text="")
-
-
 def draw_readout(layout: bpy.types.UILayout, text: str) -> None:
     """Draw what is seen in this frame, at the right end of a header, if it does not lie on the name there."""
     if not is_roomy(bpy.context) and len(text) > 7:
         return
     row = layout.row()
+    row.alignment = "RIGHT"
     row.active = False
     row.label(text=text, translate=False)

@@ -37,7 +37,7 @@ def actor(context: bpy.types.Context) -> str | None:
     """The take's actor is in the scene and can be edited."""
     take = find_take(context.scene)
     if take is not None and has_lost_actor(take):
-        return "Bring the deleted actor back first, in the step Actor"
+        return "Bring the deleted actor back first, in the step Performer"
     armature_object = present_actor(take) if take else None
     if armature_object is None:
         return "Build the actor first, or choose its armature"

@@ -1,4 +1,4 @@
-"""Base of the panels of the steps: a header that folds by itself, a summary in it, and the step's notices."""
+"""Base of the panels of the steps: one line, with the state and what to press, or open with all of it."""
 
 from abc import abstractmethod
 from typing import ClassVar
@@ -6,7 +6,7 @@ from typing import ClassVar
 import bpy
 
 from .notices import notices_of
-from .panel import TakePanel, draw_sentence, is_roomy, property_column
+from .panel import TakePanel, draw_progress, draw_sentence, is_roomy, property_column
 from .steps import is_behind
 from .takes import active_take
 
@@ -20,6 +20,7 @@ class StepPanel(TakePanel):
     bl_options = {"HIDE_HEADER"}
     bl_label: str
     step: ClassVar[str]  # a name of `steps.STEPS`
+    options: ClassVar[str] = ""  # the popover of what is rarely changed
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the header; where it is open, the notices and the step."""
@@ -28,12 +29,14 @@ class StepPanel(TakePanel):
         header.label(text=self.bl_label)
         self._draw_state(header, context, take)
         if body is None:
+            self._draw_action(header, context, take)
             return
-        column = body.column()
+        if self.options:
+            header.popover(self.options, text="", icon="PREFERENCES")
         for sentence in notices_of(take, self.step):
-            draw_sentence(column, context, sentence, "ERROR")
-        self._body = body
-        self.draw_step(context)
+            draw_sentence(body, context, sentence, "ERROR")
+        property_column(body)
+        self.draw_step(context, body, take)
 
     def _draw_state(
         self, header: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
@@ -46,18 +49,24 @@ class StepPanel(TakePanel):
         icon = "ERROR" if wrong else "CHECKMARK" if is_behind(take, self.step) else "NONE"
         state.label(text=self.summary(take) if is_roomy(context) else "", icon=icon, translate=False)
 
-    def column(self) -> bpy.types.UILayout:
-        """The step's column of properties."""
-        return property_column(self._body)
-
-    @property
-    def body(self) -> bpy.types.UILayout:
-        """The layout below the header."""
-        return self._body
+    def _draw_action(
+        self, header: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+    ) -> None:
+        """Draw what is next in a step that is folded, where it can be pressed; or that it runs."""
+        action, text = self.action(take)
+        if not action or draw_progress(header, context, action):
+            return
+        group, _, name = action.partition(".")
+        if getattr(getattr(bpy.ops, group), name).poll():
+            button = header.row()
+            button.alignment = "RIGHT"  # else it is cut before the rest of the line
+            button.operator(action, text=text if is_roomy(context) else "", icon="PLAY", translate=False)
 
     @abstractmethod
-    def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw the step."""
+    def draw_step(
+        self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup
+    ) -> None:
+        """Draw the step below its header, with properties in Blender's two columns."""
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
@@ -68,3 +77,8 @@ class StepPanel(TakePanel):
     def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
         """Whether something is wrong with the step that its body tells of."""
         return False
+
+    @classmethod
+    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+        """The operator that is next while the step is folded, and a short label; none by default."""
+        return "", ""

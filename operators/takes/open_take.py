@@ -99,7 +99,7 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
         if not properties.is_property_set("example"):
             return cls.__doc__ or ""
         shown = next(text for name, _, text in EXAMPLES if name == properties.example)
-        kept = cls.bl_rna.properties["copy"].description
+        kept = properties.bl_rna.properties["copy"].description
         return f"{shown}.\n{kept}"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:

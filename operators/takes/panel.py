@@ -7,7 +7,7 @@ from ..footage.camera_view import keep_beside_sidebar
 from ..library import registry
 from ..overlays.timeline import DOUBTED
 from ..shell.keyed_frames import doubtful_matches, is_posed, keyframes_of, matched_frames, unposed_proposals
-from ..shell.panel import RowList, SidebarPanel, draw_progress, draw_sentence, sentence_height
+from ..shell.panel import Popover, RowList, SidebarPanel, draw_progress, draw_sentence, sentence_height
 from ..shell.takes import find_take, has_lost_actor, placement_is_guess, present_actor
 from .upgrade import is_newer
 
@@ -40,19 +40,18 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
         if len(keyframes_of(take)) < 2:
             return "Next: pose and store keyframes"
         if doubtful_matches(take):
-            return "Next: check doubtful ones, reconstruct"
+            return "Next: check the doubtful poses"
         return "Next: reconstruct the motion"
     if (take.finish.action is None or take.finish.outdated) and is_doubtful(take):
         return _how_to_better(take)
-    if take.finish.action is None:
-        return "Next: review, then finish"
     if take.finish.outdated:
         return "Next: review, then bake again"
     if any(result.outdated for character in take.characters for result in character.results):
         return "Next: retarget the character again"
     if not any(result.action for character in take.characters for result in character.results):
-        return "Next: a character, or export"
-    return "Next: mark as asset, or export"
+        finished = take.finish.action is not None
+        return "Next: a character, or export" if finished else "Next: review, then a character"
+    return "Next: export, or another take"
 
 
 def is_doubtful(take: bpy.types.PropertyGroup) -> bool:
@@ -71,14 +70,12 @@ def _how_to_better(take: bpy.types.PropertyGroup) -> str:
 
 
 STEPS = (
-    ("FILE_MOVIE", "Footage: load the clip, say where the camera stood"),
-    ("TRACKER", "Follow: detected keypoints, or sleeves of five colors"),
-    ("OUTLINER_OB_ARMATURE", "Actor: enter the height, build the armature"),
-    ("KEY_HLT", "Keyframes: pose all, then correct the doubtful ones"),
-    ("ARMATURE_DATA", "Reconstruct: find every frame in between"),
-    ("OVERLAY", "Review: see where another keyframe helps"),
-    ("CHECKMARK", "Finish: bake, mark as asset, export"),
-    ("COMMUNITY", "Character: give the motion to your own rig"),
+    ("FILE_MOVIE", "Clip: load it, say where the camera stood"),
+    ("OUTLINER_OB_ARMATURE", "Performer: height, and what is followed"),
+    ("KEY_HLT", "Poses: pose all, then correct the doubtful ones"),
+    ("ARMATURE_DATA", "Motion: every frame in between, and its review"),
+    ("COMMUNITY", "Character: the motion on your own rig"),
+    ("EXPORT", "Export: final Action, asset, files"),
 )
 """Icon and label of each step."""
 
@@ -96,39 +93,31 @@ class KEYMARK_UL_takes(RowList, bpy.types.UIList):
             row.label(text="", icon="ERROR")
 
 
-class KEYMARK_MT_add_take(bpy.types.Menu):
-    """Ways to add a take."""
+class KEYMARK_MT_take(bpy.types.Menu):
+    """Ways to add a take, and to remove one."""
 
-    bl_label = "Add Take"
+    bl_label = "Takes"
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.operator("keymark.add_performer", icon="USER")
-        layout.operator("keymark.load_footage", icon="FILE_MOVIE").as_new_take = True
+        another = layout.operator("keymark.load_footage", text="Load Another Clip", icon="FILE_MOVIE")
+        another.as_new_take = True
         layout.menu("KEYMARK_MT_clips", icon="TRACKER")
         layout.operator("keymark.open_take", icon="FILE_FOLDER")
         layout.operator("keymark.open_example", icon="PLAY")
-
-
-class KEYMARK_MT_take_specials(bpy.types.Menu):
-    """Less frequent operators of takes."""
-
-    bl_label = "Take Specials"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout.separator()
+        layout.operator("keymark.remove_take", icon="REMOVE")
         entry = layout.operator("keymark.remove_take", text="Remove Take and Its Data", icon="TRASH")
         entry.delete_data = True
+        layout.separator()
         layout.popover("KEYMARK_PT_guide", icon="HELP")
 
 
-class KEYMARK_PT_guide(bpy.types.Panel):
-    """The steps from a video to an Action, one line each."""
+class KEYMARK_PT_guide(Popover, bpy.types.Panel):
+    """The steps from a video to a character, one line each."""
 
     bl_label = "How It Works"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_options = {"INSTANCED"}
     bl_ui_units_x = 16
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -141,6 +130,10 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
     """The takes, and the running job or the next step."""
 
     bl_label = "Keymark"
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        if find_take(context.scene) is not None:
+            self.layout.popover("KEYMARK_PT_overlays", text="", icon="OVERLAY")
 
     def draw(self, context: bpy.types.Context) -> None:
         registry.refresh_if_empty()
@@ -166,32 +159,34 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
 
 def _draw_beginning(layout: bpy.types.UILayout) -> None:
     """Draw what to begin with in an empty scene."""
+    row = layout.row()
+    row.scale_y = 2.4
+    row.operator("keymark.animate", icon="PLAY")
     column = layout.column()
     column.scale_y = 1.6
     column.operator("keymark.load_footage", icon="FILE_MOVIE")
     column.operator("keymark.open_take", icon="FILE_FOLDER")
     column.operator("keymark.open_example", icon="PLAY")
     column.popover("KEYMARK_PT_guide", icon="HELP")
+    elsewhere = layout.row(align=True)
+    elsewhere.operator("keymark.load_motion", icon="IMPORT")
+    elsewhere.operator("keymark.mend_motion", icon="MOD_SMOOTH")
     if bpy.data.movieclips:
         layout.menu("KEYMARK_MT_clips", icon="TRACKER")
 
 
 def _draw_takes(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """Draw the list of takes; a single take is one row."""
-    row = layout.row()
+    row = layout.row(align=len(settings.takes) == 1)
     if len(settings.takes) == 1:
-        buttons = row.row(align=True)
-        buttons.prop(settings.takes[0], "name", text="", icon="FILE_MOVIE")
+        row.prop(settings.takes[0], "name", text="", icon="FILE_MOVIE")
     else:
         row.template_list(
             "KEYMARK_UL_takes", "", settings, "takes", settings, "active_take", rows=3, maxrows=4
         )
-        buttons = row.column(align=True)
-    buttons.menu("KEYMARK_MT_add_take", text="", icon="ADD")
-    buttons.operator("keymark.remove_take", text="", icon="REMOVE")
-    buttons.menu("KEYMARK_MT_take_specials", text="", icon="DOWNARROW_HLT")
+    row.menu("KEYMARK_MT_take", text="", icon="DOWNARROW_HLT")
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_UL_takes, KEYMARK_MT_add_take, KEYMARK_MT_take_specials, KEYMARK_PT_guide, KEYMARK_PT_main)
+    (KEYMARK_UL_takes, KEYMARK_MT_take, KEYMARK_PT_guide, KEYMARK_PT_main)
 )

@@ -41,7 +41,7 @@ ROOMS = (
     ("operators.reconstruct",),
     ("operators.finish",),
     ("operators.character",),
-    ("operators.takes", "operators.cli"),
+    ("operators.takes", "operators.animate", "operators.cli"),
 )
 HEIGHTS = {room: height for height, rooms in enumerate(ROOMS) for room in rooms}
 

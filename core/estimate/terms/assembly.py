@@ -35,9 +35,8 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     step_s = clip.step_s[window.first : window.last - 1]
     pace = float(np.median(step_s)) / REFERENCE_STEP_S if len(step_s) else 1.0
     prior_depth = depths.evaluate(clip.body, clip.camera, clip.body.pose(state.prior), state.frame)
-    ankles = tuple(
-        ankle for ankle, leg in zip(_ankles(clip.body), LEGS, strict=True) if leg not in clip.unseen
-    )
+    seen = [leg not in clip.unseen for leg in LEGS]
+    ankles = tuple(ankle for ankle, own in zip(_ankles(clip.body), seen, strict=True) if own)
     evidence = clip.evidence
     terms: list[Term] = [
         _prior_term(clip, window, step_s),

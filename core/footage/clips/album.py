@@ -4,7 +4,7 @@ The estimate needs the pictures only after it knows roughly where the performer 
 Compressed pictures of that grid take some kilobytes each: ten minutes fit in memory.
 """
 
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Collection, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -35,6 +35,11 @@ class Album:
         _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 90])
         self._pictures[index] = packed
 
+    def without(self, indices: Collection[int]) -> None:
+        """Drop the pictures of some frames."""
+        for index in indices:
+            self._pictures.pop(index, None)
+
     def every(self, step: int) -> "Album":
         """The album of a clip that consists of every `step`-th frame, with indices of its own."""
         kept = {index // step: packed for index, packed in self._pictures.items() if index % step == 0}
@@ -58,21 +63,12 @@ class Album:
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """The concatenated compressed pictures, with their frames and end offsets."""
-        frames = sorted(self._pictures)
-        packed = [self._pictures[frame].ravel() for frame in frames]
-        return {
-            "factor": np.array(self.factor),
-            "frame": np.array(frames, dtype=np.int64),
-            "end": np.cumsum([len(one) for one in packed], dtype=np.int64),
-            "picture": np.concatenate([np.zeros(0, dtype=np.uint8), *packed]),
-        }
+        return {"factor": np.array(self.factor), **_packed(self._pictures)}
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Album":
         """The album that `to_arrays` gave."""
-        pictures = np.split(arrays["picture"], arrays["end"])
-        kept = dict(zip(arrays["frame"].tolist(), pictures, strict=False))  # after the last end is nothing
-        return cls(int(arrays["factor"]), kept)
+        return cls(int(arrays["factor"]), _unpacked(arrays))
 
     def __contains__(self, index: int) -> bool:
         return index in self._pictures
@@ -108,24 +104,88 @@ class Album:
         return image
 
 
+GLIMPSES, GLIMPSE_SIDE_PX = 8, 640
+"""Pictures that are kept, and their longer side: the pose network sees 256 pixels of a person."""
+
+
+@dataclass(eq=False)
+class Glimpses:
+    """Some pictures of a clip, evenly spread, in which people are to be recognized."""
+
+    width: int  # of the clip's pictures [px]
+    _pictures: dict[int, Image]
+
+    @classmethod
+    def of(cls, clip: Clip) -> "Glimpses":
+        """Those of a clip that is about to be read."""
+        count = min(GLIMPSES, clip.frame_count)
+        middles = (np.arange(count) + 0.5) * clip.frame_count / count  # not the ends, which may be empty
+        return cls(clip.size[0], {int(frame): np.zeros(0, dtype=np.uint8) for frame in middles})
+
+    def add(self, index: int, image: Image) -> None:
+        """Keep a frame (rows, columns, 3) if it is one of them."""
+        if index not in self._pictures:
+            return
+        scale = min(1.0, GLIMPSE_SIDE_PX / max(image.shape[:2]))
+        small = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+        self._pictures[index] = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 90])[1].ravel()
+
+    @property
+    def frames(self) -> list[int]:
+        """The frames that were kept."""
+        return sorted(index for index, packed in self._pictures.items() if len(packed))
+
+    def picture(self, index: int) -> tuple[Image, float]:
+        """A picture (rows, columns, 3), and how many pixels of the clip one of its is along either axis."""
+        image = np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8)
+        return image, self.width / image.shape[1]
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """The concatenated compressed pictures, with their frames and end offsets."""
+        return {"width": np.array(self.width), **_packed(self._pictures)}
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Glimpses":
+        """Those that `to_arrays` gave."""
+        return cls(int(arrays["width"]), _unpacked(arrays))
+
+
+def _packed(pictures: Mapping[int, Image]) -> dict[str, NDArray[Any]]:
+    frames = sorted(pictures)
+    packed = [pictures[frame].ravel() for frame in frames]
+    return {
+        "frame": np.array(frames, dtype=np.int64),
+        "end": np.cumsum([len(one) for one in packed], dtype=np.int64),
+        "picture": np.concatenate([np.zeros(0, dtype=np.uint8), *packed]),
+    }
+
+
+def _unpacked(arrays: Mapping[str, NDArray[Any]]) -> dict[int, Image]:
+    pictures = np.split(arrays["picture"], arrays["end"])
+    return dict(zip(arrays["frame"].tolist(), pictures, strict=False))  # after the last end is nothing
+
+
 @dataclass(frozen=True, kw_only=True)
 class _WatchedClip(Clip):
-    """A clip that passes every frame to checks and album before yielding it."""
+    """A clip that passes every frame to checks, album and glimpses before yielding it."""
 
     checks: FrameChecks
     album: Album | None
+    glimpses: Glimpses
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
         """See `Clip.frames`; blank ones are not kept in the album."""
         for index, time_s, image in self.source.frames():
-            if self.checks.add(index, image) and self.album is not None:
-                self.album.add(index, image)
+            if self.checks.add(index, image):
+                self.glimpses.add(index, image)
+                if self.album is not None:
+                    self.album.add(index, image)
             yield index, time_s, image
 
 
-def watch_clip(clip: Clip, checks: FrameChecks, album: Album | None) -> Clip:
-    """The clip with checks, and an album to fill, that run while its frames are read in order."""
-    return _WatchedClip(clip.path, clip.source, checks=checks, album=album)
+def watch_clip(clip: Clip, checks: FrameChecks, album: Album | None, glimpses: Glimpses) -> Clip:
+    """The clip with checks, an album and glimpses to fill, that run while its frames are read in order."""
+    return _WatchedClip(clip.path, clip.source, checks=checks, album=album, glimpses=glimpses)
 
 
 TAIL_PERCENT = 2.0  # share of the changes at either edge that are not the performer's

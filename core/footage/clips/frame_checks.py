@@ -1,7 +1,8 @@
 """Checks of a video's header and of its frames while they are read: blank ones, cuts, and interlacing."""
 
 import re
-from collections.abc import Sequence
+import struct
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -88,6 +89,56 @@ def _movie_box(path: Path) -> bytes:
     return b""
 
 
+def trimmed_s(path: Path) -> float | None:
+    """The time [s] that a trimmed video shows of all its pictures; None where it shows them all.
+
+    Phones trim MP4 and QuickTime by an edit list alone (ISO/IEC 14496-12, 8.6.6): the pictures before and
+    after stay in the file, are counted by it, and are never shown.
+    """
+    try:
+        movie = list(_boxes(_movie_box(path)))
+        clock, _ = _timing(dict(movie)[b"mvhd"])
+        for track in (dict(_boxes(content)) for kind, content in movie if kind == b"trak"):
+            media = dict(_boxes(track[b"mdia"]))
+            if media[b"hdlr"][8:12] != b"vide":
+                continue
+            edits = dict(_boxes(track.get(b"edts", b""))).get(b"elst", b"")
+            rate, whole = _timing(media[b"mdhd"])
+            shown = sum(_edits(edits)) / clock
+            # A frame or two at the ends are left out by encoders, whose first pictures come late.
+            return shown if 0.0 < shown < whole / rate - 0.1 else None
+    except (OSError, KeyError, struct.error, ZeroDivisionError):
+        pass
+    return None
+
+
+def _boxes(data: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """Types and contents of the boxes in a box."""
+    at = 0
+    while at + 8 <= len(data):
+        size = int.from_bytes(data[at : at + 4], "big")
+        if size < 8:
+            return
+        yield data[at + 4 : at + 8], data[at + 8 : at + size]
+        at += size
+
+
+def _timing(header: bytes) -> tuple[int, int]:
+    """Time scale and duration in a header of a movie or a track's media."""
+    form, at = (">IQ", 20) if header[:1] == b"\x01" else (">II", 12)
+    scale, duration = struct.unpack_from(form, header, at)
+    return int(scale), int(duration)
+
+
+def _edits(content: bytes) -> Iterator[int]:
+    """Durations of the edits that show something, on the movie's clock."""
+    form = ">QqI" if content[:1] == b"\x01" else ">IiI"
+    count = struct.unpack_from(">I", content, 4)[0] if content else 0
+    for number in range(min(count, 1000)):
+        duration, begins, _ = struct.unpack_from(form, content, 8 + number * struct.calcsize(form))
+        yield duration if begins >= 0 else 0
+
+
 @dataclass(frozen=True)
 class FrameFindings:
     """Findings of the frame checks of a clip."""
@@ -96,6 +147,7 @@ class FrameFindings:
     blank: tuple[int, ...] = ()  # indices of blank frames, in order
     cuts: tuple[int, ...] = ()  # indices of frames after a cut
     interlaced: bool = False  # whether each picture consists of two fields
+    repeated: tuple[int, ...] = ()  # indices of frames whose picture is that of the frame before
 
     def notes(self, first: int) -> tuple[str, ...]:
         """The findings as sentences; the clip's first frame has the number `first`."""
@@ -110,6 +162,12 @@ class FrameFindings:
                 "the clip is interlaced: each picture shows two moments, so that moving things are "
                 "torn and keyframes are less exact; convert it first, as with ffmpeg -i CLIP -vf "
                 "bwdif=mode=send_frame"
+            )
+        if self.repeated:
+            notes.append(
+                f"{len(self.repeated)} of {self.frames} pictures repeat the one before "
+                f"({_ranges(self.repeated, first)}), as where a clip was saved at a higher frame rate; each "
+                "counts once, and the motion goes on in between"
             )
         if self.cuts:
             notes.append(
@@ -132,6 +190,7 @@ class FrameChecks:
         self._combed: list[tuple[float, float]] = []
         self._last: Image | None = None
         self._changes: dict[int, float] = {}
+        self._moved: dict[int, float] = {}
 
     def add(self, index: int, image: Image) -> bool:
         """Look at a frame (rows, columns, 3); tell whether anything is to be seen in it."""
@@ -145,7 +204,9 @@ class FrameChecks:
         if index % 15 == 0:
             self._combed.append(combed_shares(image))
         if self._last is not None:
-            self._changes[index] = float(np.median(cv2.absdiff(small, self._last)))
+            change = cv2.absdiff(small, self._last)
+            self._changes[index] = float(np.median(change))
+            self._moved[index] = float(change.mean())
         self._last = small
         return True
 
@@ -157,7 +218,7 @@ class FrameChecks:
         rows, columns = np.mean(self._combed, axis=0) if self._combed else (0.0, 0.0)
         # Sixteen progressive clips stay below 1.2e-4 and a ratio of three, three interlaced ones have 1e-2.
         interlaced = bool(rows > 5e-4 and rows > 10.0 * columns)
-        return FrameFindings(self._frames, tuple(self._blank), cuts, interlaced)
+        return FrameFindings(self._frames, tuple(self._blank), cuts, interlaced, _repeated(self._moved))
 
     def nothing_seen(self) -> str | None:
         """The reason why no marker can be found in the clip; None without one."""
@@ -166,6 +227,29 @@ class FrameChecks:
         if self._color < 10:  # levels, after compression
             return "the clip has no colors, by which markers are found; it must be filmed in color"
         return None
+
+
+STOPS = 6.0
+"""How many times smaller the change of a repeated picture is than those before and after it: it is what
+compression leaves. Whoever comes to rest slows down over several frames."""
+MOST_REPEATS = 10  # frames in a row; for longer there is nothing to be seen
+LEAST_CHANGE = 0.15  # levels, in the mean of the picture, from which anything moves
+
+
+def _repeated(moved: Mapping[int, float]) -> tuple[int, ...]:
+    """Frames in which nothing moves all at once, between such in which it does."""
+    found: list[int] = []
+    run: list[int] = []
+    before = 0.0  # change of the last frame that was none of the run's
+    for index, change in moved.items():
+        if run and change > STOPS * max(moved[one] for one in run):
+            found += run if change > LEAST_CHANGE and len(run) <= MOST_REPEATS else []
+            run, before = [], change
+        elif change * STOPS < before and (run or before > LEAST_CHANGE):
+            run.append(index)
+        else:
+            run, before = [], change
+    return tuple(found)
 
 
 def _colorfulness(image: Image) -> int:

@@ -11,7 +11,7 @@ import numpy as np
 from ...arrays import Image
 from ...errors import InputError
 from .container import check_container, check_pixels, fill_last_rows, opencv_silence
-from .frame_checks import video_notes
+from .frame_checks import trimmed_s, video_notes
 
 FRAMES_PER_SEEK = 125  # mean cost of seeking: half of the usual 250 frames between video keyframes
 LONGEST_PAUSE_S = 3600.0  # longest step between valid time stamps
@@ -29,6 +29,7 @@ class VideoFile:
     size: tuple[int, int]  # width and height in pixels, after the rotation that the file asks for
     fps: float  # nominal frames per second
     frame_count: int  # number of frames according to the file, at least 1
+    is_trimmed: bool  # whether it holds pictures that it does not show, as a clip trimmed on a phone
     notes: tuple[str, ...]  # sentences on faults of the file
 
     def __init__(self, path: Path) -> None:
@@ -47,6 +48,10 @@ class VideoFile:
             fps = float(capture.get(cv2.CAP_PROP_FPS))
             self.fps = fps if 0.0 < fps < 2000.0 else 24.0
             claimed = capture.get(cv2.CAP_PROP_FRAME_COUNT)
+            shown_s = trimmed_s(path)
+            self.is_trimmed = shown_s is not None
+            if shown_s is not None:
+                claimed = min(claimed, max(1.0, round(shown_s * self.fps)))
             self.notes = video_notes(path, capture)
         most = path.stat().st_size // 8  # bytes a frame bound what a header may claim
         self.frame_count = int(min(claimed, most)) if np.isfinite(claimed) else 0

@@ -1,14 +1,17 @@
 """What a detector saw, held against the clip: frames, picture size, scores, and what was seen at all."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ...arrays import Array, BoolArray
 from ...errors import InputError
+from .continuity import repeated_results
 from .detected_frames import DetectedFrames, DetectedPerson, check_points
 from .frame_folder import MOST_FRAMES, Alignment, align_listed, align_numbered
 from .keypoints import People, SeenPeople, confidences
+from .stated_frames import numbers_by_time
 
 
 def held_against_clip(
@@ -31,10 +34,15 @@ def held_against_clip(
             f"{detected.where}: nobody is seen in any of its {len(detected.people)} frames; "
             "it must show a person"
         )
+    if detected.time_s is not None and not detected.numbered:
+        numbers = numbers_by_time(detected.time_s, fps, frame_count)
+        if numbers is not None:
+            by_number = dict(zip(numbers, detected.people.values(), strict=True))
+            detected = replace(detected, people=by_number, numbered=True)
     aligned = _aligned(detected, frame_count, fps, frame_start)
     everyone, notes = _everyone(detected, size)
     points, first = len(detected.layout.numbers), 0
-    nobody = SeenPeople(np.zeros((0, points, 2)), np.zeros((0, points)), np.zeros((0, points, 3)))
+    nobody = SeenPeople.nobody(points)
     frames = [nobody] * aligned.frame_count
     for number, people in detected.people.items():
         rows = np.arange(first, first + len(people))
@@ -45,11 +53,32 @@ def held_against_clip(
             frames[index] = SeenPeople(everyone.pixel[rows], everyone.score[rows], everyone.hint_m[rows])
     if not any(len(frame.pixel) for frame in frames):
         raise InputError(f"{detected.where}: nobody is seen in any frame of the clip; it must show a person")
+    again = [] if detected.by_hand else repeated_results(frames)
+    for index in again:
+        frames[index] = nobody
+    notes += _repeat_notes(detected.where, frames, len(again))
     # The file's name alone: notes go into results, which are the same in any folder.
     name = Path(detected.where).name or detected.where
     notes = tuple(note.replace(detected.where, name) for note in aligned.notes + notes)
     seen = (detected.layout.names, detected.source, size, tuple(frames))
     return People(*seen, file=detected.where, by_hand=detected.by_hand, notes=notes)
+
+
+def _repeat_notes(where: str, frames: list[SeenPeople], repeated: int) -> tuple[str, ...]:
+    """A sentence on results that repeat the one before; one result alone is no motion."""
+    if not repeated:
+        return ()
+    there = sum(len(frame.pixel) > 0 for frame in frames)
+    if there == 1:
+        raise InputError(
+            f"{where}: has the same result in each of its {repeated + 1} frames with people, as of a program "
+            "that is stuck; it must have one for every frame"
+        )
+    note = (
+        f"{where}: {repeated} of {there + repeated} results repeat the one before, as of a program that "
+        "looks at some frames only; each counts once"
+    )
+    return (note,)
 
 
 def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeople, tuple[str, ...]]:
@@ -77,7 +106,10 @@ def _aligned(
 ) -> Alignment:
     where = detected.where
     if detected.numbered:
-        aligned = align_numbered(detected.people, frame_count, frame_start, where, detected.complete)
+        first = None
+        if detected.time_s is not None and fps is not None:  # times count from the clip's first frame
+            first = round(float(np.median(np.array(list(detected.people)) - fps * detected.time_s)))
+        aligned = align_numbered(detected.people, frame_count, frame_start, where, detected.complete, first)
     else:
         rates, why = None, ""
         if fps is not None and detected.fps is not None and abs(detected.fps - fps) > 0.01 * fps:
@@ -112,12 +144,12 @@ def _aligned(
 
 def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tuple[Array, tuple[str, ...]]:
     """(2,) clip pixels per unit of the places; only whole pictures are scaled."""
-    known = place[np.isfinite(place)]
+    known = place[np.isfinite(place) & place.any(axis=-1, keepdims=True)]
     # Guesses outside 0 to 1 are the exception.
-    if detected.shares and (not len(known) or np.median(np.abs(known)) <= 2.0):
-        return np.array(size, dtype=np.float64), ()
+    shares = detected.shares and (not len(known) or np.median(np.abs(known)) <= 2.0)
+    unit = np.array(size, dtype=np.float64) if shares else np.ones(2)
     if detected.size in (None, size):
-        return np.ones(2), ()
+        return unit, ()
     assert detected.size is not None
     (width, height), (clip_width, clip_height) = detected.size, size
     # The height that fits the other's width may differ by the rounding of both.
@@ -128,6 +160,8 @@ def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tup
             f"{detected.where}: size is {[width, height]}, that of the clip is {list(size)}{turned}; the "
             "proportions must be the same, so the keypoints must be found again in this clip"
         )
+    if shares:
+        return unit, ()
     note = (
         f"{detected.where}: was found in pictures of {width} x {height}; scaled to the clip's "
         f"{clip_width} x {clip_height}"

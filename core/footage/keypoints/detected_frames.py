@@ -42,6 +42,7 @@ class DetectedFrames:
     shares: bool = False
     """Whether places are shares of the picture's width and height, as MediaPipe writes them."""
     fps: float | None = None  # frames per second, where the file says
+    time_s: Array | None = None  # (E,) times of the entries from the clip's first frame, where the file says
     frame_start: int | None = None  # scene frame of the first entry, where the file says
     by_hand: bool = False  # as in `People`
 

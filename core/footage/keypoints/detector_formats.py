@@ -1,7 +1,8 @@
-"""Detectors' JSON: frames of OpenPose (rtmlib, Pose2Sim, Sports2D), files of COCO, MMPose and MediaPipe."""
+"""Detectors' JSON: OpenPose (rtmlib, Pose2Sim, Sports2D, pose nodes), COCO, MMPose and MediaPipe."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,11 @@ from .detected_frames import (
     person_array,
     same_layout,
 )
-from .layouts import HAND_POINTS, LAYOUTS, Layout
+from .layouts import HAND_POINTS, LAYOUTS, Layout, with_hands
+from .stated_frames import stated_frames
 
 BODY, HANDS = "pose_keypoints_2d", ("hand_left_keypoints_2d", "hand_right_keypoints_2d")
+OLD = "_2d"  # what names of lists did not end with before OpenPose 1.1
 
 
 def is_openpose_frame(value: Any) -> bool:
@@ -37,7 +40,7 @@ def openpose_people(value: Any, where: str) -> list[tuple[DetectedPerson, int]]:
     people = []
     for index, entry in enumerate(value["people"]):
         spot = f"{where}: people[{index}]"
-        lists = {name: [] if entry.get(name) is None else entry[name] for name in (BODY, *HANDS)}
+        lists = {name: _list(entry, name) for name in (BODY, *HANDS)}
         body = points = _points(lists[BODY], f"{spot}.{BODY}")
         if not len(body):  # only a hand or a face was found
             continue
@@ -49,12 +52,92 @@ def openpose_people(value: Any, where: str) -> list[tuple[DetectedPerson, int]]:
     return people
 
 
+def _list(person: Mapping[str, Any], name: str) -> Any:
+    found = person.get(name)
+    found = person.get(name.removesuffix(OLD)) if found is None else found
+    return [] if found is None else found
+
+
+def bodiless(values: Iterable[Any]) -> str:
+    """What people of OpenPose's frames have instead of a body, as a sentence; empty without people."""
+    fields = {name for value in values for person in value["people"] for name, own in person.items() if own}
+    return f"its people have {shown(sorted(map(str, fields)))} and no {BODY}" if fields else ""
+
+
 def _points(numbers: Any, spot: str) -> Array:
     """(N, 3) x, y and score of every point, from one list of all numbers."""
     flat = person_array(numbers, (-1,), FARTHEST_PX, spot)
     if len(flat) % 3:
         raise InputError(f"{spot} has {len(flat)} numbers; it must have x, y and score of every point")
     return flat.reshape(-1, 3)
+
+
+def _is_openpose_list(value: Any) -> bool:
+    frames = _entries(value)
+    return bool(frames) and is_openpose_frame(next((frame for frame in frames if frame is not None), None))
+
+
+def _read_openpose_list(value: Any, where: str, source: str) -> DetectedFrames:
+    """Read a list of frames, or an object with one as `frames`, as pose nodes of image generators save it."""
+    layout: Layout | None = None
+    frames, canvas = _entries(value), set()
+    everyone = []
+    for index, frame in enumerate(frames):
+        spot = f"{where}: [{index}]"
+        if frame is not None and not is_openpose_frame(frame):
+            raise InputError(f"{spot} is {shown(frame)}; it must be a frame of OpenPose with people, or null")
+        check_people(0 if frame is None else len(frame["people"]), f"{spot}.people")
+        found = [] if frame is None else openpose_people(frame, spot)
+        for _, points in found:
+            layout = same_layout(layout, points, spot)
+        everyone.append([person for person, _ in found])
+        canvas |= {_canvas(frame, spot)} if frame is not None and found else set()
+    if layout is None:
+        why = bodiless(frame for frame in frames if frame is not None)
+        raise InputError(f"{where}: {why or f'nobody is seen in any of its {len(frames)} frames'}")
+    if len(canvas) > 1:
+        raise InputError(f"{where}: canvas_width and canvas_height change; they must be those of one clip")
+    longest = max(len(person.place) for people in everyone for person in people)
+    if longest > layout.count:
+        layout = with_hands(layout)
+        everyone = [[as_long(person, longest) for person in people] for people in everyone]
+    people = [tuple(people) for people in everyone]
+    return by_stated_frames(
+        DetectedFrames(where, source, layout, dict(enumerate(people)), False, size=canvas.pop(), shares=True),
+        frames,
+    )
+
+
+def by_stated_frames(listed: DetectedFrames, entries: list[Any]) -> DetectedFrames:
+    """The same, each entry at the frame that it says it is of, where all say that."""
+    stated = stated_frames(entries)
+    if stated is None:
+        return listed
+    people = dict(zip(stated.numbers, listed.people.values(), strict=True))
+    return replace(listed, people=people, numbered=stated.numbered, complete=False, time_s=stated.time_s)
+
+
+def _canvas(frame: Mapping[str, Any], spot: str) -> tuple[int, int] | None:
+    size = frame.get("canvas_width"), frame.get("canvas_height")
+    if size == (None, None):
+        return None
+    width, height = (side if type(side) is int and 0 < side <= 65536 else 0 for side in size)
+    if not (width and height):
+        said = f"{spot}: canvas_width and canvas_height are {shown(list(size))}"
+        raise InputError(f"{said}; they must be whole pixels")
+    return width, height
+
+
+def as_long(person: DetectedPerson, points: int) -> DetectedPerson:
+    """A person with so many points, of which those that are added are not seen."""
+    added = (0, points - len(person.place))
+    return DetectedPerson(np.pad(person.place, (added, (0, 0))), np.pad(person.score, added))
+
+
+def _entries(value: Any) -> list[Any]:
+    """The frames of a list, or of an object with one; empty where there are none."""
+    frames = value.get("frames") if isinstance(value, dict) else value
+    return frames if isinstance(frames, list) else []
 
 
 # --- COCO's result files, as AlphaPose and others write them
@@ -200,7 +283,8 @@ def _read_mediapipe(value: Any, where: str, source: str) -> DetectedFrames:
     """Read a list of frames, or an object with one as `frames`."""
     frames = value["frames"] if isinstance(value, dict) else value
     people = {index: _people(frame, f"{where}: [{index}]") for index, frame in enumerate(frames)}
-    return DetectedFrames(where, source, LAYOUT, people, numbered=False, shares=True)
+    listed = DetectedFrames(where, source, LAYOUT, people, numbered=False, shares=True)
+    return by_stated_frames(listed, frames)
 
 
 def _people(frame: Any, spot: str) -> tuple[DetectedPerson, ...]:
@@ -266,5 +350,10 @@ def _scores(landmarks: list[Any], spot: str) -> Array:
     return person_array(rows, (LAYOUT.count,), FARTHEST_PX, f"{spot} (visibility)")
 
 
-FORMATS = ((_is_mmpose, _read_mmpose), (_is_coco, _read_coco), (_is_mediapipe, _read_mediapipe))
+FORMATS = (
+    (_is_mmpose, _read_mmpose),
+    (_is_coco, _read_coco),
+    (_is_openpose_list, _read_openpose_list),
+    (_is_mediapipe, _read_mediapipe),
+)
 """How a file of all frames is known, and its reader of (value, where, source), the name of what saw them."""

@@ -7,13 +7,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ...errors import InputError, pluralize
 from ...files.json_file import read_json_value, shown
 from ...files.paths import check_symlinks
 from .detected_frames import DetectedFrames, DetectedPerson, check_people, check_points, same_layout
-from .detector_formats import BODY, instance_people, is_instances, is_openpose_frame, openpose_people
+from .detector_formats import (
+    BODY,
+    as_long,
+    bodiless,
+    instance_people,
+    is_instances,
+    is_openpose_frame,
+    openpose_people,
+)
 from .layouts import Layout, with_hands
 
 MOST_FRAMES = 10**6
@@ -49,14 +55,22 @@ def align_listed(count: int, frame_count: int | None, where: str, why: str = "")
 
 
 def align_numbered(
-    numbers: Collection[int], frame_count: int | None, frame_start: int, where: str, complete: bool
+    numbers: Collection[int],
+    frame_count: int | None,
+    frame_start: int,
+    where: str,
+    complete: bool,
+    first: int | None = None,
 ) -> Alignment:
     """Align frames that carry numbers, which count from 0, from 1, from the scene's first frame or otherwise.
 
-    `complete` says whether frames in which nobody was seen have a number too.
+    `complete` says whether frames in which nobody was seen have a number too, `first` which number the clip's
+    first frame has by the entries' times.
     """
     lowest, highest = min(numbers), max(numbers)
     bases = sorted({0, 1, frame_start})
+    if first is not None and frame_count is not None and first <= lowest and highest < first + frame_count:
+        return Alignment(first, frame_count)
     if frame_count is None:
         return _without_clip(lowest, highest, bases, where)
     length = highest - lowest + 1
@@ -142,9 +156,12 @@ def read_frame_folder(folder: Path) -> DetectedFrames:
     check_symlinks(files.values(), [folder])
     layout: Layout | None = None
     people: dict[int, tuple[DetectedPerson, ...]] = {}
-    total = longest = 0
+    total, longest, instead = 0, 0, ""
     for number, path in sorted(files.items()):
-        found = _people(read_json_value(path, LARGEST_FILE_BYTES), str(path))
+        value = read_json_value(path, LARGEST_FILE_BYTES)
+        found = _people(value, str(path))
+        if not found and not instead and is_openpose_frame(value):
+            instead = bodiless([value])
         for person, points in found:
             layout = same_layout(layout, points, str(path))
             longest = max(longest, len(person.place))
@@ -152,10 +169,11 @@ def read_frame_folder(folder: Path) -> DetectedFrames:
             check_points(total, str(folder))  # before the next file is read
         people[number] = tuple(person for person, _ in found)
     if layout is None:
-        raise InputError(f"{folder}: nobody is seen in any of its {len(files)} files; one must show a person")
+        nobody = f"nobody is seen in any of its {len(files)} files; one must show a person"
+        raise InputError(f"{folder}: {instead or nobody}")
     if longest > layout.count:
         layout = with_hands(layout)
-        people = {at: tuple(_as_long(person, longest) for person in there) for at, there in people.items()}
+        people = {at: tuple(as_long(person, longest) for person in there) for at, there in people.items()}
     return DetectedFrames(str(folder), folder.name or str(folder), layout, people, numbered=True)
 
 
@@ -171,12 +189,6 @@ def _people(value: Any, where: str) -> list[tuple[DetectedPerson, int]]:
         f'{where}: holds {shown(value)}; it must be a frame of OpenPose, {{"people": [{{"{BODY}": '
         "[x, y, score, ...]}, ...]}, or of MMPose"
     )
-
-
-def _as_long(person: DetectedPerson, points: int) -> DetectedPerson:
-    """A person with so many points, of which those that are added are not seen."""
-    added = (0, points - len(person.place))
-    return DetectedPerson(np.pad(person.place, (added, (0, 0))), np.pad(person.score, added))
 
 
 def _numbered_files(folder: Path) -> dict[int, Path]:

@@ -4,8 +4,8 @@ The principal points of the skeleton, and what detectors add: face, spine, hands
 the performer's own.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -144,6 +144,11 @@ class SeenPeople:
     score: Array  # (H, N) 0 to 1, 0 where not seen
     hint_m: Array  # (H, N, 3) as in `Keypoints`
 
+    @classmethod
+    def nobody(cls, points: int) -> "SeenPeople":
+        """No person at all, H = 0, by a source of so many points."""
+        return cls(np.zeros((0, points, 2)), np.zeros((0, points)), np.zeros((0, points, 3)))
+
 
 @dataclass(frozen=True, eq=False)
 class People:
@@ -157,6 +162,8 @@ class People:
     by_hand: bool = False
     """Whether a person placed the points: clicks and Blender's tracks, which are all the performer's."""
     notes: tuple[str, ...] = ()  # sentences on what was taken for granted or mended
+    looked: Mapping[int, bool] = field(default_factory=dict)
+    """Frames in which the picture was asked, and whether it shows somebody where these people are."""
 
     @property
     def most_people(self) -> int:

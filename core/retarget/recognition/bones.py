@@ -184,7 +184,8 @@ def _limb_before(
     if np.isfinite(tail).all():
         gap = np.linalg.norm(tail - head[bone], axis=1)
         meeting = np.flatnonzero(limb & ~other & (gap < NEAR_PLACE * size) & (np.arange(len(way)) != above))
-        return int(meeting[np.argmin(gap[meeting])]) if len(meeting) else above
+        if len(meeting) or above >= 0:
+            return int(meeting[np.argmin(gap[meeting])]) if len(meeting) else above
     onward = []
     for end in np.flatnonzero(limb & hangs & leaf & ~other & (parent >= 0)):
         came, goes = head[end] - head[parent[end]], head[bone] - head[end]

@@ -16,7 +16,7 @@ from ..maps.presets import Preset, find_preset
 from .bones import candidate_bones
 from .facing import Facing, find_facing, find_root
 from .figure import Figure, best_figure
-from .names import CLEAR
+from .names import CLEAR, read_name
 from .symmetry import Frame, find_frames
 
 AGREED, NAMED, UNSEEN, PLACED, AGAINST = 0.99, 0.95, 0.9, 0.7, 0.6
@@ -281,7 +281,10 @@ def _why_no_character(figure: Figure) -> str:
     hip, ankle = places[limbs["thigh"]], places[limbs["foot"]]
     leg = max(float(np.linalg.norm(ankle - hip)), 1e-9)
     if figure.upright < LEAST_UPRIGHT or (hip[2] - ankle[2]) / leg < LEAST_LEG_DOWN:
-        return "its trunk does not stand upright on its legs, like an animal's"
+        # An animal's forelegs reach the ground; a body that only lies or hangs is none.
+        hand = places[limbs.get("hand", limbs["forearm"]), 2]
+        like = ", like an animal's" if hand - ankle[2] < 0.5 * leg else ""
+        return "its trunk does not stand upright on its legs" + like
     if (places[limbs.get("hand", limbs["forearm"]), 2] - ankle[2]) / leg < HANDS_ABOVE:
         return "its hands are as low as its feet, like an animal's"
     readings = figure.frame.bones.readings
@@ -308,6 +311,15 @@ def _refusal(character: Character, frame: Frame | None, reason: str) -> InputErr
         return InputError(f"{name} has {missing}; {VALID}, so complete the rig or choose another")
     if [part for part in LIMB_WORDS if not sides[part]] == ["foot"]:
         return InputError(f"{name} has legs without feet; {VALID}, so complete the rig or choose another")
+    feet = [
+        bone.name for bone in character.bones if bone.parent < 0 and read_name(bone.name).clear_part == "foot"
+    ]
+    if feet:
+        names = " and ".join(shown(foot) for foot in feet)
+        return InputError(
+            f"{name} is not recognized as a character: the feet {names} have no parent, and no leg is found "
+            f"that they end; {VALID}, so give each foot its shin as a parent or name the bones in a map"
+        )
     if reason:
         return InputError(f"{name} is not recognized as a character: {reason}; {VALID}")
     return InputError(f"{name} has no pair of legs and pair of arms on one trunk; {VALID}")

@@ -31,7 +31,8 @@ def count_frames(clip: Clip, findings: Findings) -> int:
     """Number of frames of a clip, as far as known without decoding it."""
     if isinstance(clip.source, ImageSequence):
         findings.warn(*clip.source.notes)
-    packets = read_packets(clip.path) if isinstance(clip.source, VideoFile) else None
+    video = isinstance(clip.source, VideoFile) and not clip.source.is_trimmed
+    packets = read_packets(clip.path) if video else None
     if packets is None:
         return clip.frame_count
     held = len(packets.time_s)

@@ -9,12 +9,14 @@ from ...estimate.reconstruct import check_method
 from ...files.fields import PLACED, Fields, child_location
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
+from ...footage.pose_network import PoseNetwork
 from ...pipeline.convert import take_to_convert
+from ...pipeline.place import is_detected, is_unplaced, take_to_place
 from ...posing.posing_input import check_followed
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import METHODS, NO_SETTINGS, CharacterSettings, ConversionSettings
 from ...take.description import Description
-from ...take.evidence import CONTOURS, KEYPOINTS, MARKERS
+from ...take.evidence import CONTOURS, KEYPOINTS, MARKERS, in_order
 from ...take.take import Take, evidence_of
 from ...take.take_file import read_described
 from ..discovery import ShootTake
@@ -71,6 +73,7 @@ SECONDS_FOR_CONTOURS, SECONDS_FOR_WIDE_CONTOURS = 0.006, 0.009
 SECONDS_A_MEGAPIXEL = 0.012
 """Decoding and following the markers."""
 SECONDS_TO_POSE = 0.1
+SECONDS_TO_DETECT = 0.1
 BYTES_A_TAKE = 1_800_000
 BYTES_A_FRAME = 5_000
 
@@ -167,21 +170,27 @@ def check_take(
     if take is not None and clip is not None and frames is not None:
         with findings.catching():
             check_method(take, settings.method or METHODS[0])
-        if settings.library is not None:
+        if is_detected(description, settings):
+            with findings.catching():
+                PoseNetwork()
+        elif settings.library is not None:
             with findings.catching():
                 check_followed(take)
         check_keyframes(take, frames, settings.library is not None, findings)
         keypoints = check_keypoints(take, frames, findings)
         markers = check_footage(take, clip, frames, findings)
-        if evidence_of(take) == (CONTOURS,) and not findings.problems:
+        if _evidence(take, description, settings) == (CONTOURS,) and not findings.problems:
             findings.warn(CONTOURS_ALONE)
-    check = _checked(found.name, findings, clip, frames, take, settings)
+    evidence = () if take is None else _evidence(take, description, settings)
+    check = _checked(found.name, findings, clip, frames, take, settings, evidence)
     return replace(check, markers=markers, keypoints=keypoints)
 
 
 def _read(description: Description, settings: ConversionSettings, findings: Findings) -> Take | None:
     """Read the take as its conversion will; without keyframes and keypoints where one is unusable."""
     with findings.catching():
+        if is_unplaced(description, settings):
+            return take_to_place(description, settings)[0]
         return take_to_convert(description, settings)
     with findings.catching():
         without = replace(settings, keypoints=())
@@ -191,6 +200,12 @@ def _read(description: Description, settings: ConversionSettings, findings: Find
     return None
 
 
+def _evidence(take: Take, description: Description, settings: ConversionSettings) -> tuple[str, ...]:
+    """What the take's motion will be held against, keypoints that its conversion detects among it."""
+    detected = (KEYPOINTS,) * is_detected(description, settings)
+    return in_order((*evidence_of(take), *detected))
+
+
 def _checked(
     name: str,
     findings: Findings,
@@ -198,10 +213,13 @@ def _checked(
     frames: int | None,
     take: Take | None,
     settings: ConversionSettings,
+    evidence: tuple[str, ...],
 ) -> TakeCheck:
-    cost, evidence = None, () if take is None else evidence_of(take)
+    cost = None
     if clip is not None and frames is not None and not findings.problems:
         cost = estimate_cost(frames, clip.size, settings.method or METHODS[0], settings.library, evidence)
+        if take is not None and KEYPOINTS in evidence and not take.keypoints:
+            cost = replace(cost, seconds=cost.seconds + SECONDS_TO_DETECT * frames)
     fps = None if take is None else take.fps
     return TakeCheck(
         name=name,

@@ -8,12 +8,8 @@ import cv2
 import numpy as np
 
 from ....core.arrays import Image
-from ....core.body.human import HUMAN
-from ....core.progress import run, within
 from ....core.report.stick_figure import thumbnail
-from ....core.take.motion import Motion
-from ..actor_lengths import read_body
-from ..rig import motion_frames, read_rig, read_values, shown_postures
+from ..rig import shown_motion
 
 
 @dataclass(frozen=True)
@@ -58,16 +54,4 @@ def action_picture(
     scene: bpy.types.Scene, armature_object: bpy.types.Object, action: bpy.types.Action
 ) -> Image:
     """A small picture of the motion an Action holds for an actor, (256, 256, 3) blue, green, red."""
-    body = read_body(armature_object, HUMAN)
-    rig = read_rig(armature_object, body)
-    every = motion_frames(armature_object, action, body)
-    frames = every[np.unique(np.linspace(0, len(every) - 1, 25).astype(np.intp))]
-    values = run(within("Reading the motion", read_values(armature_object, action, rig, frames), 0.0, 1.0))
-    posture = shown_postures(armature_object, rig, rig.pose(values), body)
-    points = body.points(body.pose(posture))
-    unknown = np.full((*points.shape, 3), np.nan)
-    rate = scene.render.fps / scene.render.fps_base
-    motion = Motion(
-        body, rate, int(frames[0]), (frames - frames[0]) / rate, posture, points, unknown, (), "interpolation"
-    )
-    return thumbnail(motion)
+    return thumbnail(shown_motion(scene, armature_object, action, most_frames=25))

@@ -19,7 +19,7 @@ from ..actor_lengths import read_body
 from ..blend_files import check_blend, one_line
 from ..footage import set_scene_range
 from ..result_files import set_look
-from ..rig import motion_frames, read_rig, read_values, shown_postures
+from ..rig import present_frames, read_rig, read_values, shown_postures
 from ..rotation_modes import ALL_PATHS, bone_path
 from ..scene_frames import scene_frames
 
@@ -36,16 +36,19 @@ def read_source(
     Raises:
         InputError: The armature is not an actor's, or the Action holds no motion of it.
     """
+    from ....core.take.presence import BRIDGED_S
+
     body = read_body(armature_object, HUMAN)
     keyed = _keyed_extremities(armature_object, action)
     rig = read_rig(armature_object, body, keyed)
-    frames = motion_frames(armature_object, action, body)
+    scene = next(iter(armature_object.users_scene), bpy.context.scene)
+    rate = scene.render.fps / scene.render.fps_base
+    frames = present_frames(armature_object, action, body, BRIDGED_S * rate)
     reading = read_values(armature_object, action, rig, frames)
     values = yield from within("Reading the motion", reading, 0.0, READ)
     shown = rig.pose(values)
     posture = shown_postures(armature_object, rig, shown, body)
     yield Progress("Reading the motion", SEEN)
-    scene = next(iter(armature_object.users_scene), bpy.context.scene)
     time_s = (frames - frames[0]) * scene.render.fps_base / scene.render.fps
     natural = natural_extremities(body, posture, time_s).without(keyed)
     turns = {name: _turn(rig, shown, name) for name in keyed}

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -16,8 +17,14 @@ from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.mended_armature import ArmaturePoints, Poses, mended_poses
 from ....core.retarget.solve.foot_shape import rest_floor_m
 from ....core.retarget.solve.rest_body import RestBody
+from ....core.take.motion import Motion
 from ..actions import assign_action, channelbag_for
+from ..armature import build_armature
+from ..blend_files import own_scene
 from ..character.read_character import read_character
+from ..character.source import show_result
+from ..export_formats import write_bvh
+from ..fcurves import write_motion
 from ..keys import add_generated_keys, set_posed_keys
 from ..rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
 from .read_poses import action_frames, animated_action, posed_frames, read_poses
@@ -229,3 +236,30 @@ def _farthest_m(armature_object: bpy.types.Object, action: bpy.types.Action, fou
         float(np.linalg.norm(shown[name][:, :3, 3] - found.poses[name][looked, :3, 3], axis=-1).max())
         for name in found.poses
     )
+
+
+# --- A mended motion on Keymark's own armature
+
+
+def write_actor_bvh(motion: Motion, path: Path) -> None:
+    """Write a motion as a BVH, from a scene of its own.
+
+    Raises:
+        ConversionError: Blender's exporter failed.
+    """
+    with own_scene("Mended Motion") as scene:
+        frames = show_result(scene, None, motion)
+        actor = build_armature(scene, motion.body, "Actor")
+        write_motion(actor, motion, frames=np.asarray(frames))
+        write_bvh(actor, path)
+
+
+def add_actor(
+    scene: bpy.types.Scene, motion: Motion, name: str, first: int | None = None
+) -> bpy.types.Object:
+    """Add an actor with a motion to a scene, which keeps its rate; it begins at `first` or its own frame."""
+    actor = build_armature(scene, motion.body, name)
+    rate = scene.render.fps / scene.render.fps_base
+    frames = (motion.frame_start if first is None else first) + motion.time_s * rate
+    write_motion(actor, motion, frames=np.asarray(frames)).name = f"{name} Motion"
+    return actor

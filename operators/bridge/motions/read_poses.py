@@ -10,19 +10,20 @@ from ....core.arrays import Array
 from ....core.body.skeleton import SIDES
 from ....core.errors import InputError
 from ....core.finish.mend_motion import MOST_FRAMES
-from ....core.progress import Part
+from ....core.progress import Part, run
 from ....core.retarget.character import ARM, LEG
 from ....core.retarget.controls.control_spaces import unscaled
 from ....core.retarget.maps.character_map import CharacterMap, RoleBones
 from ....core.retarget.maps.map_registry import ChosenMap, choose_map
-from ....core.retarget.mended_armature import Poses
+from ....core.retarget.mended_armature import ArmaturePoints, Poses
 from ....core.retarget.retarget_record import RECOGNIZED
+from ....core.retarget.solve.rest_body import RestBody
 from ....core.take.conversion_settings import AUTO
 from ..actions import existing_channelbag
 from ..actor_bones import is_actor
 from ..character.read_character import read_character
 from ..keys import animator_frames, generated_frames
-from ..object_space import evaluated, object_space
+from ..object_space import evaluated, joint_places, object_space
 from ..rotation_modes import ALL_PATHS, bone_path
 from ..scene_frames import at_scene_frame, showing_action
 
@@ -156,3 +157,26 @@ def read_poses(
             "keys that are no numbers"
         )
     return {name: paths[:, number] for number, name in enumerate(bones)}, np.array(objects)
+
+
+def joint_paths(armature_object: bpy.types.Object) -> tuple[Array, float]:
+    """(F, 13, 3) the principal points over the frames of an armature's scene [m], and their rate.
+
+    Raises:
+        InputError: It has no Action, or is no person's.
+    """
+    scene = next(iter(armature_object.users_scene), bpy.context.scene)
+    frames = np.arange(scene.frame_start, scene.frame_end + 1, dtype=np.float64)
+    rate = scene.render.fps / scene.render.fps_base
+    if is_actor(armature_object):
+        places = []
+        with at_scene_frame(scene) as go_to:
+            for frame in frames:
+                go_to(frame)
+                places.append(joint_places(armature_object))
+        return np.array(places), rate
+    character_map = motion_map(armature_object, ()).character_map
+    points = ArmaturePoints.of(RestBody.of(read_character(armature_object), character_map))
+    bones = tuple(dict.fromkeys(points.bones))
+    poses, _ = run(read_poses(armature_object, animated_action(armature_object), frames, bones))
+    return points.of_poses(poses), rate

@@ -4,6 +4,7 @@ The file of a command is imported where it is run, or asked for its own help: wh
 """
 
 SUMMARIES = {
+    "animate": "go from a clip and the performer's height to a motion, and onto a character",
     "convert": "convert a take to motion.json, motion.blend, motion.bvh and pictures",
     "new": "describe a folder of clips: write its shoot.json",
     "check": "look through a shoot before it is converted",

@@ -24,7 +24,7 @@ def convert_command(arguments: argparse.Namespace) -> None:
         description = describe(take_path(arguments.take))
         settings = _settings(arguments, description)
         conversion = convert_take(description, arguments.output, console, settings, arguments.debug)
-        console.finish(conversion_summary(conversion), _text(conversion))
+        console.finish(conversion_summary(conversion), conversion_text(conversion))
 
 
 def conversion_summary(conversion: Conversion) -> dict[str, Any]:
@@ -62,7 +62,8 @@ def _settings(arguments: argparse.Namespace, description: Description) -> Conver
     return settings if given.library is None else replace(settings, keyframes=given.keyframes)
 
 
-def _text(conversion: Conversion) -> str:
+def conversion_text(conversion: Conversion) -> str:
+    """The result of a conversion in words."""
     motion = conversion.reconstruction.motion
     notes = [f"Note: {note}." for note in conversion.notes]
     count = f"{len(motion.keyframe_indices)} keyframes"

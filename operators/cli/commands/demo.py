@@ -1,6 +1,7 @@
-"""`keymark demo`: convert the demonstration take with and without its markers, and score both motions."""
+"""`keymark demo`: the demonstration takes converted with and without markers, animated, and scored."""
 
 import argparse
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -15,17 +16,21 @@ from ....core.review.score import Score, read_truth, score_points
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings, ConversionSettings
 from ....core.take.description import describe
 from ....core.take.evidence import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
-from ....core.take.examples import AEROBIC, POSED_BY_HAND, example_folder
+from ....core.take.examples import AEROBIC, GREETING, POSED_BY_HAND, example_folder
 from ....core.take.motion import Motion
 from ....core.take.take import Take
 from ..console import arguments_console
 from ..conversion.convert_take import convert_take
 from ..parser import Command, argument, require_blender
+from .animate import HEIGHT, bare_clip_fields
 from .convert import conversion_summary
 
 MARKED = (MARKERS, CONTOURS)
 UNMARKED = (KEYPOINTS, DEPTH_HINTS, CONTOURS)
 UNMARKED_FOLDER = "without_markers"
+ANIMATED_FOLDER = "animated"
+GREETING_M = 1.71
+"""Height of the performer of the clip in plain clothes."""
 CHARACTER_FILE = "human.blend"
 COLUMNS = {"mpjpe": "all", "rooted": "about hips", "depth": "in depth", "image": "across", "jitter": "jitter"}
 
@@ -36,24 +41,34 @@ def demo_command(arguments: argparse.Namespace) -> None:
     require_blender("the demonstration needs")
     with arguments_console(arguments) as console, tempfile.TemporaryDirectory() as folder:
         console.announce(
-            "The demonstration, four seconds of video, is converted in four steps: about half a minute."
+            "The demonstration, twice four seconds of video, takes five steps and about a minute."
         )
-        console.announce("Step 1 of 4: a character is generated, Rigify's basic human.")
+        console.announce("Step 1 of 5: a character is generated, Rigify's basic human.")
         console.stage("Generating a character")
         character, missing = _character(Path(folder))
         settings = ConversionSettings(demo / POSED_BY_HAND, evidence=MARKED, character=character)
         console.announce(
-            "Step 2 of 4: the take is converted, by its markers and contours, and put on the character."
+            "Step 2 of 5: the take is converted, by its markers and contours, and put on the character."
         )
         done = convert_take(describe(demo), arguments.output, console, settings, arguments.debug)
-        console.announce("Step 3 of 4: the same by the paper's filter, to compare.")
+        console.announce("Step 3 of 5: the same by the paper's filter, to compare.")
         console.stage("Trying the paper's filter")
         filtered = run(reconstruct(done.take, "ekf", done.reconstruction.reading))
-        console.announce("Step 4 of 4: the take is converted without its markers, by keypoints and contours.")
+        console.announce("Step 4 of 5: the take is converted without its markers, by keypoints and contours.")
         output: Path = arguments.output
         unmarked_settings = ConversionSettings(demo / POSED_BY_HAND, evidence=UNMARKED)
         unmarked = convert_take(
             describe(demo), output / UNMARKED_FOLDER, console, unmarked_settings, arguments.debug
+        )
+        bare = Path(folder) / "greeting.mp4"
+        shutil.copyfile(example_folder(GREETING) / "clip.mp4", bare)
+        console.announce(
+            "Step 5 of 5: a clip in plain clothes is animated from nothing but the performer's height."
+        )
+        description = describe(bare, bare_clip_fields(GREETING_M), HEIGHT)
+        bare_settings = description.settings.with_defaults(ConversionSettings(character=character))
+        animated = convert_take(
+            description, output / ANIMATED_FOLDER, console, bare_settings, arguments.debug
         )
         scores = {
             "interpolation": _score(done.take, done.reconstruction.interpolation),
@@ -73,9 +88,15 @@ def demo_command(arguments: argparse.Namespace) -> None:
             f"Open in Blender: {output / BLEND}",
             missing or f"On a character: {output / CHARACTER_BLEND} (Rigify's basic human)",
             f"Without markers: {output / UNMARKED_FOLDER / BLEND}",
+            f"Animated from clip and height: {_best(output / ANIMATED_FOLDER, character)}",
+            *(f"  {finding}" for finding in animated.notes[:4]),
             f"Pictures:        {output / REPORT}",
         ]
         console.finish(result, "\n".join(lines))
+
+
+def _best(folder: Path, character: CharacterSettings | None) -> Path:
+    return folder / (BLEND if character is None else CHARACTER_BLEND)
 
 
 def _character(folder: Path) -> tuple[CharacterSettings | None, str]:
@@ -109,7 +130,7 @@ LONGEST_S = 300.0
 
 
 def write_demo_character(file: Path) -> None:
-    """Generate the rig with a simple body into a .blend."""
+    """Generate the rig with the shipped skin into a .blend."""
     import bpy
 
     program = bpy.app.binary_path

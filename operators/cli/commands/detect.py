@@ -157,6 +157,8 @@ def _detect(footage: Footage, network: PoseNetwork, console: Console, first: flo
 
 def _single(path: Path) -> Footage | None:
     """The one clip or take that a path names; None for a shoot."""
+    if path.name in ("", ".."):  # the file beside it is named after the folder
+        path = Path(os.path.abspath(path))
     is_take = path.is_dir() and (path / TAKE_FILE).is_file()
     is_clip = (path.suffix.lower() in VIDEOS and path.is_file()) or _is_sequence(path)
     return _footage(ShootTake(path.name, path)) if is_take or is_clip else None

@@ -4,7 +4,7 @@ import argparse
 import re
 from pathlib import Path
 
-from ....core.errors import ConversionError, InputError
+from ....core.errors import InputError
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import absolute_path, real_path
 from ....core.finish.mend_motion import Mended, MendOptions, mend_motion
@@ -27,11 +27,17 @@ from ....core.take.reference import REFERENCE_ENDINGS, read_reference
 from ..blender_silence import blender_silence
 from ..console import Console, arguments_console
 from ..conversion.blender_files import hidden_files, refuse_unsupported_output
-from ..conversion.character_result import EXPORTS, silenced, write_character_result
+from ..conversion.character_result import (
+    EXPORTS,
+    FORMAT,
+    check_exporters,
+    export_formats,
+    silenced,
+    write_character_result,
+)
 from ..library_search_path import library_folders
-from ..options import CHARACTER_HELP, MAP_HELP, RETARGET_OPTIONS, output
+from ..options import CHARACTER_HELP, MAP_HELP, RETARGET_OPTIONS, character_options, output
 from ..parser import Command, UsageError, argument, require_blender
-from .retarget import chosen_formats, chosen_options
 
 FILES = (MOTION, BVH, CHARACTER_BLEND, RETARGET, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
 USUAL_RATE = 30.0
@@ -43,8 +49,8 @@ def mend_command(arguments: argparse.Namespace) -> None:
     settings = None
     if arguments.character:
         character = CharacterFile.parse(arguments.character)
-        settings = CharacterSettings(character, arguments.map, chosen_options(arguments))
-    formats = chosen_formats(arguments.format)
+        settings = CharacterSettings(character, arguments.map, character_options(arguments))
+    formats = export_formats(arguments.format)
     posed = _posed(arguments.posed)
     file = _motion_file(arguments.motion)
     folder: Path = arguments.output
@@ -66,7 +72,7 @@ def mend_command(arguments: argparse.Namespace) -> None:
             console.stage("Writing the motion")
             write_motion(motion, staging / MOTION)
             with blender_silence(arguments.debug):
-                from ...bridge.motions.write_actor import write_actor_bvh
+                from ...bridge.motions.mend_action import write_actor_bvh
 
                 write_actor_bvh(motion, staging / BVH)
             if settings is not None:
@@ -124,13 +130,10 @@ def _mend_armature(
     console.stage("Reading the motion")
     with blender_silence(debug):
         from ...bridge.blend_files import own_scene, showing_scene
-        from ...bridge.character.import_character import missing_exporter, write_character_files
+        from ...bridge.character.import_character import write_character_files
         from ...bridge.motions.import_motion import import_motion
         from ...bridge.motions.mend_action import mend_action, write_mended
-    for word in own[2] if own is not None else ():
-        why = missing_exporter(EXPORTS[word][0])
-        if why:
-            raise ConversionError(f"--format {word} cannot be written: {why[:1].lower()}{why[1:]}")
+    check_exporters(own[2] if own is not None else ())
     with own_scene("Motion") as scene, showing_scene(scene):
         with blender_silence(debug):
             imported, chosen = import_motion(file, scene, library_folders())
@@ -170,7 +173,7 @@ def _onto_character(
         (staging, real_path(folder)),
         console,
         arguments.debug,
-        chosen_formats(arguments.format),
+        export_formats(arguments.format),
         picture=False,
     )
     return (*record.doubts, *record.notes)
@@ -233,12 +236,7 @@ MEND = Command(
             help="frames a second of points whose file does not tell (default: 30)",
         ),
         argument("--no-floor", action="store_true", help="leave the motion at its height"),
-        argument(
-            "--format",
-            metavar=",".join(EXPORTS),
-            default="",
-            help="further files of the character with its motion, separated by commas",
-        ),
+        FORMAT,
         *RETARGET_OPTIONS,
     ),
     run=mend_command,

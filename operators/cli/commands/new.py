@@ -73,7 +73,8 @@ def _summary(survey: ClipSurvey, output: Path, todo: Sequence[str]) -> dict[str,
 def _text(folder: Path, survey: ClipSurvey, output: Path, todo: Sequence[str]) -> str:
     lines = [*clip_lines(survey), *evidence_lines(survey), "", f"{output} describes them. Now fill in"]
     lines += [f"  {field_path}" for field_path in todo]
-    lines.append("and correct the lens, which is a guess; the comment beside each field says how.")
+    camera = "and correct the lens, which is a guess; the" if survey.any_posed else "The"
+    lines.append(f"{camera} comment beside each field says how.")
     return "\n".join([*lines, f"Then run: {program_name()} check {folder}"])
 
 

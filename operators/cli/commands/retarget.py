@@ -5,8 +5,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from ....core.errors import ConversionError, InputError
-from ....core.files.fields import listed
+from ....core.errors import InputError
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import absolute_path, real_path
 from ....core.pipeline.result import (
@@ -21,18 +20,19 @@ from ....core.pipeline.result import (
 )
 from ....core.retarget.retarget_record import RECORD_FILE, RetargetRecord, read_retarget_record
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
-from ....core.take.conversion_settings import (
-    LARGEST_TOLERANCE_MM,
-    CharacterFile,
-    CharacterOptions,
-    CharacterSettings,
-)
+from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.motion import read_motion
 from ..console import Console, arguments_console
 from ..conversion.blender_files import refuse_unsupported_output
-from ..conversion.character_result import EXPORTS, write_character_result
-from ..options import CHARACTER_HELP, MAP_HELP, RETARGET_OPTIONS, output
-from ..parser import Command, UsageError, argument, require_blender
+from ..conversion.character_result import (
+    EXPORTS,
+    FORMAT,
+    check_exporters,
+    export_formats,
+    write_character_result,
+)
+from ..options import CHARACTER_HELP, MAP_HELP, RETARGET_OPTIONS, character_options, output
+from ..parser import Command, argument, require_blender
 
 RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
 FIGURES = {
@@ -49,9 +49,9 @@ def retarget_command(arguments: argparse.Namespace) -> None:
     """Put the motion that the command line names onto a character, and list the files that were made."""
     require_blender("a character needs")
     settings = CharacterSettings(
-        CharacterFile.parse(arguments.character), arguments.map, chosen_options(arguments)
+        CharacterFile.parse(arguments.character), arguments.map, character_options(arguments)
     )
-    formats = chosen_formats(arguments.format)
+    formats = export_formats(arguments.format)
     motion_file, blend = _source(arguments.motion)
     output: Path = arguments.output
     refuse_unsupported_output(output)
@@ -73,16 +73,12 @@ def _retarget(
     console: Console,
     debug: bool,
 ) -> tuple[RetargetRecord, list[Path], tuple[str, ...]]:
-    from ...bridge.character.import_character import missing_exporter
     from ...bridge.character.source import show_result
 
     motion_file, blend = source
     console.stage("Reading the motion")
     motion = read_motion(motion_file)
-    for word in formats:  # what this Blender cannot write is refused before the work
-        why = missing_exporter(EXPORTS[word][0])
-        if why:
-            raise ConversionError(f"--format {word} cannot be written: {why[:1].lower()}{why[1:]}")
+    check_exporters(formats)
     kept: dict[str, str] = {}
     with output_folder(output, (*RESULT_FILES, AS_MADE), RECORD_FILE, kept) as staging_folder:
         record = write_character_result(
@@ -104,48 +100,6 @@ def _retarget(
         files = [output / name for name in (*made, RECORD_FILE)]
     notes = (*record.notes, *(kept_note(*names) for names in kept.items()))
     return record, files, notes
-
-
-def chosen_options(arguments: argparse.Namespace) -> CharacterOptions:
-    """How the command line wants a motion on a character."""
-    usual = CharacterOptions()
-    return CharacterOptions(
-        root_motion=arguments.root_motion,
-        place=arguments.place,
-        arms=arguments.arms or arguments.limbs or usual.arms,
-        legs=arguments.legs or arguments.limbs or usual.legs,
-        plant_feet=not arguments.no_plant_feet,
-        reach_hands=not arguments.no_reach_hands,
-        tolerance_mm=_tolerance_mm(arguments.tolerance),
-    )
-
-
-def _tolerance_mm(text: str) -> float:
-    if text.strip().lower() == "none":
-        return 0.0
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0.0 < value <= LARGEST_TOLERANCE_MM:
-        raise UsageError(
-            f"--tolerance is {text}; millimeters above 0 and up to {LARGEST_TOLERANCE_MM:g} are valid, "
-            "or none for a key on every frame"
-        )
-    return value
-
-
-def chosen_formats(text: str) -> tuple[str, ...]:
-    """The words of `EXPORTS` that a text names.
-
-    Raises:
-        UsageError: It names others.
-    """
-    words = [word.strip().lower() for word in text.split(",") if word.strip()]
-    unknown = [word for word in words if word not in EXPORTS]
-    if unknown:
-        raise UsageError(f"--format is {text}; {listed(EXPORTS)} are valid, with commas between them")
-    return tuple(dict.fromkeys(words))
 
 
 def _source(path: Path) -> tuple[Path, Path | None]:
@@ -190,12 +144,7 @@ RETARGET = Command(
         argument("--character", "-c", metavar="FILE[:OBJECT]", required=True, help=CHARACTER_HELP),
         argument("--map", metavar="TITLE|FILE|auto|none", default="auto", help=MAP_HELP),
         *output("DIR", "folder for the result, new or old"),
-        argument(
-            "--format",
-            metavar=",".join(EXPORTS),
-            default="",
-            help="further files of the character with its motion, separated by commas",
-        ),
+        FORMAT,
         *RETARGET_OPTIONS,
     ),
     run=retarget_command,

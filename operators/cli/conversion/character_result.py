@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from ....core.body.kinematics import SegmentMotion, segment_motion
-from ....core.errors import InputError, KeymarkError, describe_unexpected
+from ....core.errors import ConversionError, InputError, KeymarkError, describe_unexpected
 from ....core.files.digest import content_digest
+from ....core.files.fields import listed
 from ....core.files.paths import regular_file_size
 from ....core.finish.natural_extremities import natural_extremities
 from ....core.pipeline.result import CHARACTER_BLEND, CHARACTER_PICTURE
@@ -29,7 +30,7 @@ from ....core.take.presence import named_limbs
 from ..blender_silence import blender_silence
 from ..console import Console
 from ..library_search_path import library_folders
-from ..parser import version
+from ..parser import UsageError, argument, version
 from .blender_files import hidden_files
 
 if TYPE_CHECKING:
@@ -44,9 +45,34 @@ EXPORTS = {"bvh": ("BVH", "character.bvh"), "fbx": ("FBX", "character.fbx")}
 EXPORTS |= {"glb": ("GLTF", "character.glb"), "usd": ("USD", "character.usdc")}
 EXPORTS |= {"trc": ("TRC", "character.trc"), "c3d": ("C3D", "character.c3d")}
 """By the word for it: the format of `bridge/export_formats`, and the file."""
+FORMAT = argument(
+    "--format",
+    metavar=",".join(EXPORTS),
+    default="",
+    help="further files of the character with its motion, separated by commas",
+)
 Result = TypeVar("Result")
 ShowFootage = Callable[["bpy.types.Scene", Motion], "Array"]
 """Puts camera, clip, rate and range into a scene and returns the motion's scene frames (F,)."""
+
+
+def export_formats(text: str) -> tuple[str, ...]:
+    """The words of `EXPORTS` in a text, separated by commas."""
+    words = [word.strip().lower() for word in text.split(",") if word.strip()]
+    unknown = [word for word in words if word not in EXPORTS]
+    if unknown:
+        raise UsageError(f"--format is {text}; {listed(EXPORTS)} are valid, with commas between them")
+    return tuple(dict.fromkeys(words))
+
+
+def check_exporters(formats: tuple[str, ...]) -> None:
+    """Refuse, before the work, formats that this Blender cannot write."""
+    from ...bridge.character.import_character import missing_exporter
+
+    for word in formats:
+        why = missing_exporter(EXPORTS[word][0])
+        if why:
+            raise ConversionError(f"--format {word} cannot be written: {why[:1].lower()}{why[1:]}")
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,21 +3,20 @@
 from dataclasses import replace
 from pathlib import Path
 
-from ....core.estimate.reconstruct import check_method
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
-from ....core.pipeline.convert import find_and_reconstruct, take_to_convert
+from ....core.pipeline.convert import convert
 from ....core.pipeline.result import (
-    AS_MADE,
     BLEND,
     CHARACTER_BLEND,
     REPORT,
-    RESULT_FILES,
     Conversion,
     finish_result,
+    own_files,
     refuse_own_folder,
     write_made_digests,
     write_motion_files,
+    write_take_files,
 )
 from ....core.prior.library import library_digest
 from ....core.progress import run
@@ -27,8 +26,9 @@ from ....core.retarget.maps.map_registry import map_digests
 from ....core.review.frame_evidence import compare_keypoints
 from ....core.take.conversion_digest import conversion_digest
 from ....core.take.conversion_record import RECORD_FILE, is_up_to_date
-from ....core.take.conversion_settings import METHODS, ConversionSettings
+from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description
+from ....core.take.reference import ReferenceMotion
 from ....core.take.steady_camera import followed_camera
 from ..blender_silence import blender_silence
 from ..console import Console
@@ -44,13 +44,14 @@ def convert_take(
     console: Console,
     settings: ConversionSettings,
     debug: bool = False,
+    formats: tuple[str, ...] = (),
 ) -> Conversion:
     """Convert a take; `output` changes only when all results are complete.
 
     Where keyframes are found, only posed ones that the settings name count beside them. `debug` lets
-    Blender's messages through.
+    Blender's messages through; `formats` are words of `EXPORTS`, further files of the character.
     """
-    made = convert_if_changed(description, output, console, settings, debug, again=True)
+    made = convert_if_changed(description, output, console, settings, debug, True, formats)
     assert made is not None
     return made
 
@@ -62,6 +63,7 @@ def convert_if_changed(
     settings: ConversionSettings,
     debug: bool = False,
     again: bool = False,
+    formats: tuple[str, ...] = (),
 ) -> Conversion | None:
     """Convert a take as `convert_take` does, but return None where `output` holds the result already.
 
@@ -72,7 +74,8 @@ def convert_if_changed(
     require_blender("writing motion.blend needs")
     refuse_unsupported_paths(description, output)
     character, kept_names = settings.character, dict[str, str]()
-    with output_folder(output, (*RESULT_FILES, AS_MADE), RECORD_FILE, kept_names) as staging_folder:
+    own = own_files(description, output)
+    with output_folder(output, own, RECORD_FILE, kept_names) as staging_folder:
         libraries = () if settings.library is None else requested_libraries(settings.library)
         digests = [library_digest(library) for library in libraries]
         maps = () if character is None else map_digests(character.map, library_folders())
@@ -81,22 +84,18 @@ def convert_if_changed(
             return None
         if settings.library is not None:
             refuse_own_folder(description, output)
-        with blender_silence(debug):
-            from ...bridge.motions.import_motion import armature_reference
-
-            maps_folders = library_folders()
-            take = take_to_convert(description, settings, lambda file: armature_reference(file, maps_folders))
-        method = settings.method or METHODS[0]
-        check_method(take, method)
         if character is not None:
             console.stage("Opening the character")
             with opened_character(character.file, character.map, debug):
                 pass  # what is wrong with it is better known before the work
-        searched = None if settings.library is None else libraries
-        made = run(find_and_reconstruct(take, searched, method, settings.floor_m), console.progress)
+        made = run(
+            convert(description, settings, libraries, lambda file: _reference(file, debug)), console.progress
+        )
         take, result = made.take, made.reconstruction
         console.stage("Writing the motion")
         write_motion_files(staging_folder, made)
+        if made.findings:
+            write_take_files(staging_folder, made, settings.evidence)
         console.stage("Writing Blender's files")
         real_output = real_path(output)
         notes: tuple[str, ...] = ()
@@ -113,6 +112,7 @@ def convert_if_changed(
                 (staging_folder, real_output),
                 console,
                 debug,
+                formats,
                 picture=settings.pictures is not False,
             )
             curves[CHARACTER_BLEND], notes = record.files[CHARACTER_BLEND], (*record.doubts, *record.notes)
@@ -124,3 +124,11 @@ def convert_if_changed(
             write_pictures(report, take, result.motion, result.tracks, seen, contours, result.reading)
         asked, folders = (description, settings, digest), (staging_folder, output)
         return finish_result(made, libraries, notes, asked, version(), folders, curves, kept_names)
+
+
+def _reference(file: Path, debug: bool) -> ReferenceMotion:
+    """A motion of an armature's file, which only Blender reads."""
+    from ...bridge.motions.import_motion import armature_reference
+
+    with blender_silence(debug):
+        return armature_reference(file, library_folders())

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from keymark.core.body.kinematics import Body
 from keymark.core.errors import InputError
-from keymark.core.take.motion import Motion
+from keymark.core.take.motion import Motion, read_motion
 from keymark.core.take.point_files import read_points
 from keymark.core.take.take import Take
 from keymark.operators.bridge.actions import assign_action
@@ -189,6 +189,19 @@ def test_joints_are_exported_as_they_show(
         np.testing.assert_allclose(points[index], shown_points(take.armature), atol=1e-5)
 
 
+def test_a_saved_motion_is_what_the_actor_shows(
+    take: bpy.types.PropertyGroup, wave_motion: Motion, shown_points: ShownPoints, tmp_path: Path
+) -> None:
+    bpy.context.scene.render.fps = 25
+    path = tmp_path / "wave.json"
+    assert bpy.ops.keymark.export_motion(format="KEYMARK", filepath=str(path)) == {"FINISHED"}
+    saved = read_motion(path)
+    assert saved.points == pytest.approx(wave_motion.points, abs=1e-4)
+    assert (saved.fps, saved.frame_start) == (25.0, 1)
+    bpy.context.scene.frame_set(7)
+    assert saved.points[6] == pytest.approx(shown_points(take.armature), abs=1e-4)
+
+
 def way(armature_object: bpy.types.Object, bone: str, later: int = 0) -> np.ndarray:
     scene = bpy.context.scene
     places = []
@@ -242,7 +255,7 @@ def test_the_operator_is_made_from_the_registry_of_formats() -> None:
     properties = bpy.ops.keymark.export_motion.get_rna_type().properties
     menu = [(item.identifier, item.name, item.description) for item in properties["format"].enum_items]
     assert menu == [(kind, each.name, each.description) for kind, each in FORMATS.items()]
-    assert properties["filter_glob"].default == "*.bvh;*.fbx;*.glb;*.usdc;*.trc;*.c3d"
+    assert properties["filter_glob"].default == "*.json;*.bvh;*.fbx;*.glb;*.usdc;*.trc;*.c3d"
 
 
 @pytest.mark.usefixtures("registered")
@@ -251,7 +264,7 @@ def test_a_final_action_of_an_earlier_motion_says_so(tiny_take: Take, tmp_path: 
     take = active_take(bpy.context.scene)
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()
-    assert not take.finish.outdated and next_step(take) == "Next: review, then finish"
+    assert not take.finish.outdated and next_step(take) == "Next: review, then a character"
     bpy.ops.keymark.bake_motion()
     assert not take.finish.outdated
     bpy.ops.keymark.reconstruct()

@@ -219,7 +219,7 @@ def test_markers_that_are_switched_off_are_left_out(opened: bpy.types.Scene) -> 
         bpy.ops.keymark.reconstruct()
     take.follow.use_markers = False
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
-    assert next_step(active_take(opened)) == "Next: review, then finish"
+    assert next_step(active_take(opened)) == "Next: review, then a character"
 
 
 @pytest.mark.usefixtures("registered")

@@ -161,7 +161,7 @@ def test_a_reconstruction_may_follow_directly(unposed: Group, given: SimpleNames
     assert next_step(unposed) == "Next: pose all keyframes"
     bpy.ops.keymark.pose_all()
     take = active_take(bpy.context.scene)
-    assert next_step(take) == "Next: check doubtful ones, reconstruct"
+    assert next_step(take) == "Next: check the doubtful poses"
     for match in take.matching.matches:
         match.by_hand = True
     assert next_step(take) == "Next: reconstruct the motion"

@@ -55,6 +55,20 @@ def test_another_overlay_goes_on(blending: list[str]) -> None:
     assert blending == ["ALPHA", "NONE"] * 2
 
 
+def test_what_is_not_dragged_is_hidden_meanwhile(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[bpy.types.Context] = []
+    handlers = [
+        guarded(Overlay("Any", calls.append, "SpaceView3D", correcting)) for correcting in (True, False)
+    ]
+    for handler in handlers:
+        handler()
+    assert len(calls) == 2
+    monkeypatch.setattr(registry, "job_is_running", lambda _context, job: job == "keymark.drag_joints")
+    for handler in handlers:
+        handler()
+    assert len(calls) == 3
+
+
 def test_every_overlay_can_be_handed_to_blender() -> None:
     for each in registry.OVERLAYS:
         space = getattr(bpy.types, each.space)

@@ -190,7 +190,7 @@ def test_the_next_step_follows_what_is_there(tiny_take: Take) -> None:
         bpy.ops.keymark.store_keyframe()
     assert says("reconstruct")
     take.motion_action = bpy.data.actions.new("Motion")
-    assert says("review, then finish")
+    assert says("review, then a character")
     take.review.confidence = 0.28
     assert says("pose more keyframes")
     take.review.weak_frames.add().frame = 3
@@ -199,7 +199,7 @@ def test_the_next_step_follows_what_is_there(tiny_take: Take) -> None:
     bpy.ops.keymark.store_keyframe()
     assert says("reconstruct again")
     take.review.confidence = 0.8
-    assert says("review, then finish")
+    assert says("review, then a character")
     take.finish.action = take.keyframe_action
     assert says("export")
     take.clip_state.missing = True

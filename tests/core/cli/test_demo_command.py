@@ -4,18 +4,25 @@ import importlib.util
 import json
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from _synthetic_take import write_synthetic_take
+from _shoot import gliding, write_video
+from _synthetic_take import BODY, SIZE, true_postures, write_synthetic_take
+from _synthetic_take import write_keypoints as write_keypoints_of
 from keymark.core.errors import ConversionError
-from keymark.core.footage.keypoints.keypoint_file import write_keypoints
+from keymark.core.footage.keypoints.keypoint_file import read_keypoints, write_keypoints
 from keymark.core.footage.keypoints.keypoints import People, SeenPeople
+from keymark.core.pipeline import place
+from keymark.core.prior.learning import LibraryMetadata, learn_library
+from keymark.core.progress import Job, Progress
 from keymark.core.review.score import read_truth, score_points
 from keymark.core.take import examples
 from keymark.core.take.motion import read_motion
 from keymark.core.take.take_file import read_take
 from keymark.operators.cli.commands import demo
+from keymark.operators.cli.conversion import convert_take
 from keymark.operators.cli.main import main
 
 FRAMES = 16
@@ -39,7 +46,26 @@ def take(tmp_path: Path, no_blender: None, monkeypatch: pytest.MonkeyPatch) -> P
 
     monkeypatch.setattr(demo, "require_blender", lambda needing: None)
     monkeypatch.setattr(examples, "SHIPPED", folder.parent)
+    bare_clip(folder.with_name(examples.GREETING), monkeypatch)
     return folder
+
+
+def bare_clip(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A small clip to animate, whose keypoints are found at once, and a small library."""
+    folder.mkdir()
+    write_video(folder / "clip.mp4", gliding())
+    written = write_keypoints_of(folder / "seen.json", gliding())
+    people = read_keypoints(written, 40, SIZE, 30.0, 1)
+
+    def find(_clip: object, _network: object, _longest: int) -> Job[People]:
+        yield Progress("Detecting keypoints", 0.0)
+        return people
+
+    posture, metadata = true_postures(24), LibraryMetadata("Swaying", "Nobody")
+    library = learn_library(BODY, posture, np.arange(24) / 30.0, metadata)
+    monkeypatch.setattr(place, "PoseNetwork", SimpleNamespace)
+    monkeypatch.setattr(place, "find_people", find)
+    monkeypatch.setattr(convert_take, "requested_libraries", lambda _name: (library,))
 
 
 @pytest.fixture
@@ -83,7 +109,9 @@ def test_it_says_what_it_does_and_where_to_look(
     assert main(["demo", "--output", str(tmp_path / "out")]) == 0
     said = capsys.readouterr().out
     steps = [line.partition(":")[0] for line in said.splitlines() if line.startswith("Step ")]
-    assert steps == [f"Step {number} of 4" for number in (1, 2, 3, 4)]
+    assert steps == [f"Step {number} of 5" for number in (1, 2, 3, 4, 5)]
+    assert "  Keypoints: somebody in 40 of 40 frames, by drawn" in said.splitlines()
+    assert (tmp_path / "out" / "animated" / "take.json").is_file()
     character = tmp_path / "out" / "character.blend"
     assert (str(character) in said) == character.exists() == has_blender
     assert ("Without a character: Rigify is missing" in said) != has_blender

@@ -55,6 +55,16 @@ def test_a_take_gets_its_file_in_its_folder_with_its_own_frame_numbers(
     )
 
 
+def test_the_folder_one_is_in_is_named_as_others_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    images = tmp_path / "walk"
+    images.mkdir()
+    for number in range(3):
+        cv2.imwrite(str(images / f"{number:04d}.png"), np.zeros((SIZE[1], SIZE[0], 3), np.uint8))
+    monkeypatch.chdir(images)
+    assert main(["detect", ".", "--quiet"]) == 0
+    assert (tmp_path / "walk.keypoints.json").is_file()
+
+
 def test_a_file_that_is_there_stays_unless_it_is_to_be_replaced(
     clip: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

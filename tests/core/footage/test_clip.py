@@ -1,6 +1,8 @@
 """Clips of every kind: order, time stamps, sizes, samples on a budget, and what is said of unusable ones."""
 
+import struct
 from pathlib import Path
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -11,8 +13,13 @@ from keymark.core.errors import InputError
 from keymark.core.footage.clips import clip as glancing
 from keymark.core.footage.clips.clip import Clip, sample_spread_frames
 from keymark.core.footage.clips.container import quickly_found, read_packets
+from keymark.core.footage.clips.frame_checks import trimmed_s
+from keymark.core.footage.clips.video_file import VideoFile
+from keymark.core.footage.reading import read_clip
 from keymark.core.footage.region_tracks import is_variable_frame_rate
 from keymark.core.progress import run
+from keymark.core.shoot.check.footage_check import count_frames
+from keymark.core.take.clip_check import clip_notes, picture_count
 
 
 def picture(level: int, size: tuple[int, int] = (64, 48)) -> np.ndarray:
@@ -229,6 +236,44 @@ def test_packets_tell_an_uneven_rate(tmp_path: Path) -> None:
     for path, varies in ((uneven, True), (even, False)):
         packets = read_packets(path)
         assert packets is not None and is_variable_frame_rate(packets.time_s) is varies
+
+
+def trimmed(path: Path, first_s: float, length_s: float) -> Path:
+    """A copy that shows a part only, by the edit list of its video, as phones trim."""
+    content = bytearray(path.read_bytes())
+    header, edit = content.find(b"mdhd"), content.find(b"elst")
+    clock = int.from_bytes(content[content.find(b"mvhd") + 16 :][:4], "big")
+    rate = int.from_bytes(content[header + 16 :][:4], "big")
+    content[edit + 12 : edit + 20] = struct.pack(">Ii", round(clock * length_s), round(rate * first_s))
+    copy = path.with_name("trimmed.mp4")
+    copy.write_bytes(content)
+    return copy
+
+
+def test_a_clip_trimmed_on_a_phone_is_not_damaged(tmp_path: Path) -> None:
+    whole = write_video(tmp_path / "clip.mp4", LEVELS[:60], 30.0)
+    assert trimmed_s(whole) is None and not VideoFile(whole).is_trimmed
+    path = trimmed(whole, 0.5, 1.0)
+    clip = Clip.open(path)
+    assert trimmed_s(path) == pytest.approx(1.0) and clip.frame_count == 30 == picture_count(path, 30.0)
+    means = [image.mean() for _, _, image in clip.frames()]
+    np.testing.assert_allclose(means, LEVELS[15:45], atol=8)
+    take = SimpleNamespace(fps=30.0, frame_start=1, clip=path, file=path)
+    reading = run(read_clip(clip, ()))
+    assert not [note for note in clip_notes(take, clip, reading) if "claims" in note]
+    findings = SimpleNamespace(warn=pytest.fail)
+    assert count_frames(clip, findings) == 30
+
+
+@pytest.mark.parametrize("start", [b"elst", b"mdhd", b"mvhd", b"moov"])
+def test_an_edit_list_is_not_believed_blindly(tmp_path: Path, start: bytes) -> None:
+    path = write_video(tmp_path / "clip.mp4", LEVELS[:10], 30.0)
+    content = path.read_bytes()
+    at = content.find(start) + 4
+    for junk in (b"\xff" * 40, bytes(40), content[at + 4 : at + 44]):
+        (tmp_path / "odd.mp4").write_bytes(content[:at] + junk + content[at + 40 :])
+        length = trimmed_s(tmp_path / "odd.mp4")
+        assert length is None or length > 0.0
 
 
 def test_images_are_looked_at_too(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from _drawn_clip import Drawn, write_video
-from keymark.core.footage.clips.album import Album, watch_clip
+from keymark.core.footage.clips.album import Album, Glimpses, watch_clip
 from keymark.core.footage.clips.clip import Clip, FrameReader
 from keymark.core.footage.clips.frame_checks import FrameChecks
 
@@ -88,7 +88,12 @@ GRADIENTS = [
 
 def watched(album: Album) -> Clip:
     """A clip of them that fills an album."""
-    return watch_clip(Clip(Path("drawn"), Drawn(GRADIENTS, fps=25.0, size=(640, 480))), FrameChecks(), album)
+    return watch_clip(
+        Clip(Path("drawn"), Drawn(GRADIENTS, fps=25.0, size=(640, 480))),
+        FrameChecks(),
+        album,
+        Glimpses(640, {}),
+    )
 
 
 def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:

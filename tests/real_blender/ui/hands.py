@@ -5,9 +5,10 @@ goes down the region, and the button under it is asked for its Python command, a
 """
 
 import bpy
+from _panel import controls
 from driver import Steps, expect, turns, until
 
-ACROSS = (0.5, 0.2, 0.75, 0.35, 0.9, 0.08)
+ACROSS = (0.5, 0.75, 0.2, 0.35, 0.9, 0.08)
 """Where across a region buttons are looked for; most span the middle."""
 STEP_PX = 16  # Buttons are about 20 px high
 NOTCHES = 15
@@ -157,17 +158,29 @@ class Hands:
         yield from self.press("RET")
 
     def _look(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
-        """The same, and then again in the steps that were folded because the work has left them behind."""
-        found = yield from self._look_around(kind, copy, wanted)
-        steps = bpy.context.window_manager.keymark_steps
-        folded = [name for name in steps.bl_rna.properties.keys() if getattr(steps, name) is False]
-        if found is not None or not folded:
-            return found
-        for name in folded:  # where a header is no script can see
-            setattr(steps, name, True)
-        self.area(kind).tag_redraw()
-        yield from turns(4)
+        """The same, once the step is open that has it: a person reads the titles."""
+        name = wanted[0].removeprefix("bpy.ops.").rstrip("(")
+        if name not in controls(kind):
+            self._open(name, kind)
+            self.area(kind).tag_redraw()
+            yield from turns(4)
         return (yield from self._look_around(kind, copy, wanted))
+
+    def _open(self, name: str, kind: str) -> None:
+        """Open what shows a control, a step or a kind of evidence; where headers are no script can see."""
+        shown = bpy.context.window_manager.keymark_steps
+        titles = [each for each in shown.bl_rna.properties.keys() if each not in ("rna_type", "name")]
+        inner = ("", "markers", "keypoints", "tracks", "contours")
+        for title in (each for each in titles if each not in inner):
+            for inside in inner:
+                clicks = 0
+                for each in filter(None, (title, inside)):
+                    clicks += not getattr(shown, each)
+                    setattr(shown, each, True)
+                if name in controls(kind):
+                    self.clicks += clicks
+                    return
+        expect(False, f"no step shows {name}")
 
     def _look_around(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
         """Where in the sidebar the button is whose copied text contains all that is wanted."""

@@ -8,12 +8,15 @@ from types import ModuleType
 from typing import Any
 
 import bpy
+from _panel import controls
 from _scene_state import differences, scene_state
 from driver import JOB_PATIENCE_S, Camera, Steps, expect, turns, until
 from hands import Hands
 
 EXTENSION = "bl_ext.user_default.keymark"
 JOB = "KEYMARK_OT_"
+MOST_CONTROLS = 25
+"""As many as the sidebar shows at any time; a panel that shows more is read by nobody."""
 
 
 def keymark(module: str) -> ModuleType:
@@ -53,6 +56,9 @@ class Person:
         self.camera.shoot(name)
         failed = keymark("operators.overlays.registry").failures()
         expect(not failed, f"overlays failed: {failed}")
+        shown = controls()
+        expect(len(shown) <= MOST_CONTROLS, f"the sidebar shows {len(shown)} controls: {shown}")
+        print(f"{name}: {len(shown)} controls", flush=True)
 
     def step_done(self, message: str) -> None:
         """Mark what was done by other means than Keymark's operators as a step that undo comes back to."""

@@ -1,4 +1,4 @@
-"""A person looks at keyframe libraries: the panel, and one as pose assets in the asset browser.
+"""A person looks at keyframe libraries: the popover, and one as pose assets in the asset browser.
 
 Usage: as of session.py, without a step.
 """
@@ -14,35 +14,24 @@ import steps_prepare  # noqa: E402
 from driver import Camera, Steps, drive, expect, turns  # noqa: E402
 from person import Person  # noqa: E402
 
-PANELS = ("KEYMARK_PT_libraries",)
 TITLE = "Anna Exercising"
 
 
 def session(take: Path, folder: Path, camera: Camera) -> Steps[None]:
     """Learn a library of a motion, look at it, and bring it into the file as pose assets."""
-    unfold(PANELS)
     person = Person(take, folder, camera)
     yield from steps_prepare.start_empty(person)
     yield from steps_prepare.opened(person, reconstructed=True)
     bpy.ops.keymark.learn_library(title=TITLE, author="Anna")
     registry = bpy.context.window_manager.keymark_shelf
     expect(registry.libraries[registry.active].title == TITLE, "the library that was learned is not chosen")
-    yield from person.hands.click_button("keymark.edit_library")
+    yield from person.hands.invoke("keymark.edit_library")
     expect(any(action.asset_data for action in bpy.data.actions), "there are no pose assets")
-    yield from person.hands.scroll("VIEW_3D", "WHEELDOWNMOUSE", 30)
-    yield from person.hands.scroll("VIEW_3D", "WHEELUPMOUSE", 2)
+    yield from person.hands.move_over("VIEW_3D")
+    yield from person.hands.invoke("wm.call_panel", name="KEYMARK_PT_libraries")  # as its button would
     yield from person.look("libraries")
+    yield from person.hands.press("ESC")
     yield from assets(person)
-
-
-def unfold(panels: tuple[str, ...]) -> None:
-    """Let panels be open from the beginning: where a panel's header is no script can see."""
-    classes = [getattr(bpy.types, name) for name in panels]
-    for one in reversed(classes):
-        bpy.utils.unregister_class(one)
-    for one in classes:
-        one.bl_options = set()
-        bpy.utils.register_class(one)
 
 
 def assets(person: Person) -> Steps[None]:

@@ -20,14 +20,18 @@ LIMBS = {"elbow.L": "wrist.L", "elbow.R": "wrist.R", "knee.L": "ankle.L", "knee.
 
 
 def doubtful(person: Person) -> Steps[None]:
-    """Go from one doubtful frame to the next, and decide each."""
+    """Go from one doubtful frame to the next, and decide each; at least the least sure one."""
     found = keymark("operators.shell.keyed_frames")
     before = found.count_found(person.take)[1]
     for number in range(MOST_FRAMES):
         waiting = found.doubtful_matches(person.take)
-        if not waiting:
+        if not waiting and number:
             break
-        if person.take.matching.shown_match not in waiting:
+        if not waiting:  # whoever finds none looks at the least sure one
+            matches = person.take.matching.matches
+            person.take.matching.shown_match = min(range(len(matches)), key=lambda i: matches[i].confidence)
+            person.step_done("Choose the least sure in the list")
+        elif person.take.matching.shown_match not in waiting:
             yield from person.hands.click_button("keymark.jump_to_match", "only_doubtful=True")
         yield from _decide(person)
         if number == 0:

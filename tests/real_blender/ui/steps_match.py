@@ -17,9 +17,7 @@ def match(person: Person, library: str) -> Steps[None]:
     expect(len(person.take.matching.matches) >= 2, f"{library} gave too few keyframes")
     expect(not frames.posed_frames(person.take), "frames count as posed that nobody posed")
     yield from person.look("matched")
-    yield from person.undoable(
-        "removing what was found", lambda: person.hands.click_button("keymark.remove_found")
-    )
+    yield from person.undoable("removing what was found", lambda: person.hands.invoke("keymark.remove_found"))
     expect(not frames.keyframes_of(person.take), "found keyframes are left")
     person.take.matching.library = "auto"
     person.step_done("Choose all libraries")
@@ -40,10 +38,11 @@ def pose_all(person: Person) -> Steps[None]:
 def choose(person: Person) -> Steps[None]:
     """Look at a doubtful frame from the side, take another candidate, and think better of it."""
     count, doubtful = keymark("operators.shell.keyed_frames").count_found(person.take)
-    command, words = "keymark.jump_to_match", ("direction='NEXT'", "only_doubtful=False")
     if doubtful:
-        words = ("only_doubtful=True",)
-    yield from person.hands.click_button(command, *words)
+        yield from person.hands.click_button("keymark.jump_to_match", "only_doubtful=True")
+    else:
+        person.take.matching.shown_match = 1
+        person.step_done("Choose a found keyframe in the list")
     match = person.take.matching.matches[person.take.matching.shown_match]
     expect(person.scene.frame_current == round(match.frame), "the chosen frame is not shown")
     yield from person.hands.click_button("keymark.look_from_side")

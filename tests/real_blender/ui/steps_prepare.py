@@ -6,6 +6,7 @@ from pathlib import Path
 import bpy
 import cv2
 import numpy as np
+from _panel import controls
 from driver import Steps, expect, turns, until
 from mathutils import Matrix
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from steps_camera import find_camera
 
 FARTHEST_COLOR = 25.0
 """Between a sleeve's color in one frame and over the whole clip, made equally bright, of 255."""
+FRESH_CONTROLS = 12  # What the sidebar shows of a clip that was just loaded
 HIGHER_PX = 100  # What the timeline is made higher by
 ABOUT_PX = 5  # Side of the square about a click that a person sees wholly on the sleeve
 SEARCH_PX = 0.06
@@ -48,12 +50,15 @@ def opened(person: Person, reconstructed: bool) -> Steps[None]:
 
 def footage(person: Person) -> Steps[None]:
     """Load the clip by the file browser, cancelled once; find the camera, and set it up as it truly stood."""
-    clip = "keymark.load_footage", person.known.clip
+    file = person.known.clip
+    clip = "keymark.load_footage", min(file.iterdir()) if file.is_dir() else file  # the first of many images
     yield from person.changes_nothing("cancelling the file browser", lambda: browse(person, *clip, "ESC"))
     yield from person.undoable("loading the footage", lambda: browse(person, *clip, "RET"))
     take, known = person.take, person.known
     expect(take.clip is not None and take.clip.frame_duration > 1, "the footage was not loaded")
     expect(person.scene.frame_end == known.frame_start + take.clip.frame_duration - 1, "the range is another")
+    shown = controls()
+    expect(len(shown) <= FRESH_CONTROLS, f"a fresh clip shows {len(shown)} controls: {shown}")
     yield from find_camera(person)
     camera = person.take.camera
     camera.matrix_world = Matrix(known.camera.matrix_world.tolist())

@@ -31,6 +31,9 @@ FIRST_STEPS = (
 )
 FIRST_CLICKS, FIRST_KEYS = 6, 6
 """Tab, example (button and entry), Reconstruct, Add Rigify Human, Retarget; N, Space four times, Enter."""
+ANIMATE_STEPS = ("panel", "file_browser", "running", "animated", "played")
+ANIMATE_CLICKS, ANIMATE_KEYS = 2, 2
+"""Tab and Animate; N and Enter. Choosing the file and entering the height are three clicks more."""
 MOST_CLICKS = 40
 """From the clip to the motion: a button, five sleeves, a few buttons more, and four doubtful keyframes."""
 SHELF_STEPS = ("libraries", "assets")
@@ -76,6 +79,18 @@ def test_the_first_minutes(blender_on_screen: Blender, repository: Path) -> None
     run_script(blender_on_screen, "first_session.py", FIRST_STEPS, None, folder)
     clicks, _, _, keys = (folder / "summary.txt").read_text(encoding="utf-8").split()[:4]
     assert int(clicks) <= FIRST_CLICKS and int(keys) <= FIRST_KEYS
+
+
+def test_a_clip_and_a_height_lead_to_a_moving_character(
+    blender_on_screen: Blender, repository: Path, tmp_path: Path
+) -> None:
+    example = repository / "presets" / "demo" / "greeting"
+    clip = Path(shutil.copy(example / "clip.mp4", tmp_path / "hello.mp4"))
+    shutil.copy(example / "keypoints.json", tmp_path / "hello.keypoints.json")
+    folder = repository / "build" / "screenshots" / "animate"
+    run_script(blender_on_screen, "animate_session.py", ANIMATE_STEPS, clip, folder)
+    clicks, _, _, keys = (folder / "summary.txt").read_text(encoding="utf-8").split()[:4]
+    assert int(clicks) <= ANIMATE_CLICKS and int(keys) <= ANIMATE_KEYS
 
 
 @pytest.mark.parametrize("name", TAKES)

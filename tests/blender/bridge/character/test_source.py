@@ -57,6 +57,18 @@ def test_a_hand_that_the_animator_keyed_is_as_keyed(actor: bpy.types.Object) -> 
     assert source.end["hand.R"] == pytest.approx(before.end["hand.R"], abs=1e-6)
 
 
+def test_frames_between_two_stretches_are_left_out(body: Body, wave_motion: Motion) -> None:
+    there = np.ones(len(wave_motion.time_s), dtype=bool)
+    there[0] = there[4:8] = False
+    made = build_armature(bpy.context.scene, body)
+    action = write_motion(made, wave_motion.emptied(there))
+    bpy.context.scene.render.fps = 4  # half a second is two frames
+    assert len(action.layers[0].strips[0].channelbags[0].fcurves[0].keyframe_points) == there.sum()
+    source, frames = run(read_source(made, action))
+    assert frames == pytest.approx(wave_motion.scene_frames[there])
+    assert source.time_s == pytest.approx((frames - frames[0]) / 4.0)
+
+
 def test_what_is_no_actors_motion_is_refused(actor: bpy.types.Object) -> None:
     action = actor.animation_data.action
     with pytest.raises(InputError, match="lacks the bones"):

@@ -10,7 +10,7 @@ from keymark.core.take.conversion_settings import CharacterFile
 from keymark.operators.bridge.blend_files import own_scene, showing_scene
 from keymark.operators.bridge.export_formats import FORMATS, export_motion
 from keymark.operators.bridge.motions.import_motion import import_motion, load_motion
-from keymark.operators.bridge.motions.joint_paths import joint_paths
+from keymark.operators.bridge.motions.read_poses import joint_paths
 
 
 @pytest.fixture

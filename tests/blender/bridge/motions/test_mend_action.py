@@ -11,9 +11,14 @@ from keymark.core.retarget.mended_armature import ArmaturePoints
 from keymark.core.retarget.solve.rest_body import RestBody
 from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.character.read_character import read_character
-from keymark.operators.bridge.motions.joint_paths import joint_paths
 from keymark.operators.bridge.motions.mend_action import SOURCE, mend_action, write_mended
-from keymark.operators.bridge.motions.read_poses import action_frames, motion_map, posed_frames, read_poses
+from keymark.operators.bridge.motions.read_poses import (
+    action_frames,
+    joint_paths,
+    motion_map,
+    posed_frames,
+    read_poses,
+)
 
 
 def mended(armature: bpy.types.Object, *named: int) -> bpy.types.Action:

@@ -337,3 +337,31 @@ def test_the_root_of_the_controls_is_the_root_of_the_character() -> None:
         role: tuple(name.removeprefix("DEF-") for name in bones.bones) for role, bones in found.roles.items()
     }
     assert find_root(character, replace(found, fk=fk), np.array([0.0, 0.0, 1.0])) == "root"
+
+
+@pytest.mark.parametrize("drop_m", [0.0, 0.04, 0.08])
+@pytest.mark.parametrize("named", [True, False])
+def test_feet_without_a_parent_are_those_of_the_legs(drop_m: float, named: bool) -> None:
+    bones = []
+    for bone in plain_character(without=("toe",)).bones:
+        rest = bone.rest.copy()
+        if bone.name.startswith("foot"):
+            rest[2, 3] -= drop_m
+        bones.append(replace(bone, rest=rest, parent=-1 if bone.name.startswith("foot") else bone.parent))
+    character = Character("Robot", tuple(bones))
+    known = recognize(character if named else renamed(character)).character_map
+    feet = [character.bones[character.index[f"foot.{side}"]].head for side in "LR"]
+    looked_at = character if named else renamed(character)
+    found = [looked_at.bone(str(known.bone(f"foot.{side}"))).head for side in "LR"]
+    np.testing.assert_allclose(np.sort(np.array(found), axis=0), np.sort(np.array(feet), axis=0))
+
+
+def test_feet_far_from_any_leg_are_refused_for_what_they_are() -> None:
+    bones = []
+    for bone in plain_character(without=("toe",)).bones:
+        rest = bone.rest.copy()
+        if bone.name.startswith("foot"):
+            rest[1, 3] -= 3.0
+        bones.append(replace(bone, rest=rest, parent=-1 if bone.name.startswith("foot") else bone.parent))
+    with pytest.raises(InputError, match=r"the feet .foot\.L. and .foot\.R. have no parent"):
+        recognize(Character("Robot", tuple(bones)))

@@ -1,0 +1,155 @@
+"""*Animate*: asks for a clip, the performer's height and a character, and goes all the way as one job."""
+
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ..actor.properties import Stature
+from ..character.characters import candidates
+from ..footage.load_footage import PATTERNS, load_into_take
+from ..shell.base_operator import chosen_file
+from ..shell.job_operator import JobOperator
+from ..shell.requirements import bones_editable, idle
+from ..shell.results import EXTENSION
+from ..shell.takes import find_take
+from . import FILE, NOTHING, RIGIFY
+
+if TYPE_CHECKING:
+    from ...core.progress import Job
+
+CHARACTER_PATTERNS = "*.blend;*.fbx;*.glb;*.gltf;*.vrm"
+CLIP, CHARACTER = "CLIP", "CHARACTER"
+LAST_FOLDER = "last_clip_folder.txt"
+_items: list[tuple[str, str, str, str, int]] = []  # Blender keeps no copy of the strings
+
+
+def _characters(
+    _operator: bpy.types.Operator, context: bpy.types.Context | None
+) -> list[tuple[str, str, str, str, int]]:
+    """Those in the scene, then a Rigify human, a file, and none at all."""
+    from ..bridge.character.rigify_human import has_rigify
+
+    there = [] if context is None else candidates(context.scene, context.view_layer)
+    rows = [(each.name, each.name, "This armature of the scene", "ARMATURE_DATA") for each in there]
+    if has_rigify():
+        said = "A Rigify rig of the performer's size; enables the add-on Rigify, which comes with Blender"
+        rows.append((RIGIFY, "Rigify Human", said, "OUTLINER_OB_ARMATURE"))
+    rows.append((FILE, "From a File", "Asks for the character's file next", "FILE_FOLDER"))
+    rows.append((NOTHING, "None", "The performer's armature alone", "X"))
+    _items[:] = [(*row, number) for number, row in enumerate(rows)]
+    return _items
+
+
+class KEYMARK_OT_animate(Stature, JobOperator, bpy.types.Operator):
+    """From a clip and the performer's height to a moving character; every step can be corrected afterwards"""
+
+    bl_idname = "keymark.animate"
+    bl_label = "Animate"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (bones_editable, idle)
+
+    filepath: bpy.props.StringProperty(
+        name="File Path",
+        description="A video, or one image of a numbered sequence",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
+    )
+    character: bpy.props.EnumProperty(
+        name="Character", description="Who performs the motion", items=_characters, options={"SKIP_SAVE"}
+    )
+    character_file: bpy.props.StringProperty(
+        name="Character File",
+        description="File of the character, and after a colon the name of its armature where it has several",
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
+    asking: bpy.props.StringProperty(options={"SKIP_SAVE", "HIDDEN"})
+    clip: bpy.props.StringProperty(options={"SKIP_SAVE", "HIDDEN"})
+    filter_glob: bpy.props.StringProperty(default=PATTERNS, options={"HIDDEN", "SKIP_SAVE"})
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for what is missing, the clip first; then run as a job."""
+        if self.filepath and (self.character != FILE or self.character_file):
+            return super().invoke(context, event)
+        self.asking, self.clip = (CHARACTER, self.filepath) if self.filepath else (CLIP, "")
+        self.filter_glob = CHARACTER_PATTERNS if self.filepath else PATTERNS
+        self.filepath = str(_last_folder() / "_").removesuffix("_") if self.asking == CLIP else ""
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Go on with what the file browser gave, or, without one, run the whole job."""
+        if not self.asking:
+            return super().execute(context)
+        clip, file = (
+            (self.filepath, self.character_file) if self.asking == CLIP else (self.clip, self.filepath)
+        )
+        bpy.ops.keymark.animate(
+            "INVOKE_DEFAULT",
+            filepath=clip,
+            stature=self.stature,
+            character=self.character,
+            character_file=file,
+        )
+        return {"CANCELLED"}  # the job is a step of its own
+
+    def draw(self, context: bpy.types.Context) -> None:
+        if self.asking == CHARACTER:
+            return
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "stature")
+        if not self.properties.is_property_set("stature"):
+            layout.label(text="Assumed; enter the performer's", icon="INFO")
+        layout.prop(self, "character")
+
+    def start(self, scene: bpy.types.Scene) -> "Job[list[str]]":
+        """Load the clip, and go on; what is complete stays in the scene where the job ends early."""
+        from .stages import animate, follow_found_file
+
+        path = chosen_file(self, "a video, or one image of a numbered sequence")
+        there = find_take(scene)
+        take = load_into_take(bpy.context, path, there is not None and there.clip is not None)
+        _keep_folder(path.parent)
+        follow_found_file(take, path)
+        return animate(self, scene, self.stature, self.character, self.character_file)
+
+    def finish(self, scene: bpy.types.Scene, result: list[str]) -> None:
+        for line in result:
+            self.report({"INFO"}, line)
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """An early end is a step that can be undone as well: complete stages stay."""
+        done = super().modal(context, event)
+        if done != {"CANCELLED"}:
+            return done
+        self.report({"INFO"}, "The stages that were complete are kept")
+        return {"FINISHED"}
+
+
+def _folder_file() -> Path | None:
+    with suppress(ValueError):  # not installed as an extension
+        return Path(bpy.utils.extension_path_user(EXTENSION, create=True)) / LAST_FOLDER
+    return None
+
+
+def _last_folder() -> Path:
+    """Where the last clip was, in an earlier session too; else the home folder."""
+    file = _folder_file()
+    with suppress(OSError, ValueError):
+        kept = Path(file.read_text(encoding="utf-8")) if file is not None else Path.home()
+        if kept.is_dir():
+            return kept
+    return Path.home()
+
+
+def _keep_folder(folder: Path) -> None:
+    file = _folder_file()
+    if file is not None:
+        with suppress(OSError, ValueError):
+            file.write_text(str(folder), encoding="utf-8")
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_animate,))

@@ -1,0 +1,87 @@
+"""`keymark animate`: from a clip and the performer's height to a motion, and on to a character."""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+
+from ....core.errors import InputError
+from ....core.prior.texts import EVERY_LIBRARY
+from ....core.take.conversion_settings import CharacterFile, CharacterSettings
+from ....core.take.description import ASSUMED, describe
+from ....core.take.take_file import SHORTEST_M, TALLEST_M, USUAL_HEIGHT_M
+from ..console import arguments_console
+from ..conversion.character_result import FORMAT, check_exporters, export_formats
+from ..conversion.convert_take import convert_take
+from ..options import (
+    CHARACTER_HELP,
+    KEYPOINT_FILES,
+    MAP_HELP,
+    RETARGET_OPTIONS,
+    character_options,
+    given_settings,
+    output,
+)
+from ..parser import Command, UsageError, argument
+from .convert import conversion_summary, conversion_text
+
+HEIGHT = "--height"
+
+
+def bare_clip_fields(height_m: float) -> dict[str, object]:
+    """The fields of a take of which nothing but the performer's height is known."""
+    return {"actor": {"height_m": height_m}, "keyframes": EVERY_LIBRARY}
+
+
+def animate_command(arguments: argparse.Namespace) -> None:
+    """Animate the clip that the command line names, and list what was assumed, found and made."""
+    height_m = arguments.height
+    if height_m is not None and not SHORTEST_M <= height_m <= TALLEST_M:
+        in_cm = SHORTEST_M <= height_m / 100.0 <= TALLEST_M
+        hint = f", and this in centimeters is {height_m / 100.0:g}" if in_cm else ", as in 1.78"
+        valid = f"meters from {SHORTEST_M:g} to {TALLEST_M:g} are valid"
+        raise UsageError(f"{HEIGHT} is {height_m:g}; {valid}{hint}")
+    formats = export_formats(arguments.format)
+    if formats and arguments.character is None:
+        raise UsageError("--format is given without --character, of which it writes further files")
+    with arguments_console(arguments) as console:
+        said = bare_clip_fields(USUAL_HEIGHT_M if height_m is None else height_m)
+        clip: Path = arguments.clip
+        if clip.is_dir() and (clip / "take.json").is_file():
+            raise InputError(f"{clip}: is a take, which keymark convert is for; name a clip")
+        description = describe(clip, said, ASSUMED if height_m is None else HEIGHT)
+        settings = given_settings(arguments).with_defaults(description.settings)
+        if arguments.character is not None:
+            file = CharacterFile.parse(arguments.character)
+            character = CharacterSettings(file, arguments.map, character_options(arguments))
+            settings = replace(settings, character=character)
+            check_exporters(formats)
+        done = convert_take(description, arguments.output, console, settings, arguments.debug, formats)
+        console.finish(conversion_summary(done), conversion_text(done))
+
+
+ANIMATE = Command(
+    name="animate",
+    description=(
+        "Goes from a clip and the performer's height all the way: finds keypoints in it, the camera by them, "
+        "the poses, the motion, and puts it onto a character where one is named. OUT then holds what convert "
+        "writes, and is a take itself, with the clip and a take.json that says what was found and what was "
+        "assumed: open it in Blender to correct any step."
+    ),
+    arguments=(
+        argument("clip", metavar="CLIP", type=Path, help="a video, or a folder of the images of one"),
+        argument(
+            HEIGHT,
+            metavar="METERS",
+            type=float,
+            help=f"the performer's height, as in 1.78; {USUAL_HEIGHT_M:g} is assumed without it",
+        ),
+        argument("--character", "-c", metavar="FILE[:OBJECT]", help=CHARACTER_HELP),
+        argument("--map", metavar="TITLE|FILE|auto|none", default="auto", help=MAP_HELP),
+        KEYPOINT_FILES,
+        *output("OUT", "folder for the result, new or old"),
+        FORMAT,
+        *RETARGET_OPTIONS,
+        argument("--no-report", action="store_true", help="draw no pictures"),
+    ),
+    run=animate_command,
+)

@@ -1,0 +1,111 @@
+"""*Animate*: from a clip and a height to a take whose every step is there, and what an early end leaves."""
+
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from _armatures import build_character
+from _characters import plain_character
+from _shoot import gliding, write_video
+from _synthetic_take import BODY, true_postures, write_keypoints
+from bpy.types import Object, PropertyGroup
+from keymark.core.footage.camera_fields import CameraPlacement
+from keymark.core.prior.learning import LibraryMetadata, learn_library
+from keymark.operators.animate import NOTHING
+from keymark.operators.animate.stages import animate, follow_found_file
+from keymark.operators.bridge.camera_placement import read_placement
+from keymark.operators.follow.evidence import keypoint_path
+from keymark.operators.footage.load_footage import load_into_take
+from keymark.operators.library import registry_files
+from keymark.operators.shell.keyed_frames import count_found
+from keymark.operators.shell.takes import active_take
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+
+@pytest.fixture
+def clip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A bare clip with its keypoints beside it, and one small library."""
+    write_video(tmp_path / "hall.mp4", gliding())
+    write_keypoints(tmp_path / "hall.keypoints.json", gliding())
+    posture, said = true_postures(24), LibraryMetadata("Swaying", "Nobody")
+    library = learn_library(BODY, posture, np.arange(24) / 30.0, said)
+    monkeypatch.setattr(registry_files, "all_libraries", lambda: [library])
+    return tmp_path / "hall.mp4"
+
+
+def box(name: str, y_m: float) -> Object:
+    bpy.ops.mesh.primitive_cube_add(size=0.4, location=(0.0, y_m, 1.0))
+    made = bpy.context.object
+    made.name = name
+    return made
+
+
+def only_take() -> PropertyGroup:
+    assert len(bpy.context.scene.keymark.takes) == 1
+    return active_take(bpy.context.scene)
+
+
+def test_all_steps_are_there_and_the_character_performs(clip: Path) -> None:
+    before, behind = box("Before", -1.5), box("Behind", 6.0)
+    armature = build_character(plain_character())
+    done = bpy.ops.keymark.animate(filepath=str(clip), stature=1.75, character=armature.name)
+    assert done == {"FINISHED"}
+    take, scene = only_take(), bpy.context.scene
+    assert take.name == "hall" and take.stature == pytest.approx(1.75) and take.follow.use_keypoints
+    assert [keypoint_path(entry).name for entry in take.follow.files] == ["hall.keypoints.json"]
+    assert count_found(take)[0] >= 3 and (scene.frame_start, scene.frame_end) == (1, 40)
+    assert take.motion_action is not None and take.finish.action is not None and not take.finish.outdated
+    (character,) = take.characters
+    assert character.armature == armature and character.results[0].action is not None
+    assert before.hide_get() and not behind.hide_get() and not armature.hide_get()
+    assert "Found: " in take.camera_findings
+    assert take.matching.floor == "HEIGHT" and take.matching.floor_height == 0.0
+    placement = read_placement(take.camera)
+    assert isinstance(placement, CameraPlacement) and 0.5 < placement.height_m < 2.5
+    hips = take.armature.matrix_world @ take.armature.pose.bones["pelvis"].head
+    assert abs(hips.x) < 0.6 and 0.7 < hips.z < 1.2
+    assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
+
+
+def test_an_early_end_leaves_the_stages_that_are_complete(clip: Path) -> None:
+    context = bpy.context
+    take = load_into_take(context, clip, False)
+    follow_found_file(take, clip)
+    operator = type("Quiet", (), {"report": lambda self, kind, text: None})()
+    job = animate(operator, context.scene, 1.75, NOTHING, "")
+    stages = []
+    for progress in job:
+        stages.append((progress.stage, progress.fraction))
+        if progress.fraction > 0.72:
+            break
+    job.close()
+    take = only_take()
+    assert [fraction for _, fraction in stages] == sorted(fraction for _, fraction in stages)
+    assert take.armature is not None and count_found(take)[0] >= 3 and take.motion_action is None
+    assert bpy.ops.keymark.reconstruct() == {"FINISHED"} and take.motion_action is not None
+
+
+def test_a_file_gives_the_character_with_all_that_belongs_to_it(clip: Path, tmp_path: Path) -> None:
+    armature = build_character(plain_character())
+    file, name = tmp_path / "anna.blend", armature.name
+    bpy.data.libraries.write(str(file), {bpy.context.scene})
+    bpy.data.batch_remove([armature, armature.data])
+    scenes = len(bpy.data.scenes)
+    done = bpy.ops.keymark.animate(
+        filepath=str(clip), stature=1.75, character="FILE", character_file=str(file)
+    )
+    assert done == {"FINISHED"} and len(bpy.data.scenes) == scenes
+    (character,) = only_take().characters
+    assert character.armature.name == name and character.armature.name in bpy.context.scene.objects
+    assert character.results[0].action is not None
+
+
+@pytest.mark.parametrize("name", ["", "none.mp4", "words.mp4"])
+def test_a_clip_that_is_none_changes_nothing(tmp_path: Path, name: str) -> None:
+    (tmp_path / "words.mp4").write_text("no video", encoding="utf-8")
+    path = str(tmp_path / name) if name else ""
+    with pytest.raises(RuntimeError):
+        bpy.ops.keymark.animate(filepath=path, character=NOTHING)
+    assert not len(bpy.context.scene.keymark.takes) and not bpy.data.movieclips
