@@ -74,6 +74,7 @@ def complete_map(
 
 SOLVED, PROBED, FIRST = 0.25, 0.3, 0.8
 """Shares of the job at which the motion is solved, controls are known, and keys are found and measured."""
+LIFTINGS = ((FIRST, 0.9), (0.9, 1.0))  # the same of the times that feet are lifted, where they must be
 REDUCED = 0.7  # share of the latter at which the keys are found
 
 
@@ -154,11 +155,15 @@ def retarget(
     probed = replace(probed, notes=(*lacking, *probed.notes))
     performance = _Performance(armature_object, character, character_map, source, scene_frames, options)
     keys, controls, found = yield from stretch(performance.keyed(motion, probed), PROBED, FIRST)
-    lifts = performance.lifts(motion, found.depth_m)
-    if lifts:
-        yield Progress("Lifting the feet out of the floor", FIRST)
+    lifts: dict[str, Array] = {}
+    for start, end in LIFTINGS:
+        more = performance.lifts(motion, found.depth_m)
+        if not more:
+            break
+        lifts = {limb: own + lifts.get(limb, 0.0) for limb, own in more.items()}
+        yield Progress("Lifting the feet out of the floor", start)
         motion = run(solve_motion(character, character_map, source, options, there, lifts))
-        keys, controls, found = yield from stretch(performance.keyed(motion, probed), FIRST, 1.0)
+        keys, controls, found = yield from stretch(performance.keyed(motion, probed), start, end)
     sides = {limb[-1]: depth for limb, depth in found.depth_m.items()}
     return Retargeted(
         armature_object.session_uid,
