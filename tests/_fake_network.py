@@ -44,7 +44,8 @@ class MiddleNetwork(FakeNetwork):
         """Look at a crop."""
         self.looks += 1
         height, width = picture.shape[:2]
-        return self._pose(np.array([width / 2, height / 2]), height / CIRCLE, self.presence)
+        middle = np.array([width / 2 + 0.1 * np.sin(self.looks), height / 2])  # as no two looks are the same
+        return self._pose(middle, height / CIRCLE, self.presence)
 
 
 def draw_people(size: tuple[int, int], people: list[tuple[float, float, float]]) -> Image:

@@ -32,7 +32,11 @@ def background_motion(take: Take, reading: Reading, every: bool = False) -> Came
     if album is None or take.camera.is_moving or reading.steady is not None:
         return None
     places = performer_keypoints(replace(take, keyframes=()), None, reading.tracks).pixel
-    places = np.concatenate([reading.tracks.centroid, places], axis=1)
+    tracks = reading.tracks
+    around = 2.0 * np.sqrt(
+        np.diagonal(tracks.second_moment, axis1=-2, axis2=-1)
+    )  # of an ellipse: to its edge
+    places = np.concatenate([tracks.centroid - around, tracks.centroid + around, places], axis=1)
     some = np.unique(np.linspace(0, count - 1, min(LOOKS, count)).astype(np.intp))
     camera = take.camera
     found = camera_motion(album, some, places, camera_matrix(camera), camera.resolution)

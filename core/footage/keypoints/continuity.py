@@ -86,7 +86,8 @@ def _moved(before: Array, now: Array) -> Array:
 def _pieces(frames: IndexArray, pixel: Array, fps: float, looked: Mapping[int, bool]) -> list[list[int]]:
     """Rows of the pieces without a jump, of points (G, N, 2) [sizes of a person] at some frames.
 
-    Between a frame in which the picture shows somebody there and one in which it does not lies a jump, too.
+    Where the path jumps somewhere, a jump lies also between a frame in which the picture shows somebody there
+    and one in which it does not: the way back may be small. Without any jump a picture says nothing.
     """
     time_s = np.diff(frames) / fps
     off = np.zeros(len(time_s))  # of each step from where the body was going
@@ -101,10 +102,11 @@ def _pieces(frames: IndexArray, pixel: Array, fps: float, looked: Mapping[int, b
             speed[:] = np.nan
         else:
             speed = np.where(np.isfinite(speed), SMOOTH * now + (1.0 - SMOOTH) * speed, now)
+    jumps = bool(cuts)
     asked = [row for row, frame in enumerate(map(int, frames)) if frame in looked]
     for first, last in itertools.pairwise(asked):
         differ = looked[int(frames[first])] != looked[int(frames[last])]
-        if differ and cuts.isdisjoint(range(first + 1, last + 1)):
+        if differ and jumps and cuts.isdisjoint(range(first + 1, last + 1)):
             cuts.add(first + 1 + int(off[first:last].argmax()))
     ends = [0, *sorted(cuts), len(frames)]
     return [list(range(first, last)) for first, last in itertools.pairwise(ends)]

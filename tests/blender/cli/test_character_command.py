@@ -66,7 +66,7 @@ BAD = {
     "none.blend": "holds no armature",
     "two.blend": "holds 2 armatures, 'Anna', 'Ben'; name one, as in",
     "two.blend:Carl": "'Carl' is not in it; its armatures are 'Anna', 'Ben'",
-    "horse.blend": "an animal",
+    "horse.blend": "its trunk does not stand upright on its legs",
     "half.blend": "a character stands on two legs and has two arms",
     "motion.blend": "is an actor of Keymark",
     "flat.blend": "scale",

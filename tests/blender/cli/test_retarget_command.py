@@ -154,7 +154,7 @@ def test_a_motion_needs_no_footage(retarget: Retarget, result: Path, output: Pat
         (["--tolerance", "0"], "--tolerance is 0; millimeters above 0 and up to 1000 are valid, or none"),
         (["--tolerance", "few"], "--tolerance is few"),
         (["--tolerance", "nan"], "--tolerance is nan"),
-        (["--format", "obj"], "--format is obj; bvh, fbx, glb, usd are valid"),
+        (["--format", "obj"], "--format is obj; bvh, fbx, glb, usd, trc, c3d are valid"),
         (["--legs", "wheels"], "--legs"),
         (["--root-motion", "backwards"], "--root-motion"),
     ],

@@ -17,7 +17,7 @@ from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.shell.takes import active_take
 
-FRAMES = 32
+FRAMES = 64
 HEIGHT_M, TILT = 1.1, float(np.radians(-9.0))
 
 
@@ -32,8 +32,9 @@ def seen_file(take: Take, points: Array, path: Path) -> Path:
 
 
 def walking_file(take: Take, frames: int, path: Path) -> Path:
-    """Keypoints of someone who stands far away, then near, before a camera that looks down."""
-    places = np.where(np.arange(frames)[:, None] < frames // 2, [-0.8, 7.0, 0.0], [0.4, 3.6, 0.0])
+    """Keypoints of someone who comes near, before a camera that looks down."""
+    share = np.clip(np.linspace(-0.8, 1.8, frames), 0.0, 1.0)[:, None]
+    places = (1.0 - share) * [-0.8, 7.0, 0.0] + share * [0.4, 3.6, 0.0]
     posture = Posture.stack([standing_posture(take.body, place) for place in places])
     pose = CameraPlacement(HEIGHT_M, TILT, 0.0).matrix()
     filmed = replace(take, camera=replace(take.camera, matrix_world=pose))
@@ -46,8 +47,9 @@ def test_a_walk_sets_height_and_tilt(plain_take: Take, tmp_path: Path) -> None:
     writer = cv2.VideoWriter(
         str(clip), cv2.VideoWriter_fourcc(*"mp4v"), plain_take.fps, plain_take.camera.resolution
     )
+    noise = np.random.default_rng(0)  # the same picture twice is one observation
     for _ in range(FRAMES):
-        writer.write(np.full((*plain_take.camera.resolution[::-1], 3), 90, np.uint8))
+        writer.write(noise.integers(80, 100, (*plain_take.camera.resolution[::-1], 3), np.uint8))
     writer.release()
     bpy.ops.keymark.load_footage(filepath=str(clip))
     take = active_take(bpy.context.scene)

@@ -43,6 +43,10 @@ def test_where_they_cross_the_picture_tells_of_the_jump_back() -> None:
     assert left_out[0] == gone[0] and abs(left_out[-1] - gone[-1]) <= 1 and len(left_out) in (19, 20, 21)
 
 
+def test_a_picture_that_differs_is_not_believed_where_nothing_jumps() -> None:
+    assert same_person(walk(60.0, 2.0), FPS, {10: True, 30: False, 50: True}).all()
+
+
 def test_nobody_is_lost_who_runs_leaps_or_is_seen_in_part() -> None:
     run = walk(0.0, 12.0, 40)
     run[10:14, 6:] = np.nan  # legs behind something
