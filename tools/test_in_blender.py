@@ -54,12 +54,12 @@ def install(version: str, missing: list[str]) -> Path:
         return folder
     pip = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--upgrade"]
     pip += ["--target", str(folder), "--python-version", version, "--only-binary=:all:"]
-    compiled = [line for line in wanted if line.startswith(("scipy", "opencv"))]
-    pure = [line for line in wanted if line not in compiled]
-    if compiled:  # their only dependency is numpy, which must stay Blender's own
-        subprocess.run([*pip, "--no-deps", *compiled], check=True)
-    if pure:
-        subprocess.run([*pip, *pure], check=True)
+    alone = [line for line in wanted if line.startswith(("c3d", "scipy", "opencv"))]
+    others = [line for line in wanted if line not in alone]
+    if alone:  # their only dependency is numpy, which must stay Blender's own
+        subprocess.run([*pip, "--no-deps", *alone], check=True)
+    if others:
+        subprocess.run([*pip, *others], check=True)
     record.write_text(json.dumps(wanted))
     return folder
 

@@ -163,7 +163,7 @@ def _planting_notes(
     rig: Rig, shown: RigPose, body: Body, before: Posture, planted: PlantedFeet
 ) -> tuple[str, ...]:
     if not planted.contacts:
-        return ("No foot rests long enough to be planted; raise Foot Stray to hold feet that sway",)
+        return ("No foot rests long enough to be planted; raise Feet May Sway to hold feet that sway",)
     beyond_m = largest_leg_distance_m(rig, shown, body, before)
     if beyond_m <= NOTICEABLE_M:
         return ()

@@ -84,7 +84,7 @@ class KEYMARK_PT_finish_options(Popover, bpy.types.Panel):
         column.prop(settings, "plant_feet")
         feet = column.column()
         feet.active = settings.plant_feet
-        feet.prop(settings, "stray_mm", text="Feet May Sway (mm)")
+        feet.prop(settings, "stray_mm")
 
 
 class KEYMARK_PT_asset(Popover, bpy.types.Panel):

@@ -36,7 +36,7 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
         default=True,
     )
     stray_mm: bpy.props.FloatProperty(
-        name="Foot Stray (mm)",
+        name="Feet May Sway (mm)",
         description="Distance that a resting foot may stray and still be held; raise it to hold swaying feet",
         default=25.0,
         min=1.0,
