@@ -106,10 +106,12 @@ class Layout:
         self, kind: str, _: str, data: Any, name: str, chosen: Any, index: str, **__: Any
     ) -> None:
         self._show("list", name)
-        listed, inside = getattr(bpy.types, kind), Layout(self._context, [])
+        rows: list[tuple[str, str, str]] = []
+        listed, inside = getattr(bpy.types, kind), Layout(self._context, rows)
         assert index in chosen.bl_rna.properties
         for item in getattr(data, name):
             listed.draw_item(_own(listed, inside), self._context, inside, data, item, 0, chosen, index)
+        self._drawn += [("listed", name, words) for of, name, words in rows if of == "operator"]
 
 
 def _own(kind: Any, layout: Layout) -> Any:
@@ -175,6 +177,11 @@ def controls(editor: str = "VIEW_3D") -> list[str]:
     """Names of what can be clicked on or typed into, but for what folds and unfolds."""
     kinds = ("operator", "prop", "list", "menu", "popover")
     return [name for kind, name, _ in drawn_panels(editor) if kind in kinds]
+
+
+def offered(editor: str = "VIEW_3D") -> list[str]:
+    """Names of the controls, with the buttons in the rows of lists."""
+    return controls(editor) + [name for kind, name, _ in drawn_panels(editor) if kind == "listed"]
 
 
 def _panels(editor: str) -> Iterator[Any]:

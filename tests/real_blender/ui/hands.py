@@ -5,7 +5,7 @@ goes down the region, and the button under it is asked for its Python command, a
 """
 
 import bpy
-from _panel import controls
+from _panel import offered
 from driver import Steps, expect, turns, until
 
 ACROSS = (0.5, 0.75, 0.2, 0.35, 0.9, 0.08)
@@ -160,7 +160,7 @@ class Hands:
     def _look(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
         """The same, once the step is open that has it: a person reads the titles."""
         name = wanted[0].removeprefix("bpy.ops.").rstrip("(")
-        if name not in controls(kind):
+        if name not in offered(kind):
             self._open(name, kind)
             self.area(kind).tag_redraw()
             yield from turns(4)
@@ -177,7 +177,7 @@ class Hands:
                 for each in filter(None, (title, inside)):
                     clicks += not getattr(shown, each)
                     setattr(shown, each, True)
-                if name in controls(kind):
+                if name in offered(kind):
                     self.clicks += clicks
                     return
         expect(False, f"no step shows {name}")
