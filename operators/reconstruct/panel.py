@@ -61,6 +61,7 @@ class KEYMARK_PT_reconstruct_options(Popover, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         take, column = active_take(context.scene), self.column()
+        column.prop(take.follow, "reference")
         column.prop(take, "method")
         column.prop(take, "live_preview")
 
