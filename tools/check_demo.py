@@ -20,7 +20,7 @@ LARGEST_SHARE = {".": 0.6, "without_markers": 0.75}
 """Of the error of straight lines between the keyframes, by the folder of the motion in OUTPUT."""
 PICTURES_AT_LEAST = 2
 LARGEST_MM = {"skate_mm": 0.3, "penetration_mm": 2.0, "ik_fk_mm": 1.5}
-"""Of the figures of the character's motion; it is the skin of heel, ankle and toes that slides, whichever most."""
+"""Of the figures of the character's motion; of the skin of ankle, heel and toes the one that slides most."""
 LARGEST_ANIMATED_M = 0.12
 """Of the motion from a bare clip: what nothing posed is usually off, and half as much again."""
 ANIMATED_FILES = ("take.json", "keypoints.json", "keyframes.json", "motion.json", "conversion.json")
