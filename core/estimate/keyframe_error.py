@@ -118,14 +118,17 @@ def depth_std_m(index: IndexArray, matched: BoolArray, frames: int) -> Array:
     return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** share)
 
 
-def place_depth_std_m(points: Array, ankles: Array | None, camera: Camera) -> Array:
+def place_depth_std_m(
+    points: Array, ankles: Array | None, camera: Camera, frame: IndexArray | None = None
+) -> Array:
     """(F,) error of a whole composed performer's place along the line of sight [m], which all frames share.
 
     Sizes tell a distance, and so does the floor, the better the more the camera looks down on it.
 
-    `points` (F, P, 3) in the world and `ankles` (F,), heights of the lower one [m], None where unseen.
+    `points` (F, P, 3) in the world and `ankles` (F,), heights of the lower one [m], None where unseen;
+    `frame` (F,) indices in the clip, 0 on where None.
     """
-    frame = np.arange(len(points))
+    frame = np.arange(len(points)) if frame is None else frame
     middle = points.mean(axis=1)
     sight = camera.sight(middle, frame)
     location = np.array([camera.pose(int(index))[1] for index in frame])

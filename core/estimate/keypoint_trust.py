@@ -12,10 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
-from ..body.human import HUMAN
+from ..body.human import HUMAN, mass_weights
 from ..body.kinematics import Pose
-from ..evidence.keypoints import USUAL_PLACES, KeypointModel, ObservedKeypoints
+from ..evidence.keypoints import HUMAN_LENGTHS_M, USUAL_PLACES, KeypointModel, ObservedKeypoints
+from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints, mirror_images
+from ..footage.keypoints.performer import principal_keypoints
 from ..numerics.markov_chain import cheapest_path
 from ..numerics.robust import DEGREES, multivariate_cost
 
@@ -234,3 +236,47 @@ def _cost(error: Array, std: Array) -> Array:
     squared = (error**2).sum(axis=-1) / std**2
     cost = multivariate_cost(squared, DEGREES, 2)
     return np.asarray(SWAPS.alike * np.nan_to_num(cost).sum(axis=(1, 2)))
+
+
+# --- Depths that lean
+
+
+TILT_STD_RAD = 0.14  # the usual tilt: a network does not know how far the camera looks down, 8 degrees say
+STEADY_S = 1.0  # time after which the balance says something new: about a step
+
+
+def upright(keypoints: Keypoints, camera: Camera, time_s: Array) -> Keypoints:
+    """The keypoints with their hints turned about the picture's horizontal, so that the body is in balance.
+
+    Over a clip the center of mass is over the feet, whatever a performer does; that a network has it before
+    or behind them means that it takes the camera to look down more or less than it does. The more the balance
+    changes from frame to frame, the less it says.
+    """
+    main = principal_keypoints(keypoints)
+    frame = np.flatnonzero(np.isfinite(main.hint_m).all(axis=(1, 2)) & main.seen.all(axis=1))
+    if len(frame) < 2:
+        return keypoints
+    at = {name: main.hint_m[frame, column] for column, name in enumerate(main.names)}
+    _, sight = camera.rays(main.pixel[frame].mean(axis=1), frame)
+    across = camera.pose(frame)[0][..., 0]
+    across = across - (sight * across).sum(axis=-1, keepdims=True) * sight
+    across /= np.linalg.norm(across, axis=-1, keepdims=True)
+    up = np.stack([across, np.cross(sight, across), sight], axis=-2)[..., 2]  # in the hints' axes
+    away = np.array([0.0, 0.0, 1.0]) - up[:, 2:] * up
+    left = at["hip.L"] - at["hip.R"] + at["shoulder.L"] - at["shoulder.R"]
+    ahead = np.cross(left, up)
+    ahead /= np.maximum(np.linalg.norm(ahead, axis=-1, keepdims=True), 1e-6)
+    feet = 0.5 * (at["ankle.L"] + at["ankle.R"]) + 0.3 * HUMAN_LENGTHS_M["foot"] * ahead
+    center = np.einsum("p,fpi->fi", mass_weights(HUMAN), main.hint_m[frame])
+    lean = np.arctan2(((center - feet) * away).sum(axis=-1), ((center - feet) * up).sum(axis=-1))
+    steps = 1.0 + np.ptp(time_s[frame]) / STEADY_S
+    sure = TILT_STD_RAD**2 / (TILT_STD_RAD**2 + lean.var() / steps)
+    tilt = sure * float(np.median(lean))
+    print(
+        "TILT", np.degrees(np.median(lean)).round(1), np.degrees(lean.std()).round(1), round(float(sure), 2)
+    )
+    hint = np.array(keypoints.hint_m)
+    down, behind = keypoints.hint_m[..., 1], keypoints.hint_m[..., 2]
+    hint[..., 1] = np.cos(tilt) * down - np.sin(tilt) * behind
+    hint[..., 2] = np.cos(tilt) * behind + np.sin(tilt) * down
+    return replace(keypoints, hint_m=hint)
