@@ -132,7 +132,7 @@ def estimate_whole_clip(
     corrected = np.zeros_like(matched) if believed.corrected is None else believed.corrected
     posed = index[~matched | corrected]
     if keypoints.names and not len(posed):  # posed keyframes tell how hints err
-        keypoints = upright(keypoints, camera, tracks.time_s)
+        keypoints = upright(keypoints, camera)
         usual = replace(usual, depths=usual.depths.unposed())
     points = ObservedKeypoints.of(keypoints)
     if keypoints.names and len(posed):

@@ -121,7 +121,7 @@ def posing_input(take: Take, reading: Reading, keyframe_count: int | None = None
     return PosingInput(
         take.body,
         take.camera,
-        MatchEvidence.of(tracks, take.marker_segments, upright(keypoints, take.camera, tracks.time_s)),
+        MatchEvidence.of(tracks, take.marker_segments, upright(keypoints, take.camera)),
         _proposed(speed, there, keyframe_count),
         PosedFrames.of(take.body, posed),
         keypoints,
