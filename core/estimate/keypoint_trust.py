@@ -242,9 +242,9 @@ def _cost(error: Array, std: Array) -> Array:
 # --- Depths that lean
 
 
-# Share of the balance's lean that is the hints' own: networks take the camera to look down by 5 degrees more
-# or less than it does, and performers are themselves off balance by 4, in the mean of a clip.
-HINTS_SHARE = 0.6
+# Share of the balance's lean that is the hints' own: networks take the camera to look down by 4 or 5 degrees
+# more or less than it does, and performers are themselves off balance by as much, in the mean of a clip.
+HINTS_SHARE = 0.5
 SUPPORTED_RAD = 0.26  # lean of someone who sits or holds on to something, and is not over the feet
 SURE_SCORE = 0.5  # of ankles that are seen rather than guessed
 
