@@ -364,11 +364,11 @@ def marker_moments(body: Body, evidence: MatchEvidence, posture: Posture) -> Mar
     points = np.asarray(body.points(pose) - posture.translation[:, None])
     shown = points[:, evidence.points]
     for column, name in enumerate(evidence.keypoints.names):
-        stem, _, side = name.partition(".")
+        stem, _, on_side = name.partition(".")
         if stem in BESIDE_M:
             carrier, (outward, back, up) = BESIDE_M[stem]
-            joint = body.skeleton.joint_index(carrier if carrier in TRUNK_JOINTS else f"{carrier}.{side}")
-            beside = np.array([-outward if side == "R" else outward, back, up])
+            joint = body.skeleton.joint_index(carrier if carrier in TRUNK_JOINTS else f"{carrier}.{on_side}")
+            beside = np.array([-outward if on_side == "R" else outward, back, up])
             shown[:, column] += pose.rotation[:, joint] @ beside
     return MarkerMoments(np.concatenate([centroid, shown], axis=1), second_moment, points)
 
