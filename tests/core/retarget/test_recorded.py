@@ -1,6 +1,6 @@
 """Motions on characters of several shapes, their keys and their figures, number by number."""
 
-from dataclasses import astuple
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
@@ -11,8 +11,11 @@ from _recorded import assert_recorded
 from _varied import nameless, varied
 from keymark.core.arrays import Array
 from keymark.core.body.posture import turned_and_shifted
+from keymark.core.body.rotations import hinge
 from keymark.core.finish.hermite import Spline
 from keymark.core.progress import run
+from keymark.core.retarget.character import Character
+from keymark.core.retarget.character_motion import find_stance
 from keymark.core.retarget.controls.control_motion import dense_controls
 from keymark.core.retarget.controls.point_tolerances import ToleranceRules
 from keymark.core.retarget.controls.reduction import reduce_controls
@@ -84,9 +87,20 @@ def test_few_keys(keys: LimbKeys) -> None:
     assert_recorded(f"keys {keys.name}", *channels)
 
 
+def tilted(character: Character, angle_deg: float) -> Character:
+    """The character leaning in its armature."""
+    turn = np.eye(4)
+    turn[:3, :3] = hinge(np.array([0.8, 0.6, 0.0]), np.radians(angle_deg))
+    bones = [replace(bone, rest=turn @ bone.rest, tail=turn[:3, :3] @ bone.tail) for bone in character.bones]
+    return replace(character, bones=tuple(bones))
+
+
 def test_confidences_of_bodies_drawn_at_random() -> None:
     for seed in range(12):
         for words, character in (("named", varied(seed)), ("nameless", nameless(varied(seed)))):
-            roles = recognize(character.character).character_map.roles
+            found = recognize(character.character).character_map
+            roles = found.roles
             sure = [[role.confidence, len(role.bones), *role.shares] for _, role in sorted(roles.items())]
             assert_recorded(f"recognized {words} {seed}", *sure)
+            stances = [find_stance(tilted(character.character, deg), found) for deg in (0.0, 2.5, 20.0)]
+            assert_recorded(f"stance {words} {seed}", *stances)
