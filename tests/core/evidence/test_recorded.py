@@ -51,7 +51,9 @@ def test_contours(name: str) -> None:
         assert_recorded(f"contours {name} {field}", getattr(seen, field))
     assert_recorded(f"contours {name} slopes", model.normal_jacobian(seen, seen.normal, POSE))
     parts = model.part_outlines(POSE, FRAME)
-    assert_recorded(f"parts {name}", *(part_map(parts, frame, (80, 60), 4.0) for frame in (0, 5)))
+    drawn = [part_map(parts, frame, (80, 60), 4.0) for frame in (0, 5)]
+    # OpenCV's releases round a border's pixels differently.
+    assert_recorded(f"parts {name}", *drawn, share=0.05)
     assert_recorded(f"outline depth {name}", outline_depth(seen.pixel, parts))
     axes = LimbAxes(model.parts, CAMERAS[name])
     share = np.linspace(0.1, 0.9, FRAMES * len(model.parts.segments)).reshape(FRAMES, -1)
