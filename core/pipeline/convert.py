@@ -144,7 +144,8 @@ def find_and_reconstruct(
         take = with_reference(take, said)
         found = referred_poses(take, said)
     else:
-        found = yield from stretch(pose_clip(take, reading, libraries, floor_m), READ, POSED)
+        posing = pose_clip(take, reading, libraries, floor_m, floor_open=onto_floor)
+        found = yield from stretch(posing, READ, POSED)
         take = with_found(take, found)
         take = lowered(take, found.floor_m) if onto_floor else take
     result = yield from stretch(reconstruct(take, method, reading, referred=said), POSED, 1.0)
