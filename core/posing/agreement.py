@@ -14,10 +14,10 @@ from ..body.human import HUMAN
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..estimate.keyframe_error import GROUND_STD_M
-from ..estimate.performer_placement import standing_ankle_m
+from ..estimate.performer_placement import TOUCHING_PERCENT, standing_ankle_m
 from ..files.fields import listed
 from ..take.presence import named_limbs
-from .candidates import MatchedFrame
+from .candidates import PROBABILITY_BOUNDS, MatchedFrame
 from .posing_input import PosingInput
 
 WRONG_SHARE = 0.1  # of all takes whose height, camera or floor are wrong: a round guess
@@ -67,6 +67,7 @@ def agreement(
         against.append(f"{named_limbs(given.unseen)} never seen")
     if not against and probability < USABLE:
         against.append("other postures look alike")
+    probability = float(np.clip(probability, *PROBABILITY_BOUNDS))
     verdict = "usable" if probability >= USABLE else "doubtful"
     reasons = listed(against, 4) if against else " and ".join(agree) + " agree" if agree else ""
     return probability, f"the found poses are {verdict}, {probability:.0%} sure" + (
@@ -75,9 +76,10 @@ def agreement(
 
 
 def feet_over_floor_m(given: PosingInput, points: Array, floor_m: float) -> float:
-    """Median height of the lower foot over the floor, of points (T, P, 3) [m]."""
+    """How high the lower foot stands over the floor, of points (T, P, 3) [m]; steps and jumps lead up from it."""
     ankles = [HUMAN.point_names.index(f"ankle.{side}") for side in SIDES]
-    return float(np.median(points[:, ankles, 2].min(axis=1)) - floor_m - standing_ankle_m(given.body))
+    standing = np.percentile(points[:, ankles, 2].min(axis=1), TOUCHING_PERCENT)
+    return float(standing - floor_m - standing_ankle_m(given.body))
 
 
 def _relative_size(given: PosingInput, points: Array) -> float | None:
