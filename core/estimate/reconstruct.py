@@ -82,9 +82,9 @@ def reconstruct(
 
     `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; `reading` has
     what was read from the same clip before, which is then not opened again; of `earlier` those parts are used
-    that still hold; `referred` is what is known already of the take's reference motion; `floor_m` is the height
-    of the floor that found poses should stand on. Closing the generator
-    cancels the job, which has no effects of its own.
+    that still hold; `referred` is what is known already of the take's reference motion; `floor_m` is the
+    floor's height, on which found poses should stand. Closing the generator cancels the job, which has no
+    effects of its own.
 
     Raises:
         InputError: The clip cannot be used, a color matches nothing in it, or the method is unknown.

@@ -14,7 +14,7 @@ from ..body.human import HUMAN
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..estimate.keyframe_error import GROUND_STD_M
-from ..estimate.performer_placement import TOUCHING_PERCENT, standing_ankle_m
+from ..estimate.performer_placement import standing_ankle_m
 from ..files.fields import listed
 from ..take.presence import named_limbs
 from .candidates import PROBABILITY_BOUNDS, MatchedFrame
@@ -23,6 +23,7 @@ from .posing_input import PosingInput
 WRONG_SHARE = 0.1  # of all takes whose height, camera or floor are wrong: a round guess
 SIZE_STD, SIZE_RANGE = 0.12, 0.7  # of a logarithm: networks' sizes of a known person, and a wrong height's
 FLOOR_RANGE_M = 1.0  # feet are anywhere within it where camera, height or floor are wrong
+LOWEST_PERCENT = 5.0  # of the feet's heights, their lowest but for outliers
 UNSEEN_ODDS = 0.5  # probability that a limb which is never seen is about right
 USABLE = 0.5  # least confidence
 BONES = tuple(
@@ -76,14 +77,14 @@ def agreement(
 
 
 def feet_over_floor_m(given: PosingInput, points: Array, floor_m: float) -> float:
-    """How high the lower foot stands over the floor, of points (T, P, 3) [m]; steps and jumps lead up from it."""
+    """How high the lower foot is over the floor at its lowest, of points (T, P, 3) [m]; steps lead up."""
     ankles = [HUMAN.point_names.index(f"ankle.{side}") for side in SIDES]
-    standing = np.percentile(points[:, ankles, 2].min(axis=1), TOUCHING_PERCENT)
+    standing = np.percentile(points[:, ankles, 2].min(axis=1), LOWEST_PERCENT)
     return float(standing - floor_m - standing_ankle_m(given.body))
 
 
 def _relative_size(given: PosingInput, points: Array) -> float | None:
-    """How long limbs are by the network's guess in space, over those of points (T, P, 3); None without one."""
+    """How long limbs are by the network's guess, over those of points (T, P, 3); None without one."""
     hints, names = given.evidence.keypoints.hint_m[given.sampled], given.evidence.keypoints.names
     ratios = []
     for pair in BONES:

@@ -37,7 +37,10 @@ def on_floor() -> float:
 def test_what_agrees_is_usable() -> None:
     probability, said = agreement(seen(), truth(), frames(), on_floor())
     assert probability == pytest.approx(0.85, abs=0.03)
-    assert said == f"the found poses are usable, {probability:.0%} sure: the detector's sizes and the floor agree"
+    assert (
+        said
+        == f"the found poses are usable, {probability:.0%} sure: the detector's sizes and the floor agree"
+    )
 
 
 def test_the_postures_probability_enters() -> None:
