@@ -36,7 +36,7 @@ from .keyframe_error import UNOBSERVED, place_depth_std_m, undetermined_covarian
 from .keyframe_trust import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
-from .performer_placement import TOUCHING_PERCENT, found_ankle_m, standing_ankle_m
+from .performer_placement import feet_over_floor_m, found_ankle_m
 from .reference_evidence import OPTIONS, NoReference, ReferenceEvidence, reference_evidence, with_reference
 from .second_look import seen_tracks
 from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
@@ -280,8 +280,7 @@ def _solved(
         lower = None if {"leg.L", "leg.R"} <= set(never) else motion.points[:, ankles, 2].min(axis=1)
         over_m = 0.0
         if lower is not None and floor_m is not None:
-            standing = float(np.nanpercentile(lower, TOUCHING_PERCENT))
-            over_m = standing - floor_m - standing_ankle_m(take.body)
+            over_m = feet_over_floor_m(take.body, motion.points, floor_m)
         place_std_m = place_depth_std_m(motion.points, lower, take.camera, over_m)
     # A reference motion has its own errors in the estimate; open is what all sizes share.
     sure = np.array(

@@ -14,7 +14,7 @@ from ..body.human import HUMAN
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..estimate.keyframe_error import GROUND_STD_M
-from ..estimate.performer_placement import standing_ankle_m
+from ..estimate.performer_placement import feet_over_floor_m
 from ..files.fields import listed
 from ..take.presence import named_limbs
 from .candidates import PROBABILITY_BOUNDS, MatchedFrame
@@ -23,7 +23,6 @@ from .posing_input import PosingInput
 WRONG_SHARE = 0.1  # of all takes whose height, camera or floor are wrong: a round guess
 SIZE_STD, SIZE_RANGE = 0.12, 0.7  # of a logarithm: networks' sizes of a known person, and a wrong height's
 FLOOR_RANGE_M = 1.0  # feet are anywhere within it where camera, height or floor are wrong
-LOWEST_PERCENT = 5.0  # of the feet's heights, their lowest but for outliers
 UNSEEN_ODDS = 0.5  # probability that a limb which is never seen is about right
 USABLE = 0.5  # least confidence
 BONES = tuple(
@@ -48,7 +47,8 @@ def agreement(
     """
     chosen = [frame.candidates[0].confidence for frame in frames]
     probability = float(np.mean(chosen)) if chosen else 0.0
-    agree, against = [], []
+    agree: list[str] = []
+    against: list[str] = []
     points = given.body.points(given.body.pose(postures[given.sampled]))
     size = _relative_size(given, points)
     if size is not None:
@@ -58,7 +58,7 @@ def agreement(
         said = what + ("taller" if size > 1.0 else "shorter") + " than stated"
         (agree if own >= USABLE else against).append("the detector's sizes" if own >= USABLE else said)
     if floor_m is not None and not {"leg.L", "leg.R"} <= set(given.unseen):
-        off_m = feet_over_floor_m(given, points, floor_m)
+        off_m = feet_over_floor_m(given.body, points, floor_m)
         own = _right(off_m, GROUND_STD_M, FLOOR_RANGE_M)
         probability *= own
         said = f"the feet are {abs(off_m) * 100.0:.0f} cm {'above' if off_m > 0.0 else 'below'} the floor"
@@ -74,13 +74,6 @@ def agreement(
     return probability, f"the found poses are {verdict}, {probability:.0%} sure" + (
         f": {reasons}" if reasons else ""
     )
-
-
-def feet_over_floor_m(given: PosingInput, points: Array, floor_m: float) -> float:
-    """How high the lower foot is over the floor at its lowest, of points (T, P, 3) [m]; steps lead up."""
-    ankles = [HUMAN.point_names.index(f"ankle.{side}") for side in SIDES]
-    standing = np.percentile(points[:, ankles, 2].min(axis=1), LOWEST_PERCENT)
-    return float(standing - floor_m - standing_ankle_m(given.body))
 
 
 def _relative_size(given: PosingInput, points: Array) -> float | None:

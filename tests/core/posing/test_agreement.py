@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from _performed import BODY, FRAMES, camera, detected, performed, unmarked
 from keymark.core.body.posture import Posture
-from keymark.core.posing.agreement import agreement, feet_over_floor_m
+from keymark.core.estimate.performer_placement import feet_over_floor_m
+from keymark.core.posing.agreement import agreement
 from keymark.core.posing.candidates import Candidate, MatchedFrame
 from keymark.core.posing.posing_input import PosingInput, posing_input
 from keymark.core.prior.registry import SHIPPED, find_libraries
@@ -31,7 +32,7 @@ def frames(confidence: float = 0.9) -> list[MatchedFrame]:
 
 def on_floor() -> float:
     points = BODY.points(BODY.pose(truth()))[seen().sampled]
-    return feet_over_floor_m(seen(), points, 0.0)
+    return feet_over_floor_m(BODY, points, 0.0)
 
 
 def test_what_agrees_is_usable() -> None:
