@@ -164,7 +164,8 @@ def _on_floor(given: PosingInput, posture: Posture, floor_m: float) -> Posture:
     sized_m = SIZE_STD * np.linalg.norm(foot - eye, axis=-1)
     sure = (
         1.0
-        - (place_depth_std_m(points, np.full(len(points), wanted_m), given.camera, sampled) / sized_m) ** 2
+        - (place_depth_std_m(points, np.full(len(points), wanted_m), given.camera, frame=sampled) / sized_m)
+        ** 2
     )
     share = sure * (wanted_below / np.maximum(below, SAME_FLOOR_M) - 1.0)
     share = _smoothed(np.interp(time_s, time_s[usable], share[usable]), time_s)
