@@ -1,7 +1,5 @@
 """No posing at all: accuracy of the keyframes that are found, and of the motion that follows from them.
 
-Beside it the motion by one library alone, the one with the take's own kind of motion, where there is one.
-
 Usage: posing_all.py [TAKE ...] [--keypoints | --wrong] with names or folders of takes. See README.md.
 """
 
@@ -39,32 +37,15 @@ from keymark.core.take.read_footage import read_footage  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from wrong_keypoints import NOT_OF_THE_PICTURE, WRONG  # noqa: E402
 
-FITTING: dict[str, str] = {
-    "walk": "walking",
-    "reach": "reaching",
-    "aerobic": "aerobic",
-    "demo/aerobic": "aerobic",
-    "real_balance": "balance",
-    "stroll": "walking",
-    "jog": "running",
-    "jump": "jumping",
-    "kick": "kicking",
-    "box": "punching",
-    "lift": "squatting_lifting",
-    "spin": "turning",
-    "star_jumps": "aerobic",
-}
-"""Fitting library by take; other takes fit none."""
 WRONG_SIDE_M = 0.15
 """A limb's end this much off in depth beside its own root, and nearer to its mirror image in depth."""
 LIMBS = tuple((f"{root}.{side}", f"{end}.{side}") for side in "LR" for root, end in
               (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle")))  # fmt: skip
 COLUMNS = (
     "found, hips aligned", "found", "motion, hips aligned", "motion", "coverage", "wrong depth side",
-    "frames with one", "confidence", "within 100 mm", "s a 100 frames", "s between", "by one, hips aligned",
-    "by one",
+    "frames with one", "confidence", "within 100 mm", "s a 100 frames", "s between",
 )  # fmt: skip
-DIGITS = (0, 0, 0, 0, 2, 2, 2, 2, 2, 1, 1, 0, 0)
+DIGITS = (0, 0, 0, 0, 2, 2, 2, 2, 2, 1, 1)
 BETWEEN_S = 1.0  # time between two posed frames in the middle of a clip between which poses are found anew
 
 
@@ -84,12 +65,9 @@ class Measured:
     right: float  # share of found keyframes within 100 mm, the hips aligned: what the confidence should be
     seconds: float  # process time of posing 100 frames
     between_s: float  # process time of posing anew what lies between two posed frames
-    by_one_rooted: float | None
-    """Like `rooted`, by the library with the take's own kind of motion alone; None where there is none."""
-    by_one: float | None  # like `mpjpe`, by that library
 
 
-def measure(name: str, trial: Trial, libraries: Sequence[Library]) -> Measured:
+def measure(trial: Trial, libraries: Sequence[Library]) -> Measured:
     """Pose a take without a person, and reconstruct it."""
     take, truth = replace(trial.take, keyframes=()), trial.truth
     begun = time.process_time()
@@ -102,7 +80,6 @@ def measure(name: str, trial: Trial, libraries: Sequence[Library]) -> Measured:
     rooted = np.linalg.norm(off - off[:, hips].mean(axis=1, keepdims=True), axis=-1).mean(axis=1)
     motion, score = estimated(trial, take, found)
     wrong = wrong_sides(trial, motion.points)
-    by_one = score_by_one(name, trial, take, libraries)
     return Measured(
         1e3 * float(rooted.mean()),
         1e3 * float(np.linalg.norm(off, axis=-1).mean()),
@@ -115,8 +92,6 @@ def measure(name: str, trial: Trial, libraries: Sequence[Library]) -> Measured:
         float((rooted < 0.1).mean()),
         seconds,
         between_seconds(trial, take, found, libraries),
-        by_one and by_one.rooted,
-        by_one and by_one.mpjpe,
     )
 
 
@@ -124,14 +99,6 @@ def estimated(trial: Trial, take: Take, found: FoundPoses) -> tuple[Motion, Scor
     """The default method's motion from found keyframes, and its score over all frames."""
     motion = run(reconstruct(with_found(take, found), "map", trial.reading)).motion
     return motion, replace(trial, unscored=()).score(motion.points, motion.sigma_m)
-
-
-def score_by_one(name: str, trial: Trial, take: Take, libraries: Sequence[Library]) -> Score | None:
-    """Score of the motion by the library with the take's own kind of motion; None where there is none."""
-    own = next((each for each in libraries if each.identifier == FITTING.get(name)), None)
-    if own is None:
-        return None
-    return estimated(trial, take, run(pose_clip(take, trial.reading, [own])))[1]
 
 
 def between_seconds(trial: Trial, take: Take, found: FoundPoses, libraries: Sequence[Library]) -> float:
@@ -267,26 +234,19 @@ def judge(names: Sequence[str], libraries: Sequence[Library]) -> None:
     write_results("posing_all_wrong", "\n".join(lines), json.dumps([[bool(u), c] for u, c in told]))
 
 
-def median(values: Sequence[float | None]) -> float | None:
-    """The median of those values that are there; None without any."""
-    there = [value for value in values if value is not None]
-    return float(np.median(there)) if there else None
-
-
 def table(results: dict[str, Measured]) -> str:
     """The measures as Markdown, with their medians."""
     lines = [
-        "Distance from the truth [mm] without a posed keyframe: found with all libraries, and with the "
-        "one of the take's own kind of motion.",
+        "Distance from the truth [mm] without a posed keyframe.",
         "",
         "| take | " + " | ".join(COLUMNS) + " |",
         "|---" + "|---:" * len(COLUMNS) + "|",
     ]
     rows = {name: list(asdict(found).values()) for name, found in results.items()}
-    rows["**median**"] = [median(column) for column in zip(*rows.values(), strict=True)]
+    rows["**median**"] = [float(np.median(column)) for column in zip(*rows.values(), strict=True)]
     for name, row in rows.items():
         cells = zip(row, DIGITS, strict=True)
-        values = ("" if value is None else f"{value:.{digit}f}" for value, digit in cells)
+        values = (f"{value:.{digit}f}" for value, digit in cells)
         lines.append(f"| {name} | {' | '.join(values)} |")
     return "\n".join(lines)
 
@@ -305,7 +265,7 @@ def main(arguments: list[str]) -> int:
         judge(options.takes, libraries)
         return 0
     trials = unposed_trials(options.takes, options.keypoints, plain=options.keypoints)
-    results = {name: measure(name, trial, libraries) for name, trial in trials}
+    results = {name: measure(trial, libraries) for name, trial in trials}
     as_dictionaries = {name: asdict(found) for name, found in results.items()}
     file = "posing_all_keypoints" if options.keypoints else "posing_all"
     write_results(file, table(results), json.dumps(as_dictionaries, indent=1))

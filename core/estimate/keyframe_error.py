@@ -119,7 +119,11 @@ def depth_std_m(index: IndexArray, matched: BoolArray, frames: int) -> Array:
 
 
 def place_depth_std_m(
-    points: Array, ankles: Array | None, camera: Camera, over_floor_m: float = 0.0
+    points: Array,
+    ankles: Array | None,
+    camera: Camera,
+    over_floor_m: float = 0.0,
+    frame: IndexArray | None = None,
 ) -> Array:
     """(F,) error of a whole composed performer's place along the line of sight [m], which all frames share.
 
@@ -127,9 +131,10 @@ def place_depth_std_m(
     contradict each other the error is as large as the step that the floor would have the performer take.
 
     `points` (F, P, 3) in the world and `ankles` (F,), heights of the lower one [m], None where unseen;
-    `over_floor_m`: how high the feet stand over a known floor.
+    `over_floor_m`: how high the feet stand over a known floor; `frame` (F,) indices in the clip, 0 on where
+    None.
     """
-    frame = np.arange(len(points))
+    frame = np.arange(len(points)) if frame is None else frame
     middle = points.mean(axis=1)
     sight = camera.sight(middle, frame)
     location = np.array([camera.pose(int(index))[1] for index in frame])

@@ -34,7 +34,7 @@ from .keyframe_evidence import SeenAtKeyframes
 from .keyframe_trust import FEWEST_POSED, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
-from .keypoint_trust import doubted_at_changes, exchanged_back, find_swaps, keypoint_trust
+from .keypoint_trust import doubted_at_changes, exchanged_back, find_swaps, keypoint_trust, upright
 from .performer_placement import lower_ankle_m
 from .refinement import refine, rests_of, without_corrections
 from .terms.reference import ExpectedPoints
@@ -129,9 +129,12 @@ def estimate_whole_clip(
     usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
     swapped = _swaps(usual.model, keypoints, prior, index, tracks.time_s)
     keypoints = doubted_at_changes(exchanged_back(keypoints, swapped), swapped, tracks.time_s)
-    points = ObservedKeypoints.of(keypoints)
     corrected = np.zeros_like(matched) if believed.corrected is None else believed.corrected
     posed = index[~matched | corrected]
+    if keypoints.names and not len(posed):  # posed keyframes tell how hints err
+        keypoints = upright(keypoints, camera)
+        usual = replace(usual, depths=usual.depths.unposed())
+    points = ObservedKeypoints.of(keypoints)
     if keypoints.names and len(posed):
         said = keypoint_trust(usual.model, usual.sources, points, body.pose(prior[posed]), posed)
         usual = replace(usual, trust=said.trust, lag={name: lag for name, lag in said.lag.items() if lag})

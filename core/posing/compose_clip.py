@@ -12,10 +12,12 @@ import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
 from ..body.body_volume import rested
-from ..body.human import LIMBS
+from ..body.human import HUMAN, LIMBS
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..estimate.performer_placement import place_standing
+from ..body.skeleton import SIDES
+from ..estimate.keyframe_error import SIZE_STD, place_depth_std_m
+from ..estimate.performer_placement import SAME_FLOOR_M, place_standing, standing_ankle_m
 from ..footage.camera import Camera
 from ..progress import Part, scaled
 from .composed_path import ComposedPath, best_path
@@ -137,7 +139,38 @@ def compose_frames(
             rough = np.array([camera.depth(at, int(frame)) for at, frame in zip(hips, sampled, strict=True)])
             telling = part_beliefs(given, pools, stances, posture, hips, floor_m)
             beliefs = yield from scaled(telling, led, ended)
+    if floor_seen_m is not None and not len(given.posed.frames):
+        posture = _on_floor(given, posture, floor_seen_m)
     return Composition(path, states, rested(given.body, posture, given.unseen), floor_m)
+
+
+def _on_floor(given: PosingInput, posture: Posture, floor_m: float) -> Posture:
+    """(T,) postures nearer to the camera or farther away, so that the lower foot is on the floor over a time.
+
+    The floor is the better ruler of distance, the more the camera looks down on it; a detector's body is
+    smaller than the skeleton. Feet far above the floor, on steps or in flight, say nothing.
+    """
+    sampled, time_s = given.sampled, given.time_s
+    points = given.body.points(given.body.pose(posture))
+    feet = points[:, [HUMAN.point_names.index(f"ankle.{side}") for side in SIDES]]
+    foot = feet[np.arange(len(feet)), feet[..., 2].argmin(axis=1)]
+    _, eye = given.camera.pose(sampled)
+    eye = np.broadcast_to(eye, foot.shape)
+    wanted_m = floor_m + standing_ankle_m(given.body)
+    below, wanted_below = eye[:, 2] - foot[:, 2], eye[:, 2] - wanted_m
+    usable = (np.minimum(below, wanted_below) > SAME_FLOOR_M) & (foot[:, 2] - wanted_m < SAME_FLOOR_M)
+    if not usable.any():
+        return posture
+    sized_m = SIZE_STD * np.linalg.norm(foot - eye, axis=-1)
+    sure = (
+        1.0
+        - (place_depth_std_m(points, np.full(len(points), wanted_m), given.camera, frame=sampled) / sized_m)
+        ** 2
+    )
+    share = sure * (wanted_below / np.maximum(below, SAME_FLOOR_M) - 1.0)
+    share = _smoothed(np.interp(time_s, time_s[usable], share[usable]), time_s)
+    hips = posture.translation + share[:, None] * (posture.translation - eye)
+    return Posture(posture.skeleton, hips, posture.rotations, posture.angles)
 
 
 def _posed_throughout(given: PosingInput) -> bool:

@@ -255,10 +255,9 @@ class FrameCosts:
                 (points * own[:, None]).sum(axis=2),
             )
         left, right = (choices[limb] for limb in LEGS)
-        pairs = self.stances.legs_together[left.index[:, :, None], right.index[:, None]]
-        if self.floor_m is not None:
-            pairs = pairs + pair_costs(left, right, mass)
-        return left, right, pairs
+        if self.floor_m is None:
+            return left, right, np.zeros((*left.index.shape, right.index.shape[1]), dtype=np.float32)
+        return left, right, pair_costs(left, right, mass)
 
     def _hint_cost(self, observed: int, depth: SingleArray) -> SingleArray | None:
         """Cost of depths behind the hips where one was guessed; None where it was not."""

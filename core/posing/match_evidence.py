@@ -35,6 +35,17 @@ POINT_STD_M = {
     "ankle": 0.11,
 }
 """The same of points: halfway between those of the segments that meet there."""
+BESIDE_M = {
+    "head": ("neck", (0.0, -0.021, -0.027)),
+    "shoulder": ("waist", (-0.018, 0.0, 0.017)),
+    "elbow": ("shoulder", (-0.015, -0.014, 0.0)),
+    "hip": ("pelvis", (0.0, -0.038, 0.0)),
+    "knee": ("hip", (0.0, 0.0, 0.013)),
+    "ankle": ("knee", (0.0, 0.0, 0.021)),
+}
+"""Where detectors have joints' points, in the frame of what carries them, outward, back and up [m]: means of
+eight takes with their truth, halves of which agree to 1 cm. Hips are on the skin, and ankles above them."""
+TRUNK_JOINTS = ("pelvis", "waist", "neck")
 LEAST_QUALITY = 0.05
 BRIDGED_S = 1.0
 """Longest time without anything seen over which points are taken to go straight on: about a step."""
@@ -351,9 +362,15 @@ def marker_moments(body: Body, evidence: MatchEvidence, posture: Posture) -> Mar
         second_moment[:, marker] = np.einsum("nq,nqij->nij", share, own)
     centroid -= posture.translation[:, None]
     points = np.asarray(body.points(pose) - posture.translation[:, None])
-    return MarkerMoments(
-        np.concatenate([centroid, points[:, evidence.points]], axis=1), second_moment, points
-    )
+    shown = points[:, evidence.points]
+    for column, name in enumerate(evidence.keypoints.names):
+        stem, _, on_side = name.partition(".")
+        if stem in BESIDE_M:
+            carrier, (outward, back, up) = BESIDE_M[stem]
+            joint = body.skeleton.joint_index(carrier if carrier in TRUNK_JOINTS else f"{carrier}.{on_side}")
+            beside = np.array([-outward if on_side == "R" else outward, back, up])
+            shown[:, column] += pose.rotation[:, joint] @ beside
+    return MarkerMoments(np.concatenate([centroid, shown], axis=1), second_moment, points)
 
 
 def _outer(vector: Array) -> Array:

@@ -45,7 +45,6 @@ class StanceFeatures:
     heading_rad: Array  # (H,)
     limbs: dict[str, PartFeatures]  # features of each limb's parts
     limb_cost: dict[str, SingleArray]  # (T, L) how unusual each part of a limb is with each torso
-    legs_together: SingleArray  # (L, L) how unusual a left and a right leg are together
     ankle_height_m: float  # height of the ankles over flat soles
 
     def frame_of(self, limb: str, stance: IndexArray) -> tuple[SingleArray, SingleArray]:
@@ -94,7 +93,6 @@ def stance_features(pools: PartPools, evidence: MatchEvidence) -> StanceFeatures
         heading,
         limbs,
         {limb: _single(pools.limb_cost[limb]) for limb in LIMBS},
-        _single(pools.legs_together),
         standing_ankle_m(body),
     )
 

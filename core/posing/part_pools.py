@@ -66,7 +66,6 @@ class PartPools:
     legs: PartPool
     motions: KnownMotions  # what the parts are of, see `PartPool.source`
     limb_cost: Mapping[str, Array]  # (T, L) -log of how usual limbs are with torsos
-    legs_together: Array  # (L, L) the same of two legs, left and right, beyond what either is by itself
 
     def composed(
         self, torso: IndexArray, limbs: dict[str, IndexArray], heading_rad: Array, hips: Array
@@ -143,12 +142,7 @@ def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
         together /= together.sum(axis=1, keepdims=True)
         alone = np.exp(-pool.cost)
         limb_cost[limb] = -np.log((1.0 - TOGETHER_SHARE) * alone + TOGETHER_SHARE * together)
-    both = seen["leg.L"] @ seen["leg.R"].T / len(names)
-    apart = np.outer(both.sum(axis=1), both.sum(axis=0))
-    ratio = both / np.maximum(apart, 1e-12)
-    # Largest factor by which legs are likelier together than by themselves.
-    usual = -np.log(1.0 - TOGETHER_SHARE + TOGETHER_SHARE * np.minimum(ratio, 20.0))
-    return PartPools(body, torsos, arms, legs, motions, limb_cost, usual)
+    return PartPools(body, torsos, arms, legs, motions, limb_cost)
 
 
 def _nearness(body: Body, pool: PartPool, known: Posture) -> Array:

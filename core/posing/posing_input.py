@@ -11,6 +11,7 @@ from ..body.body_volume import sole_heights_m
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..errors import InputError
+from ..estimate.keypoint_trust import upright
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
@@ -120,7 +121,7 @@ def posing_input(take: Take, reading: Reading, keyframe_count: int | None = None
     return PosingInput(
         take.body,
         take.camera,
-        MatchEvidence.of(tracks, take.marker_segments, keypoints),
+        MatchEvidence.of(tracks, take.marker_segments, upright(keypoints, take.camera)),
         _proposed(speed, there, keyframe_count),
         PosedFrames.of(take.body, posed),
         keypoints,

@@ -11,7 +11,13 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.block_banded import BlockBanded
 from keymark.core.estimate.keypoint_fit import keypoint_notes, observed_joints
-from keymark.core.estimate.keypoint_trust import doubted_at_changes, exchanged_back, find_swaps
+from keymark.core.estimate.keypoint_trust import (
+    HINTS_SHARE,
+    doubted_at_changes,
+    exchanged_back,
+    find_swaps,
+    upright,
+)
 from keymark.core.estimate.terms.term import NormalEquations, add_drift, drift, drift_cost
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.evidence.keypoints import KeypointModel
@@ -198,6 +204,39 @@ def test_hints_of_depth_help_and_wrong_ones_do_no_harm() -> None:
     assert error < 0.9 * error_mm(with_good())
     nonsense = replace(hinted, hint_m=0.2 * lasting(np.random.default_rng(8), hinted.hint_m.shape))
     assert error_mm(estimate(nonsense)) < 1.15 * error_mm(with_good())
+
+
+def standing_hints(tilt_rad: float) -> Keypoints:
+    """A detector's view of somebody who stands with every joint at rest, its depths tilted."""
+    pose = BODY.pose(Posture.rest(BODY.skeleton, (3,)))
+    model = KeypointModel.usual(BODY, CAMERA, HUMAN.point_names)
+    pixel = model.pixels(pose, np.arange(3))
+    relative = model.world(pose) - pose.posture.translation[:, None]
+    _, sight = CAMERA.rays(pixel[0].mean(axis=0))
+    across = np.cross(sight, [0.0, 0.0, 1.0])
+    across /= np.linalg.norm(across)
+    hint = relative @ np.stack([across, np.cross(sight, across), sight], axis=-1)
+    sine, cosine = np.sin(tilt_rad), np.cos(tilt_rad)
+    hint = hint @ np.array([[1.0, 0.0, 0.0], [0.0, cosine, -sine], [0.0, sine, cosine]])
+    return Keypoints(HUMAN.point_names, (SOURCE,) * 13, pixel, np.ones((3, 13)), hint)
+
+
+def test_hints_that_lean_are_turned_by_the_balance() -> None:
+    def head_m(keypoints: Keypoints) -> float:
+        """How much farther the head is than the ankles."""
+        depth = dict(zip(HUMAN.point_names, keypoints.hint_m[1, :, 2], strict=True))
+        return depth["head"] - 0.5 * (depth["ankle.L"] + depth["ankle.R"])
+
+    true, leaning = standing_hints(0.0), standing_hints(0.15)
+    mended = upright(leaning, CAMERA)
+    before, after = (head_m(each) - head_m(true) for each in (leaning, mended))
+    assert abs(before) > 0.2
+    own = head_m(upright(true, CAMERA)) - head_m(true)  # a rest pose is a little off balance
+    assert abs(own) < 0.06
+    assert (after - own) / before == pytest.approx(1.0 - HINTS_SHARE, abs=0.02)
+    np.testing.assert_array_equal(mended.pixel, leaning.pixel)
+    sitting = standing_hints(0.5)
+    np.testing.assert_array_equal(upright(sitting, CAMERA).hint_m, sitting.hint_m)
 
 
 def test_six_tracks_with_long_gaps_are_used() -> None:

@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from _performed import BODY, FRAMES, camera, detected, filmed, performed, unmarked
+from keymark.core.body.actor import Actor
+from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
 from keymark.core.posing.found_poses import FoundPoses, with_found
@@ -69,6 +71,14 @@ def test_and_by_keypoints() -> None:
     )
     assert rooted.mean() < 0.08
     assert absolute.mean() < 0.25
+
+
+def test_the_floor_is_the_ruler_where_the_performer_is_smaller_than_said() -> None:
+    take, reading = unmarked(truth(), camera(), detected(truth(), camera()).without_hints())
+    larger = replace(take, body=Body(Actor.from_stature(1.07 * 1.62)))
+    found = run(pose_clip(larger, reading, libraries(), floor_m=0.0))
+    farther = (found.postures.translation - truth().translation)[:, 1]
+    assert abs(farther.mean()) < 0.15  # by size alone 0.3
 
 
 def test_candidates_are_distinct_and_the_chosen_one_is_the_clips() -> None:
