@@ -2,14 +2,14 @@
 
 Beside it the motion by one library alone, the one with the take's own kind of motion, where there is one.
 
-Usage: posing_all.py [TAKE ...] [--keypoints] with names or folders of takes. See README.md.
+Usage: posing_all.py [TAKE ...] [--keypoints | --wrong] with names or folders of takes. See README.md.
 """
 
 import argparse
 import json
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
@@ -19,8 +19,13 @@ from trials import Trial, unposed_trials
 load_project()
 
 from keymark.core.arrays import Array, BoolArray  # noqa: E402
+from keymark.core.body.actor import Actor  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
+from keymark.core.body.kinematics import Body  # noqa: E402
+from keymark.core.body.rotations import exponential  # noqa: E402
+from keymark.core.errors import InputError  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
+from keymark.core.footage.keypoints.keypoints import People  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses, with_found  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
@@ -30,7 +35,9 @@ from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
+from keymark.core.take.read_footage import read_footage  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
+from wrong_keypoints import NOT_OF_THE_PICTURE, WRONG  # noqa: E402
 
 FITTING: dict[str, str] = {
     "walk": "walking",
@@ -156,6 +163,110 @@ def wrong_sides(trial: Trial, points: Array) -> BoolArray:
     return np.array(wrong)
 
 
+# --- Whether the confidence of a motion can be believed
+
+
+USABLE_ROOTED_MM, USABLE_MM = 100.0, 500.0  # what `core/posing/agreement.py` means by usable
+COVERED_LEGS = ("hip", "knee", "ankle", "heel", "toe")
+
+
+def of_height(factor: float) -> Callable[[Take], Take]:
+    """The take with a height that is wrong by a factor."""
+
+    def changed(take: Take) -> Take:
+        lengths = {name: factor * length for name, length in take.body.actor.segments_m.items()}
+        return replace(take, body=Body(Actor(lengths)))
+
+    return changed
+
+
+def tilted(take: Take) -> Take:
+    """The take with a camera that looks 12 degrees too high."""
+    turn = np.eye(4)
+    turn[:3, :3] = exponential(np.radians([12.0, 0.0, 0.0]))
+    return replace(take, camera=replace(take.camera, matrix_world=take.camera.matrix_world @ turn))
+
+
+def with_longer_lens(take: Take) -> Take:
+    """The take with a lens said to be 1.4 times as long."""
+    return replace(take, camera=replace(take.camera, lens_mm=1.4 * take.camera.lens_mm))
+
+
+def without_legs(people: People) -> People:
+    """Nothing is seen below the waist."""
+    legs = [row for row, name in enumerate(people.names) if name.split(".")[0] in COVERED_LEGS]
+    frames = []
+    for seen in people.frames:
+        pixel, score = seen.pixel.copy(), seen.score.copy()
+        pixel[:, legs], score[:, legs] = np.nan, 0.0
+        frames.append(replace(seen, pixel=pixel, score=score))
+    return replace(people, frames=tuple(frames))
+
+
+def by_detector(change: Callable[[People], People]) -> Callable[[Take], Take]:
+    """The take with keypoints that are changed."""
+    return lambda take: replace(take, keypoints=tuple(change(people) for people in take.keypoints))
+
+
+INPUTS: dict[str, Callable[[Take], Take]] = {
+    "right": lambda take: take,
+    "height 1.25 times": of_height(1.25),
+    "height 0.8 times": of_height(0.8),
+    "lens 1.4 times": with_longer_lens,
+    "camera tilted by 12 degrees": tilted,
+    "legs covered": by_detector(without_legs),
+    **{
+        name: by_detector(change)
+        for name, change in (WRONG | NOT_OF_THE_PICTURE).items()
+        if name in ("half size", "mirrored copy", "ten frames late", "someone in between", "30 % at random")
+    },
+}
+"""Right and wrong inputs of a take that nobody posed, by the name in tables."""
+
+
+def judged(name: str, trial: Trial, libraries: Sequence[Library]) -> Iterator[tuple[str, bool, float]]:
+    """Row of the table, whether its motion is usable and the stated confidence, of each input."""
+    whole = replace(trial.take, keyframes=(), markers=(), contours=False)
+    reading = run(read_footage(whole))
+    for kind, change in INPUTS.items():
+        try:
+            take = change(whole)
+            found = run(pose_clip(take, reading, libraries))
+            job = reconstruct(with_found(take, found), "map", reading, floor_m=found.floor_m)
+            motion = run(job).motion
+        except InputError:
+            yield f"| {name} | {kind} | refused | | | |", False, 0.0
+            continue
+        score = replace(trial, unscored=()).score(motion.points, motion.sigma_m)
+        usable = score.rooted < USABLE_ROOTED_MM and score.mpjpe < USABLE_MM
+        numbers = f"{score.rooted:.0f} | {score.mpjpe:.0f} | {score.coverage95 or 0.0:.2f} | {found.fit:.2f}"
+        yield f"| {name} | {kind} | {numbers} |", usable, found.fit
+
+
+def area_under_curve(usable: Array, confidence: Array) -> float:
+    """Probability that a usable motion has more confidence than another (Mann & Whitney 1947)."""
+    more = confidence[usable][:, None] - confidence[~usable]
+    return float(((more > 0.0) + 0.5 * (more == 0.0)).mean()) if more.size else float("nan")
+
+
+def judge(names: Sequence[str], libraries: Sequence[Library]) -> None:
+    """Print and write the table of right and wrong inputs."""
+    lines = [
+        "| take | input | hips aligned | in place | coverage | confidence |",
+        "|---|---|--:|--:|--:|--:|",
+    ]
+    told: list[tuple[bool, float]] = []
+    for name, trial in unposed_trials(names, keypoints=True, plain=True):
+        for row, usable, confidence in judged(name, trial, libraries):
+            print(row, file=sys.stderr, flush=True)
+            lines.append(row)
+            told += [] if "refused" in row else [(usable, confidence)]
+    usable, confidence = (np.array(column) for column in zip(*told, strict=True))
+    area = area_under_curve(usable, confidence)
+    lines += ["", f"Area under the ROC curve of {len(told)} motions: {area:.2f}"]
+    write_results("posing_all_wrong", "\n".join(lines), json.dumps([[bool(u), c] for u, c in told]))
+
+
 def median(values: Sequence[float | None]) -> float | None:
     """The median of those values that are there; None without any."""
     there = [value for value in values if value is not None]
@@ -187,8 +298,12 @@ def main(arguments: list[str]) -> int:
     parser.add_argument(
         "--keypoints", action="store_true", help="hold takes against a detector's keypoints as well"
     )
+    parser.add_argument("--wrong", action="store_true", help="confidence of right and of wrong inputs")
     options = parser.parse_args(arguments)
     libraries = find_libraries(EVERY_LIBRARY, [SHIPPED])
+    if options.wrong:
+        judge(options.takes, libraries)
+        return 0
     trials = unposed_trials(options.takes, options.keypoints, plain=options.keypoints)
     results = {name: measure(name, trial, libraries) for name, trial in trials}
     as_dictionaries = {name: asdict(found) for name, found in results.items()}

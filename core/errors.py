@@ -1,4 +1,12 @@
-"""Errors, and words for numbers of things in their sentences."""
+"""Errors, and values in words for their sentences."""
+
+from reprlib import Repr
+from typing import Any
+
+_SHORT = Repr()
+"""Reads no more of a value than is shown."""
+_SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxother = 8, 400, 400
+_SHORT.maxlist = _SHORT.maxdict = _SHORT.maxtuple = 40
 
 
 def pluralize(count: int, one: str, many: str | None = None) -> str:
@@ -26,3 +34,9 @@ def describe_unexpected(error: BaseException) -> str:
     """Type and message of an unforeseen error in one line, for a sentence."""
     message = " ".join(str(error).split())
     return f"{type(error).__name__}: {message}" if message else type(error).__name__
+
+
+def shown(value: Any, longest: int = 60) -> str:
+    """A value for a sentence: its repr in one line, cut where it is long."""
+    text = _SHORT.repr(value)
+    return text if len(text) <= longest else f"{text[: longest - 3]}..."

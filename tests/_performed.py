@@ -99,7 +99,8 @@ def detected(posture: Posture, seen_by: Camera, wrong: float = 0.0) -> People:
     pixel[far] = rng.uniform(0.0, 480.0, (far.sum(), 2))
     depth = model.camera.depth(model.world(pose), frames[:, None])
     depth = depth - depth[:, [NAMES.index("hip.L"), NAMES.index("hip.R")]].mean(axis=1, keepdims=True)
-    hint = np.zeros((*depth.shape, 3))
+    middle = model.world(pose)[:, [NAMES.index("hip.L"), NAMES.index("hip.R")]].mean(axis=1, keepdims=True)
+    hint = (model.world(pose) - middle) @ (seen_by.pose(0)[0] * [1.0, -1.0, -1.0])
     hint[..., 2] = depth + rng.normal(0.0, 0.08, len(NAMES))  # alike in all frames
     seen = [
         SeenPeople(pixel[[i]][: 0 if i % 9 == 8 else 1], np.full((1, len(NAMES)), 0.9), hint[[i]])

@@ -10,9 +10,8 @@ from math import isfinite
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..files.fields import is_number
-from ..files.json_file import shown
 from ..files.kinds import ByName, Number
 from ..files.records import Record
 from .skeleton import SIDES

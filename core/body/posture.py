@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..files.fields import Fields, child_location, listed
-from ..files.json_file import shown
 from ..files.kinds import Kind, Number, refuse
 from . import rotations
 from .skeleton import Skeleton

@@ -118,12 +118,16 @@ def depth_std_m(index: IndexArray, matched: BoolArray, frames: int) -> Array:
     return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** share)
 
 
-def place_depth_std_m(points: Array, ankles: Array | None, camera: Camera) -> Array:
+def place_depth_std_m(
+    points: Array, ankles: Array | None, camera: Camera, over_floor_m: float = 0.0
+) -> Array:
     """(F,) error of a whole composed performer's place along the line of sight [m], which all frames share.
 
-    Sizes tell a distance, and so does the floor, the better the more the camera looks down on it.
+    Sizes tell a distance, and so does the floor, the better the more the camera looks down on it. Where they
+    contradict each other the error is as large as the step that the floor would have the performer take.
 
-    `points` (F, P, 3) in the world and `ankles` (F,), heights of the lower one [m], None where unseen.
+    `points` (F, P, 3) in the world and `ankles` (F,), heights of the lower one [m], None where unseen;
+    `over_floor_m`: how high the feet stand over a known floor.
     """
     frame = np.arange(len(points))
     middle = points.mean(axis=1)
@@ -134,7 +138,9 @@ def place_depth_std_m(points: Array, ankles: Array | None, camera: Camera) -> Ar
     below = np.zeros(len(points)) if ankles is None else np.abs(location[:, 2] - ankles)
     slope = below / np.maximum(level, 1e-3)  # of the sight of the feet
     by_size, by_floor = 1.0 / (SIZE_STD * distance), slope / GROUND_STD_M
-    return np.asarray(1.0 / np.hypot(by_size, by_floor))
+    variance = 1.0 / (by_size**2 + by_floor**2)
+    step = variance * by_floor * over_floor_m / GROUND_STD_M
+    return np.asarray(np.hypot(np.sqrt(variance), step))
 
 
 def undetermined_covariance(

@@ -26,6 +26,7 @@ from ..footage.region_tracks import RegionTracks
 TOUCHING_PERCENT = 30.0  # of the lowest soles, the floor: more than half touch it, but for runners
 SHOE_M = 0.012  # thickness of a shoe's sole, and of a heel that hardly ever lies wholly on the floor
 ANKLE_HEIGHT_STD_M = 0.03
+LOWEST_PERCENT = 5.0  # of the feet's heights, their lowest but for outliers
 SAME_FLOOR_M = 0.12  # ankles that stand within this of a given floor stand on it
 
 
@@ -45,6 +46,13 @@ def standing_ankle_m(body: Body) -> float:
     pose = body.pose(Posture.rest(body.skeleton))
     ankle = body.points(pose)[body.skeleton.point_names.index("ankle.L"), 2]
     return float(ankle - sole_heights_m(body, pose).min()) + SHOE_M
+
+
+def feet_over_floor_m(body: Body, points: Array, floor_m: float) -> float:
+    """How high the lower foot is over a floor at its lowest, of points (F, P, 3) [m]; steps lead up."""
+    ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
+    lowest = np.nanpercentile(points[:, ankles, 2].min(axis=1), LOWEST_PERCENT)
+    return float(lowest - floor_m - standing_ankle_m(body))
 
 
 def found_ankle_m(

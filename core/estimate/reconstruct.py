@@ -36,7 +36,7 @@ from .keyframe_error import UNOBSERVED, place_depth_std_m, undetermined_covarian
 from .keyframe_trust import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
-from .performer_placement import found_ankle_m
+from .performer_placement import feet_over_floor_m, found_ankle_m
 from .reference_evidence import OPTIONS, NoReference, ReferenceEvidence, reference_evidence, with_reference
 from .second_look import seen_tracks
 from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
@@ -76,13 +76,15 @@ def reconstruct(
     reading: Reading | None = None,
     earlier: Reconstruction | None = None,
     referred: ReferenceEvidence | NoReference | None = None,
+    floor_m: float | None = None,
 ) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
     `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; `reading` has
     what was read from the same clip before, which is then not opened again; of `earlier` those parts are used
-    that still hold; `referred` is what is known already of the take's reference motion. Closing the generator
-    cancels the job, which has no effects of its own.
+    that still hold; `referred` is what is known already of the take's reference motion; `floor_m` is the
+    floor's height, on which found poses should stand. Closing the generator cancels the job, which has no
+    effects of its own.
 
     Raises:
         InputError: The clip cannot be used, a color matches nothing in it, or the method is unknown.
@@ -92,7 +94,7 @@ def reconstruct(
     check_reconstructible(take, method)
     # The matrices are small: more threads of linear algebra take up to twenty times as long.
     with threadpool_limits(limits=1, user_api="blas"):
-        return (yield from _reconstruct(take, method, reading, earlier, referred))
+        return (yield from _reconstruct(take, method, reading, earlier, referred, floor_m))
 
 
 def check_reconstructible(take: Take, method: str) -> None:
@@ -128,6 +130,7 @@ def _reconstruct(
     reading: Reading | None,
     earlier: Reconstruction | None,
     said: ReferenceEvidence | NoReference | None,
+    floor_m: float | None,
 ) -> Job[Reconstruction]:
     notes, begun = take.notes, 0.0
     if reading is None:
@@ -171,7 +174,7 @@ def _reconstruct(
         estimate = estimate_whole_clip(take.body, take.camera, given, believed, earlier=usable)
         solution = yield from within("Estimating the motion", estimate, begun, 1.0)
         seen = seen_tracks(tracks, solution.problem.observed)
-        motion, model = _solved(take, seen, solution, match_scale, unseen), solution.evidence.model
+        motion, model = _solved(take, seen, solution, match_scale, unseen, floor_m), solution.evidence.model
         if not shaken:  # else the camera is what does not fit
             notes += evidence_notes(take, solution.evidence)
         notes += keypoint_notes(solution.keypoints)
@@ -234,7 +237,12 @@ def _is_composed(take: Take) -> bool:
 
 
 def _solved(
-    take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array, never: tuple[str, ...]
+    take: Take,
+    tracks: RegionTracks,
+    result: WholeClipResult,
+    match_scale: Array,
+    never: tuple[str, ...],
+    floor_m: float | None,
 ) -> Motion:
     fit = result.keypoints
     diagnostics = {
@@ -270,7 +278,10 @@ def _solved(
     if _is_composed(take):
         ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
         lower = None if {"leg.L", "leg.R"} <= set(never) else motion.points[:, ankles, 2].min(axis=1)
-        place_std_m = place_depth_std_m(motion.points, lower, take.camera)
+        over_m = 0.0
+        if lower is not None and floor_m is not None:
+            over_m = feet_over_floor_m(take.body, motion.points, floor_m)
+        place_std_m = place_depth_std_m(motion.points, lower, take.camera, over_m)
     # A reference motion has its own errors in the estimate; open is what all sizes share.
     sure = np.array(
         [

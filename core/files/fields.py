@@ -12,8 +12,7 @@ from itertools import islice
 from math import isfinite
 from typing import Any
 
-from ..errors import InputError
-from .json_file import shown
+from ..errors import InputError, shown
 
 COMMENT_PREFIX = "//"
 _FILE = re.compile(r"\.jsonl?(, line \d+)?$", re.ASCII)

@@ -9,10 +9,9 @@ import sys
 from collections.abc import Callable, Iterable, Mapping
 from math import isfinite
 from pathlib import Path
-from reprlib import Repr
 from typing import Any
 
-from ..errors import ConversionError, InputError
+from ..errors import ConversionError, InputError, shown
 from .file_lock import LOCK, file_lock, hidden_prefix
 from .paths import regular_file_size
 
@@ -83,10 +82,6 @@ MOST_DIGITS = 15
 _STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
 _SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 _NO_BRACKETS = re.compile(r"[^\[\]{}]+")
-_SHORT = Repr()
-"""Reads no more of a value than is shown."""
-_SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxother = 8, 400, 400
-_SHORT.maxlist = _SHORT.maxdict = _SHORT.maxtuple = 40
 
 
 def read_json(path: Path, largest_bytes: int = LARGEST_BYTES) -> dict[str, Any]:
@@ -200,12 +195,6 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
                 shutil.rmtree(folder, ignore_errors=True)
     except OSError as error:
         raise ConversionError(f"{path}: cannot be written ({error.strerror or error})") from error
-
-
-def shown(value: Any, longest: int = 60) -> str:
-    """A value for a sentence: its repr in one line, cut where it is long."""
-    text = _SHORT.repr(value)
-    return text if len(text) <= longest else f"{text[: longest - 3]}..."
 
 
 def _read_text(path: Path, largest_bytes: int) -> str:

@@ -10,9 +10,8 @@ from typing import Any, NoReturn
 import numpy as np
 
 from ..arrays import Array
-from ..errors import InputError
+from ..errors import InputError, shown
 from .fields import Fields, child_location, is_number, listed
-from .json_file import shown
 from .paths import is_control_character
 
 _PLAIN = re.compile(r"[\w.-]{1,60}", re.ASCII)

@@ -25,9 +25,8 @@ from typing import (
     get_type_hints,
 )
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from .fields import Fields, child_location, listed
-from .json_file import shown
 from .kinds import ByName, Flag, Items, Kind, Nullable, Whole, read_field, refuse
 
 MISSING = dataclasses.MISSING

@@ -14,8 +14,7 @@ import cv2
 import numpy as np
 
 from ..arrays import Array, BoolArray, Image
-from ..errors import InputError
-from ..files.json_file import shown
+from ..errors import InputError, shown
 from ..files.kinds import Items, Number, Whole, refuse
 from ..files.records import Record
 from .camera_fields import LARGEST_SIDE_PX

@@ -144,10 +144,13 @@ def find_and_reconstruct(
         take = with_reference(take, said)
         found = referred_poses(take, said)
     else:
-        found = yield from stretch(pose_clip(take, reading, libraries, floor_m), READ, POSED)
+        posing = pose_clip(take, reading, libraries, floor_m, floor_open=onto_floor)
+        found = yield from stretch(posing, READ, POSED)
         take = with_found(take, found)
         take = lowered(take, found.floor_m) if onto_floor else take
-    result = yield from stretch(reconstruct(take, method, reading, referred=said), POSED, 1.0)
+    ground_m = 0.0 if onto_floor else found.floor_m
+    job = reconstruct(take, method, reading, referred=said, floor_m=ground_m)
+    result = yield from stretch(job, POSED, 1.0)
     return FoundReconstruction(take, result, found)
 
 

@@ -19,8 +19,20 @@ from ..progress import run
 from ..retarget.retarget_record import RECORD_FILE as RETARGET
 from ..review.frame_evidence import used_evidence
 from ..review.review import review
+from ..take.conversion_record import (
+    BLEND,
+    BVH,
+    CHARACTER_BLEND,
+    CHARACTER_PICTURE,
+    EARLIER_PICTURES,
+    MOTION,
+    PICTURES,
+    REPORT,
+    ConversionRecord,
+    find_record,
+    write_record,
+)
 from ..take.conversion_record import RECORD_FILE as RECORD
-from ..take.conversion_record import ConversionRecord, find_record, write_record
 from ..take.conversion_settings import ConversionSettings
 from ..take.description import KEYFRAME_FILE, Description
 from ..take.keyframe_file import write_keyframes
@@ -29,11 +41,6 @@ from ..take.take import Take
 from ..take.take_file import write_take
 from .convert import FoundReconstruction
 
-MOTION, BLEND, BVH, REPORT = "motion.json", "motion.blend", "motion.bvh", "report"
-CHARACTER_BLEND, CHARACTER_PICTURE = "character.blend", f"{REPORT}/character.png"
-PICTURES = ("overlay.png", "side.png")
-EARLIER_PICTURES = ("speed.png", "front.png", "top.png", "matches.png", "strip.jpg")
-"""Pictures of 0.1.0, which a conversion into the same folder removes."""
 AS_MADE = ".as_made.json"
 """SHA-256 of files as they were made: of those whose bytes differ from run to run though their content does
 not, so that the record itself is always the same."""

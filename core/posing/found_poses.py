@@ -23,9 +23,9 @@ class FoundPoses:
 
     frames: tuple[MatchedFrame, ...]  # in order, those proposed for keyframes
     postures: Posture  # (F,) the posture in every frame of the clip
-    fit: float  # mean share of the footage that is explained, 0 to 1
+    fit: float  # probability that the motion is usable, 0 to 1, see `agreement`
     floor_m: float  # height of the floor that the performer stands on [m]
-    reason: str  # sentence for people: how much of the footage is explained
+    reason: str  # sentence for people: whether it is usable, and what speaks for or against it
     contradictions: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     """Names of the markers and keypoints that no plausible posture explains, by index of a proposed frame."""
     library: str = COMPOSED  # identifier of the library that all was composed of, where only one was asked

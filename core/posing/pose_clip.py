@@ -23,6 +23,7 @@ from ..prior.texts import COMPOSED
 from ..progress import Job, Part, Progress, stretch, within
 from ..take.checked_keypoints import with_checked_keypoints
 from ..take.take import Take
+from .agreement import agreement
 from .candidates import MatchedFrame, composed_candidates
 from .compose_clip import Composition, compose_frames
 from .found_poses import FoundPoses
@@ -42,6 +43,7 @@ def pose_clip(
     keyframe_count: int | None = None,
     between: tuple[int, int] | None = None,
     frames: Sequence[int] | None = None,
+    floor_open: bool = False,
 ) -> Job[FoundPoses]:
     """Find the postures of a clip that nobody posed; there always are some, with a confidence.
 
@@ -54,6 +56,7 @@ def pose_clip(
         between: First and last frame of the clip to look at; those of the two that are posed hold, and
             elsewhere the postures are those of the take's keyframes. The whole clip where None.
         frames: Indices of the frames to find keyframes at, instead of `keyframe_count` proposed ones.
+        floor_open: An unknown floor is wherever the feet are; else it should be z = 0.
 
     Raises:
         InputError: There is no library, none has a posture, neither a marker nor a keypoint is seen, or the
@@ -81,8 +84,8 @@ def pose_clip(
         postures = rested(given.body, result.posture, given.unseen)
         explained, off = _explained(given, postures[given.sampled])
         candidates = _candidates(pools, stances, given, composed, postures, explained)
-        seen = np.isfinite(off).any(axis=1)
-        fit = float(explained[seen].mean()) if seen.any() else 0.0
+        ground_m = 0.0 if floor_m is None and not floor_open else floor_m
+        fit, reason = agreement(given, postures, candidates, ground_m)
         if between is not None:
             ends = Keyframe(between[0], postures[0]), Keyframe(between[1], postures[-1])
             elsewhere = interpolate(take.keyframes or ends, count)
@@ -95,7 +98,7 @@ def pose_clip(
         postures,
         fit,
         composed.floor_m,
-        f"the found poses explain {fit:.0%} of the footage",
+        reason,
         _contradictions(take, given, off),
         one,
         between,

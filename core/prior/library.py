@@ -13,9 +13,9 @@ from typing import Annotated, Any
 from ..body.actor import Actor
 from ..body.human import HUMAN
 from ..body.posture import LARGEST_ANGLE_RAD, Posture, PostureValues
-from ..errors import pluralize
+from ..errors import pluralize, shown
 from ..files.digest import digest
-from ..files.json_file import read_json, shown, write_readable_json
+from ..files.json_file import read_json, write_readable_json
 from ..files.kinds import Items, Kind, Number, Text, Whole
 from ..files.records import Object, Record
 from .texts import IDENTIFIER, LONGEST_LINE, LONGEST_NAME, LONGEST_TEXT, SPDX, Tags, line, name_key

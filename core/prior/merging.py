@@ -8,9 +8,8 @@ from dataclasses import replace
 from typing import Any, TypeVar
 
 from ..body.kinematics import Body
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..files.fields import listed
-from ..files.json_file import shown
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep
 from .texts import checked_identifier, name_key, unique_name
 from .transfer import transferred

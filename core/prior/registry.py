@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..files.fields import listed
-from ..files.json_file import ENDING, is_other_format, is_path, json_files, read_json, shown
+from ..files.json_file import ENDING, is_other_format, is_path, json_files, read_json
 from .library import LARGEST_BYTES, Library, read_library
 from .texts import EVERY_LIBRARY, checked_identifier
 

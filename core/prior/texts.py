@@ -7,8 +7,7 @@ from dataclasses import replace
 from functools import lru_cache, partial
 from typing import Annotated
 
-from ..errors import InputError
-from ..files.json_file import shown
+from ..errors import InputError, shown
 from ..files.kinds import Items, Text
 from ..files.paths import is_control_character
 

@@ -11,8 +11,7 @@ from ..body.kinematics import Body
 from ..body.mirror import mirrored, mirrored_actor
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
-from ..errors import InputError
-from ..files.json_file import shown
+from ..errors import InputError, shown
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep
 from .texts import LONGEST_IDENTIFIER, LONGEST_NAME, unique_name
 

@@ -13,8 +13,7 @@ from ..body.posture import Posture, facing_rad
 from ..finish.foot_ground import Shins, Soles
 from ..finish.natural_extremities import feet_on_floor
 from ..numerics.vectors import unit
-from ..prior.library import Library
-from .canvas import GRAY, INK, Canvas, Color, ascii_text, truncated
+from .canvas import Canvas, Color
 from .stick_figure import Projection
 
 LIGHT = np.array([0.35, -0.5, 0.8])
@@ -172,23 +171,3 @@ def backdrop(height: int, width: int, floor: float, scale: float) -> Image:
     ground = FLOOR + fade[:, None] * 0.6 * (WALL - FLOOR)
     colors = WALL + share[:, None] * (ground - WALL)
     return np.asarray(np.repeat(np.round(colors)[:, None], width, axis=1), dtype=np.uint8)
-
-
-COLUMNS, CELL, CAPTION = 10, 128, 18
-HEADER, MARGIN = 64, 16
-
-
-def library_sheet(library: Library) -> Image:
-    """Draw a library, (height, width, 3) blue, green, red."""
-    body, count = Body(library.actor), len(library.postures)
-    rows = -(-count // COLUMNS)
-    canvas = Canvas(2 * MARGIN + COLUMNS * CELL, HEADER + rows * (CELL + CAPTION) + MARGIN)
-    canvas.text(truncated(ascii_text(library.title), COLUMNS * CELL, 14.0), MARGIN, 32.0, 14.0, INK)
-    words = f"{library.identifier}, version {library.version}, {library.size}, by {library.author}"
-    canvas.text(truncated(ascii_text(words), COLUMNS * CELL, 8.5), MARGIN, 50.0, 8.5, GRAY)
-    for index, entry in enumerate(library.postures):
-        left, top = MARGIN + index % COLUMNS * CELL, HEADER + index // COLUMNS * (CELL + CAPTION)
-        canvas.paste(posture_picture(body, entry.posture), left, top, CELL, CELL)
-        name = truncated(ascii_text(entry.name), CELL - 6.0, 7.5)
-        canvas.text(name, left + 0.5 * CELL, top + CELL + 11.0, 7.5, INK, "middle")
-    return canvas.image()

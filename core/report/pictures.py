@@ -13,8 +13,8 @@ from ..footage.camera import Camera
 from ..footage.clips.clip import Clip
 from ..footage.reading import Reading
 from ..footage.region_tracks import RegionTracks
-from ..pipeline.result import PICTURES
 from ..review.compared_keypoints import ComparedKeypoints
+from ..take.conversion_record import PICTURES
 from ..take.motion import Motion
 from ..take.steady_camera import steadied_picture
 from ..take.take import Take

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath, PurePosixPath
 from typing import Any
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..files.fields import COMMENT_PREFIX, Fields
-from ..files.json_file import parse_json, shown
+from ..files.json_file import parse_json
 from ..files.kinds import safe_path
 from ..files.paths import check_symlinks, regular_file_size
 from ..footage.clips.image_sequence import is_image, stem_of_number

@@ -27,6 +27,11 @@ from .evidence import (
 )
 
 RECORD_FILE = "conversion.json"
+MOTION, BLEND, BVH, REPORT = "motion.json", "motion.blend", "motion.bvh", "report"
+CHARACTER_BLEND, CHARACTER_PICTURE = "character.blend", f"{REPORT}/character.png"
+PICTURES = ("overlay.png", "side.png")
+EARLIER_PICTURES = ("speed.png", "front.png", "top.png", "matches.png", "strip.jpg")
+"""Pictures of 0.1.0, which a conversion into the same folder removes."""
 LARGEST_BYTES = 2**22
 MOST_LIBRARIES = 10_000
 """In all folders that are searched: more than people gather, and well within the bytes above."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated, Any
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..files.fields import Fields, child_location, listed
-from ..files.json_file import ENDING, shown
+from ..files.json_file import ENDING
 from ..files.kinds import INSIDE, LONGEST_PATH, Choice, Items, Kind, Number, Text, relative_path
 from ..files.records import Record, declared, read_record
 from ..prior.texts import EVERY_LIBRARY

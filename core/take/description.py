@@ -7,9 +7,9 @@ from pathlib import Path
 from stat import S_ISDIR, S_ISREG
 from typing import Any
 
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..files.fields import COMMENT_PREFIX, Fields, InheritedFields
-from ..files.json_file import read_json, shown
+from ..files.json_file import read_json
 from ..files.kinds import safe_path
 from ..files.paths import absolute_path, check_symlinks
 from ..files.records import check_version

@@ -13,8 +13,8 @@ from ..body.actor import Actor
 from ..body.human import HUMAN, LIMBS
 from ..body.kinematics import Body
 from ..body.posture import Posture, posture_to_json, rounded
-from ..errors import ConversionError
-from ..files.json_file import read_json, shown, write_json
+from ..errors import ConversionError, shown
+from ..files.json_file import read_json, write_json
 from ..files.kinds import ByName, Choice, Items, Kind, NumberArray, Whole, number_array, refuse
 from ..files.records import Record
 from .evidence import MOST_FRAMES, Frame, FrameCount, FrameRate, Line

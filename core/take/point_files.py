@@ -15,9 +15,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..body.human import HUMAN
-from ..errors import InputError, describe_unexpected
+from ..errors import InputError, describe_unexpected, shown
 from ..files.fields import listed
-from ..files.json_file import shown, write_atomically
+from ..files.json_file import write_atomically
 from ..files.paths import regular_file_size
 from .evidence import MOST_FRAMES
 

@@ -13,9 +13,9 @@ from ..body.actor import Actor, Segments
 from ..body.body_volume import TRUNK
 from ..body.human import HUMAN
 from ..body.kinematics import Body
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..files.fields import Fields, InheritedFields, child_location, listed
-from ..files.json_file import shown, write_atomically, write_json
+from ..files.json_file import write_atomically, write_json
 from ..files.kinds import ByName, Choice, Items, Kind, Number, Text, Whole, refuse
 from ..files.records import Object, Record, read_record
 from ..footage.camera import Camera

@@ -18,6 +18,7 @@ from ...core.take.evidence import EVIDENCE, evidence_mistake, in_order
 from .parser import Argument, UsageError, argument
 
 KINDS = ",".join(EVIDENCE)
+HEIGHT = "--height"
 SHOOT_HELP = "folder of takes, or a list of them (JSON Lines, .jsonl)"
 CHARACTER_HELP = (
     "the character's file (.blend, .fbx, .glb, .gltf or .vrm), and after a colon the name of its armature "
@@ -28,6 +29,11 @@ MAP_HELP = (
     "character map, by title or file; auto, the default: a saved one that knows the character's bones, else "
     "recognition; none: recognition"
 )
+
+
+def bare_clip_fields(height_m: float) -> dict[str, object]:
+    """The fields of a take of which nothing but the performer's height is known."""
+    return {"actor": {"height_m": height_m}, "keyframes": EVERY_LIBRARY}
 
 
 def output(metavar: str, words: str, *, required: bool = True, replace: str = "") -> tuple[Argument, ...]:

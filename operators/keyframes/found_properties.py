@@ -165,11 +165,11 @@ class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
         set=_set_library,
     )
     reason: bpy.props.StringProperty(
-        name="Reason", description="What was found last, and how well it explains the footage"
+        name="Reason", description="Whether what was found last is usable, and what speaks for or against it"
     )
     fit: bpy.props.FloatProperty(
         name="Fit",
-        description="Share of the footage that the found poses explain; negative before any were found",
+        description="Probability that the found poses are usable; negative before any were found",
         default=-1.0,
         min=-1.0,
         max=1.0,

@@ -55,7 +55,8 @@ def reconstruct_take(
     frames = scene_frames(reading.tracks.time_s, take.frame_start, take.fps)
     if watched:
         show(LivePreview(scene, armature, frames))
-    result = yield from stretch(reconstruct(take, method, reading, earlier), READ, SOLVED)
+    job = reconstruct(take, method, reading, earlier, floor_m=settings.matching.known_floor_m)
+    result = yield from stretch(job, READ, SOLVED)
     judged = yield from stretch(review(take, result, frames), SOLVED, 1.0)
     return ReconstructionResult(identifier, frames, result, judged, (*notes, *result.notes))
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from keymark.core.pipeline.result import BLEND, BVH
+from keymark.core.take.conversion_record import BLEND, BVH
 from keymark.operators.cli.conversion import convert_take
 
 

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
-from ...errors import InputError
-from ...files.json_file import shown
+from ...errors import InputError, shown
 from ...files.kinds import number_array
 from .layouts import Layout, layout_of, layout_words
 

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
-from ...errors import InputError
-from ...files.json_file import shown
+from ...errors import InputError, shown
 from .detected_frames import (
     FARTHEST_M,
     FARTHEST_PX,

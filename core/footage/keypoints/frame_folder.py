@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...errors import InputError, pluralize
-from ...files.json_file import read_json_value, shown
+from ...errors import InputError, pluralize, shown
+from ...files.json_file import read_json_value
 from ...files.paths import check_symlinks
 from .detected_frames import DetectedFrames, DetectedPerson, check_people, check_points, same_layout
 from .detector_formats import (

@@ -8,9 +8,9 @@ from typing import Annotated, Any
 import numpy as np
 
 from ...arrays import Array
-from ...errors import InputError
+from ...errors import InputError, shown
 from ...files.fields import Fields
-from ...files.json_file import read_json_value, shown, write_json
+from ...files.json_file import read_json_value, write_json
 from ...files.kinds import Anything, Choice, Items, Number, Text, Whole
 from ...files.paths import is_control_character
 from ...files.records import Record, read_record

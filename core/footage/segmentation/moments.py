@@ -30,23 +30,6 @@ class Characteristics(NamedTuple):
     ratio: Array  # S_λ = λ1/λ2 >= 1, of the squared axes
 
 
-def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) -> Array:
-    """M00, m10, m01, m20, m11, m02 (6,) of a weighted region (rows, columns) at an origin (x, y) (eq. 1).
-
-    Every pixel counts as a unit square of even weight, so a full rectangle has exactly the moments of the
-    rectangle.
-    """
-    # OpenCV takes pixels for points and the first pixel's center for the origin.
-    points = cv2.moments(np.asarray(weights, dtype=np.float64))
-    area, x, y = points["m00"], origin[0] + 0.5, origin[1] + 0.5
-    m10 = points["m10"] + x * area
-    m01 = points["m01"] + y * area
-    m20 = points["m20"] + 2.0 * x * points["m10"] + (x * x + PIXEL_VARIANCE) * area
-    m11 = points["m11"] + x * points["m01"] + y * points["m10"] + x * y * area
-    m02 = points["m02"] + 2.0 * y * points["m01"] + (y * y + PIXEL_VARIANCE) * area
-    return np.array([area, m10, m01, m20, m11, m02])
-
-
 def centroid_and_second_moment(moments: ArrayLike) -> tuple[Array, Array]:
     """Centroids (..., 2) and A = [[μ20, μ11], [μ11, μ02]] / m00 (..., 2, 2) of raw moments (..., 6).
 

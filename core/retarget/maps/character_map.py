@@ -11,9 +11,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar
 
+from ...errors import shown
 from ...files.digest import digest
 from ...files.fields import is_number, listed
-from ...files.json_file import read_json, shown, write_readable_json
+from ...files.json_file import read_json, write_readable_json
 from ...files.kinds import ByName, Choice, Items, Kind, Never, Number, Text, first_twice, refuse
 from ...files.records import Object, Record
 from ...prior.texts import LONGEST_LINE, LONGEST_NAME, LONGEST_TEXT, SPDX, Tags, line

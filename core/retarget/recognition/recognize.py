@@ -7,8 +7,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...body.human import HUMAN
-from ...errors import InputError
-from ...files.json_file import shown
+from ...errors import InputError, shown
 from ..character import ARM, CHAINS, LEG, REQUIRED, ROLES, Character, other_side
 from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap, RoleBones

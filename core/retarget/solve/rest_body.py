@@ -14,8 +14,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...body.skeleton import SIDES
-from ...errors import InputError
-from ...files.json_file import shown
+from ...errors import InputError, shown
 from ..character import LIMBS, LONG_BONES, MIDDLE, Character, joint_roles
 from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap

@@ -10,9 +10,8 @@ from pathlib import Path
 
 import bpy
 
-from ....core.errors import InputError
+from ....core.errors import InputError, shown
 from ....core.files.fields import listed
-from ....core.files.json_file import shown
 from ....core.files.paths import real_path, regular_file_size
 from ....core.take.conversion_settings import CharacterFile
 from ..actions import curve_digest

@@ -5,31 +5,24 @@ from dataclasses import replace
 from pathlib import Path
 
 from ....core.errors import InputError
-from ....core.prior.texts import EVERY_LIBRARY
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.description import ASSUMED, describe
 from ....core.take.take_file import SHORTEST_M, TALLEST_M, USUAL_HEIGHT_M
 from ..console import arguments_console
 from ..conversion.character_result import FORMAT, check_exporters, export_formats
-from ..conversion.convert_take import convert_take
+from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
 from ..options import (
     CHARACTER_HELP,
+    HEIGHT,
     KEYPOINT_FILES,
     MAP_HELP,
     RETARGET_OPTIONS,
+    bare_clip_fields,
     character_options,
     given_settings,
     output,
 )
 from ..parser import Command, UsageError, argument
-from .convert import conversion_summary, conversion_text
-
-HEIGHT = "--height"
-
-
-def bare_clip_fields(height_m: float) -> dict[str, object]:
-    """The fields of a take of which nothing but the performer's height is known."""
-    return {"actor": {"height_m": height_m}, "keyframes": EVERY_LIBRARY}
 
 
 def animate_command(arguments: argparse.Namespace) -> None:

@@ -3,16 +3,13 @@
 import argparse
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
-from ....core.pipeline.convert import found_summary
-from ....core.pipeline.result import Conversion
 from ....core.shoot.discovery import take_path
 from ....core.take.conversion_settings import METHODS, ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence import KEYPOINTS
 from ..console import arguments_console
-from ..conversion.convert_take import convert_take
+from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
 from ..options import KEYPOINT_FILES, REFERENCE_FILE, evidence_option, given_settings, output
 from ..parser import Command, UsageError, argument
 
@@ -25,21 +22,6 @@ def convert_command(arguments: argparse.Namespace) -> None:
         settings = _settings(arguments, description)
         conversion = convert_take(description, arguments.output, console, settings, arguments.debug)
         console.finish(conversion_summary(conversion), conversion_text(conversion))
-
-
-def conversion_summary(conversion: Conversion) -> dict[str, Any]:
-    """The result of a conversion as an object for `--json`."""
-    motion = conversion.reconstruction.motion
-    return {
-        "files": [str(file) for file in conversion.files],
-        "method": motion.method,
-        "frames": len(motion.time_s),
-        "frame_start": motion.frame_start,
-        "fps": motion.fps,
-        "keyframes": [index + motion.frame_start for index in motion.keyframe_indices],
-        "notes": list(conversion.notes),
-        **({} if conversion.found is None else found_summary(conversion.take, conversion.found)),
-    }
 
 
 def _settings(arguments: argparse.Namespace, description: Description) -> ConversionSettings:
@@ -60,18 +42,6 @@ def _settings(arguments: argparse.Namespace, description: Description) -> Conver
             f"{KEYPOINTS} in --evidence"
         )
     return settings if given.library is None else replace(settings, keyframes=given.keyframes)
-
-
-def conversion_text(conversion: Conversion) -> str:
-    """The result of a conversion in words."""
-    motion = conversion.reconstruction.motion
-    notes = [f"Note: {note}." for note in conversion.notes]
-    count = f"{len(motion.keyframe_indices)} keyframes"
-    if conversion.found is not None:
-        posed = sum(keyframe.matched is None for keyframe in conversion.take.keyframes)
-        count = f"{posed} posed and {len(motion.keyframe_indices) - posed} found keyframes"
-    lines = [f"{len(motion.time_s)} frames from {count} ({motion.method}):"]
-    return "\n".join([*notes, *lines, *(f"  {file}" for file in conversion.files)])
 
 
 CONVERT = Command(

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from ....core.errors import ConversionError
 from ....core.estimate.reconstruct import reconstruct
-from ....core.pipeline.result import BLEND, CHARACTER_BLEND, REPORT
 from ....core.progress import run
 from ....core.review.score import Score, read_truth, score_points
+from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, REPORT
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings, ConversionSettings
 from ....core.take.description import describe
 from ....core.take.evidence import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
@@ -20,10 +20,9 @@ from ....core.take.examples import AEROBIC, GREETING, POSED_BY_HAND, example_fol
 from ....core.take.motion import Motion
 from ....core.take.take import Take
 from ..console import arguments_console
-from ..conversion.convert_take import convert_take
+from ..conversion.convert_take import conversion_summary, convert_take
+from ..options import HEIGHT, bare_clip_fields
 from ..parser import Command, argument, require_blender
-from .animate import HEIGHT, bare_clip_fields
-from .convert import conversion_summary
 
 MARKED = (MARKERS, CONTOURS)
 UNMARKED = (KEYPOINTS, DEPTH_HINTS, CONTOURS)

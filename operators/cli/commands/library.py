@@ -7,7 +7,6 @@ from typing import Any
 
 from ....core.errors import InputError
 from ....core.files.fields import listed
-from ....core.files.json_file import write_atomically
 from ....core.prior.library import Library, LibraryMotion, read_library, write_library
 from ....core.prior.registry import find_library, registered_libraries
 from ....core.prior.texts import LONGEST_NAME, checked_identifier, identifier_from
@@ -103,23 +102,10 @@ def list_command(arguments: argparse.Namespace) -> None:
 
 
 def show_command(arguments: argparse.Namespace) -> None:
-    """Print a library's contents; draw its postures where `--sheet` is given."""
-    if arguments.sheet is not None and arguments.sheet.suffix.lower() != ".png":
-        raise UsageError(f"--sheet is {str(arguments.sheet)!r}; name a file that ends in .png")
+    """Print a library's contents."""
     with arguments_console(arguments) as console:
         library = find_library(arguments.library, library_folders())
-        lines = library_lines(library)
-        result = library_summary(library)
-        if arguments.sheet is not None:
-            from ....core.report.canvas import write_png
-            from ....core.report.mannequin import library_sheet
-
-            console.stage("Drawing the postures")
-            picture = library_sheet(library)
-            write_atomically(arguments.sheet, lambda staged: write_png(str(staged), picture))
-            lines.append(f"Picture: {arguments.sheet}")
-            result["sheet"] = str(arguments.sheet)
-        console.finish(result, "\n".join(lines))
+        console.finish(library_summary(library), "\n".join(library_lines(library)))
 
 
 def check_command(arguments: argparse.Namespace) -> None:
@@ -249,10 +235,7 @@ SHOW = Command(
     name="show",
     summary="say what a library holds",
     description="Says what a library holds, and draws it.",
-    arguments=(
-        LIBRARY_NAME,
-        argument("--sheet", metavar="FILE", type=Path, help="draw all its postures there, a PNG"),
-    ),
+    arguments=(LIBRARY_NAME,),
     run=show_command,
 )
 
@@ -366,7 +349,7 @@ LIBRARY = CommandGroup(
     epilog="""\
 examples:
   {program} list
-  {program} show walking --sheet walking.png
+  {program} show walking
   {program} learn out/walk/motion.json --title "Anna walking" --author Anna --output anna_walking.json
   {program} merge walking anna_walking.json --output studio.json
 

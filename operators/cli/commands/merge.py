@@ -10,11 +10,11 @@ from ....core.errors import ConversionError, InputError, pluralize
 from ....core.files.digest import content_digest
 from ....core.files.fields import listed
 from ....core.files.paths import absolute_path
-from ....core.pipeline.result import CHARACTER_BLEND, MOTION
 from ....core.progress import Progress
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.retarget.retarget_record import read_retarget_record
 from ....core.shoot.outcomes import Failure, Result, Results, find_results, read_failures
+from ....core.take.conversion_record import CHARACTER_BLEND, MOTION
 from ....core.take.motion import Motion, read_motion
 from ..blender_silence import blender_silence
 from ..console import Console, arguments_console, terminal_columns, wrapped

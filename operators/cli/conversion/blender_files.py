@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ....core.errors import InputError
 from ....core.files.paths import real_path
-from ....core.pipeline.result import BLEND, BVH
+from ....core.take.conversion_record import BLEND, BVH
 from ....core.take.description import Description
 from ....core.take.motion import Motion
 from ....core.take.take import Take

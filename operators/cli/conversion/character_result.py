@@ -15,7 +15,6 @@ from ....core.files.digest import content_digest
 from ....core.files.fields import listed
 from ....core.files.paths import regular_file_size
 from ....core.finish.natural_extremities import natural_extremities
-from ....core.pipeline.result import CHARACTER_BLEND, CHARACTER_PICTURE
 from ....core.progress import Job, run
 from ....core.report.canvas import write_png
 from ....core.retarget.character import LIMBS, Character
@@ -24,6 +23,7 @@ from ....core.retarget.maps.map_registry import ChosenMap, choose_map, map_diges
 from ....core.retarget.options import retarget_options
 from ....core.retarget.retarget_record import RetargetRecord, UsedCharacter, UsedMap, write_retarget_record
 from ....core.shoot.discovery import Shoot
+from ....core.take.conversion_record import CHARACTER_BLEND, CHARACTER_PICTURE
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.motion import Motion
 from ....core.take.presence import named_limbs

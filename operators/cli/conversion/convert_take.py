@@ -2,14 +2,12 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
-from ....core.pipeline.convert import convert
+from ....core.pipeline.convert import convert, found_summary
 from ....core.pipeline.result import (
-    BLEND,
-    CHARACTER_BLEND,
-    REPORT,
     Conversion,
     finish_result,
     own_files,
@@ -25,7 +23,7 @@ from ....core.report.pictures import write_pictures
 from ....core.retarget.maps.map_registry import map_digests
 from ....core.review.frame_evidence import compare_keypoints
 from ....core.take.conversion_digest import conversion_digest
-from ....core.take.conversion_record import RECORD_FILE, is_up_to_date
+from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, RECORD_FILE, REPORT, is_up_to_date
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description
 from ....core.take.reference import ReferenceMotion
@@ -132,3 +130,30 @@ def _reference(file: Path, debug: bool) -> ReferenceMotion:
 
     with blender_silence(debug):
         return armature_reference(file, library_folders())
+
+
+def conversion_summary(conversion: Conversion) -> dict[str, Any]:
+    """The result of a conversion as an object for `--json`."""
+    motion = conversion.reconstruction.motion
+    return {
+        "files": [str(file) for file in conversion.files],
+        "method": motion.method,
+        "frames": len(motion.time_s),
+        "frame_start": motion.frame_start,
+        "fps": motion.fps,
+        "keyframes": [index + motion.frame_start for index in motion.keyframe_indices],
+        "notes": list(conversion.notes),
+        **({} if conversion.found is None else found_summary(conversion.take, conversion.found)),
+    }
+
+
+def conversion_text(conversion: Conversion) -> str:
+    """The result of a conversion in words."""
+    motion = conversion.reconstruction.motion
+    notes = [f"Note: {note}." for note in conversion.notes]
+    count = f"{len(motion.keyframe_indices)} keyframes"
+    if conversion.found is not None:
+        posed = sum(keyframe.matched is None for keyframe in conversion.take.keyframes)
+        count = f"{posed} posed and {len(motion.keyframe_indices) - posed} found keyframes"
+    lines = [f"{len(motion.time_s)} frames from {count} ({motion.method}):"]
+    return "\n".join([*notes, *lines, *(f"  {file}" for file in conversion.files)])

@@ -175,3 +175,14 @@ def test_reports_have_the_same_colors() -> None:
 def test_every_segment_and_point_has_a_side() -> None:
     assert {side_of(segment.name) for segment in HUMAN.segments} == {"L", "R", ""}
     assert side_of("shoulder.L") == "L" and side_of("head") == "" and side_of("Left.001") == ""
+
+
+def test_limbs_branch_off_the_trunk() -> None:
+    names = [{HUMAN.dof_names[dof].rsplit(".", 1)[0] for dof in limb} for limb in HUMAN.limbs]
+    assert names[0] == {"pelvis", "waist"}
+    limbs = [("neck",), *((f"girdle.{side}", f"shoulder.{side}", f"elbow.{side}") for side in "LR")]
+    limbs += [(f"hip.{side}", f"knee.{side}") for side in "LR"]
+    assert len(names) == 1 + len(limbs)
+    for limb in limbs:
+        assert sum(set(limb) <= joints for joints in names[1:]) == 1
+    assert sum(len(limb) for limb in HUMAN.limbs) == HUMAN.dof_count

@@ -155,7 +155,9 @@ def test_posed_keyframes_stay_and_the_others_are_found(
 def test_found_keyframes_are_said_to_be_doubtful_and_contradictions_are_named(
     take: Path, few_libraries: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
 ) -> None:
-    def pose(given: Any, _reading: object, _libraries: object, _floor_m: object = None) -> Any:
+    def pose(
+        given: Any, _reading: object, _libraries: object, _floor_m: object = None, **_more: object
+    ) -> Any:
         yield from ()
         truth = true_postures(FRAMES)
         sure = {0: 0.9, 12: 0.2, 23: 0.4}

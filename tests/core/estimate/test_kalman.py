@@ -34,6 +34,7 @@ from keymark.core.evidence.line_ends import (
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run
+from scipy.stats import chi2
 
 See = Callable[..., RegionTracks]
 ALWAYS_FAR = Memberships(near_ends=1e-9, far_starts=0.0, far_full=1e-9)
@@ -377,3 +378,9 @@ def test_the_order_of_measurements_does_not_matter() -> None:
         state, P = state + one.step, one.covariance
     np.testing.assert_allclose(state, together.step, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(P, together.covariance, rtol=1e-9, atol=1e-12)
+
+
+def test_gates_are_quantiles_of_chi_squared(line_ends: LineEnds) -> None:
+    prior = Posture.concatenate([Posture.rest(line_ends.body.skeleton, (2,))])
+    gates = FuzzyKalmanFilter(line_ends, prior, [0], FilterOptions(gate_probability=0.95))._gates
+    np.testing.assert_allclose(gates, [0.0, *chi2.ppf(0.95, [1, 2, 3, 4])], rtol=1e-9)

@@ -18,6 +18,7 @@ from keymark.core.estimate.keyframe_error import (
     depth_std_m,
     joint_std_rad,
     match_covariance,
+    place_depth_std_m,
     undetermined_covariance,
     unobserved_variance,
 )
@@ -189,3 +190,14 @@ def test_all_is_open_where_nothing_is_seen() -> None:
     visible = np.zeros((90, 3), dtype=bool)
     variance = open_of(visible, [0])
     assert variance[0].max() == 0.0 and (variance[89] > 0.01).all()
+
+
+def test_a_floor_that_contradicts_the_size_makes_the_place_uncertain() -> None:
+    points = BODY.points(BODY.pose(TRUTH))
+    agreed, off_it = (
+        place_depth_std_m(points, points[..., 2].min(axis=1), CAMERA, over_m) for over_m in (0.0, 0.2)
+    )
+    step = np.sqrt(off_it**2 - agreed**2)
+    assert (step > 0.0).all()
+    twice = place_depth_std_m(points, points[..., 2].min(axis=1), CAMERA, -0.4)
+    np.testing.assert_allclose(np.sqrt(twice**2 - agreed**2), 2.0 * step)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from _detector import detect, lasting, sides_exchanged
+from _recorded import assert_recorded
 from _scene import BODY, CAMERA, exercise
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
@@ -195,6 +196,10 @@ def test_posed_keyframes_correct_it_nearby_and_take_the_place_of_found_ones() ->
     plain, posed = said_of(take_of(network())), said_of(take_of(network(), (40,)))
     assert off_mm(posed, 40) < 0.2 * off_mm(plain, 40)
     assert off_mm(posed, 43) < 0.9 * off_mm(plain, 43)
+    for name, said in (("plain", plain), ("posed", posed)):
+        assert_recorded(f"reference {name}", said.expected.points, share=1e-4)
+        assert_recorded(f"reference {name}, worth", [said.factor, said.gain, said.confidence], share=1e-3)
+        assert_recorded(f"reference {name}, error", said.expected.whitening, share=1e-3)
     index = [key.index for key in posed.keyframes]
     assert min(abs(one - 40) for one in index) > 9
     assert len(plain.keyframes) == 7

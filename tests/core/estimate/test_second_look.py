@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 from _filmed import FRAMES, POSED, TRUTH, photograph
+from _recorded import assert_recorded
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, film
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.second_look import seen_tracks
@@ -128,6 +129,9 @@ def finds(result: WholeClipResult) -> np.ndarray:
 def test_a_blurred_marker_is_found_where_it_is() -> None:
     new = finds(found())
     assert new[LOST, MARKER].sum() >= 3
+    seen = found().problem.observed
+    assert_recorded("second look", seen.centroid, seen.second_moment, seen.area, share=1e-3)
+    assert_recorded("second look, variance", seen.variance, seen.quality, share=1e-3)
     true = MODEL.evaluate(BODY.pose(MOTION), np.arange(FRAMES)).centroid
     off = np.linalg.norm(found().problem.observed.centroid - true, axis=-1)
     assert off[new].max() < 2.0

@@ -295,3 +295,16 @@ def test_a_body_behind_the_camera_is_not_compared_with_regions() -> None:
     term.add_to(equations, at, 1.0)
     assert np.isfinite(equations.gradient).all() and np.isfinite(term.cost(at)).all()
     assert not equations.gradient.any()
+
+
+def test_information_of_regions_falls_with_temperature_noise_and_doubt() -> None:
+    at, tracks = state(size=0.0), film(exercise(FRAMES))
+    observed, ones = ObservedRegions.from_tracks(tracks), np.ones(len(MODEL.placements))
+    term = RegionTerm(MODEL, observed, RegionNoise(), np.full((FRAMES, len(ones)), 20.0), ones, ones)
+    predicted = MODEL.evaluate(at.pose, at.frame)
+    nothing = np.zeros((FRAMES, len(ones), FEATURES))
+    cool, warm = (term.weights(nothing, predicted, temperature) for temperature in (1.0, 4.0))
+    assert (cool > 0.0).any()
+    np.testing.assert_allclose(warm, cool / 4.0)
+    doubted = replace(term, distrust=2.0 * ones).weights(nothing, predicted, 1.0)
+    assert (doubted[cool > 0.0] < cool[cool > 0.0]).all() and (doubted >= cool / 4.0 - 1e-12).all()

@@ -4,7 +4,16 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, exercise
 from keymark.core.body.human import HUMAN
-from keymark.core.evidence.contours import FREE, SHAPE, SIDES, UNKNOWN, ContourModel, LimbAxes, part_map
+from keymark.core.evidence.contours import (
+    FREE,
+    SHAPE,
+    SHARES,
+    SIDES,
+    UNKNOWN,
+    ContourModel,
+    LimbAxes,
+    part_map,
+)
 from keymark.core.evidence.occlusion import outline_depth
 
 MODEL = ContourModel.average(BODY, CAMERA)
@@ -98,3 +107,15 @@ def test_what_lies_beyond_a_part_is_its_own_side_s() -> None:
     assert beyond["head"] == [NAMES.index("chest"), FREE]
     assert beyond["hand.L"][1] == beyond["foot.R"][1] == FREE
     assert beyond["upper_arm.L"][0] == UNKNOWN
+
+
+def test_a_contour_lies_a_half_width_from_its_limb_s_own_place() -> None:
+    pose = BODY.pose(exercise(1))
+    world = MODEL.evaluate(pose, FRAME).world[0].reshape(len(NAMES), len(SHARES), len(SIDES), 3)
+    for part, name in enumerate(NAMES):
+        start, end = (point[0] for point in BODY.segment_ends(pose, name))
+        if name.partition(".")[0] not in ("forearm", "shin", "thigh", "upper_arm"):
+            continue
+        along = (world[part].mean(axis=1) - start) @ (end - start) / ((end - start) @ (end - start))
+        np.testing.assert_allclose(along, SHARES, atol=0.1)
+        assert np.ptp(along) > 0.5 * np.ptp(SHARES)

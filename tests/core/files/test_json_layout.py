@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from keymark.core.files.json_file import WIDTH, format_json, read_json, shown, write_readable_json
+from keymark.core.errors import shown
+from keymark.core.files.json_file import WIDTH, format_json, read_json, write_readable_json
 
 NAMES = st.text(max_size=6) | st.sampled_from(["a.b_x", "a.b_y", "a.b_z", "a.c"])
 VALUES = st.recursive(

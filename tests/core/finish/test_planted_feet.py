@@ -148,3 +148,15 @@ def test_soles_near_the_ground_are_held_by_few_keys() -> None:
     left, right = sole_rows(rig, "L"), sole_rows(rig, "R")
     assert len(left) == 2 and set(allowed[20:30][:, left].ravel()) == {FLOOR_TOLERANCE_M}
     assert set(allowed[:, right].ravel()) == {0.005} and set(allowed[30:, left[0]]) == {0.005}
+
+
+def test_the_change_at_a_rest_fades_frame_by_frame() -> None:
+    before = step_and_stand()
+    planted = run(plant_feet(BODY, before, TIME_S))
+    change = np.linalg.norm((places(planted.posture) - places(before))[:, ANKLES], axis=-1)
+    for contact in planted.contacts:
+        for edge, way in ((contact.first, -1), (contact.last, 1)):
+            if not 5 <= edge < len(change) - 5 or change[edge, contact.point] < 1e-3:
+                continue
+            fading = change[edge : edge + 5 * way : way, contact.point]
+            assert (np.diff(fading) < 0.0).all() and fading[1] > 0.5 * fading[0]

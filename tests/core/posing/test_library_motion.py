@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from _performed import BODY, camera, filmed, performed
 from keymark.core.body.human import LIMBS
-from keymark.core.body.posture import yawed_at
+from keymark.core.body.mirror import mirrored
+from keymark.core.body.posture import headings_rad, yawed_at
+from keymark.core.posing.known_motions import known_postures
 from keymark.core.posing.library_motion import nearest_libraries, part_beliefs
 from keymark.core.posing.part_features import (
     HEADINGS,
@@ -37,6 +39,19 @@ def test_libraries_are_ordered_by_their_nearest_postures(
     for posture in (walk, elsewhere):
         assert nearest_libraries(pools, posture)[0] == 2
     assert nearest_libraries(pools, performed(waving, HEADING))[0] == 0
+
+
+def test_known_postures_face_ahead_with_their_mirror_images_behind_them(
+    walking: Library, waving: Library
+) -> None:
+    known = known_postures(BODY, [walking, waving])
+    count = len(walking.postures) + len(waving.postures)
+    np.testing.assert_allclose(headings_rad(known.posture), 0.0, atol=1e-9)
+    np.testing.assert_allclose(known.posture.translation[:, :2], 0.0, atol=1e-12)
+    points = BODY.points(BODY.pose(known.posture))
+    other = BODY.points(BODY.pose(mirrored(known.posture[np.arange(count)])))
+    np.testing.assert_allclose(points[count:], other, atol=1e-9)
+    assert list(known.mirrored) == [False] * count + [True] * count
 
 
 def test_a_known_motion_makes_the_parts_it_shows_likelier(walking: Library, waving: Library) -> None:

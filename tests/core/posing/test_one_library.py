@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from _performed import FRAMES, camera, errors_m, filmed, performed
+from _performed import BODY, FRAMES, camera, errors_m, filmed, performed
+from _recorded import assert_recorded
 from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
@@ -25,6 +26,9 @@ def test_walking_is_found_in_its_phase_heading_and_place(walking: Library, headi
     assert absolute < 0.15
     assert found.fit > 0.8
     assert [frame.index for frame in found.frames][0::4] == [0, FRAMES - 1]
+    assert_recorded(f"found {heading_deg}", BODY.points(BODY.pose(found.postures)), share=1e-3)
+    sure = [one.confidence for frame in found.frames for one in frame.candidates]
+    assert_recorded(f"found {heading_deg}, confidence", sure, share=1e-3)
     names = {posture.name for posture in walking.postures}
     assert {one.name for frame in found.frames for one in frame.candidates} <= names
 

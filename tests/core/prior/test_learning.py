@@ -12,7 +12,7 @@ from keymark.core.body.posture import Posture, headings_rad, turned_and_shifted
 from keymark.core.body.posture_spline import linear_spline
 from keymark.core.body.skeleton import SIDES
 from keymark.core.errors import InputError
-from keymark.core.prior.learning import LibraryMetadata, learn_library
+from keymark.core.prior.learning import LibraryMetadata, learn_library, on_floor
 from keymark.core.prior.library import read_library, write_library
 from keymark.core.prior.motion_playback import ankle_heights, average_cycle, find_period_s, shape_vectors
 
@@ -140,3 +140,14 @@ def test_what_is_learned_can_be_written_and_read(tmp_path: Path) -> None:
     assert [posture.name for posture in read.postures] == [step.posture for step in read.motions[0].steps]
     for written, its in zip(library.postures, read.postures, strict=True):
         assert np.abs(written.posture.minus(its.posture)).max() < 1e-8
+
+
+def test_a_motion_is_put_on_the_floor_by_its_resting_feet() -> None:
+    posture, time_s = stepping(60)
+    low = turned_and_shifted(posture, 0.0, np.array([0.4, -0.2, -0.7]))
+    on = on_floor(BODY, low, time_s)
+    again = turned_and_shifted(on, 0.0, np.array([0.0, 0.0, 0.31]))
+    np.testing.assert_allclose(on_floor(BODY, again, time_s).translation, on.translation, atol=1e-9)
+    np.testing.assert_allclose(on.translation[:, :2], low.translation[:, :2], atol=1e-9)
+    np.testing.assert_allclose(on.rotations, low.rotations, atol=1e-9)
+    assert abs(np.median(ankle_heights(BODY, on).min(axis=-1))) < 0.05

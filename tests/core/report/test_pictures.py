@@ -11,7 +11,6 @@ from _synthetic_take import BODY, CAMERA, SIZE, true_postures, write_synthetic_t
 from keymark.core.evidence.contours import ContourModel
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.pipeline.result import PICTURES
 from keymark.core.report.canvas import INK, LEFT, RIGHT, Canvas, write_png
 from keymark.core.report.overlay_sheet import (
     CELL_WIDTH,
@@ -22,6 +21,7 @@ from keymark.core.report.overlay_sheet import (
     overlay_sheet,
 )
 from keymark.core.report.pictures import side_sheet, write_pictures
+from keymark.core.take.conversion_record import PICTURES
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take

@@ -6,6 +6,7 @@ import numpy as np
 from _characters import plain_character, plain_map
 from _elsewhere import RATE, jitter_mm
 from _performances import solved, steps
+from _recorded import assert_recorded
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.core.finish.mend_motion import Mended, MendOptions, mend_motion
@@ -54,6 +55,7 @@ def test_the_armature_is_at_the_mended_joints_with_its_own_lengths() -> None:
     points, poses = shaken()
     mended, made = result()
     placed = points.of_poses(poses | made)
+    assert_recorded("mended armature", *(made[name] for name in sorted(made)), share=1e-4)
     apart = np.linalg.norm(placed - mended.motion.points, axis=-1)
     assert apart.mean() < 0.01 and apart[:, -2:].max() < 0.025
     for side in "LR":

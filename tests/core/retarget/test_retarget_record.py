@@ -35,6 +35,7 @@ def test_figures_have_five_digits(tmp_path: Path) -> None:
         (("character", "sha256"), None, "sha256 is null; it must be a SHA-256 of 64 digits"),
         (("map", "origin"), "guessed", "one of given, saved, recognized"),
         (("frames",), 0, "frames is 0"),
+        (("size",), 1.5e6, "size is 1500000.0"),
         (("fps",), 0, "fps is 0"),
         (("options", "legs"), "both feet", "one of fk, ik, both"),
         (("limbs", "tail"), "fk", "unknown field 'tail'"),

@@ -126,7 +126,7 @@ def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
         (("ik", "arm.L", "toe"), "toe", "toe is a control of legs alone"),
         (("ik", "arm.L", "switch", "ik"), 1.0, "a switch has two values"),
         (("settings", 0, "value"), "on", "value is 'on'"),
-        (("settings", 0, "value"), 1e7, "value is 10000000.0"),
+        (("settings", 0, "value"), 1.5e6, "value is 1500000.0"),
         (("settings", 1), VALID["settings"][0], "twice"),
         (("root",), 3, "root is 3; it must be a bone's name"),
         (("soles", "foot.L", 0), [0.0, 1e9, 0.0], r"foot.L\[0\] is \[0.0, 1000000000.0, 0.0\]"),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from _characters import plain_character, plain_map
 from _performances import shaped, solved, steps
-from keymark.core.retarget.solve.foot_shape import foot_shape, rest_floor_m, sole_points
+from keymark.core.retarget.solve.foot_shape import HEEL_BEHIND, foot_shape, rest_floor_m, sole_points
 from keymark.core.retarget.solve.rest_body import RestBody
 
 
@@ -89,3 +89,16 @@ def test_toes_that_are_left_alone_are_part_of_the_foot() -> None:
     reach = (moving.toe_joint + moving.toe)[:, 1].min()
     assert abs(shape.foot[:, 1].min() - reach) < 0.03
     assert abs(shape.ankle_m - moving.ankle_m) < 1e-9
+
+
+def test_a_sole_of_bones_has_the_proportions_of_a_foot() -> None:
+    character = plain_character(without=("toe",))
+    body = RestBody.of(character, plain_map(character))
+    inner, outer, near, far = foot_shape(body, "L", 0.0).foot[:4]
+    heel, ball = 0.5 * (inner + outer), 0.5 * (near + far)
+    width = float(np.linalg.norm(far - near))
+    assert np.linalg.norm(outer - inner) == pytest.approx(0.7 * width)
+    length = width / 0.4  # from ankle to tip
+    assert np.linalg.norm(ball[:2]) == pytest.approx(0.6 * length)
+    assert np.linalg.norm(heel[:2]) == pytest.approx(HEEL_BEHIND * length)
+    assert (far - near) @ (ball - heel) == pytest.approx(0.0, abs=1e-9)

@@ -4,7 +4,8 @@ import numpy as np
 from _performances import performance, stepping, steps
 from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.body.posture import Posture
-from keymark.core.retarget.solve.foot_shape import Ground, find_ground
+from keymark.core.finish.contacts import Contact
+from keymark.core.retarget.solve.foot_shape import CHANGE_S, Ground, _under, find_ground
 
 
 def raised(*heights_m: float) -> SegmentMotion:
@@ -56,3 +57,16 @@ def test_without_rests_the_lowest_feet_tell() -> None:
     ground = find_ground(source)
     assert ground.rests == ()
     assert abs(ground.height_m[0, 0] - 0.3) < 0.02
+
+
+def test_the_ground_under_a_foot_changes_just_before_it_steps_up_and_after_it_steps_down() -> None:
+    rests = tuple(Contact(0, first, first + 10, np.zeros(3)) for first in (0, 30, 60))
+    time_s = np.arange(71) / 30.0
+    height_m = _under(0, rests, [0.0, 0.2, -0.1], time_s)
+    change, whole = int(np.ceil(30.0 * CHANGE_S)), int(30.0 * CHANGE_S)
+    np.testing.assert_allclose(height_m[: 30 - change + 1], 0.0, atol=1e-12)
+    np.testing.assert_allclose(height_m[30:41], 0.2)
+    np.testing.assert_allclose(height_m[40 + change :], -0.1)
+    assert (np.diff(height_m[30 - whole : 31]) > 0.0).all()
+    assert (np.diff(height_m[40 : 41 + whole]) < 0.0).all()
+    np.testing.assert_array_equal(_under(1, rests, [0.0, 0.2, -0.1], time_s), height_m)

@@ -1,23 +1,16 @@
-"""Pictures of libraries: the right limbs in the right place, every posture on the sheet."""
-
-from dataclasses import replace
+"""Pictures of postures: the right limbs in the right place."""
 
 import numpy as np
 import pytest
-from _libraries import ACTOR, small_library
+from _libraries import ACTOR
 from keymark.core.body.body_volume import sole_heights_m, standing_posture
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.report.canvas import LEFT, RIGHT
 from keymark.core.report.mannequin import (
-    CAPTION,
-    CELL,
-    COLUMNS,
-    HEADER,
     SIZE,
     View,
     draw_mannequin,
-    library_sheet,
     mannequin,
     posture_picture,
 )
@@ -100,15 +93,3 @@ def test_the_skin_lies_around_the_bones_and_faces_outwards() -> None:
     assert 0.04 < volume_m3 < 0.09
     for place in BODY.points(BODY.pose(STANDING)):
         assert np.linalg.norm(figure.points - place, axis=1).min() < 0.12
-
-
-def test_every_posture_is_on_the_sheet() -> None:
-    library = small_library()
-    many = tuple(replace(library.postures[0], name=f"ö {n} 歩く" * 20) for n in range(COLUMNS + 2))
-    sheets = [
-        library_sheet(replace(library, motions=(), postures=postures, title="Schritte 歩く" * 40))
-        for postures in (many[:3], many)
-    ]
-    shown = [int(alike(sheet[HEADER:], RIGHT).sum()) for sheet in sheets]
-    assert shown[1] == pytest.approx(len(many) / 3.0 * shown[0], rel=0.02)
-    assert sheets[1].shape[0] - sheets[0].shape[0] == CELL + CAPTION

@@ -1,0 +1,97 @@
+"""What can be checked of poses that nobody posed, and how probable it makes them.
+
+Each check holds two sources against each other that do not know of each other: a network's guess in space
+against the performer's height, the feet against the floor. That keypoints lie on the poses made from them is
+none: wrong ones do as well.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..arrays import Array
+from ..body.human import HUMAN
+from ..body.posture import Posture
+from ..body.skeleton import SIDES
+from ..estimate.keyframe_error import GROUND_STD_M
+from ..estimate.performer_placement import feet_over_floor_m
+from ..files.fields import listed
+from ..take.presence import named_limbs
+from .candidates import PROBABILITY_BOUNDS, MatchedFrame
+from .posing_input import PosingInput
+
+WRONG_SHARE = 0.1  # of all takes whose height, camera or floor are wrong: a round guess
+SIZE_STD, SIZE_RANGE = 0.12, 0.7  # of a logarithm: networks' sizes of a known person, and a wrong height's
+FLOOR_RANGE_M = 1.0  # feet are anywhere within it where camera, height or floor are wrong
+UNSEEN_ODDS = 0.5  # probability that a limb which is never seen is about right
+USABLE = 0.5  # least confidence
+BONES = tuple(
+    (f"{root}.{side}", f"{end}.{side}")
+    for side in SIDES
+    for root, end in (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
+)
+
+
+def agreement(
+    given: PosingInput, postures: Posture, frames: Sequence[MatchedFrame], floor_m: float | None
+) -> tuple[float, str]:
+    """Probability that a found motion is usable, and a sentence with what speaks for or against it.
+
+    Usable is a mean error of less than 10 cm, the hips aligned, and of half a meter in place.
+
+    Args:
+        given: What the poses were found from.
+        postures: (F,) of its frames.
+        frames: The frames that were proposed for keyframes, with their candidates.
+        floor_m: Height of the floor [m]; None where it is wherever the feet are.
+    """
+    chosen = [frame.candidates[0].confidence for frame in frames]
+    probability = float(np.mean(chosen)) if chosen else 0.0
+    agree: list[str] = []
+    against: list[str] = []
+    points = given.body.points(given.body.pose(postures[given.sampled]))
+    size = _relative_size(given, points)
+    if size is not None:
+        own = _right(float(np.log(size)), SIZE_STD, SIZE_RANGE)
+        probability *= own
+        what = f"by the detector's guess in space the performer is {abs(size - 1.0):.0%} "
+        said = what + ("taller" if size > 1.0 else "shorter") + " than stated"
+        (agree if own >= USABLE else against).append("the detector's sizes" if own >= USABLE else said)
+    if floor_m is not None and not {"leg.L", "leg.R"} <= set(given.unseen):
+        off_m = feet_over_floor_m(given.body, points, floor_m)
+        own = _right(off_m, GROUND_STD_M, FLOOR_RANGE_M)
+        probability *= own
+        said = f"the feet are {abs(off_m) * 100.0:.0f} cm {'above' if off_m > 0.0 else 'below'} the floor"
+        (agree if own >= USABLE else against).append("the floor" if own >= USABLE else said)
+    if given.unseen:
+        probability *= UNSEEN_ODDS ** len(given.unseen)
+        against.append(f"{named_limbs(given.unseen)} never seen")
+    if not against and probability < USABLE:
+        against.append("other postures look alike")
+    probability = float(np.clip(probability, *PROBABILITY_BOUNDS))
+    verdict = "usable" if probability >= USABLE else "doubtful"
+    reasons = listed(against, 4) if against else " and ".join(agree) + " agree" if agree else ""
+    return probability, f"the found poses are {verdict}, {probability:.0%} sure" + (
+        f": {reasons}" if reasons else ""
+    )
+
+
+def _relative_size(given: PosingInput, points: Array) -> float | None:
+    """How long limbs are by the network's guess, over those of points (T, P, 3); None without one."""
+    hints, names = given.evidence.keypoints.hint_m[given.sampled], given.evidence.keypoints.names
+    ratios = []
+    for pair in BONES:
+        if set(pair) <= set(names):
+            root, end = (hints[:, names.index(name)] for name in pair)
+            known = np.isfinite(end - root).all(axis=-1)
+            if known.any():
+                own = np.subtract(*(points[0, HUMAN.point_names.index(name)] for name in pair))
+                length = np.median(np.linalg.norm((end - root)[known], axis=-1))
+                ratios.append(float(length / np.linalg.norm(own)))
+    return float(np.median(ratios)) if ratios else None
+
+
+def _right(off: float, std: float, spread: float) -> float:
+    """Probability that a deviation is one of what is right: normal, else anywhere within a range."""
+    right = (1.0 - WRONG_SHARE) * np.exp(-0.5 * (off / std) ** 2) / (std * np.sqrt(2.0 * np.pi))
+    return float(right / (right + WRONG_SHARE / spread))

@@ -1,0 +1,81 @@
+"""What postures predict of the footage, number by number: regions, contours, keypoints, line ends."""
+
+import numpy as np
+import pytest
+from _recorded import assert_recorded
+from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film
+from keymark.core.evidence import keypoints as depths
+from keymark.core.evidence.contours import ContourModel, LimbAxes, part_map
+from keymark.core.evidence.keypoints import DepthLinks, KeypointModel
+from keymark.core.evidence.line_ends import LineEnds, angle_weight, observed_characteristics, residual
+from keymark.core.evidence.occlusion import outline_depth
+from keymark.core.evidence.regions import (
+    ObservedRegions,
+    RegionModel,
+    feature_rows,
+    limb_widths,
+    missing_variance,
+)
+from keymark.core.footage.camera import Camera
+from keymark.core.footage.keypoints.keypoints import BODY_POINTS
+
+FRAMES = 12
+FRAME = np.arange(FRAMES)
+POSE = BODY.pose(exercise(5 * FRAMES)[2::5])
+NEAR = np.array([[1.0, 0, 0, 0.35], [0, 0, -1, -1.9], [0, 1, 0, 1.3], [0, 0, 0, 1]])
+CAMERAS = {"far": CAMERA, "cutting": Camera(40.0, 36.0, (320, 240), NEAR)}
+"""The second one sees a part of the body, which the picture's edges cut."""
+
+
+@pytest.mark.parametrize("name", CAMERAS)
+def test_regions(name: str) -> None:
+    model = RegionModel(BODY, CAMERAS[name], MODEL.placements)
+    seen = model.evaluate(POSE, FRAME, jacobian=True)
+    assert_recorded(f"regions {name}", seen.centroid, seen.second_moment)
+    assert_recorded(f"area {name}", seen.area, 1e3 * seen.visible)
+    observed = ObservedRegions.from_tracks(film(exercise(FRAMES), 0.4, model=MODEL))
+    rows, slopes = feature_rows(observed, seen)
+    assert slopes is not None
+    assert_recorded(f"rows {name}", rows)
+    assert_recorded(f"slopes {name}", slopes)
+    assert_recorded(f"missing {name}", missing_variance(observed.area, np.ones(len(SEGMENTS)), seen))
+    assert_recorded(f"widths {name}", limb_widths(model, BODY.points(POSE)[:, 0], FRAME))
+
+
+@pytest.mark.parametrize("name", CAMERAS)
+def test_contours(name: str) -> None:
+    model = ContourModel.average(BODY, CAMERAS[name])
+    model = model.with_shape(np.linspace(-0.01, 0.02, model.shape.size).reshape(model.shape.shape))
+    seen = model.evaluate(POSE, FRAME)
+    for field in ("world", "pixel", "depth", "normal", "half_width", "shape_rate"):
+        assert_recorded(f"contours {name} {field}", getattr(seen, field))
+    assert_recorded(f"contours {name} slopes", model.normal_jacobian(seen, seen.normal, POSE))
+    parts = model.part_outlines(POSE, FRAME)
+    drawn = [part_map(parts, frame, (80, 60), 4.0) for frame in (0, 5)]
+    # OpenCV's releases round a border's pixels differently.
+    assert_recorded(f"parts {name}", *drawn, share=0.05)
+    assert_recorded(f"outline depth {name}", outline_depth(seen.pixel, parts))
+    axes = LimbAxes(model.parts, CAMERAS[name])
+    share = np.linspace(0.1, 0.9, FRAMES * len(model.parts.segments)).reshape(FRAMES, -1)
+    world, pixel = axes.points(POSE, FRAME, share)
+    direction = np.stack([np.cos(share), np.sin(share)], axis=-1)
+    assert_recorded(f"axes {name}", pixel, axes.jacobian(POSE, FRAME, world, direction), axes.beyond)
+
+
+def test_keypoints_and_depths() -> None:
+    model = KeypointModel.usual(BODY, CAMERA, BODY_POINTS)
+    links = DepthLinks.between(BODY_POINTS, ("one",) * len(BODY_POINTS))
+    assert_recorded("keypoints", model.pixels(POSE, FRAME))
+    assert_recorded("keypoints, slopes", model.pixels_jacobian(POSE, FRAME))
+    assert_recorded("links", links.depths(model, POSE, FRAME), links.jacobian(model, POSE, FRAME))
+    assert_recorded("depths", depths.evaluate(BODY, CAMERA, POSE, FRAME))
+    assert_recorded("depths, slopes", depths.jacobian(BODY, CAMERA, POSE, FRAME))
+
+
+def test_line_ends() -> None:
+    ends = LineEnds(BODY, CAMERA, SEGMENTS)
+    predicted = ends.evaluate(POSE, FRAME)
+    observed = observed_characteristics(film(exercise(FRAMES), 0.4))
+    assert_recorded("line ends", predicted)
+    assert_recorded("line ends, residual", residual(observed, predicted))
+    assert_recorded("angle weight", angle_weight(np.linspace(-1.0, 3.0, 9)))

@@ -1,0 +1,36 @@
+"""Known postures and corrected poses, number by number; what is found for clips is so in their own tests."""
+
+import numpy as np
+import pytest
+from _corrections import BODY as CORRECTED
+from _corrections import camera_around, natural_posture, points
+from _performed import BODY
+from _recorded import assert_recorded
+from keymark.core.posing.depth_flip import FLIPPABLE, flipped
+from keymark.core.posing.dragged import dragged
+from keymark.core.posing.known_motions import known_postures, part_shapes
+from keymark.core.posing.turned import Facing, Sides, turned
+from keymark.core.prior.library import Library
+
+
+def test_shapes_of_known_postures(walking: Library) -> None:
+    known = known_postures(BODY, [walking])
+    shapes = part_shapes(BODY, known.pose)
+    assert_recorded("shapes of parts", *(shapes[name] for name in sorted(shapes)))
+
+
+@pytest.mark.parametrize("seed", [3])
+def test_corrections(seed: int) -> None:
+    posture, seen_by = natural_posture(seed), camera_around(seed + 100)
+    ways = [one for part in FLIPPABLE for one in flipped(CORRECTED, posture, seen_by, part)]
+    assert_recorded(f"flipped {seed}", *map(points, ways), share=1e-3)
+    for sides in Sides:
+        ways = [turned(CORRECTED, posture, seen_by, facing, sides).posture for facing in Facing]
+        assert_recorded(f"turned {seed} {sides.name}", *map(points, ways), share=1e-3)
+    names = CORRECTED.skeleton.point_names
+    step = np.random.default_rng(seed).normal(0.0, 0.12, (len(names), 3))
+    moved = []
+    for row, name in enumerate(names):
+        place = points(posture)[row] + step[row]
+        moved.append(dragged(CORRECTED, posture, name, place, seen_by.sight(place), row % 2 == 0))
+    assert_recorded(f"dragged {seed}", *map(points, moved), share=1e-3)

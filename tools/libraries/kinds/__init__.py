@@ -1,1 +1,0 @@
-"""The shipped libraries: one module each, called as the library is, with a function `library`."""
