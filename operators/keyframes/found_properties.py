@@ -164,12 +164,6 @@ class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
         get=_library_number,
         set=_set_library,
     )
-    improve_neighbors: bpy.props.BoolProperty(
-        name="Improve Neighbors",
-        description="When you store, accept or replace a keyframe, pose the found ones up to the next one of "
-        "yours anew, with what yours tells; what you posed or chose never changes",
-        default=True,
-    )
     reason: bpy.props.StringProperty(
         name="Reason", description="Whether what was found last is usable, and what speaks for or against it"
     )

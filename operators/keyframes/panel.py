@@ -144,7 +144,6 @@ class KEYMARK_PT_keyframes_options(Popover, bpy.types.Panel):
             found = column.row()
             found.enabled = False
             found.prop(matching, "floor_found")
-        column.prop(matching, "improve_neighbors")
         column.operator("keymark.fit_pose", text="Fit from Current Pose", icon="POSE_HLT").start = "POSE"
         column.separator()
         column.prop(take, "keyframe_count")

@@ -46,10 +46,9 @@ def improve_neighbors(context: bpy.types.Context, take: bpy.types.PropertyGroup,
     """Pose the found keyframes around one that was just stored, accepted or replaced; return their number.
 
     To be called within the same operator, so that one undo takes both back. Posed keyframes, and those whose
-    candidate a person chose, never change; none does where *Improve Neighbors* is off, or the footage was not
-    read as it is followed now.
+    candidate a person chose, never change; none does where the footage was not read as it is followed now.
     """
-    if not take.matching.improve_neighbors or not undecided_matches(take):
+    if not undecided_matches(take):
         return 0
     # The correction holds even where nothing can be found around it.
     with suppress(KeymarkError), _waiting(context):

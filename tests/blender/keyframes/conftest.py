@@ -10,6 +10,7 @@ from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.progress import Progress
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
+from keymark.operators.keyframes import store_keyframe
 from keymark.operators.library import registry_files
 from keymark.operators.shell import results
 from keymark.operators.shell.takes import active_take
@@ -62,3 +63,9 @@ def found(unposed: Group, given: SimpleNamespace) -> Group:
     """That take with found keyframes at those frames, the middle one doubtful, which is shown."""
     assert bpy.ops.keymark.pose_all() == {"FINISHED"}
     return active_take(bpy.context.scene)
+
+
+@pytest.fixture
+def still_neighbors(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found keyframes around a corrected one stay as they are."""
+    monkeypatch.setattr(store_keyframe, "_pose_anew", lambda *_: 0)

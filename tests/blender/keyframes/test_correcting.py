@@ -203,11 +203,11 @@ def pictured(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
     return picture_corrected_frames(take.armature, take.keyframe_action, HUMAN)
 
 
+@pytest.mark.usefixtures("still_neighbors")
 def test_a_drag_in_the_cameras_view_vouches_for_the_picture_and_one_in_depth_for_more(
     found: bpy.types.PropertyGroup,
 ) -> None:
     scene = bpy.context.scene
-    found.matching.improve_neighbors = False
     (frame, *_) = matched_frames(found)
     scene.frame_set(int(frame))
 
@@ -228,10 +228,10 @@ def test_a_drag_in_the_cameras_view_vouches_for_the_picture_and_one_in_depth_for
     assert pictured(found) == () and frame in posed_frames(found)
 
 
+@pytest.mark.usefixtures("still_neighbors")
 def test_a_found_keyframe_that_is_accepted_keeps_its_depth_as_sure_as_it_was(
     found: bpy.types.PropertyGroup,
 ) -> None:
-    found.matching.improve_neighbors = False
     (frame, *_) = matched_frames(found)
     bpy.context.scene.frame_set(int(frame))
     bpy.ops.keymark.accept_match()

@@ -16,16 +16,10 @@ from keymark.operators.overlays.timeline import ROOMY, Timeline, picture
 from keymark.operators.shell.keyed_frames import doubtful_matches, keyframes_of, matched_frames, posed_frames
 from keymark.operators.shell.takes import active_take
 
-pytestmark = pytest.mark.usefixtures("registered")
+pytestmark = pytest.mark.usefixtures("registered", "still_neighbors")
 
 VIEW = Timeline(origin=20.0, scale=10.0, width=200.0, height=60.0, pixel=1.0, sizes=ROOMY)
 Group = bpy.types.PropertyGroup
-
-
-@pytest.fixture(autouse=True)
-def alone(found: Group) -> None:
-    """Here neighbors stay as they are; how they improve is tested beside this."""
-    found.matching.improve_neighbors = False
 
 
 def test_another_posture_is_chosen_by_one_click(found: Group, wave_motion: Motion) -> None:

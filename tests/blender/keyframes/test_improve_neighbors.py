@@ -59,13 +59,8 @@ def test_accepting_and_replacing_improve_as_well(found: Group, given: SimpleName
     assert shown(take, 1).minus(chosen) == pytest.approx(0.0, abs=1e-6)
 
 
-def test_it_is_left_out_where_that_is_wished_or_nothing_is_known(
-    found: Group, given: SimpleNamespace
-) -> None:
+def test_it_is_left_out_where_nothing_is_known(found: Group, given: SimpleNamespace) -> None:
     scene, asked = bpy.context.scene, len(given.frames)
-    found.matching.improve_neighbors = False
-    assert improve_neighbors(bpy.context, found, 7.0) == 0
-    found.matching.improve_neighbors = True
     color = tuple(found.markers[0].color)
     found.markers[0].color = (0.5, 0.1, 0.5)
     assert improve_neighbors(bpy.context, found, 7.0) == 0

@@ -103,10 +103,10 @@ def test_what_is_posed_stays_and_is_handed_on(found: Group, given: SimpleNamespa
     assert [match.frame for match in take.matching.matches] == [1.0, 13.0]
 
 
+@pytest.mark.usefixtures("still_neighbors")
 def test_a_candidate_that_a_person_chose_stays(
     found: Group, given: SimpleNamespace, wave_motion: Motion
 ) -> None:
-    found.matching.improve_neighbors = False
     found.matching.shown_match = 1
     bpy.ops.keymark.replace_match(candidate=1)
     found.matching.shown_match = 0
