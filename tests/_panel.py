@@ -36,7 +36,7 @@ class Settings:
 
 
 class Layout:
-    """A layout as panels know it; `drawn` gets what is drawn, in order, as (kind, name, words)."""
+    """A layout as panels know it; `drawn` gets what is drawn, as (kind, name, words or settings)."""
 
     def __init__(self, context: Any, drawn: list[tuple[str, str, str]]) -> None:
         self._context, self._drawn = context, drawn
@@ -73,34 +73,27 @@ class Layout:
         settings = Settings(operator.get_rna_type())
         self._show("operator", idname, **words)
         operator.poll()
-        self._drawn.append(("asked", idname, lambda: self._tooltip(settings)))  # once its settings are known
+        self._drawn.append(("call", idname, settings))
         return settings
-
-    def _tooltip(self, settings: Settings) -> str:
-        said = getattr(bpy.types, settings.bl_rna.identifier, None)
-        described = getattr(said, "description", None)
-        return described(self._context, settings) if described else settings.bl_rna.description
 
     def operator_menu_enum(self, idname: str, name: str, **words: Any) -> Settings:
         settings = Layout(self._context, []).operator(idname)
-        operator = getattr(bpy.types, settings.bl_rna.identifier)
         for item in settings.bl_rna.properties[name].enum_items:
-            settings.written[name] = item.identifier
-            if hasattr(operator, "description"):
-                assert operator.description(self._context, settings), f"{idname} {item.name} says nothing"
-        settings.written.pop(name, None)
+            each = Settings(settings.bl_rna)
+            setattr(each, name, item.identifier)
+            self._drawn.append(("call", idname, each))
         self._show("operator", idname, **words)
         return settings
 
     def menu(self, idname: str, **words: Any) -> None:
         self._show("menu", idname, **words)
-        _draw(getattr(bpy.types, idname), self._context)
+        self._drawn += _calls(_draw(getattr(bpy.types, idname), self._context))
 
     def popover(self, panel: str, **words: Any) -> None:
         self._show("popover", panel, **words)
         shown = getattr(bpy.types, panel)
         if not hasattr(shown, "poll") or shown.poll(self._context):
-            _draw(shown, self._context)
+            self._drawn += _calls(_draw(shown, self._context))
 
     def template_list(
         self, kind: str, _: str, data: Any, name: str, chosen: Any, index: str, **__: Any
@@ -112,6 +105,7 @@ class Layout:
         for item in getattr(data, name):
             listed.draw_item(_own(listed, inside), self._context, inside, data, item, 0, chosen, index)
         self._drawn += [("listed", name, words) for of, name, words in rows if of == "operator"]
+        self._drawn += _calls(rows)
 
 
 def _own(kind: Any, layout: Layout) -> Any:
@@ -138,9 +132,15 @@ def _draw(kind: Any, context: Any, *parts: str) -> list[tuple[str, str, str]]:
     for part in parts or ("draw",):
         if hasattr(kind, part):
             getattr(kind, part)(_own(kind, Layout(context, drawn)), context)
-    for _, name, said in [each for each in drawn if each[0] == "asked"]:
-        assert said(), f"{name} says nothing of itself"
-    return [each for each in drawn if each[0] != "asked"]
+    for _, name, settings in _calls(drawn):  # only now are its settings known
+        described = getattr(getattr(bpy.types, settings.bl_rna.identifier, None), "description", None)
+        said = described(context, settings) if described else settings.bl_rna.description
+        assert said, f"{name} says nothing of itself"
+    return drawn
+
+
+def _calls(drawn: list[Any]) -> list[Any]:
+    return [each for each in drawn if each[0] == "call"]
 
 
 class _Context:
@@ -182,6 +182,11 @@ def controls(editor: str = "VIEW_3D") -> list[str]:
 def offered(editor: str = "VIEW_3D") -> list[str]:
     """Names of the controls, with the buttons in the rows of lists."""
     return controls(editor) + [name for kind, name, _ in drawn_panels(editor) if kind == "listed"]
+
+
+def calls(editor: str = "VIEW_3D") -> list[tuple[str, dict[str, Any]]]:
+    """What a click on each button would call, those of popovers and menus among them: name and settings."""
+    return [(name, settings.written) for _, name, settings in _calls(drawn_panels(editor))]
 
 
 def _panels(editor: str) -> Iterator[Any]:

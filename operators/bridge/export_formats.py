@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 from ...core.errors import ConversionError, InputError
 from ...core.files.json_file import write_atomically
@@ -97,10 +98,12 @@ def _write_c3d(armature_object: bpy.types.Object, path: Path) -> None:
 def _write_keymark(armature_object: bpy.types.Object, path: Path) -> None:
     """Write an actor's motion as `motion.json`, which the command line retargets and learns from."""
     from ...core.take.motion import write_motion
-    from .rig import shown_motion
+    from .rig import present_frames, shown_motion
 
     action = armature_object.animation_data.action
-    write_motion(shown_motion(armature_object.users_scene[0], armature_object, action), path)
+    motion = shown_motion(armature_object.users_scene[0], armature_object, action)
+    present = present_frames(armature_object, action, motion.body, motion.fps)
+    write_motion(motion.emptied(np.isin(np.round(motion.scene_frames), present)), path)
 
 
 FORMATS = {

@@ -32,7 +32,15 @@ from .fcurves import moved_paths, posture_columns
 from .keyframes import keyed_frames, untouched_frames
 from .keys import copy_keys, ensure_fcurve, write_linear_keys, write_smooth_keys
 from .review_curves import is_review_curve
-from .rig import motion_frames, read_rig, read_values, rig_channels, shown_postures, unit_quaternions
+from .rig import (
+    absence_note,
+    motion_frames,
+    read_rig,
+    read_values,
+    rig_channels,
+    shown_postures,
+    unit_quaternions,
+)
 from .rotation_modes import ALL_PATHS, bone_path
 
 PLANTING = "Planting the feet"
@@ -105,13 +113,14 @@ def finish_motion(
     time_s = (frames - frames[0]) * frame_s
     shown = rig.pose(values)
     planted = PlantedFeet(shown_postures(armature_object, rig, shown, body), ())
-    notes: tuple[str, ...] = ()
+    away = absence_note(armature_object, action, body, 1.0 / frame_s)
+    notes: tuple[str, ...] = (away,) if away else ()
     yield Progress(PLANTING, SEEN)
     if options.stray_m is not None:
         before = planted.posture
         planting = plant_feet(body, before, time_s, options.stray_m)
         planted = yield from within(PLANTING, planting, SEEN, PLANTED)
-        notes = _planting_notes(rig, shown, body, before, planted)
+        notes += _planting_notes(rig, shown, body, before, planted)
         if planted.contacts:
             every = np.ones(len(frames), dtype=bool)
             moved = {bone.name: every for bone in rig.bones if _is_moved_by_feet(bone.name)}

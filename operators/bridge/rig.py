@@ -13,7 +13,9 @@ from ...core.body.posture import Posture
 from ...core.body.rotations import continuous_quaternions
 from ...core.body.skeleton import SIDES
 from ...core.errors import InputError
+from ...core.files.fields import listed
 from ...core.finish.rig import Rig, RigBone, RigPose, channel_count
+from ...core.numerics.vectors import runs
 from ...core.progress import run, within
 from ...core.take.motion import Motion
 from .actions import existing_channelbag
@@ -136,13 +138,15 @@ def _keyed(armature_object: bpy.types.Object, action: bpy.types.Action, body: Bo
 
 
 def present_frames(
-    armature_object: bpy.types.Object, action: bpy.types.Action, body: Body, longest: float
+    armature_object: bpy.types.Object, action: bpy.types.Action, body: Body, rate: float
 ) -> Array:
     """(F,) the frames of `motion_frames` without those between two stretches of a motion.
 
-    Such a stretch has keys on every frame, so that a gap of more than `longest` frames is one in which the
-    performer is not there; an Action of few keys has no stretches.
+    Such a stretch has keys on every frame, so that a longer gap than is bridged is one in which the performer
+    is not there; an Action of few keys has no stretches. `rate` is the scene's [1/s].
     """
+    from ...core.take.presence import BRIDGED_S  # OpenCV, which Blender starts without
+
     frames = motion_frames(armature_object, action, body)
     keys = []
     for curve in _keyed(armature_object, action, body):
@@ -155,7 +159,17 @@ def present_frames(
         return frames
     after = np.clip(np.searchsorted(times, frames - 1e-3), 1, len(times) - 1)
     on_key = np.abs(frames[:, None] - times[[after - 1, after]].T).min(axis=1) < 1e-3
-    return frames[on_key | (steps[after - 1] <= longest)]
+    return frames[on_key | (steps[after - 1] <= BRIDGED_S * rate)]
+
+
+def absence_note(armature_object: bpy.types.Object, action: bpy.types.Action, body: Body, rate: float) -> str:
+    """What an export has between stretches of a motion, in which nobody is seen; empty without any."""
+    frames = motion_frames(armature_object, action, body)
+    there = np.isin(frames, present_frames(armature_object, action, body, rate))
+    away = [f"{frames[first]:.0f} to {frames[last - 1]:.0f}" for first, last in runs(~there)]
+    if not away:
+        return ""
+    return f"nobody is seen in frame {listed(away)}: from the pose before to the one after, nothing is known"
 
 
 def read_values(

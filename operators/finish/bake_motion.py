@@ -169,7 +169,7 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         from ..bridge.actor_lengths import read_body
-        from ..bridge.rig import motion_frames
+        from ..bridge.rig import absence_note, motion_frames
 
         if not self.filepath:
             raise InputError("no file is named to export to; give filepath")
@@ -179,11 +179,15 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
             raise InputError(f"{chosen.name} cannot be written: {missing}")
         take = active_take(context.scene)
         action = take.finish.action or take.motion_action
-        frames = motion_frames(take.armature, action, read_body(take.armature, HUMAN))
+        body, render = read_body(take.armature, HUMAN), context.scene.render
+        frames = motion_frames(take.armature, action, body)
         path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), chosen.suffix))
         span = int(frames[0]), int(frames[-1])
         export_motion(context.scene, take.armature, action, span, chosen, path)
         warn_if_outdated(self, take)
+        away = absence_note(take.armature, take.motion_action, body, render.fps / render.fps_base)
+        if away:
+            warn(self, away)
         self.report({"INFO"}, f"Wrote {path}")
 
 

@@ -10,7 +10,7 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN, limb_of
 from ..bridge.object_space import joint_places
 from ..follow.marker_properties import segment_title
-from ..overlays.tools import Handles, show_handles
+from ..overlays.tools import Handles, show_handles, show_keys
 from ..shell.base_operator import BaseOperator, reported
 from ..shell.footage_clicks import NAVIGATION, WorldInRegion, view_under
 from ..shell.job_progress import job_is_running
@@ -281,12 +281,12 @@ def _preview(take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
 
 
 def _show_keys(context: bpy.types.Context, joint: str = "", dragged: bool = False) -> None:
-    """Show in the status bar what keys do now, with no joint, over one or while it is dragged."""
+    """Show what keys do now, with no joint, over one or while it is dragged."""
     words = IDLE_KEYS
     if joint:
         title = segment_title(joint)
         words = DRAG_KEYS.format(joint=title) if dragged else HOVER_KEYS.format(joint=title, keys=words)
-    context.workspace.status_text_set(words)
+    show_keys(context, words)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_move_joint, KEYMARK_OT_drag_joints))

@@ -34,6 +34,7 @@ class Handles:
     """State of the tool that drags joints."""
 
     hovered: str | None = None  # the joint that the mouse is over or drags
+    keys: str = ""  # what can be pressed now
 
 
 _handles: Handles | None = None
@@ -43,6 +44,13 @@ def show_handles(handles: Handles | None) -> None:
     """Draw the joints from now on; None ends the drawing."""
     global _handles
     _handles = handles
+
+
+def show_keys(context: bpy.types.Context, words: str) -> None:
+    """Show in the status bar, and beside the joint under the mouse, what keys do now."""
+    context.workspace.status_text_set(words)
+    if _handles is not None:
+        _handles.keys = words
 
 
 def draw_joints(context: bpy.types.Context) -> None:
@@ -60,6 +68,8 @@ def draw_joints(context: bpy.types.Context) -> None:
         rim = circles(position[None], (9.0 if hovered else 6.0) * scale)
         drawing.polygons(rim, drawing.INK if hovered else drawing.faded(color, 0.35))
         drawing.lines(segments(rim, closed=True), np.array(color), width=2.0, halo=0.9)
+        if hovered:
+            _write_near(_handles.keys.split("   |   ")[::-1], context.region, *position + 18.0 * scale)
 
 
 # --- Lines that tell the camera
@@ -228,12 +238,21 @@ def draw_request(context: bpy.types.Context) -> None:
 
 def _near_mouse(request: FootageRequest, view: FootageView, x: float, y: float) -> None:
     scale = drawing.ui_scale()
+    words = [request.keys]
     if request.brush_px:
         around = circles(np.zeros((1, 2)), request.brush_px, 48)
         rim = view.to_region(view.to_footage((x, y)) + around)
         drawing.lines(segments(rim, closed=True), drawing.INK, halo=1.0)
-        return
-    words = f"{request.title}, {request.detail}" if request.detail else request.title
-    width = drawing.text_size(words, NEAR_SIZE)[0]
-    left = min(x + 18.0 * scale, view.region.width - width - 18.0 * scale)
-    drawing.text(words, left, y + 18.0 * scale, size=NEAR_SIZE)
+        y = float(rim[..., 1].max())
+    else:
+        words += [f"{request.title}, {request.detail}" if request.detail else request.title]
+    _write_near(words, view.region, x, y + 18.0 * scale)
+
+
+def _write_near(lines: list[str], region: bpy.types.Region, x: float, y: float) -> None:
+    """Write lines of text, the lowest first, to the right of a place, within the region."""
+    scale = drawing.ui_scale()
+    for number, words in enumerate(lines):
+        width = drawing.text_size(words, NEAR_SIZE)[0]
+        left = max(min(x + 18.0 * scale, region.width - width - 18.0 * scale), 18.0 * scale)
+        drawing.text(words, left, y + number * 1.5 * NEAR_SIZE * scale, size=NEAR_SIZE)

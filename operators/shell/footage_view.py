@@ -173,6 +173,7 @@ class FootageRequest:
     detail: str = ""  # what is easily mistaken about it
     brush_px: float = 0.0  # radius of a brush in pixels of the footage; 0 for an operator without one
     mouse: tuple[int, int] = (-1, -1)  # position of the mouse in the window [px]
+    keys: str = ""  # those that may be pressed
 
 
 _request: FootageRequest | None = None
@@ -189,8 +190,9 @@ def side_of(name: str) -> str:
 
 
 def ask(context: bpy.types.Context, request: FootageRequest, keys: str) -> None:
-    """Ask for something; `keys`, those that may be pressed, are for the status bar."""
+    """Ask for something, in the header and beside the mouse, with the keys that may be pressed."""
     global _request
+    request.keys = keys
     if _request is not None and request.mouse == (-1, -1):
         request.mouse = _request.mouse
     _request = request

@@ -1,8 +1,11 @@
 """The sidebar in every state of the work: what it shows, how much of it, and that none of it fails."""
 
+from collections.abc import Callable
+from pathlib import Path
+
 import bpy
 import pytest
-from _panel import controls, drawn_panels
+from _panel import calls, controls, drawn_panels
 from keymark.core.take.take import Take
 from keymark.operators.shell.steps import STEPS
 from keymark.operators.shell.takes import active_take
@@ -85,3 +88,58 @@ def test_a_folded_step_offers_what_is_next_where_it_can_be_pressed(opened: bpy.t
     assert "keymark.bake_motion" not in controls()
     active_take(opened).keyframe_action = None
     assert "keymark.reconstruct" not in controls()
+
+
+OUTSIDE = ("wm.path_open",)  # Shows a folder in another program
+
+
+def as_empty(_: Take) -> None:
+    pass
+
+
+def as_loaded(take: Take) -> None:
+    bpy.ops.keymark.load_footage(filepath=str(take.clip))
+
+
+def as_built(take: Take) -> None:
+    as_loaded(take)
+    bpy.ops.keymark.keep_camera()
+    bpy.ops.keymark.add_usual_markers()
+    bpy.ops.keymark.build_actor()
+
+
+def as_finished(take: Take) -> None:
+    bpy.ops.keymark.open_take(filepath=str(take.folder))
+    bpy.ops.keymark.reconstruct()
+    bpy.ops.keymark.bake_motion()
+
+
+def as_lost(take: Take) -> None:
+    as_finished(take)
+    bpy.data.objects.remove(active_take(bpy.context.scene).armature)
+
+
+@pytest.mark.parametrize("state", [as_empty, as_loaded, as_built, as_finished, as_lost])
+def test_no_button_ends_in_a_traceback(
+    state: Callable[[Take], None], tiny_take: Take, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each is asked for its tooltip and called: it does its work or says why not."""
+    monkeypatch.setenv("BLENDER_USER_RESOURCES", str(tmp_path / "user"))
+    state(tiny_take)
+    blend = str(tmp_path / "state.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=blend)
+    offered = {}
+    for step in STEPS:
+        setattr(bpy.context.window_manager.keymark_steps, step, True)
+        offered |= {(name, *settings): (name, settings) for name, settings in calls()}
+    assert len(offered) >= 4
+    for name, settings in offered.values():
+        if name in OUTSIDE:
+            continue
+        group, _, operator = name.partition(".")
+        try:
+            getattr(getattr(bpy.ops, group), operator)(**settings)
+        except RuntimeError as error:
+            assert "Traceback" not in str(error), f"{name} {settings}: {error}"
+            continue
+        bpy.ops.wm.open_mainfile(filepath=blend)

@@ -3,7 +3,6 @@
 import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -188,7 +187,7 @@ def _into_collection(scene: bpy.types.Scene, name: str, members: Sequence[bpy.ty
     scene.collection.children.link(collection)
     for one in list(scene.objects):
         for holder in (scene.collection, *scene.collection.children_recursive):
-            with suppress(RuntimeError):
+            if one in holder.objects.values():  # Blender's console tells of every other
                 holder.objects.unlink(one)
     for one in members:
         collection.objects.link(one)

@@ -36,14 +36,12 @@ def read_source(
     Raises:
         InputError: The armature is not an actor's, or the Action holds no motion of it.
     """
-    from ....core.take.presence import BRIDGED_S
-
     body = read_body(armature_object, HUMAN)
     keyed = _keyed_extremities(armature_object, action)
     rig = read_rig(armature_object, body, keyed)
     scene = next(iter(armature_object.users_scene), bpy.context.scene)
     rate = scene.render.fps / scene.render.fps_base
-    frames = present_frames(armature_object, action, body, BRIDGED_S * rate)
+    frames = present_frames(armature_object, action, body, rate)
     reading = read_values(armature_object, action, rig, frames)
     values = yield from within("Reading the motion", reading, 0.0, READ)
     shown = rig.pose(values)

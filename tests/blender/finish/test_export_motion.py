@@ -275,3 +275,18 @@ def test_a_final_action_of_an_earlier_motion_says_so(tiny_take: Take, tmp_path: 
     bpy.ops.keymark.bake_motion()
     warn_if_outdated(SimpleNamespace(report=lambda *words: said.append(words)), take)
     assert not take.finish.outdated and len(said) == 1
+
+
+def test_where_nobody_is_seen_is_said_and_left_empty(
+    take: bpy.types.PropertyGroup, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    bpy.context.scene.render.fps = 4  # a gap of four frames is longer than what is bridged
+    for curve in take.motion_action.layers[0].strips[0].channelbags[0].fcurves:
+        for point in reversed([p for p in curve.keyframe_points if 5.5 < p.co.x < 9.5]):
+            curve.keyframe_points.remove(point)
+    path = tmp_path / "wave.json"
+    bpy.ops.keymark.export_motion(filepath=str(path), format="KEYMARK")
+    assert "Nobody is seen in frame 6 to 9" in capfd.readouterr().out
+    assert read_motion(path).empty == (5, 6, 7, 8)
+    bpy.ops.keymark.bake_motion()
+    assert "obody is seen in frame 6 to 9" in " ".join(entry.text for entry in take.notices)
