@@ -141,7 +141,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
 
     bl_idname = "keymark.drag_joints"
     bl_label = "Drag Joints"
-    bl_options = {"UNDO"}  # all drags together are one step
+    bl_options = {"REGISTER"}  # with UNDO Blender would give a flip within the tool no step of its own
 
     _drag: Any = None  # The running drag; Blender would evaluate a type named here
     _done: Any = ()  # Drags that are shown and not stored yet, in order
@@ -227,6 +227,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         if drags:
             with reported(self):
                 set_corrected(self, context, take, drags[-1].shown, any(each.in_depth for each in drags))
+            bpy.ops.ed.undo_push(message=self.bl_label)  # all drags together are one step
         self.cancel(context)
         return {"FINISHED"} if drags else {"CANCELLED"}
 

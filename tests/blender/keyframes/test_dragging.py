@@ -92,7 +92,8 @@ def test_a_drag_is_shown_and_escape_leaves_everything_as_it_was(tool: Any) -> No
 
 
 def test_enter_stores_all_drags_once_and_improves_the_neighbors(tool: Any, given: SimpleNamespace) -> None:
-    asked = len(given.frames)
+    bpy.ops.ed.undo_push(message="Opened")
+    before, asked = scene_state(), len(given.frames)
     tool.drag(50, 40)
     tool.drag(-20, 10)
     wanted = posture_of(bpy.context.scene)
@@ -102,6 +103,8 @@ def test_enter_stores_all_drags_once_and_improves_the_neighbors(tool: Any, given
     assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
     assert given.frames[asked:] == [(0, 12)]
     assert shown(take, 7).minus(wanted) == pytest.approx(0.0, abs=1e-4)
+    bpy.ops.ed.undo()
+    assert differences(before, scene_state()) == ""
 
 
 def test_without_a_drag_enter_stores_nothing(tool: Any) -> None:
