@@ -1,17 +1,18 @@
 """Dragging a joint: the limb, or what else carries it, follows so that the joint lies where it should."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, IndexArray
 from ..body.human import TRUNK, limb_of
 from ..body.kinematics import Body
 from ..body.mirror import other_side
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..estimate.performer_placement import SHOE_M, standing_ankle_m
+from ..prior.keyframes import Keyframe, interpolate
 from .inverse_kinematics import Pull, SightLine, pulled
 from .limb_chain import LimbChain, aimed, limb_chain, limb_excess_rad, limb_points, part_lengths_m, swing
 
@@ -90,6 +91,22 @@ def _dragged(body: Body, posture: Posture, point: str, place: Array, sight: Arra
     legs = {f"{joint}.{each}": 1.0 for joint in ("hip", "knee") for each in ("L", "R")}
     pulls += [Pull(other_side(point), start[other_side(point)], HELD_M), *planted(start)]
     return pulled(body, posture, pulls, {**_TRUNK, **legs, f"girdle.{side}": 0.1})
+
+
+def paths_through(
+    body: Body,
+    keyframes: Sequence[Keyframe],
+    index: int,
+    posture: Posture,
+    point: str,
+    frames: IndexArray,
+) -> Array:
+    """(2, I, 3) path of a point [m] at `frames` (I,) between keyframes, and with a posture at `index`."""
+    rest = [each for each in keyframes if each.index != index]
+    changed = sorted([*rest, Keyframe(index, posture)], key=lambda each: each.index)
+    row = body.skeleton.point_names.index(point)
+    between = [interpolate(tuple(each), int(frames[-1]) + 1)[frames] for each in (keyframes, changed)]
+    return np.stack([body.points(body.pose(each))[:, row] for each in between])
 
 
 def planted(start: Mapping[str, Array]) -> list[Pull]:

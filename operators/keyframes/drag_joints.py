@@ -1,6 +1,7 @@
 """Dragging the actor's joints in a 3D view: from movements of the mouse to the posture that follows."""
 
 from dataclasses import dataclass, field
+from math import ceil, floor
 from typing import TYPE_CHECKING, Any
 
 import bpy
@@ -10,10 +11,12 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN, limb_of
 from ..bridge.object_space import joint_places
 from ..follow.marker_properties import segment_title
+from ..overlays.outlines import window
 from ..overlays.tools import Handles, show_handles, show_keys
 from ..shell.base_operator import BaseOperator, reported
 from ..shell.footage_clicks import NAVIGATION, WorldInRegion, view_under
 from ..shell.job_progress import job_is_running
+from ..shell.keyed_frames import keyframes_of
 from ..shell.requirements import actor, all_met, idle
 from ..shell.takes import active_take, find_take, redraw_editors, redraw_sidebars_soon
 from .corrections import DRAGGING, camera_now, set_corrected, shown_pose
@@ -39,6 +42,8 @@ class JointDrag:
     moved: Array = field(default_factory=lambda: np.zeros(2))
     """How far it has been dragged across the view [px]."""
     depth_m: float = 0.0  # How far it has been pushed away from the viewer [m]
+    shown: "Posture | None" = None  # The posture it has come to
+    in_depth: bool = False  # whether it was put right in space, not in the picture alone
 
     def follow(self, event: bpy.types.Event) -> None:
         """Take a movement of the mouse: across the view, or in depth with Ctrl held, where up is away."""
@@ -114,10 +119,13 @@ def _shows_depth(
     return take.camera is None or bool(camera_now(context.scene, take).sight(place) @ sight < ASIDE)
 
 
-ENDING = {"RET", "NUMPAD_ENTER", "RIGHTMOUSE", "ESC"}
+DONE = {"RET", "NUMPAD_ENTER", "SPACE"}
+BACK = {"RIGHTMOUSE", "ESC"}
 VIEWS = {*(f"NUMPAD_{digit}" for digit in range(10)), "NUMPAD_PERIOD", "ACCENT_GRAVE"}
 """Keys that change the view: depth is corrected from the side."""
+LOOKING = {each for each in NAVIGATION if not each.endswith("_ARROW")}  # without those that change the frame
 IDLE_KEYS = "Drag: Move Joint   |   Ctrl: In Depth   |   Shift: Precise   |   F: Flip Depth   |   Enter: Done"
+WAITING_KEYS = "Enter: Store   |   Esc, Right Click: Take Back All   |   Ctrl Z: Take Back the Last"
 HOVER_KEYS = "{joint}   |   {keys}"
 DRAG_KEYS = "{joint}   |   Ctrl: In Depth, Up Is Away   |   Shift: Precise   |   Esc, Right Click: Cancel"
 
@@ -129,13 +137,17 @@ def not_dragging(context: bpy.types.Context) -> str | None:
 
 
 class KEYMARK_OT_drag_joints(bpy.types.Operator):
-    """Drag joints in the viewport; the limb follows and keeps its lengths. Hold Ctrl to move in depth"""
+    """Drag joints in the viewport, in depth with Ctrl; limbs follow. Enter stores it, Esc takes all back"""
 
     bl_idname = "keymark.drag_joints"
     bl_label = "Drag Joints"
-    bl_options = {"REGISTER"}  # each drag is a step of undo of its own
+    bl_options = {"REGISTER"}  # with UNDO Blender would give a flip within the tool no step of its own
 
     _drag: Any = None  # The running drag; Blender would evaluate a type named here
+    _done: Any = ()  # Drags that are shown and not stored yet, in order
+    _frame = 0.0  # where they were made
+    _keyframes: Any = ()  # those of the take as they are stored
+    _index = 0  # the frame's place among theirs
     _handles: Any = None
 
     @classmethod
@@ -146,7 +158,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         self._handles = Handles()
         show_handles(self._handles)
         context.window_manager.modal_handler_add(self)
-        _show_keys(context)
+        self._show(context)
         return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -158,6 +170,10 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         if take is None or actor(context) is not None:
             self.cancel(context)
             return {"CANCELLED"}
+        if (self._drag or self._done) and context.scene.frame_current_final != self._frame:
+            self._drag, self._done = None, ()  # Blender has evaluated another pose
+            self.report({"WARNING"}, f"The pose dragged at frame {self._frame:g} was not stored")
+            self._show(context)
         if self._drag is None and idle(context) is not None:
             return {"PASS_THROUGH"}  # a job that was started meanwhile
         if self._drag is not None:
@@ -166,32 +182,54 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         if event.type in ("MOUSEMOVE", "INBETWEEN_MOUSEMOVE"):
             self._hover(context, take, view, event)
             return {"PASS_THROUGH"}
-        if view is None:  # buttons of a panel, the timeline, other editors
+        pressed = event.type if event.value == "PRESS" else ""
+        if view is None and not self._done:  # buttons of a panel, the timeline, other editors
             return {"PASS_THROUGH"}
-        if event.value == "PRESS" and event.type in ENDING:
+        if pressed in DONE or (view is None and pressed == "LEFTMOUSE"):
+            stored = self._store(context, take)
+            return stored if view is not None else stored | {"PASS_THROUGH"}
+        if pressed in BACK:
             self.cancel(context)
-            return {"FINISHED"}
-        if event.value == "PRESS" and event.type == "LEFTMOUSE":
+            return {"CANCELLED"}
+        undo = event.type == "Z" and (event.ctrl or event.oskey)
+        if pressed == "LEFTMOUSE" and view is not None:
             self._hover(context, take, view, event)
-            self._begin(take, view, event)
-            return {"RUNNING_MODAL"}
-        if event.value == "PRESS" and event.type == "F" and self._handles.hovered:
+            self._begin(context, take, view, event)
+        elif undo and pressed and self._done and not event.shift:
+            self._restore(self._done.pop(), take)
+            self._show(context)
+        elif pressed == "F" and self._handles.hovered and not self._done:
             limb = limb_of(self._handles.hovered)
             bpy.ops.keymark.flip_depth("EXEC_DEFAULT", True, limb=limb)
-            return {"RUNNING_MODAL"}
-        undo = event.type == "Z" and (event.ctrl or event.oskey)
-        passed = undo or event.type in NAVIGATION or event.type in VIEWS or event.type.startswith("TIMER")
-        return {"PASS_THROUGH"} if passed else {"RUNNING_MODAL"}
+        else:
+            # What goes to another frame or changes the keyframes waits until the pose is stored.
+            free = (undo or event.type in NAVIGATION) if not self._done else event.type in LOOKING
+            passed = free or event.type in VIEWS or event.type.startswith("TIMER")
+            return {"PASS_THROUGH"} if passed else {"RUNNING_MODAL"}
+        return {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """End the tool; a drag that is not finished is taken back. Blender calls this as well."""
-        self._restore(context)
+        """End the tool; what is not stored is taken back. Blender calls this as well."""
+        drags, self._drag, self._done = [*self._done, self._drag], None, ()
+        take = find_take(context.scene) if context.scene is not None else None
+        if drags[0] is not None and take is not None and take.armature is not None:
+            self._restore(drags[0], take)
         show_handles(None)
         if context.window is not None:  # None while Blender closes it or opens another file
             context.workspace.status_text_set(None)
             context.window.cursor_modal_restore()
             redraw_editors(context, "VIEW_3D")
         redraw_sidebars_soon()
+
+    def _store(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> set[str]:
+        """Store what the drags have come to, and end the tool."""
+        drags, self._done = self._done, ()
+        if drags:
+            with reported(self):
+                set_corrected(self, context, take, drags[-1].shown, any(each.in_depth for each in drags))
+            bpy.ops.ed.undo_push(message=self.bl_label)  # all drags together are one step
+        self.cancel(context)
+        return {"FINISHED"} if drags else {"CANCELLED"}
 
     def _hover(
         self,
@@ -206,13 +244,17 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         self._handles.hovered = hovered
         if hovered is None:
             context.window.cursor_modal_restore()
-            _show_keys(context)
         else:
             context.window.cursor_modal_set("SCROLL_XY")
-            _show_keys(context, hovered)
-        redraw_editors(context, "VIEW_3D")
+        self._show(context)
 
-    def _begin(self, take: bpy.types.PropertyGroup, view: WorldInRegion, event: bpy.types.Event) -> None:
+    def _begin(
+        self,
+        context: bpy.types.Context,
+        take: bpy.types.PropertyGroup,
+        view: WorldInRegion,
+        event: bpy.types.Event,
+    ) -> None:
         joint = self._handles.hovered
         if joint is None:
             return
@@ -223,6 +265,9 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             start = body.points(body.pose(posture))[HUMAN.point_names.index(joint)]
             position = view.position(start)
             if position is not None:
+                if not self._done:
+                    self._done, self._frame = [], context.scene.frame_current_final
+                    self._read_keyframes(context.scene, take, body)
                 pose, mouse = pose_of(take.armature), (event.mouse_x, event.mouse_y)
                 self._drag = JointDrag(joint, view, start, position, body, posture, pose, mouse)
 
@@ -230,32 +275,67 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         self, context: bpy.types.Context, take: bpy.types.PropertyGroup, event: bpy.types.Event
     ) -> set[str]:
         drag = self._drag
-        if event.value == "PRESS" and event.type in ("ESC", "RIGHTMOUSE"):
-            self._restore(context)
-            _show_keys(context)
+        if event.value == "PRESS" and event.type in BACK:
+            self._drag = None
+            self._restore(drag, take)
+            self._show(context)
         elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
-            self._restore(context)
-            if drag.moved.any() or drag.depth_m != 0.0:
-                # As an operator of its own, so that each drag is one step of undo.
-                ways = {"place": drag.place, "sight": drag.sight, "pushed": drag.depth_m != 0.0}
-                bpy.ops.keymark.move_joint("EXEC_DEFAULT", True, joint=drag.joint, **ways)
-            _show_keys(context)
+            self._drag = None
+            pushed = drag.depth_m != 0.0
+            if drag.moved.any() or pushed:
+                drag.in_depth = pushed or _shows_depth(context, take, drag.sight, drag.place)
+                self._done.append(drag)
+            else:
+                self._restore(drag, take)
+            self._show(context)
         elif event.type == "MOUSEMOVE":
             drag.follow(event)
             _preview(take, drag)
-            _show_keys(context, drag.joint, dragged=True)
-            redraw_editors(context, "VIEW_3D")
+            self._show(context)
         return {"RUNNING_MODAL"}
 
-    def _restore(self, context: bpy.types.Context) -> None:
-        drag, self._drag = self._drag, None
-        take = find_take(context.scene) if context.scene is not None else None
-        if drag is not None and take is not None and take.armature is not None:
-            from ..bridge.object_space import evaluated
-            from ..bridge.scene_frames import restore_pose
+    def _restore(self, drag: JointDrag, take: bpy.types.PropertyGroup) -> None:
+        """Give the actor the pose from which a drag began."""
+        from ..bridge.object_space import evaluated
+        from ..bridge.scene_frames import restore_pose
 
-            restore_pose(take.armature, drag.pose)
-            evaluated(take.armature)
+        restore_pose(take.armature, drag.pose)
+        evaluated(take.armature)
+
+    def _read_keyframes(self, scene: bpy.types.Scene, take: bpy.types.PropertyGroup, body: "Body") -> None:
+        """Read all keyframes, counted from the first of them and the current frame."""
+        from ..bridge.keyframes import read_keyframes
+
+        keyed = keyframes_of(take)
+        first = floor(min((*keyed, self._frame)))
+        self._index, self._keyframes = round(self._frame - first), ()
+        if keyed:
+            frames = first + np.arange(ceil(keyed[-1]) - first + 1.0)
+            source = take.armature, take.keyframe_action, body, frames
+            self._keyframes = read_keyframes(scene, *source).keyframes
+
+    def _paths(self, drag: JointDrag, posture: "Posture") -> Array:
+        """(2, I, 3) how a drag changes its joint's path around this frame: before and after [m]."""
+        from ...core.posing.dragged import paths_through
+
+        count = 1 + max(self._index, self._keyframes[-1].index)
+        shown = window(self._index, count)
+        return paths_through(drag.body, self._keyframes, self._index, posture, drag.joint, shown)
+
+    def _show(self, context: bpy.types.Context) -> None:
+        """Show the keys, and how the joint dragged last moves around this frame."""
+        drag = self._drag or (self._done[-1] if self._done else None)
+        self._handles.path = None
+        if drag is not None and drag.shown is not None and self._keyframes:
+            self._handles.path = drag.joint, self._paths(drag, drag.shown)
+        if self._drag is not None and drag is not None:
+            words = DRAG_KEYS.format(joint=segment_title(drag.joint))
+        else:
+            words = WAITING_KEYS if self._done else IDLE_KEYS
+            if self._handles.hovered:
+                words = HOVER_KEYS.format(joint=segment_title(self._handles.hovered), keys=words)
+        show_keys(context, words)
+        redraw_editors(context, "VIEW_3D")
 
 
 def nearest_joint(
@@ -276,17 +356,8 @@ def _preview(take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
     from ..bridge.pose import write_posture
 
     pushed, floor_m = drag.depth_m != 0.0, take.matching.known_floor_m
-    moved = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, pushed, floor_m)
-    write_posture(take.armature, moved)
-
-
-def _show_keys(context: bpy.types.Context, joint: str = "", dragged: bool = False) -> None:
-    """Show what keys do now, with no joint, over one or while it is dragged."""
-    words = IDLE_KEYS
-    if joint:
-        title = segment_title(joint)
-        words = DRAG_KEYS.format(joint=title) if dragged else HOVER_KEYS.format(joint=title, keys=words)
-    show_keys(context, words)
+    drag.shown = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, pushed, floor_m)
+    write_posture(take.armature, drag.shown)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_move_joint, KEYMARK_OT_drag_joints))

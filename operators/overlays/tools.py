@@ -35,6 +35,8 @@ class Handles:
 
     hovered: str | None = None  # the joint that the mouse is over or drags
     keys: str = ""  # what can be pressed now
+    path: tuple[str, Array] | None = None
+    """The joint dragged last, and its path (2, I, 3) [m] around this frame: as stored, and as dragged."""
 
 
 _handles: Handles | None = None
@@ -60,6 +62,8 @@ def draw_joints(context: bpy.types.Context) -> None:
         return
     view = WorldInRegion(context.region, context.region_data)
     scale = drawing.ui_scale()
+    if _handles.path is not None:
+        _draw_path(view, *_handles.path)
     for name, place in zip(HUMAN.point_names, joint_places(take.armature), strict=True):
         position = view.position(place)
         if position is None:
@@ -70,6 +74,17 @@ def draw_joints(context: bpy.types.Context) -> None:
         drawing.lines(segments(rim, closed=True), np.array(color), width=2.0, halo=0.9)
         if hovered:
             _write_near(_handles.keys.split("   |   ")[::-1], context.region, *position + 18.0 * scale)
+
+
+def _draw_path(view: WorldInRegion, joint: str, places: Array) -> None:
+    """A faint line as stored; one in the side's color as dragged, with a dot at each frame."""
+    seen = [[view.position(place) for place in path] for path in places]
+    unseen = np.full(2, np.nan)
+    before, after = (np.array([unseen if at is None else at for at in path]) for path in seen)
+    color = side_color(joint)
+    drawing.lines(segments(before), drawing.faded(drawing.INK, drawing.GHOST), halo=drawing.GHOST)
+    drawing.lines(segments(after), np.array(color), halo=0.9)
+    drawing.polygons(circles(after, 2.5 * drawing.ui_scale(), 8), color)
 
 
 # --- Lines that tell the camera

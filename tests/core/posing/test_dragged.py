@@ -19,7 +19,8 @@ from keymark.core.body.human import HUMAN, TRUNK, limb_of
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import hinge
 from keymark.core.estimate.performer_placement import SHOE_M, standing_ankle_m
-from keymark.core.posing.dragged import dragged
+from keymark.core.posing.dragged import dragged, paths_through
+from keymark.core.prior.keyframes import Keyframe
 
 SEEDS = st.integers(0, 2**32 - 1)
 ACROSS = np.array([0.0, 1.0, 0.0])
@@ -177,3 +178,17 @@ def test_pushing_an_elbow_goes_as_far_as_the_upper_arm_is_long() -> None:
 def test_an_unknown_point_is_refused() -> None:
     with pytest.raises(KeyError):
         dragged(BODY, standing_posture(BODY), "nose", np.zeros(3), ACROSS)
+
+
+@pytest.mark.parametrize("index", [10, 14])
+def test_a_path_meets_the_dragged_posture_and_rests_at_other_keyframes(index: int) -> None:
+    standing = standing_posture(BODY)
+    keyframes = [Keyframe(at, standing) for at in (0, 10, 20)]
+    place = points(standing)[POINT["wrist.L"]] + [0.1, 0.0, 0.2]
+    moved = dragged(BODY, standing, "wrist.L", place, ACROSS)
+    before, after = paths_through(BODY, keyframes, index, moved, "wrist.L", np.arange(21))
+    apart = np.linalg.norm(after - before, axis=-1)
+    np.testing.assert_allclose(after[index], points(moved)[POINT["wrist.L"]], atol=1e-9)
+    kept = [0, 20] if index == 10 else [0, 10, 20]
+    np.testing.assert_allclose(apart[kept], 0.0, atol=1e-9)
+    assert apart[index - 2] > 0.02 and apart[index + 2] > 0.02

@@ -1,5 +1,7 @@
 """A session's corrections: joints dragged over the footage, in depth and from the side; a limb flipped."""
 
+from collections.abc import Callable
+
 import bpy
 import numpy as np
 from driver import Steps, expect, turns, until
@@ -8,28 +10,60 @@ from person import Person, keymark
 DRAGGED_PX = 42.0
 NEAR_PX = 3.0  # How near to the mouse a dragged joint must be seen
 MOVED_M = 0.03
+SAME_M = 0.001
 
 
 def correct(person: Person) -> Steps[None]:
     """Drag a wrist at a keyframe, take drags back, push it in depth, flip the arm; all of it is undone."""
-    name = "keymark.drag_joints"
     yield from go_to_keyframe(person)
-    yield from person.hands.click_button(name)
-    yield from until(lambda: person.jobs(), "the tool")
+    yield from begun(person)
     yield from person.hands.move(*seen(person, "wrist.L"))
     yield from person.look("drag_joints")
     yield from person.changes_nothing("a drag that ends with Esc", lambda: dropped(person, "wrist.L"))
-    yield from person.undoable("dragging a wrist", lambda: dragged(person, "wrist.L"))
-    yield from person.look("dragged")
+    yield from person.changes_nothing("Esc after a drag", lambda: given_up(person, "wrist.L"))
+    yield from begun(person)
+    yield from person.undoable("dragging a wrist", lambda: stored(person, dragged, "wrist.L"))
     yield from taken_back(person)
-    yield from person.undoable("pushing a wrist", lambda: pushed(person, "wrist.L"))
+    yield from begun(person)
+    yield from person.undoable("pushing a wrist", lambda: stored(person, pushed, "wrist.L"))
     yield from taken_back(person)
+    yield from begun(person)
     yield from person.undoable("flipping an arm", lambda: flipped(person, "elbow.L"))
     yield from taken_back(person)
     yield from from_the_side(person)
-    yield from person.hands.press("RET")
-    yield from until(lambda: not person.jobs(), "the tool to end")
     yield from person.look("corrected")
+
+
+def begun(person: Person) -> Steps[None]:
+    yield from person.hands.click_button("keymark.drag_joints")
+    yield from until(lambda: person.jobs(), "the tool")
+
+
+def ended(person: Person, key: str) -> Steps[None]:
+    yield from person.hands.press(key)
+    yield from until(lambda: not person.jobs(), "the tool to end")
+
+
+def stored(person: Person, drag: Callable[[Person, str], Steps[None]], joint: str) -> Steps[None]:
+    """Drag a joint, and store the pose with Enter: it is the one that was shown."""
+    yield from drag(person, joint)
+    shown = place(person, joint)
+    yield from ended(person, "RET")
+    bpy.context.view_layer.update()
+    off = float(np.linalg.norm(place(person, joint) - shown))
+    expect(off < SAME_M, f"the joint is stored {off:.4f} m from where it was dragged")
+    keyed = keymark("operators.shell.keyed_frames").posed_frames(person.take)
+    expect(person.scene.frame_current in keyed, "the keyframe is gone")
+
+
+def given_up(person: Person, joint: str) -> Steps[None]:
+    """Drag a joint, then take it back with Esc, which ends the tool."""
+    before = place(person, joint)
+    yield from dragged(person, joint)
+    yield from person.look("dragged")
+    yield from ended(person, "ESC")
+    off = float(np.linalg.norm(place(person, joint) - before))
+    expect(off < SAME_M, f"Esc leaves the joint {off:.4f} m from where it was")
 
 
 def go_to_keyframe(person: Person) -> Steps[None]:
@@ -61,8 +95,6 @@ def dragged(person: Person, joint: str) -> Steps[None]:
     yield from person.hands.drag(start, end)
     off = np.linalg.norm(np.subtract(seen(person, joint), end))
     expect(off < NEAR_PX, f"the joint is {off:.1f} px beside the mouse")
-    keyed = keymark("operators.shell.keyed_frames").posed_frames(person.take)
-    expect(person.scene.frame_current in keyed, "the keyframe is gone")
 
 
 def dropped(person: Person, joint: str) -> Steps[None]:
@@ -121,7 +153,7 @@ def from_the_side(person: Person) -> Steps[None]:
     yield from hands.press("NUMPAD_3")
     yield from turns(20)
     yield from person.look("from_the_side")
-    yield from person.undoable("dragging from the side", lambda: dragged(person, "wrist.L"))
+    yield from person.undoable("dragging from the side", lambda: stored(person, dragged, "wrist.L"))
     yield from taken_back(person)
     yield from hands.move_over("VIEW_3D")
     yield from hands.press("NUMPAD_0")
@@ -131,6 +163,7 @@ def from_the_side(person: Person) -> Steps[None]:
 
 
 def taken_back(person: Person) -> Steps[None]:
+    running = person.jobs()
     yield from person.hands.undo()
-    expect(person.jobs(), "undo ended the tool")
+    expect(bool(person.jobs()) == bool(running), "undo ended the tool")
     bpy.context.view_layer.update()
