@@ -26,9 +26,9 @@ def test_walking_is_found_in_its_phase_heading_and_place(walking: Library, headi
     assert absolute < 0.15
     assert found.fit > 0.8
     assert [frame.index for frame in found.frames][0::4] == [0, FRAMES - 1]
-    assert_recorded(f"found {heading_deg}", BODY.points(BODY.pose(found.postures)), share=1e-3)
+    assert_recorded(f"found {heading_deg}", BODY.points(BODY.pose(found.postures)), share=1e-2)
     sure = [one.confidence for frame in found.frames for one in frame.candidates]
-    assert_recorded(f"found {heading_deg}, confidence", sure, share=1e-3)
+    assert_recorded(f"found {heading_deg}, confidence", sure, share=1e-2)
     names = {posture.name for posture in walking.postures}
     assert {one.name for frame in found.frames for one in frame.candidates} <= names
 
