@@ -40,10 +40,11 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
         self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup
     ) -> None:
         column = body.column()
-        everything = column.column()
+        everything = column.row(align=True)
         everything.scale_y = 1.4
         if not draw_progress(everything, context, "keymark.pose_all"):
             everything.operator("keymark.pose_all", icon="OUTLINER_OB_ARMATURE")
+            everything.popover("KEYMARK_PT_libraries", text="", icon="ASSET_MANAGER")
         if len(take.matching.matches):
             draw_found(column, context, take)
         else:
@@ -125,7 +126,7 @@ def _flipped(take: bpy.types.PropertyGroup) -> str:
 
 
 class KEYMARK_PT_keyframes_options(Popover, bpy.types.Panel):
-    """What poses are found from, proposed frames, and the Action with the keyframes."""
+    """What was found of the footage, the floor, proposed frames, and the Action with the keyframes."""
 
     bl_label = "Options of Poses"
 
@@ -134,9 +135,6 @@ class KEYMARK_PT_keyframes_options(Popover, bpy.types.Panel):
         matching = take.matching
         if matching.reason:
             draw_sentence(column, context, matching.reason, "INFO")
-        column.prop(matching, "library")
-        column.popover("KEYMARK_PT_libraries", icon="ASSET_MANAGER")
-        column.separator()
         column.prop(matching, "floor")
         if matching.floor == "HEIGHT":
             column.prop(matching, "floor_height")

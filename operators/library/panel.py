@@ -3,6 +3,7 @@
 import bpy
 
 from ..shell.panel import Popover, RowList, draw_sentence
+from ..shell.takes import active_take
 from .registry import chosen_entry, own_folder
 
 MOST_LINES = 4  # Lines of a library's description, or of its problem
@@ -25,12 +26,15 @@ class KEYMARK_UL_shelf(RowList, bpy.types.UIList):
 
 
 class KEYMARK_PT_libraries(Popover, bpy.types.Panel):
-    """The libraries at hand: loaded, saved, learned from the motion, and edited as pose assets."""
+    """The library that poses are sought in; libraries loaded, saved, learned, and edited as pose assets."""
 
     bl_label = "Libraries"
 
     def draw(self, context: bpy.types.Context) -> None:
         registry, layout = context.window_manager.keymark_shelf, self.layout
+        take = active_take(context.scene)
+        self.column().prop(take.matching, "library", text="Pose From")
+        layout.use_property_split = False  # a list's rows would be split too
         row = layout.row()
         row.template_list(
             "KEYMARK_UL_shelf", "", registry, "libraries", registry, "active", rows=4, maxrows=6
@@ -46,7 +50,11 @@ class KEYMARK_PT_libraries(Popover, bpy.types.Panel):
         elif item is not None:
             _draw_facts(column, context, item)
             column.operator("keymark.edit_library", icon="ASSET_MANAGER").library = item.name
-        column.operator("keymark.learn_library", icon="ACTION")
+        saving = column.column(align=True)
+        posed = saving.row()
+        posed.enabled = take.keyframe_action is not None
+        posed.operator("keymark.export_library", text="Save Keyframes", icon="KEYINGSET").source = "KEYFRAMES"
+        saving.operator("keymark.learn_library", icon="ACTION")
 
 
 def _draw_facts(
