@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -33,37 +34,18 @@ JOINTS = {
     "toetip": (0.106, -0.19, 0.015),
 }
 """Joints of a body of 1.72 m in a T pose [m], left side, facing -Y."""
-TAILS = {
-    "hips": "spine",
-    "spine": "chest",
-    "chest": "neck",
-    "neck": "head",
-    "head": "top",
-    "shoulder": "upper_arm",
-    "upper_arm": "forearm",
-    "forearm": "hand",
-    "hand": "finger",
-    "finger": "fingertip",
-    "thigh": "shin",
-    "shin": "foot",
-    "foot": "toe",
-    "toe": "toetip",
-}
+CHAINS = (
+    (None, "hips spine chest neck head top"),
+    ("chest", "shoulder upper_arm forearm hand finger fingertip"),
+    ("hips", "thigh shin foot toe toetip"),
+)
+"""What each chain of bones hangs on, and its joints; the last is an end."""
+TAILS = {part: end for _, chain in CHAINS for part, end in pairwise(chain.split())}
 PARENTS = {
-    "hips": None,
-    "spine": "hips",
-    "chest": "spine",
-    "neck": "chest",
-    "head": "neck",
-    "shoulder": "chest",
-    "upper_arm": "shoulder",
-    "forearm": "upper_arm",
-    "hand": "forearm",
-    "finger": "hand",
-    "thigh": "hips",
-    "shin": "thigh",
-    "foot": "shin",
-    "toe": "foot",
+    part: above
+    for on, chain in CHAINS
+    for above, part in pairwise((on, *chain.split()[:-1]))
+    if part is not None
 }
 SIDED = ("shoulder", "upper_arm", "forearm", "hand", "finger", "thigh", "shin", "foot", "toe")
 

@@ -8,11 +8,7 @@ from keymark.core.retarget.character import Character
 from keymark.core.retarget.character_motion import CharacterMotion
 from keymark.core.retarget.controls.control_channels import Control, ordered_controls
 from keymark.core.retarget.controls.control_motion import ControlMotion
-from keymark.core.retarget.controls.control_plan import (
-    ControlKind,
-    PlannedControl,
-    planned_controls,
-)
+from keymark.core.retarget.controls.control_plan import ControlKind, PlannedControl, planned_controls
 from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
 from keymark.core.retarget.controls.control_targets import PoleSetting, on_controls
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls

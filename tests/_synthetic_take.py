@@ -23,12 +23,7 @@ COLORS = {
 }
 BODY = Body(Actor.from_stature(1.75))
 MATRIX_WORLD = [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, -4.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]]
-CAMERA = {
-    "lens_mm": 40.0,
-    "sensor_width_mm": 36.0,
-    "resolution": list(SIZE),
-    "matrix_world": MATRIX_WORLD,
-}
+CAMERA = {"lens_mm": 40.0, "sensor_width_mm": 36.0, "resolution": list(SIZE), "matrix_world": MATRIX_WORLD}
 
 
 def true_postures(frames: int) -> Posture:

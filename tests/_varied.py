@@ -65,21 +65,7 @@ def varied_plan(seed: int) -> Plan:
         plan.root = "ground"
     plan.clavicles_on_neck = bool(plan.shoulders and plan.necks and rng.random() < 0.07)
     plan.thigh_holders = bool(rng.random() < 0.1)
-    things = (
-        "hair",
-        "bun",
-        "skirt",
-        "long_skirt",
-        "tail",
-        "wings",
-        "weapon",
-        "breasts",
-        "face",
-        "cape",
-        "pouch",
-        "ears",
-    )
-    plan.worn = tuple(str(t) for t in things if rng.random() < 0.18)
+    plan.worn = tuple(thing for thing in WORN if rng.random() < 0.18)
     plan.tails = str(rng.choice(["good", "aside", "far"], p=[0.65, 0.25, 0.1]))
     plan.noise = float(rng.choice([0.0, 0.002, 0.006]))
     plan.yaw_deg = float(rng.choice([0.0, 180.0, 90.0, rng.uniform(-180, 180)], p=[0.5, 0.15, 0.1, 0.25]))

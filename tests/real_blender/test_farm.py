@@ -38,11 +38,7 @@ def whole(output: Path, library: str) -> bool:
     return (
         all(file.is_file() for file in characters)
         and status.keys() == {"day1/take01", "day1/take02"}
-        and set(status.values())
-        <= {
-            "converted",
-            "unchanged",
-        }
+        and set(status.values()) <= {"converted", "unchanged"}
         and blend.is_file()
     )
 

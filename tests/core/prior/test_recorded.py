@@ -23,12 +23,7 @@ from keymark.core.prior.keyframes import (
     with_turns,
 )
 from keymark.core.prior.learning import LibraryMetadata, learn_library, spread_frames
-from keymark.core.prior.motion_playback import (
-    average_cycle,
-    find_period_s,
-    sample_motion,
-    shape_vectors,
-)
+from keymark.core.prior.motion_playback import average_cycle, find_period_s, sample_motion, shape_vectors
 from keymark.core.prior.registry import SHIPPED, find_library
 from keymark.core.prior.transfer import mirrored_library, transferred
 

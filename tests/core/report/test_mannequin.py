@@ -7,13 +7,7 @@ from keymark.core.body.body_volume import sole_heights_m, standing_posture
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.report.canvas import LEFT, RIGHT
-from keymark.core.report.mannequin import (
-    SIZE,
-    View,
-    draw_mannequin,
-    mannequin,
-    posture_picture,
-)
+from keymark.core.report.mannequin import SIZE, View, draw_mannequin, mannequin, posture_picture
 
 BODY = Body(ACTOR)
 STANDING = standing_posture(BODY)
