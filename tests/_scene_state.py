@@ -1,6 +1,7 @@
 """The state of a .blend as plain values by name, rounded to what a person can tell apart."""
 
 import hashlib
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import bpy
@@ -38,6 +39,22 @@ def differences(before: State, after: State) -> str:
     names = sorted(before.keys() | after.keys())
     differing = [name for name in names if before.get(name) != after.get(name)]
     return "; ".join(f"{name}: {before.get(name)} became {after.get(name)}" for name in differing)[:1000]
+
+
+def assert_undoable(steps: Iterable[tuple[str, Callable[[], object]]]) -> None:
+    """Hold that every step, by its name, changes something, is undone by one undo and redone by one redo."""
+    bpy.ops.ed.undo_push(message="Begin")
+    for name, do in steps:
+        before = scene_state()
+        do()
+        bpy.context.view_layer.update()
+        bpy.ops.ed.undo_push(message=name)
+        after = scene_state()
+        assert after != before, f"{name} changed nothing"
+        bpy.ops.ed.undo()
+        assert not differences(before, scene_state()), f"undoing {name}"
+        bpy.ops.ed.redo()
+        assert not differences(after, scene_state()), f"redoing {name}"
 
 
 def _add_group(state: State, name: str, group: bpy.types.bpy_struct) -> None:

@@ -1,7 +1,6 @@
 """The operators, scripted as an animator would press them."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import bpy
@@ -83,23 +82,6 @@ def test_from_an_empty_scene_to_a_motion(
     assert settings.armature.animation_data.action == settings.keyframe_action
 
 
-def test_reconstructing_again_writes_into_the_same_action(opened: bpy.types.Scene) -> None:
-    settings = active_take(opened)
-    settings.method = "interpolation"
-    bpy.ops.keymark.reconstruct()
-    first, count = settings.motion_action, len(bpy.data.actions)
-    bpy.ops.keymark.reconstruct()
-    assert settings.motion_action == first
-    assert len(bpy.data.actions) == count
-
-
-def test_reading_for_a_reconstruction_leaves_the_frame(opened: bpy.types.Scene) -> None:
-    active_take(opened).method = "interpolation"
-    opened.frame_set(9)
-    bpy.ops.keymark.reconstruct()
-    assert opened.frame_current == 9
-
-
 def test_proposals_can_be_jumped_to(opened: bpy.types.Scene) -> None:
     take = active_take(opened)
     take.keyframe_count = 4
@@ -116,28 +98,9 @@ def test_proposals_can_be_jumped_to(opened: bpy.types.Scene) -> None:
     assert bpy.ops.keymark.jump_to_proposal(direction="PREVIOUS") == {"CANCELLED"}
 
 
-def test_a_color_is_picked_from_the_footages_file(opened: bpy.types.Scene, tiny_take: Take) -> None:
-    settings = active_take(opened)
-    settings.active_marker = 0
-    settings.markers[0].color = (0.0, 0.0, 0.0)
-    hips = tiny_take.keyframes[0].posture.translation + [0.0, 0.0, 0.25]
-    (pixel,), _ = tiny_take.camera.project(hips[None])
-    bpy.ops.keymark.pick_marker_color(pixel=pixel)
-    picked = 255.0 * np.array(settings.markers[0].color)
-    assert np.abs(picked - tiny_take.markers[0].color_srgb).max() < 20.0
-
-
 def test_a_pixel_outside_the_footage_is_refused(opened: bpy.types.Scene) -> None:
     with pytest.raises(RuntimeError, match=r"\(500, 3\) lies outside the footage, which is 160 x 120"):
         bpy.ops.keymark.pick_marker_color(pixel=(500.0, 3.0))
-
-
-def test_markers_are_added_and_removed(opened: bpy.types.Scene) -> None:
-    settings = active_take(opened)
-    bpy.ops.keymark.add_marker()
-    assert settings.markers[5].segment not in {marker.segment for marker in settings.markers[:5]}
-    bpy.ops.keymark.remove_marker()
-    assert (len(settings.markers), settings.active_marker) == (5, 4)
 
 
 def test_two_markers_on_one_segment_are_refused(opened: bpy.types.Scene) -> None:
@@ -182,19 +145,3 @@ def test_storing_a_pose_beyond_the_skeleton_warns_but_stores(opened: bpy.types.S
     opened.frame_set(5)
     opened.frame_set(4)
     assert tuple(forearm.rotation_euler) == pytest.approx((0.5, 0.0, 0.6))
-
-
-def test_a_clip_that_vanished_is_named(opened: bpy.types.Scene, tiny_take: Take) -> None:
-    tiny_take.clip.rename(tiny_take.clip.with_name("moved.mp4"))
-    with pytest.raises(RuntimeError, match=r"clip\.mp4: the footage is not there"):
-        bpy.ops.keymark.reconstruct()
-
-
-def test_too_few_keyframes_are_refused(tiny_take: Take) -> None:
-    one = replace(tiny_take, keyframes=())
-    (tiny_take.folder / "keyframes.json").unlink()
-    assert one.keyframes == ()
-    bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
-    bpy.ops.keymark.store_keyframe()
-    with pytest.raises(RuntimeError, match="there is only one"):
-        bpy.ops.keymark.reconstruct()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from _armatures import build_character
 from _characters import plain_character
-from _scene_state import differences, scene_state
+from _scene_state import assert_undoable, differences, scene_state
 from bpy.types import Action, Object, PropertyGroup, Scene
 from keymark.core.errors import InputError
 from keymark.core.progress import run
@@ -211,18 +211,7 @@ def test_every_step_is_undone_and_redone(take: PropertyGroup, rig: Object) -> No
         ("remove result", lambda: ops.remove_result(index=1)),
         ("remove", ops.remove_character),
     ]
-    bpy.ops.ed.undo_push(message="Begin")
-    for name, do in steps:
-        before = scene_state()
-        do()
-        bpy.context.view_layer.update()
-        bpy.ops.ed.undo_push(message=name)
-        after = scene_state()
-        assert after != before, f"{name} changed nothing"
-        bpy.ops.ed.undo()
-        assert not differences(before, scene_state()), f"undoing {name}"
-        bpy.ops.ed.redo()
-        assert not differences(after, scene_state()), f"redoing {name}"
+    assert_undoable(steps)
 
 
 def test_the_result_is_an_asset_like_the_actors(character: PropertyGroup, take: PropertyGroup) -> None:

@@ -86,14 +86,3 @@ def test_the_jacobian_of_any_place_agrees_with_central_differences(segment: str)
     pose = BODY.pose(posture)
     jacobian = pose.places_jacobian([joint], pose.place(joint, local)[None])[0]
     np.testing.assert_allclose(jacobian, (plus - minus).T / (2.0 * STEP), atol=1e-8)
-
-
-def test_batches_agree_with_single_postures() -> None:
-    batch = Posture.rest(HUMAN, (2, 3)).plus(np.random.default_rng(3).normal(0.0, 0.5, (2, 3, 34)))
-    whole, one = BODY.pose(batch), BODY.pose(batch[1, 2])
-    np.testing.assert_allclose(BODY.points(whole)[1, 2], BODY.points(one), atol=1e-14)
-    np.testing.assert_allclose(BODY.points_jacobian(whole)[1, 2], BODY.points_jacobian(one), atol=1e-14)
-    for of_batch, of_one in zip(
-        BODY.segment_ends(whole, "hand.R"), BODY.segment_ends(one, "hand.R"), strict=True
-    ):
-        np.testing.assert_allclose(of_batch[1, 2], of_one, atol=1e-14)

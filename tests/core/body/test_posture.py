@@ -30,19 +30,6 @@ def test_minus_finds_the_step_that_plus_took(size: float, seed: int) -> None:
     np.testing.assert_allclose(start.plus(size * step).minus(start), size * step, atol=2e-9)
 
 
-@given(st.integers(0, 2**32 - 1), st.integers(0, 2**32 - 1))
-def test_plus_reaches_what_minus_pointed_to(first: int, second: int) -> None:
-    start, goal = random_posture(first), random_posture(second)
-    assert_same(start.plus(goal.minus(start)), goal, 1e-9)
-
-
-def test_a_zero_step_stays_and_opposite_steps_cancel_along_one_line() -> None:
-    start, step = random_posture(0), np.random.default_rng(1).normal(0.0, 0.4, 34)
-    assert_same(start.plus(np.zeros(34)), start)
-    assert_same(start.plus(step).plus(-step), start)
-    assert_same(start.plus(0.3 * step).plus(0.7 * step), start.plus(step))
-
-
 def test_turns_are_taken_in_the_childs_frame() -> None:
     start, turn = random_posture(2), np.array([0.1, -0.4, 0.2])
     step = np.zeros(34)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.body.posture_spline import cubic_spline, find_intervals, linear_spline
+from keymark.core.body.posture_spline import cubic_spline, linear_spline
 from scipy.interpolate import CubicHermiteSpline
 
 KNOTS = np.array([0.0, 2.0, 3.0, 7.0, 8.0])
@@ -43,9 +43,3 @@ def test_balls_pass_their_postures_smoothly() -> None:
     step = 1e-5
     before, here, after = (cubic_spline(turned, KNOTS, KNOTS[1:-1] + s) for s in (-step, 0.0, step))
     np.testing.assert_allclose(here.minus(before) / step, after.minus(here) / step, atol=1e-3)
-
-
-def test_intervals_and_times_within_them() -> None:
-    interval, elapsed = find_intervals(KNOTS, np.array([-5.0, 0.0, 2.0, 2.5, 8.0, 11.0]))
-    assert interval.tolist() == [0, 0, 1, 1, 3, 3]
-    assert elapsed.tolist() == [0.0, 0.0, 0.0, 0.5, 1.0, 1.0]

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
 from hypothesis import strategies as st
 from keymark.core.body import rotations
 
@@ -37,21 +36,6 @@ def test_the_logarithm_undoes_the_exponential(axis: tuple[float, ...], angle: fl
     np.testing.assert_allclose(rotations.logarithm(rotations.exponential(vector)), vector, atol=1e-9)
 
 
-@given(vectors(), vectors())
-def test_rotations_form_a_group(first: np.ndarray, second: np.ndarray) -> None:
-    A, B = rotations.exponential(first), rotations.exponential(second)
-    np.testing.assert_allclose(A @ B @ (A @ B).T, np.eye(3), atol=1e-12)
-    assert np.linalg.det(A @ B) == pytest.approx(1.0)
-    np.testing.assert_allclose(rotations.exponential(-first), A.T, atol=1e-12)
-
-
-@given(vectors(), vectors())
-def test_the_cross_matrix_is_the_cross_product(first: np.ndarray, second: np.ndarray) -> None:
-    np.testing.assert_allclose(
-        rotations.cross_matrix(first) @ second, np.cross(first, second), rtol=1e-12, atol=1e-15
-    )
-
-
 @pytest.mark.parametrize("axis", AXES)
 @pytest.mark.parametrize("angle", ANGLES)
 def test_the_right_jacobian_agrees_with_central_differences(axis: tuple[float, ...], angle: float) -> None:
@@ -66,12 +50,6 @@ def test_the_right_jacobian_agrees_with_central_differences(axis: tuple[float, .
         for axis_step in np.eye(3)
     ]
     np.testing.assert_allclose(rotations.right_jacobian(vector), np.stack(columns, axis=-1), atol=1e-8)
-
-
-@given(vectors(2.0 * np.pi - 0.1))
-def test_the_right_jacobian_and_its_inverse_cancel(vector: np.ndarray) -> None:
-    product = rotations.right_jacobian(vector) @ rotations.right_jacobian_inverse(vector)
-    np.testing.assert_allclose(product, np.eye(3), atol=1e-7)
 
 
 def test_batches_agree_with_single_rotations() -> None:

@@ -1,16 +1,13 @@
 """The default skeleton, the actor's sizes, where the feet touch the floor, and the colors of both sides."""
 
-import colorsys
-
 import numpy as np
 import pytest
 from keymark.core.body.actor import REQUIRED, Actor
 from keymark.core.body.body_volume import sole_heights_m, sole_places, standing_posture
-from keymark.core.body.human import HUMAN, LIGHT, SHADED, STRONG, joint_limits_deg, side_of
+from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.core.report import canvas
 
 BODY = Body(Actor.from_stature(1.75))
 LIMB_POINTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
@@ -29,12 +26,6 @@ def test_degrees_of_freedom_are_all_counted_once() -> None:
     assert HUMAN.deviations.shape == (34,)
     assert (HUMAN.deviations > 0.0).all()
     assert (HUMAN.limits[:, 0] < HUMAN.limits[:, 1]).all()
-
-
-def test_parents_come_before_their_children() -> None:
-    assert all(joint.parent < index for index, joint in enumerate(HUMAN.joints))
-    names = {segment.name for segment in HUMAN.segments}
-    assert all(segment.parent is None or segment.parent in names for segment in HUMAN.segments)
 
 
 def test_at_rest_the_performer_stands_in_a_t_facing_minus_y() -> None:
@@ -68,16 +59,6 @@ def test_limits_and_deviations_are_mirror_images() -> None:
     np.testing.assert_allclose(np.abs(mirrored(HUMAN.deviations)), HUMAN.deviations)
     lower, upper = mirrored(HUMAN.limits[:, 0]), mirrored(HUMAN.limits[:, 1])
     np.testing.assert_allclose(np.sort(np.stack([lower, upper], -1), axis=-1), HUMAN.limits)
-
-
-def test_joints_are_found_by_name() -> None:
-    assert HUMAN.joints[HUMAN.joint_index("elbow.R")].name == "elbow.R"
-    with pytest.raises(KeyError):
-        HUMAN.joint_index("tail")
-    with pytest.raises(KeyError):
-        joint_limits_deg("wrist.L")
-    with pytest.raises(KeyError):
-        BODY.segment_ends(BODY.pose(Posture.rest(HUMAN)), "tail")
 
 
 def test_average_proportions_follow_the_stature() -> None:
@@ -121,11 +102,6 @@ def test_an_impossible_stature_is_refused(stature: float) -> None:
         Actor.from_stature(stature)
 
 
-def test_an_actors_lengths_cannot_be_changed() -> None:
-    with pytest.raises(TypeError):
-        Actor.from_stature(1.7).segments_m["trunk"] = 1.0  # type: ignore[index]
-
-
 def leaning(degrees: float) -> Posture:
     """Standing, the left shin leaning backward by some degrees (the foot with it), the knee in its place."""
     vector = standing_posture(BODY).to_vector()
@@ -151,30 +127,6 @@ def test_a_leg_before_the_body_stands_on_its_heel_and_one_behind_on_its_toes(
     assert heights.argmin() == lowest and abs(np.ptp(heights)) > 0.05
     assert sole_heights_m(BODY, pose)[0] == heights.min()
     assert sole_heights_m(BODY, pose)[1] == pytest.approx(0.0, abs=1e-12)
-
-
-SAME_HUE = 0.06
-"""Of the circle of hues; blue and orange are 0.45 apart."""
-
-
-def hue(rgb: tuple[int, int, int]) -> float:
-    return colorsys.rgb_to_hsv(*(level / 255.0 for level in rgb))[0]
-
-
-@pytest.mark.parametrize("side", ["L", "R"])
-def test_a_side_has_one_hue_in_all_its_strengths(side: str) -> None:
-    hues = [hue(strength[side]) for strength in (LIGHT, STRONG, SHADED)]
-    assert max(hues) - min(hues) < SAME_HUE
-    assert (0.5 < hues[0] < 0.7) == (side == "L")
-
-
-def test_reports_have_the_same_colors() -> None:
-    assert canvas.LEFT[::-1] == STRONG["L"] and canvas.RIGHT[::-1] == STRONG["R"]
-
-
-def test_every_segment_and_point_has_a_side() -> None:
-    assert {side_of(segment.name) for segment in HUMAN.segments} == {"L", "R", ""}
-    assert side_of("shoulder.L") == "L" and side_of("head") == "" and side_of("Left.001") == ""
 
 
 def test_limbs_branch_off_the_trunk() -> None:

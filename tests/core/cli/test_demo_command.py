@@ -5,9 +5,11 @@ import json
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
+from _characters import plain_character
 from _shoot import gliding, write_video
 from _synthetic_take import BODY, SIZE, true_postures, write_synthetic_take
 from _synthetic_take import write_keypoints as write_keypoints_of
@@ -22,6 +24,7 @@ from keymark.core.take import examples
 from keymark.core.take.motion import read_motion
 from keymark.core.take.take_file import read_take
 from keymark.operators.cli.commands import demo
+from keymark.operators.cli.console import Console
 from keymark.operators.cli.conversion import convert_take
 from keymark.operators.cli.main import main
 
@@ -68,62 +71,55 @@ def bare_clip(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(convert_take, "requested_libraries", lambda _name: (library,))
 
 
-@pytest.fixture
-def no_character(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(_file: Path) -> None:
+HAS_BLENDER = importlib.util.find_spec("bpy") is not None
+
+
+def write_character(file: Path) -> None:
+    """A plain character instead of Rigify's human, which `make demo` generates."""
+    if not HAS_BLENDER:
         raise ConversionError("Rigify is missing")
+    import bpy
+    from _armatures import build_character
 
-    monkeypatch.setattr(demo, "write_demo_character", refuse)
+    armature = build_character(plain_character())
+    bpy.data.libraries.write(str(file), {armature})
+    bpy.data.batch_remove([armature, armature.data])
 
 
-@pytest.mark.usefixtures("no_character")
-def test_it_scores_every_method_by_the_motion_it_wrote(
-    take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_it_scores_every_method_by_the_motion_it_wrote_and_says_where_to_look(
+    take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert main(["demo", "--output", str(tmp_path / "out"), "--json"]) == 0
-    said = json.loads(capsys.readouterr().out)
-    motion = read_motion(tmp_path / "out" / "motion.json")
-    truth = read_truth(take / "truth.json", motion.frame_start, FRAMES)
-    camera = read_take(take).camera
-    score = score_points(motion.points, truth, motion.keyframe_indices, camera, motion.sigma_m).to_dict()
-    known = {name: value for name, value in score.items() if value is not None}
-    assert {name: said["scores_mm"]["map"][name] for name in known} == pytest.approx(
-        known, rel=1e-3, abs=1e-3
-    )
-    assert set(said["scores_mm"]) == {"interpolation", "ekf", "map", "without_markers"}
-    unmarked = read_motion(tmp_path / "out" / "without_markers" / "motion.json")
-    mpjpe = score_points(unmarked.points, truth, unmarked.keyframe_indices, camera).mpjpe
-    assert said["scores_mm"]["without_markers"]["mpjpe"] == pytest.approx(mpjpe, rel=1e-3)
-    record = json.loads((tmp_path / "out" / "without_markers" / "conversion.json").read_text())
+    results: list[dict[str, Any]] = []
+    finish = Console.finish
+    monkeypatch.setattr(Console, "finish", lambda own, *rest: (results.append(rest[0]), finish(own, *rest)))
+    monkeypatch.setattr(demo, "write_demo_character", write_character)
+    out = tmp_path / "out"
+    assert main(["demo", "--output", str(out)]) == 0
+
+    (scores,) = (result["scores_mm"] for result in results)
+    truth, camera = read_truth(take / "truth.json", 1, FRAMES), read_take(take).camera
+    for name, folder in (("map", out), ("without_markers", out / "without_markers")):
+        motion = read_motion(folder / "motion.json")
+        score = score_points(motion.points, truth, motion.keyframe_indices, camera, motion.sigma_m).to_dict()
+        known = {figure: value for figure, value in score.items() if value is not None}
+        assert {figure: scores[name][figure] for figure in known} == pytest.approx(known, rel=1e-3, abs=1e-3)
+    assert set(scores) == {"interpolation", "ekf", "map", "without_markers"}
+    assert scores["interpolation"]["coverage95"] is None
+    assert all(score["mpjpe"] > 0.0 for score in scores.values())
+    record = json.loads((out / "without_markers" / "conversion.json").read_text())
     assert record["evidence"]["markers"] == [] and len(record["evidence"]["keypoints"]) == 1
-    assert said["scores_mm"]["interpolation"]["coverage95"] is None
-    assert all(scores["mpjpe"] > 0.0 for scores in said["scores_mm"].values())
 
-
-def test_it_says_what_it_does_and_where_to_look(
-    take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], request: pytest.FixtureRequest
-) -> None:
-    has_blender = importlib.util.find_spec("bpy") is not None
-    if not has_blender:
-        request.getfixturevalue("no_character")
-    assert main(["demo", "--output", str(tmp_path / "out")]) == 0
     said = capsys.readouterr().out
     steps = [line.partition(":")[0] for line in said.splitlines() if line.startswith("Step ")]
     assert steps == [f"Step {number} of 5" for number in (1, 2, 3, 4, 5)]
     assert "  Keypoints: somebody in 40 of 40 frames, by drawn" in said.splitlines()
-    assert (tmp_path / "out" / "animated" / "take.json").is_file()
-    character = tmp_path / "out" / "character.blend"
-    assert (str(character) in said) == character.exists() == has_blender
-    assert ("Without a character: Rigify is missing" in said) != has_blender
-    rows = {
-        line.split()[0]: line.split()[1:]
-        for line in said.splitlines()
-        if line.startswith("  ") and line.split()
-    }
-    for method in ("interpolation", "ekf", "map", "without"):
-        assert len([float(value) for value in rows[method] if value != "markers"]) == len(demo.COLUMNS)
-    unmarked = tmp_path / "out" / "without_markers" / "motion.blend"
-    for path in (tmp_path / "out" / "motion.blend", tmp_path / "out" / "report", unmarked):
+    assert (out / "animated" / "take.json").is_file()
+    assert (str(out / "character.blend") in said) == (out / "character.blend").exists() == HAS_BLENDER
+    assert ("Without a character: Rigify is missing" in said) != HAS_BLENDER
+    rows = {line[2:17].strip(): line[17:].split() for line in said.splitlines() if line.startswith("  ")}
+    for name, score in scores.items():
+        assert rows[name.replace("_", " ")] == [f"{score[column]:.1f}" for column in demo.COLUMNS]
+    for path in (out / "motion.blend", out / "report", out / "without_markers" / "motion.blend"):
         assert str(path) in said and path.exists()
 
 

@@ -46,11 +46,6 @@ def tracks_from(characteristics: np.ndarray, visible: np.ndarray | None = None) 
 
 
 @pytest.fixture(scope="session")
-def make_tracks() -> Callable[..., RegionTracks]:
-    return tracks_from
-
-
-@pytest.fixture(scope="session")
 def see(line_ends: LineEnds) -> Callable[..., RegionTracks]:
     """A function from a batch of postures, and optionally what is visible of them, to noise-free tracks."""
 

@@ -23,18 +23,12 @@ from keymark.core.estimate.kalman import (
 )
 from keymark.core.evidence import keypoints as depths
 from keymark.core.evidence.line_ends import (
-    ANGLE,
-    LOG_RATIO,
     LineEnds,
-    X,
-    Y,
     observed_characteristics,
-    residual,
 )
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run
-from scipy.stats import chi2
 
 See = Callable[..., RegionTracks]
 ALWAYS_FAR = Memberships(near_ends=1e-9, far_starts=0.0, far_full=1e-9)
@@ -139,17 +133,6 @@ SHARP = FilterOptions(
 """Observations without noise, and depths that say next to nothing."""
 
 
-def test_noise_free_characteristics_are_met_from_a_wrong_start(line_ends: LineEnds, see: See) -> None:
-    rng = np.random.default_rng(11)
-    prior = Posture.rest(line_ends.body.skeleton, (25,)).plus(rng.normal(0.0, 0.15, 34))
-    tracks = see(prior.plus(0.4 * prior.skeleton.deviations * rng.normal(size=34)))
-    last = run_filter(line_ends, tracks, prior, [0], SHARP).posture[-1]
-    seen, predicted = observed_characteristics(tracks)[-1], line_ends.evaluate(line_ends.body.pose(last))
-    left = np.abs(residual(seen, predicted))
-    assert left[:, [X, Y]].max() < 0.02
-    assert left[:, [ANGLE, LOG_RATIO]].max() < 2e-3
-
-
 @pytest.mark.parametrize("seed", range(4))
 def test_a_posture_that_the_picture_shows_is_recovered(line_ends: LineEnds, see: See, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -164,18 +147,6 @@ def test_a_posture_that_the_picture_shows_is_recovered(line_ends: LineEnds, see:
     before = np.abs(truth[-1].minus(prior[-1]) / deviations)
     after = np.abs(truth[-1].minus(result.posture[-1]) / deviations)
     assert after.max() < 0.1 * before.max()
-
-
-def test_the_filter_comes_closer_than_the_prior(line_ends: LineEnds, see: See) -> None:
-    prior, truth = drifting(line_ends, 25)
-    result = run_filter(line_ends, see(truth), prior, [0, 24], FilterOptions())
-    body = line_ends.body
-    actual = line_ends.evaluate(body.pose(truth))[..., :2]
-    errors = [
-        np.linalg.norm(line_ends.evaluate(body.pose(guess))[..., :2] - actual, axis=-1).mean()
-        for guess in (result.posture, prior)
-    ]
-    assert errors[0] < 0.5 * errors[1]
 
 
 def test_a_keyframe_is_predicted_from_itself(line_ends: LineEnds, see: See) -> None:
@@ -268,21 +239,6 @@ def test_a_lost_limb_is_called_back(line_ends: LineEnds, see: See) -> None:
     assert distance[-1] < 2.0 < 30.0 < distance[0]
 
 
-def test_every_covariance_is_symmetric_and_positive(line_ends: LineEnds, see: See) -> None:
-    prior, truth = drifting(line_ends, 15)
-    options = FilterOptions(centroid_std_px=1e-3, centroid_std_widths=1e-5, angle_std_rad=1e-4)
-    options = replace(options, gate_probability=1.0 - 1e-15)
-    result = run_filter(line_ends, see(truth), prior, [0, 14], options)
-    np.testing.assert_allclose(result.covariance, np.swapaxes(result.covariance, 1, 2), atol=1e-15)
-    np.linalg.cholesky(result.covariance)
-
-
-def test_progress_is_told_once_a_frame(line_ends: LineEnds, see: See) -> None:
-    prior, truth = drifting(line_ends, 4)
-    job = filter_clip(line_ends.body, line_ends.camera, see(truth), line_ends.segments, prior, [0, 3])
-    assert list(job) == [0.25, 0.5, 0.75, 1.0]
-
-
 def test_arguments_that_disagree_are_refused(line_ends: LineEnds, see: See) -> None:
     prior, truth = drifting(line_ends, 4)
     tracks, body, camera = see(truth), line_ends.body, line_ends.camera
@@ -341,12 +297,6 @@ def test_the_gain_agrees_with_the_information_form() -> None:
     )
 
 
-def test_a_scalar_measurement_by_hand() -> None:
-    result = update(np.array([[3.0]]), np.array([[1.0]]), np.array([2.0]))
-    np.testing.assert_allclose([*result.step, *result.covariance[0]], [1.5, 0.75])
-    assert result.normalized_innovation_squared == pytest.approx(1.0)
-
-
 def test_nothing_seen_changes_nothing() -> None:
     M = np.diag([1.0, 2.0])
     result = update(M, np.zeros((0, 2)), np.zeros(0))
@@ -366,21 +316,3 @@ def test_ill_conditioned_covariances_stay_symmetric_and_positive(M: np.ndarray) 
         np.testing.assert_array_equal(P, P.T)
         np.linalg.cholesky(P)
         assert np.trace(P) <= np.trace(before) * (1.0 + 1e-9) + 1e-11
-
-
-def test_the_order_of_measurements_does_not_matter() -> None:
-    rng = np.random.default_rng(2)
-    M, H, seen = np.diag([1.0, 4.0, 9.0]), rng.normal(size=(5, 3)), rng.normal(size=5)
-    together = update(M, H, seen)
-    state, P = np.zeros(3), M
-    for row in (3, 0, 4, 1, 2):
-        one = update(P, H[row : row + 1], seen[row : row + 1] - H[row : row + 1] @ state)
-        state, P = state + one.step, one.covariance
-    np.testing.assert_allclose(state, together.step, rtol=1e-9, atol=1e-12)
-    np.testing.assert_allclose(P, together.covariance, rtol=1e-9, atol=1e-12)
-
-
-def test_gates_are_quantiles_of_chi_squared(line_ends: LineEnds) -> None:
-    prior = Posture.concatenate([Posture.rest(line_ends.body.skeleton, (2,))])
-    gates = FuzzyKalmanFilter(line_ends, prior, [0], FilterOptions(gate_probability=0.95))._gates
-    np.testing.assert_allclose(gates, [0.0, *chi2.ppf(0.95, [1, 2, 3, 4])], rtol=1e-9)

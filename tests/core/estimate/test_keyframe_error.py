@@ -186,12 +186,6 @@ def test_a_limb_is_open_long_after_it_was_seen_last_and_no_other() -> None:
     assert (np.diff(elbow[28:50]) > 0.0).all() and 0.3 < np.sqrt(elbow.max()) < 1.0
 
 
-def test_all_is_open_where_nothing_is_seen() -> None:
-    visible = np.zeros((90, 3), dtype=bool)
-    variance = open_of(visible, [0])
-    assert variance[0].max() == 0.0 and (variance[89] > 0.01).all()
-
-
 def test_a_floor_that_contradicts_the_size_makes_the_place_uncertain() -> None:
     points = BODY.points(BODY.pose(TRUTH))
     agreed, off_it = (

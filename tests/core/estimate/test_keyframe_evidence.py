@@ -7,7 +7,7 @@ import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_problem import KeyframeEvidence
-from keymark.core.estimate.keyframe_error import posing_covariance, velocities
+from keymark.core.estimate.keyframe_error import posing_covariance
 from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes, read_keyframes
 from keymark.core.evidence.regions import (
     MarkerPlacement,
@@ -105,12 +105,3 @@ def test_a_marker_that_is_never_where_it_should_be_is_distrusted() -> None:
     assert evidence.distrust[2] > 4.0
     assert np.delete(evidence.distrust, 2).max() < 1.5
     assert evidence.posing_scale < 0.5
-
-
-def test_velocities_are_those_of_the_parabola() -> None:
-    frame = np.array([0, 4, 10, 13])
-    vector = np.zeros((4, BODY.skeleton.dof_count))
-    vector[:, 0] = 0.01 * frame + 0.002 * frame**2
-    found = velocities(Posture.from_vector(BODY.skeleton, vector), frame)
-    np.testing.assert_allclose(found[1:-1, 0], 0.01 + 0.004 * frame[1:-1])
-    assert np.abs(found[:, 1:]).max() == 0.0

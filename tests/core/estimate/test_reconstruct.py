@@ -4,11 +4,13 @@ import json
 import os
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
+from _recorded import assert_recorded
 from _synthetic_take import BODY, SIZE, true_postures, write_synthetic_take
 from keymark.core.errors import InputError
 from keymark.core.estimate.reconstruct import METHODS, Reconstruction, reconstruct
@@ -26,16 +28,30 @@ def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
 
 
 @pytest.fixture(scope="module")
-def mapped(take: Take) -> Reconstruction:
-    """What the first method makes of it."""
-    return run(reconstruct(take, "map"))
+def made(take: Take) -> Callable[[str], tuple[Reconstruction, list[Progress]]]:
+    """What a method makes of it, and the steps that it told."""
+
+    @cache
+    def by(method: str) -> tuple[Reconstruction, list[Progress]]:
+        seen: list[Progress] = []
+        return run(reconstruct(take, method), seen.append), seen
+
+    return by
+
+
+@pytest.fixture(scope="module")
+def mapped(made: Callable[[str], tuple[Reconstruction, list[Progress]]]) -> Reconstruction:
+    return made("map")[0]
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_every_method_gives_every_frame_a_finite_posture(take: Take, method: str) -> None:
-    seen: list[Progress] = []
-    result = run(reconstruct(take, method), seen.append)
+def test_every_method_gives_every_frame_the_posture_recorded(
+    made: Callable[[str], tuple[Reconstruction, list[Progress]]], method: str
+) -> None:
+    result, seen = made(method)
     motion = result.motion
+    assert_recorded(f"take by {method}", motion.points, share=1e-4)
+    assert_recorded(f"take by {method}, sigma", motion.sigma_m, share=1e-3)
     assert motion.method == method
     assert motion.points.shape == (24, 13, 3) and np.isfinite(motion.points).all()
     assert np.isfinite(motion.sigma_m).all() == (method != "interpolation")
@@ -48,7 +64,7 @@ def test_every_method_gives_every_frame_a_finite_posture(take: Take, method: str
 def test_a_clip_read_before_gives_the_same_motion_without_the_clip(
     take: Take, mapped: Reconstruction, tmp_path: Path
 ) -> None:
-    found = run(reconstruct(take, "interpolation")).reading
+    found = mapped.reading
     seen: list[Progress] = []
     again = run(reconstruct(replace(take, clip=tmp_path / "gone"), "map", found), seen.append)
     assert again.reading is found

@@ -1,7 +1,6 @@
 """Estimates of seeded performances by every kind of evidence, number by number."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,12 +11,10 @@ from _filmed import TRUTH as FILMED
 from _filmed import album
 from _recorded import assert_recorded
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film
-from _synthetic_take import write_synthetic_take
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_problem import uncalibrated
 from keymark.core.estimate.keyframe_error import posing_covariance
 from keymark.core.estimate.performer_placement import place_standing
-from keymark.core.estimate.reconstruct import METHODS, reconstruct
 from keymark.core.estimate.reference_alignment import about_hips, align
 from keymark.core.estimate.reference_evidence import STD_M, error_factor, own_and_usual_cost
 from keymark.core.estimate.reference_placement import SeenPoints
@@ -29,7 +26,6 @@ from keymark.core.prior.frame_prior import prior_from_keyframes
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
 from keymark.core.take.reference import ReferenceMotion
-from keymark.core.take.take_file import read_take
 
 FRAMES, POSED = 46, (0, 11, 22, 33, 45)
 TRUTH = exercise(FRAMES)
@@ -76,14 +72,6 @@ def test_by_contours() -> None:
     seen = Seen(bare, (), album=album())
     result = run(estimate_whole_clip(BODY, CAMERA, seen, believed))
     hold("estimate by contours", result, 2e-3)  # OpenCV's releases draw a border's pixels differently
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_a_take_by_every_method(method: str, tmp_path: Path) -> None:
-    take = read_take(write_synthetic_take(tmp_path / "take", frames=24, keyframe_every=8))
-    motion = run(reconstruct(take, method)).motion
-    assert_recorded(f"take by {method}", motion.points, share=1e-4)
-    assert_recorded(f"take by {method}, sigma", motion.sigma_m, share=1e-3)
 
 
 def test_single_frames() -> None:

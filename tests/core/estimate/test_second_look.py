@@ -163,12 +163,6 @@ def test_finds_are_kept_where_nothing_changed() -> None:
     np.testing.assert_array_equal(after.tracked.area, before.tracked.area)
 
 
-def test_nothing_changed_looks_at_nothing() -> None:
-    again = estimate(pictures(), earlier=found())
-    np.testing.assert_array_equal(again.problem.observed.area, found().problem.observed.area)
-    np.testing.assert_array_equal(again.posture.translation, found().posture.translation)
-
-
 def test_a_result_shows_what_was_found() -> None:
     tracks, observed = tracked(), found().problem.observed
     shown, new = seen_tracks(tracks, observed), finds(found())

@@ -52,17 +52,6 @@ def test_the_fit_leads_from_the_keyframe_before_towards_the_truth() -> None:
     assert np.mean(after) < 0.45 * np.mean(before)
 
 
-def test_between_two_keyframes_it_is_better_than_interpolation() -> None:
-    tracks = film(TRUTH, noise_px=0.3, seed=2)
-    before, after = [], []
-    for frame in range(15, 30, 3):
-        belief = prior_from_keyframes(keyframes(frame - 15, frame + 15), frame, 30.0)
-        found = fit(belief, tracks, frame)
-        before.append(error_mm(belief.posture, frame))
-        after.append(error_mm(found.posture, frame))
-    assert np.mean(after) < 0.65 * np.mean(before)
-
-
 @pytest.mark.parametrize("seed", range(6))
 def test_the_markers_are_never_seen_farther_off_than_before(seed: int) -> None:
     rng = np.random.default_rng(seed)

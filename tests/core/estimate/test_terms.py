@@ -20,7 +20,6 @@ from keymark.core.evidence.regions import (
     feature_rows,
     missing_variance,
 )
-from keymark.core.numerics.robust import student_weight
 from keymark.core.prior.frame_prior import process_noise_factor
 
 FRAMES = 6
@@ -225,18 +224,6 @@ def test_a_burst_in_one_limb_does_not_loosen_another() -> None:
     )
 
 
-def test_the_quadratic_term_is_the_sum_of_its_rows() -> None:
-    builder = QuadraticBuilder(FRAMES, DOFS)
-    std = np.linspace(0.1, 1.0, DOFS)
-    builder.add(slice(0, DOFS), (1.0, -2.0, 1.0), std)
-    at = state()
-
-    def cost(s: ClipState) -> float:
-        return float(0.5 * np.sum((np.diff(s.variation, 2, axis=0) / std) ** 2))
-
-    assert_gradient(builder.term(), cost, at)
-
-
 def test_features_of_a_region_against_itself_are_zero_and_grow_with_its_shift() -> None:
     posture = exercise(FRAMES)
     tracks = film(posture)
@@ -265,11 +252,6 @@ def test_a_shape_residual_is_the_difference_of_deviations_in_pixels() -> None:
     residual, _ = feature_rows(ObservedRegions.from_tracks(wider), predicted)
     long_axis = observed.deviation[0, :, 1]
     np.testing.assert_allclose(residual[0, :, 4], -0.1 * long_axis, rtol=0.06)
-
-
-def test_student_weights_fall_with_the_residual() -> None:
-    weight = student_weight(np.array([0.0, 8.0, 800.0]), 4.0, 2)
-    np.testing.assert_allclose(weight, [1.0, 0.5, 4.0 / 404.0])
 
 
 def test_what_is_missing_of_a_region_widens_its_features() -> None:

@@ -19,14 +19,14 @@ from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import Preview
 
-FRAMES, EVERY, MOVED = 360, 6, 31
+FRAMES, EVERY, MOVED = 216, 6, 18
 TOLERANCE_MM = 4.0
 """At the one worst point; on average it is a twentieth."""
 FARTHEST_MM = 12.0
 """At the worst point in a few frames that hardly anything determines, for which all keyframes count."""
 TRUTH = exercise(FRAMES)
 TRACKS = film(TRUTH, 0.3)
-OPTIONS = WholeClipOptions(window_s=10.0)
+OPTIONS = WholeClipOptions(window_s=5.0, margin_s=2.0)
 
 
 def posed(seed: int = 5) -> tuple[Keyframe, ...]:
@@ -115,7 +115,7 @@ def test_keyframes_may_come_and_go() -> None:
 
 def test_frames_seen_differently_are_estimated_again() -> None:
     centroid = TRACKS.centroid.copy()
-    centroid[241:246, 1] += 3.0  # between two keyframes
+    centroid[127:132, 1] += 3.0  # between two keyframes
     other = replace(TRACKS, centroid=centroid)
     again, shown = estimate(posed(), first(), other)
     assert 0 < estimated_frames(shown) < 0.5 * FRAMES

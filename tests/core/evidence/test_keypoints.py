@@ -112,16 +112,6 @@ def test_the_rest_posture_stands_at_the_cameras_distance() -> None:
     np.testing.assert_allclose(depths.evaluate(BODY, camera_in_front(), pose), 4.0, atol=1e-12)
 
 
-def test_a_moving_camera_is_taken_at_its_frame() -> None:
-    pose = BODY.pose(Posture.rest(HUMAN, (3,)))
-    depth = depths.evaluate(BODY, camera_in_front(3), pose, np.arange(3))
-    np.testing.assert_allclose(depth, np.broadcast_to(np.array([[4.0], [5.0], [6.0]]), (3, 13)), atol=1e-12)
-
-
-def test_the_papers_variance_is_kept_in_meters() -> None:
-    assert depths.DEPTH_VARIANCE_M2 == pytest.approx(1e5 * 1e-6)
-
-
 @pytest.mark.parametrize("seed", range(10))
 def test_the_jacobian_agrees_with_central_differences_on_the_manifold(seed: int) -> None:
     rng = np.random.default_rng(seed)

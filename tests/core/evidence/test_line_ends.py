@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
-from keymark.core.body.body_volume import marker_segments
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
@@ -72,23 +71,6 @@ def test_the_jacobian_agrees_with_central_differences_on_the_manifold(
     analytic = observation.jacobian(BODY.pose(posture), 1)
     assert analytic.shape == (5, 4, 34)
     np.testing.assert_allclose(analytic, numeric, rtol=1e-5, atol=1e-4)
-
-
-def test_a_batch_agrees_with_its_postures_one_by_one() -> None:
-    rng = np.random.default_rng(5)
-    batch = Posture.rest(HUMAN, (2, 3)).plus(rng.normal(0.0, 0.4, (2, 3, 34)))
-    observation = LineEnds(BODY, CAMERA, MARKED)
-    whole, slope = observation.evaluate(BODY.pose(batch)), observation.jacobian(BODY.pose(batch))
-    one = BODY.pose(batch[1, 2])
-    np.testing.assert_allclose(whole[1, 2], observation.evaluate(one), rtol=1e-12)
-    np.testing.assert_allclose(slope[1, 2], observation.jacobian(one), rtol=1e-9, atol=1e-9)
-
-
-@pytest.mark.parametrize("segment", marker_segments(BODY))
-def test_every_segment_with_a_volume_can_carry_a_marker(segment: str) -> None:
-    observation = LineEnds(BODY, CAMERA, (segment,))
-    assert 0.03 < observation.width_m[0] < 0.5
-    assert np.isfinite(observation.evaluate(BODY.pose(Posture.rest(HUMAN)))).all()
 
 
 def test_an_unknown_segment_is_refused_by_name() -> None:

@@ -6,7 +6,7 @@ from _scene import BODY
 from keymark.core.body.body_volume import sole_places, standing_posture
 from keymark.core.body.kinematics import RIGID, Extremities, segment_ends
 from keymark.core.body.mirror import mirrored, mirrored_actor
-from keymark.core.body.posture import Posture, turned_and_shifted
+from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import logarithm
 from keymark.core.finish.foot_ground import TOES_DOWN_RAD, TOES_UP_RAD
 from keymark.core.finish.natural_extremities import (
@@ -145,14 +145,6 @@ def test_noise_does_not_make_feet_tremble(step: Posture, seed: int) -> None:
         ]
         assert speed[0].mean() < 1.3 * speed[1].mean()
         assert speed[0].max() < speed[1].max() + np.radians(12.0)
-
-
-def test_where_the_performer_stands_and_faces_makes_no_difference(step: Posture) -> None:
-    elsewhere = turned_and_shifted(step, 2.5, np.array([1.0, -2.0, 0.7]))
-    for name, turn in natural_extremities(BODY, step, times(step)).turns.items():
-        np.testing.assert_allclose(
-            natural_extremities(BODY, elsewhere, times(step)).turns[name], turn, atol=1e-7
-        )
 
 
 def test_the_mirror_image_has_mirrored_feet(step: Posture) -> None:

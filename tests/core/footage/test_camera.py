@@ -160,15 +160,6 @@ def test_each_unusable_field_is_named_in_one_sentence(changes: dict[str, Any], w
     assert "\n" not in str(caught.value)
 
 
-def test_the_pose_cannot_be_changed_from_outside() -> None:
-    matrix = turned(0.0)
-    camera = Camera(40.0, 36.0, (320, 240), matrix)
-    matrix[0, 3] = 100.0
-    assert camera.matrix_world[0, 3] == 0.0
-    with pytest.raises(ValueError, match="read-only"):
-        camera.matrix_world[0, 3] = 1.0
-
-
 PLACED = {"lens_mm": 35.0, "sensor_width_mm": 36.0, "resolution": [200, 100], "height_m": 1.5}
 
 

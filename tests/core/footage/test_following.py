@@ -1,16 +1,14 @@
 """Following markers through a clip longer than what their colors are learned from, and in one frame."""
 
-import cv2
 import numpy as np
 import pytest
-from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, clip_of, draw, film, finish, moving, path, tracked
+from _drawn_clip import RED, SIZE, STYLES, Drawn, clip_of, draw, film, finish, moving, path, tracked
 from keymark.core.errors import InputError
 from keymark.core.footage import markers
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.markers import regions_of_frame, track_markers
 from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle
-from keymark.core.footage.segmentation.moments import coverage
-from keymark.core.footage.segmentation.search_windows import NO_COLOR, Window, boxes_to_measure, pack_windows
+from keymark.core.footage.segmentation.search_windows import NO_COLOR, Window, pack_windows
 from keymark.core.footage.segmentation.working_image import halvings, measuring_image, searching_factor
 
 STRETCH = 9
@@ -105,11 +103,6 @@ def test_the_expected_places_tell_markers_of_almost_one_color_apart() -> None:
     assert "left and right have almost the same color; the keyframes tell" in tracks.notes[0]
 
 
-def test_markers_of_different_colors_need_no_note() -> None:
-    rng = np.random.default_rng(7)
-    assert tracked([draw(moving(i), rng) for i in range(12)]).notes == ()
-
-
 def test_a_marker_of_the_walls_color_is_refused_with_the_reason() -> None:
     wall = (200, 190, 176)
     rng = np.random.default_rng(8)
@@ -131,26 +124,6 @@ def test_panels_are_the_windows_and_repeat_the_border_beyond_the_picture() -> No
     assert sheet.image[0] == 0 and sheet.image[12] == 1 and sheet.scale[0] == 1 and sheet.scale[12] == 2
     assert sheet.shift[:, 0].tolist() == [5, 6] and sheet.shift[:, 11].tolist() == [-13, 10]
     assert sheet.picture.shape[0] % 2 == 0 and sheet.picture.shape[1] % 2 == 0
-
-
-def test_boxes_near_each_other_share_a_window_and_no_pixel_is_in_two() -> None:
-    assert boxes_to_measure([(0, 0, 10, 10), (18, 4, 30, 12)], []) == [(0, 0, 30, 12)]
-    assert sorted(boxes_to_measure([(0, 0, 10, 10)], [(5, 5, 20, 20), (90, 0, 99, 9)])) == [
-        (0, 0, 10, 10),
-        (90, 0, 99, 9),
-    ]
-
-
-def test_the_share_of_a_border_pixel_is_what_the_region_covers_of_it() -> None:
-    fine = np.zeros((40 * 16, 60 * 16), dtype=np.uint8)
-    cv2.circle(fine, (30 * 16, 20 * 16), 10 * 16, 255, -1)
-    share = cv2.resize(fine, (60, 40), interpolation=cv2.INTER_AREA) / 255.0
-    image = share[..., None] * np.array(RED[::-1]) + (1.0 - share[..., None]) * np.array(BLUE[::-1])
-    covered = coverage(np.round(image).astype(np.uint8), (share >= 0.5).astype(np.uint8))
-    found = np.zeros(share.shape)
-    found.ravel()[covered.pixel] = covered.share
-    assert np.abs(found - share).max() < 0.03
-    assert found.sum() == pytest.approx(share.sum(), rel=0.002)
 
 
 @pytest.mark.parametrize(

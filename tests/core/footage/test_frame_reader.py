@@ -107,14 +107,3 @@ def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
         np.testing.assert_array_equal(image, GRADIENTS[index])
         small = cv2.resize(image, (320, 240), interpolation=cv2.INTER_AREA)
         assert np.abs(album.picture(index).astype(float) - small).max() <= 4.0
-
-
-def test_sampling_puts_nothing_into_the_album() -> None:
-    album = Album()
-    clip = watched(album)
-    assert len(list(clip.sample(2))) == 2
-    assert 0 not in album
-    with pytest.raises(KeyError):
-        album.picture(0)
-    next(clip.frames())
-    assert 0 in album and 1 not in album

@@ -23,7 +23,6 @@ from _drawn_clip import (
 from keymark.core.footage.clips.clip import Clip, sample_clip
 from keymark.core.footage.ignored_regions import IGNORED, IgnoredPixels, IgnoredRegion
 from keymark.core.footage.marker_check import check_markers
-from keymark.core.footage.markers import regions_of_frame
 from keymark.core.footage.reading import Reading, read_clip, reading_key
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.footage.segmentation.regions import color_masks
@@ -182,15 +181,6 @@ def test_a_kept_reading_is_not_used_for_other_ignored_regions(tmp_path: Path) ->
 
 def _read(clip: Clip, kept: Reading | None = None, ignored: Sequence[IgnoredRegion] = ()) -> Reading:
     return run(read_clip(clip, STYLES, None, False, kept, ignored))
-
-
-def test_one_frame_alone_leaves_the_same_pixels_out() -> None:
-    rng = np.random.default_rng(5)
-    frames = [with_panel(draw(hidden_red(index), rng)) for index in range(40)]
-    over = IgnoredRegion(box=OVER, frames=(0, 25))
-    for index, found in ((20, False), (26, True)):
-        alone = regions_of_frame(clip_of(frames), index / 30.0, STYLES, None, (over,), index)
-        assert bool(alone.visible[0, 0]) is found
 
 
 def test_a_mask_that_is_shown_has_nothing_of_an_ignored_panel() -> None:

@@ -1,10 +1,8 @@
 """The readout of markers: numbers and warnings on clips whose colors are known, and previews."""
 
 from collections.abc import Generator, Sequence
-from pathlib import Path
 from typing import TypeVar
 
-import cv2
 import numpy as np
 import pytest
 from _drawn_clip import (
@@ -12,7 +10,6 @@ from _drawn_clip import (
     PANEL,
     RED,
     STYLES,
-    Drawn,
     Ellipse,
     clip_of,
     draw,
@@ -21,7 +18,7 @@ from _drawn_clip import (
     tracked,
     with_panel,
 )
-from keymark.core.footage.clips.clip import Clip, sample_clip
+from keymark.core.footage.clips.clip import sample_clip
 from keymark.core.footage.ignored_regions import IgnoredRegion
 from keymark.core.footage.marker_check import MarkerCheck, check_markers
 from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle
@@ -166,16 +163,6 @@ def test_previews_show_what_the_extraction_measures() -> None:
     assert masks.shape == (2, 240, 320)
     np.testing.assert_allclose(masks.sum(axis=(1, 2)), tracks.area[5], rtol=0.02)
     assert masks.max() <= 1.0 and masks[0][120, 250] == 0.0 and masks[1][120, 250] == 1.0
-
-
-def test_large_images_are_previewed_on_the_measuring_grid() -> None:
-    small = film(moving, 6, 11)
-    large = [cv2.resize(image, None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC) for image in small]
-    clip = Clip(Path("large"), Drawn(large, size=(1280, 960)))
-    result = result_of(check_markers(result_of(sample_clip(clip)), STYLES))
-    masks = color_masks(large[2], result.model)
-    assert masks.shape == (2, 240, 320)
-    assert masks[0].mean() == pytest.approx(result.readouts[0].area_share, rel=0.06)
 
 
 def test_outlines_run_along_the_edge_of_what_is_covered() -> None:

@@ -3,7 +3,6 @@
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import cv2
 import numpy as np
@@ -27,7 +26,7 @@ from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.colors.color_learning import learn_colors
 from keymark.core.footage.markers import track_markers
-from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle, RegionTracks
+from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle
 
 
 def test_regions_of_known_place_size_and_direction_are_measured_to_a_fraction_of_a_pixel() -> None:
@@ -41,12 +40,6 @@ def test_regions_of_known_place_size_and_direction_are_measured_to_a_fraction_of
     np.testing.assert_allclose(np.linalg.eigvalsh(tracks.second_moment[:, 0])[:, 1], 16**2 / 4, rtol=0.1)
     assert tracks.quality.min() > 0.8 and not tracks.clipped.any()
     np.testing.assert_allclose(tracks.time_s, np.arange(40) / 30.0)
-
-
-def test_the_clip_is_decoded_once_for_the_extraction() -> None:
-    drawn = Drawn(film(moving, 15, 1))
-    finish(track_markers(Clip(Path("drawn.mp4"), drawn), STYLES))
-    assert drawn.passes == 1
 
 
 def test_a_hidden_marker_is_not_a_number_and_comes_back() -> None:
@@ -166,25 +159,6 @@ def test_a_gray_marker_before_a_wall_of_a_little_warmth_is_followed() -> None:
     tracks = tracked(images, (MarkerStyle("gray", "forearm.L", gray),))
     truth = np.array([[80.0 + 6.0 * index, 90.0] for index in range(20)])
     assert tracks.visible.all() and np.median(np.abs(tracks.centroid[:, 0] - truth)) < 0.5
-
-
-def test_tracks_refuse_shapes_that_disagree() -> None:
-    good: dict[str, Any] = {
-        "names": ("a",),
-        "centroid": np.zeros((3, 1, 2)),
-        "second_moment": np.zeros((3, 1, 2, 2)),
-        "area": np.zeros((3, 1)),
-        "quality": np.zeros((3, 1)),
-        "clipped": np.zeros((3, 1), dtype=bool),
-        "time_s": np.arange(3.0),
-        "size": SIZE,
-    }
-    tracks = RegionTracks(**good)
-    assert tracks.frame_count == 3 and tracks.visible.all() and not tracks.variable_frame_rate
-    with pytest.raises(ValueError, match="read-only"):
-        tracks.area[0, 0] = 1.0
-    with pytest.raises(ValueError, match="quality"):
-        RegionTracks(**{**good, "quality": np.zeros((3, 2))})
 
 
 @pytest.mark.parametrize("name", ["walk", "reach", "aerobic"])

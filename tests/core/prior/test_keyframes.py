@@ -10,7 +10,6 @@ from keymark.core.body.posture import Posture, headings_rad, yawed_at
 from keymark.core.prior.keyframes import (
     Keyframe,
     Matched,
-    heading_steps_rad,
     interpolate,
     interpolate_linearly,
     with_offset,
@@ -70,11 +69,6 @@ def test_no_component_overshoots_its_neighboring_keyframes(values: list[float], 
         assert stretch.min() >= low - 1e-12 and stretch.max() <= high + 1e-12
 
 
-def test_even_motion_is_reproduced_evenly() -> None:
-    curve = interpolate(place_only([0.0, 1.0, 2.0], [0, 10, 20]), 21)
-    np.testing.assert_allclose(curve.translation[:, 2], np.arange(21) / 10.0, atol=1e-12)
-
-
 def test_a_turn_past_half_a_circle_keeps_its_direction() -> None:
     vectors = np.zeros((4, HUMAN.dof_count))
     turns = Posture.from_vector(HUMAN, vectors).plus(np.arange(4)[:, None] * 2.0 * np.eye(HUMAN.dof_count)[5])
@@ -123,12 +117,6 @@ def test_a_whole_turn_more_is_seen_on_the_way_only() -> None:
     both = with_turns(short, TURNS_AT, np.array([1, -1, 0]))
     points = BODY.points(BODY.pose(both))
     np.testing.assert_allclose(points[TURNS_AT], BODY.points(BODY.pose(short))[TURNS_AT], atol=1e-9)
-
-
-def test_steps_between_keyframes_are_taken_the_short_way() -> None:
-    np.testing.assert_allclose(np.degrees(heading_steps_rad(facing())), [20.0, 146.0, 14.0], atol=1e-6)
-    behind = yawed_at(facing(), np.radians(170.0), facing().translation)
-    np.testing.assert_allclose(np.degrees(heading_steps_rad(behind)), [20.0, 146.0, 14.0], atol=1e-6)
 
 
 FPS = 30.0

@@ -57,12 +57,6 @@ def test_merging_adds_what_is_new_and_asks_for_the_rest(replaces: bool) -> None:
     Library.from_json(result.to_json(), "here")
 
 
-def test_merging_with_a_part_of_itself_changes_nothing() -> None:
-    assert merge_versions(MINE, replace(MINE, motions=())) is MINE
-    longer = newer(postures=(*MINE.postures, NEW))
-    assert merge_versions(MINE, longer) is longer
-
-
 def test_postures_of_another_actor_are_fitted() -> None:
     taller = Actor({name: 1.2 * length for name, length in ACTOR.segments_m.items()})
     result = merge_versions(MINE, newer(actor=taller, postures=(NEW,), motions=()), False)

@@ -34,15 +34,6 @@ def test_a_posture_fills_its_picture_and_left_is_told_from_right() -> None:
     np.testing.assert_array_equal(image, posture_picture(BODY, STANDING))
 
 
-def test_the_eye_stands_where_the_view_says() -> None:
-    paper = np.full((200, 200, 3), 250, dtype=np.uint8)
-    for turn, side in ((0.0, 1.0), (np.pi, -1.0)):
-        image = draw_mannequin(paper, mannequin(BODY, STANDING), View(turn, 0.1, 90.0, (100.0, 180.0)))
-        assert side * (np.nonzero(alike(image, LEFT))[1].mean() - 100.0) > 10.0
-        assert side * (np.nonzero(alike(image, RIGHT))[1].mean() - 100.0) < -10.0
-    assert (paper == 250).all()
-
-
 def test_a_limb_in_front_hides_what_is_behind() -> None:
     paper = np.full((200, 200, 3), 250, dtype=np.uint8)
     image = draw_mannequin(paper, mannequin(BODY, STANDING), View(0.5 * np.pi, 0.0, 90.0, (100.0, 180.0)))

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from keymark.core.body.human import HUMAN
 from keymark.core.footage.keypoints.keypoints import BODY_POINTS, mirrored_point
-from keymark.core.footage.keypoints.layouts import LAYOUTS, OWN, layout_of, named_point, own_layout
+from keymark.core.footage.keypoints.layouts import LAYOUTS, OWN, layout_of, named_point
 
 SPOTS = {
     "coco17": {0: "nose", 3: "ear.L", 6: "shoulder.R", 9: "wrist.L", 11: "hip.L", 16: "ankle.R"},
@@ -50,11 +50,6 @@ def test_points_are_those_of_the_detector(name: str) -> None:
 def test_layouts_are_told_apart_by_their_number_of_points() -> None:
     assert all(layout_of(layout.count) is layout for layout in LAYOUTS.values())
     assert layout_of(21) is None
-
-
-def test_own_layout_keeps_the_order_of_its_names() -> None:
-    layout = own_layout(["toe.R", "head"])
-    assert (layout.count, layout.names, layout.numbers) == (2, ("toe.R", "head"), [0, 1])
 
 
 def test_the_schema_knows_all_names(repository: Path) -> None:

@@ -13,7 +13,6 @@ from keymark.core.footage.keypoints.performer import (
     Sightings,
     choose_performer,
     performer_size_px,
-    person_size,
     principal_keypoints,
 )
 
@@ -100,11 +99,6 @@ def test_without_any_hint_the_largest_who_stays_is_followed() -> None:
     np.testing.assert_array_equal(chosen, truth)
 
 
-def test_nobody_anywhere() -> None:
-    empty = Sightings((np.zeros((0, 7, 2)),) * 5, (np.zeros((0, 7)),) * 5)
-    assert (choose_performer(empty, None, FPS) == NOBODY).all()
-
-
 def test_a_jump_to_somebody_else_is_left_out() -> None:
     frames = 60
     performer, other = walker((60, 60), (0.5, 0), frames, 0), walker((280, 40), (-1, 0), frames, 1)
@@ -125,12 +119,6 @@ def test_a_crowd_is_searched_where_the_performer_is_expected() -> None:
     ]
     seen, truth = scene(people, np.ones((frames, len(people)), dtype=bool))
     assert (choose_performer(seen, expected_from(people[0], 8), FPS) == truth).mean() > 0.95
-
-
-def test_size_ignores_points_not_seen() -> None:
-    points = np.stack([FIGURE, np.full_like(FIGURE, np.nan)])
-    points[0, 1:3] = np.nan
-    np.testing.assert_allclose(person_size(points), [np.hypot(14.0, 75.0), 1.0])
 
 
 HEAD, WRIST = HUMAN.point_names.index("head"), HUMAN.point_names.index("wrist.L")
