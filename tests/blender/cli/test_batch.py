@@ -148,6 +148,7 @@ def test_what_is_converted_is_skipped_until_its_input_changes(
     assert statuses(said) == {GOOD[0]: "converted"}
 
 
+@pytest.mark.slow
 def test_keyframes_are_found_and_found_again_where_a_library_changes(
     shoot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -174,6 +175,7 @@ def test_keyframes_are_found_and_found_again_where_a_library_changes(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such signal")
+@pytest.mark.slow
 def test_a_worker_killed_in_the_middle_costs_its_take_one_retry(
     shoot: Path,
     results: Path,
@@ -201,6 +203,7 @@ def test_a_worker_killed_in_the_middle_costs_its_take_one_retry(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no signal to one process")
+@pytest.mark.slow
 def test_an_interrupted_batch_is_whole_and_goes_on(
     shoot: Path, results: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

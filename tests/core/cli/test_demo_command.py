@@ -86,6 +86,7 @@ def write_character(file: Path) -> None:
     bpy.data.batch_remove([armature, armature.data])
 
 
+@pytest.mark.slow
 def test_it_scores_every_method_by_the_motion_it_wrote_and_says_where_to_look(
     take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -44,7 +44,7 @@ def log_errors(found: Body, body: Body) -> np.ndarray:
 def test_height_is_kept_and_lengths_are_no_worse_than_average_proportions() -> None:
     rng = np.random.default_rng(2)
     before, after = [], []
-    for _ in range(5):
+    for _ in range(3):
         body = someone(rng)
         step = np.where(np.arange(34) < 6, 0.0, 0.03) * rng.normal(size=34)
         found, posture = measured(body, step, stretched=True)
@@ -98,7 +98,7 @@ def measured_by_keypoints(body: Body, posture: Posture, noise_px: float) -> Meas
 def test_keypoints_measure_lengths_without_any_marker() -> None:
     rng = np.random.default_rng(2)
     before, after = [], []
-    for _ in range(4):
+    for _ in range(3):
         body = someone(rng)
         step = np.where(np.arange(34) < 6, 0.0, 0.03) * rng.normal(size=34)
         found = measured_by_keypoints(body, standing_posture(body, PLACE, 0.0, 0.0).plus(step), 0.5)

@@ -16,7 +16,6 @@ from keymark.core.evidence.line_ends import LineEnds
 from keymark.core.progress import run
 from keymark.core.take.take_file import read_take
 
-
 RUNS, FRAMES = 12, 14
 KEYFRAMES = (0, 5, 9, 13)
 OPTIONS = FilterOptions(

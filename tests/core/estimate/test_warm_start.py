@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.warm_start import blend_weight, revised_windows
@@ -18,6 +19,8 @@ from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import Preview
+
+pytestmark = pytest.mark.slow
 
 FRAMES, EVERY, MOVED = 216, 6, 18
 TOLERANCE_MM = 4.0

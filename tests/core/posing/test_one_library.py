@@ -16,6 +16,8 @@ from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library
 from keymark.core.progress import run
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("heading_deg", [-100.0, 35.0])
 def test_walking_is_found_in_its_phase_heading_and_place(walking: Library, heading_deg: float) -> None:

@@ -12,6 +12,8 @@ from keymark.core.posing.pose_clip import pose_clip
 from keymark.core.prior.library import Library
 from keymark.core.progress import run
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("heading_deg", [-100.0, 35.0])
 @pytest.mark.parametrize("hinted", [False, True])

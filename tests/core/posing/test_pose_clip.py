@@ -17,6 +17,8 @@ from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library, read_library
 from keymark.core.progress import run
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[3]
 
 
