@@ -94,8 +94,3 @@ def test_the_field_offers_actors_of_the_scene_alone(opened: bpy.types.Scene) -> 
     assert _is_actor(take, take.armature) and not _is_actor(take, rig)
     delete(take.armature)
     assert not _is_actor(take, take.armature)
-
-
-def test_a_height_is_shown_to_the_millimeter(opened: bpy.types.Scene) -> None:
-    precision = active_take(opened).bl_rna.properties["stature"].precision
-    assert bpy.utils.units.to_string("METRIC", "LENGTH", 1.797, precision=precision) == "1.797 m"

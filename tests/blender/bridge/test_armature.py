@@ -13,11 +13,6 @@ from keymark.operators.overlays.drawing import SIDES
 from mathutils import Matrix
 
 
-def test_there_is_one_bone_a_segment_with_its_parent(actor: bpy.types.Object) -> None:
-    parents = {bone.name: bone.parent.name if bone.parent else None for bone in actor.data.bones}
-    assert parents == {segment.name: segment.parent for segment in HUMAN.segments}
-
-
 def test_the_actor_stands_on_the_floor_in_a_t_pose(actor: bpy.types.Object, body: Body) -> None:
     tails = np.array([bone.tail_local for bone in actor.data.bones])
     assert tails[:, 2].min() == pytest.approx(0.0, abs=1e-6)
@@ -61,12 +56,6 @@ def test_locks_mirror_the_degrees_of_freedom(actor: bpy.types.Object) -> None:
     assert locks["thigh.L"] == locks["chest"] == (False, False, False)
     moving = [bone.name for bone in actor.pose.bones if not all(bone.lock_location)]
     assert moving == ["pelvis"]
-
-
-def test_balls_turn_by_quaternions_and_hinges_by_angles(actor: bpy.types.Object) -> None:
-    modes = {bone.name: bone.rotation_mode for bone in actor.pose.bones}
-    assert modes["upper_arm.L"] == modes["pelvis"] == modes["hand.R"] == "QUATERNION"
-    assert modes["forearm.L"] == modes["shin.L"] == modes["girdle.R"] == "YZX"
 
 
 def test_limits_guide_inverse_kinematics_without_constraints(actor: bpy.types.Object) -> None:

@@ -106,14 +106,6 @@ def test_the_scene_takes_size_rate_and_range(tiny_take: Take, camera: Camera) ->
     assert scene.camera.data.show_background_images
 
 
-def test_a_take_uses_its_camera_again(tiny_take: Take, camera: Camera, turned: Camera) -> None:
-    first = show(tiny_take, camera)
-    again = show_footage(bpy.context.scene, turned, tiny_take.clip, tiny_take.fps, 1, 13, camera_object=first)
-    assert again == first
-    assert len(first.data.background_images) == 1
-    assert len([o for o in bpy.data.objects if o.type == "CAMERA"]) == 1
-
-
 def test_a_file_that_is_no_clip_is_refused(tmp_path) -> None:  # noqa: ANN001
     broken = tmp_path / "broken.mp4"
     broken.write_bytes(b"not a video")

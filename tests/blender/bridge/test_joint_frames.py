@@ -30,11 +30,3 @@ def test_beyond_reach_no_other_angles_are_nearer(seed: int) -> None:
     distances = np.linalg.norm(logarithm(np.swapaxes(chains, -1, -2) @ rotation), axis=-1)
     assert found <= distances.min() + 1e-9
     assert found > 1e-3
-
-
-def test_one_hinge_takes_its_share_of_a_rotation() -> None:
-    rotation = hinge(X, np.array(0.7)) @ hinge(Y, np.array(0.2))
-    (angle,) = nearest_hinges([X], rotation)
-    grid = np.linspace(0.5, 0.9, 4001)
-    distances = np.linalg.norm(logarithm(np.swapaxes(hinge(X, grid), -1, -2) @ rotation), axis=-1)
-    assert angle == pytest.approx(grid[np.argmin(distances)], abs=2e-4)

@@ -3,7 +3,6 @@
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import bpy
 import numpy as np
@@ -13,7 +12,6 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.core.files.json_file import parse_json
 from keymark.core.prior.library import (
     Library,
     LibraryMotion,
@@ -23,7 +21,6 @@ from keymark.core.prior.library import (
     write_library,
 )
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.library import pose_assets
 from keymark.operators.bridge.library.library_file import read_library_blend, write_library_blend
 from keymark.operators.bridge.library.pose_assets import (
     HEADER,
@@ -32,9 +29,7 @@ from keymark.operators.bridge.library.pose_assets import (
     library_from_assets,
     read_asset,
 )
-from keymark.operators.bridge.object_space import evaluated
-from keymark.operators.bridge.pose import read_posture, write_posture
-from keymark.operators.bridge.posture_curves import channel_values
+from keymark.operators.bridge.pose import read_posture
 
 RandomPosture = Callable[[int], Posture]
 ANGLE = 1e-6
@@ -240,33 +235,3 @@ def test_a_blend_without_libraries_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="holds no pose assets of a keyframe library"):
         read_library_blend(tmp_path / "other.blend")
     assert not len(bpy.data.actions)
-
-
-def test_channels_of_a_posture_are_those_of_the_armature(library: Library) -> None:
-    body = Body(library.actor)
-    actor = build_armature(bpy.context.scene, body)
-    posture = library.postures[2].posture
-    write_posture(actor, posture)
-    values = channel_values(body, posture)
-    for name, column in values.items():
-        bone = actor.pose.bones[name]
-        turn = bone.rotation_quaternion if bone.rotation_mode == "QUATERNION" else bone.rotation_euler
-        assert np.array(turn) == pytest.approx(column[: len(turn)], abs=2e-6)
-    assert np.array(actor.pose.bones["pelvis"].location) == pytest.approx(values["pelvis"][4:], abs=2e-6)
-    evaluated(actor)
-
-
-def test_the_header_that_all_assets_share_is_read_once(
-    library: Library, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    actions = add_assets(library)
-    read: list[str] = []
-
-    def parse(text: str, where: str) -> dict[str, Any]:
-        read.append(text)
-        return parse_json(text, where)
-
-    pose_assets._parsed.cache_clear()
-    monkeypatch.setattr(pose_assets, "parse_json", parse)
-    assert len(library_from_assets(actions)[0].postures) == 4
-    assert read.count(actions[0][HEADER]) == 1

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from keymark.core.body.rotations import exponential
 from keymark.operators.bridge.rotation_modes import rotation_values
-from mathutils import Euler, Matrix, Quaternion
+from mathutils import Euler, Quaternion
 
 ORDERS = ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"]
 
@@ -50,10 +50,3 @@ def test_a_rotation_without_angle_keeps_the_axis_before() -> None:
     values = rotation_values(exponential(angles[:, None] * np.array([0.6, 0.0, 0.8])), "AXIS_ANGLE")
     assert values[:, 1:] == pytest.approx(np.tile([0.6, 0.0, 0.8], (11, 1)), abs=1e-9)
     assert values[:, 0] == pytest.approx(angles, abs=1e-9)
-
-
-def test_rest_is_blenders_default() -> None:
-    rest = np.array(Matrix.Identity(3))[None]
-    assert rotation_values(rest, "QUATERNION")[0] == pytest.approx([1.0, 0.0, 0.0, 0.0])
-    assert rotation_values(rest, "AXIS_ANGLE")[0] == pytest.approx([0.0, 0.0, 1.0, 0.0])
-    assert rotation_values(rest, "YZX")[0] == pytest.approx([0.0, 0.0, 0.0])

@@ -119,11 +119,6 @@ def test_another_take_knows_what_was_corrected(character: PropertyGroup, rig: Ob
     assert (found.bones[0].bone, found.source) == ("finger.L", "you")
 
 
-def test_a_character_without_a_take_asks_for_one() -> None:
-    with pytest.raises(RuntimeError, match="Load the footage or open a take first"):
-        bpy.ops.keymark.add_character()
-
-
 def test_removed_and_renamed_things_are_said(character: PropertyGroup, tmp_path: Path) -> None:
     armature = character.armature
     armature.data.bones["shin.L"].name = "Unterschenkel"

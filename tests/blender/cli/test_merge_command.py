@@ -9,7 +9,6 @@ import bpy
 import numpy as np
 import pytest
 from _synthetic_take import write_synthetic_take
-from keymark.core.body.kinematics import Body
 from keymark.core.files.digest import content_digest
 from keymark.core.shoot.outcomes import Failure, write_failure
 from keymark.core.take.conversion_record import ConversionRecord, write_record
@@ -124,17 +123,6 @@ def test_an_actor_given_the_action_moves_as_the_motion_says(
     for frame in (1, 8, 13):
         bpy.context.scene.frame_set(frame)
         np.testing.assert_allclose(shown_points(actor), wave_motion.points[frame - 1], atol=1e-5)
-
-
-def test_blender_itself_finds_the_slot(
-    add_result: AddResult, results: Path, tmp_path: Path, body: Body
-) -> None:
-    add_result("clip")
-    assert merge(results, tmp_path / "library.blend") == 0
-    (action,) = loaded(tmp_path / "library.blend")
-    actor = build_armature(bpy.context.scene, body)
-    actor.animation_data_create().action = action
-    assert actor.animation_data.action_slot == action.slots[0]
 
 
 def test_curves_are_those_of_the_converted_scene(results: Path, tmp_path: Path) -> None:

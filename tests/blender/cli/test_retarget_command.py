@@ -84,14 +84,6 @@ def test_the_record_says_what_was_recognized_and_how_good_it_is(
     assert scene.objects["Anna"].animation_data.action.name == record.action
 
 
-def test_the_same_input_gives_the_same_result(retarget: Retarget, output: Path) -> None:
-    assert retarget() == 0
-    first = (output / "retarget.json").read_bytes()
-    assert retarget() == 0
-    assert (output / "retarget.json").read_bytes() == first
-    assert sorted(tree(output)) == MADE
-
-
 def test_what_a_person_has_changed_is_kept(
     retarget: Retarget, output: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -66,10 +66,3 @@ def test_a_new_actor_stands_where_the_keypoints_are(
     assert bpy.ops.keymark.build_actor(stature=1.72) == {"FINISHED"}
     hips = posture_of(plain).translation
     assert np.linalg.norm(hips - wave_motion.posture[0].translation) < 0.6
-
-
-def test_keyframes_are_proposed_by_keypoints(plain: bpy.types.Scene, keypoint_file: Path) -> None:
-    take = load(keypoint_file)
-    assert bpy.ops.keymark.propose_keyframes() == {"FINISHED"}
-    assert take.proposals[0].frame == 1
-    assert take.proposals[len(take.proposals) - 1].frame == 13

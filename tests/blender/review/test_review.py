@@ -211,10 +211,3 @@ def test_the_view_is_level_with_the_camera_on_the_left(opened: bpy.types.Scene, 
     hips = take.armature.matrix_world @ take.armature.pose.bones["pelvis"].head
     assert (Vector(view.view_location) - hips).length < 0.3
     assert 2.0 < view.view_distance < 8.0
-
-
-def test_it_is_a_toggle_and_needs_an_actor(opened: bpy.types.Scene) -> None:
-    assert bpy.ops.keymark.look_from_side() == {"FINISHED"}
-    bpy.data.objects.remove(active_take(opened).armature)
-    with pytest.raises(RuntimeError, match="actor"):
-        bpy.ops.keymark.look_from_side()

@@ -4,7 +4,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import bpy
-import numpy as np
 import pytest
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import write_take
@@ -205,15 +204,3 @@ def test_the_next_step_follows_what_is_there(tiny_take: Take) -> None:
     take.clip_state.missing = True
     assert says("find the clip")
     assert max(map(len, said)) < 36
-
-
-def test_opening_and_removing_in_turn_keeps_every_take_whole(tiny_take: Take) -> None:
-    scene = open_take(tiny_take, times=3)
-    takes = scene.keymark.takes
-    for index, take in enumerate(takes):
-        take.stature = 1.5 + 0.1 * index
-    scene.keymark.active_take = 1
-    bpy.ops.keymark.remove_take()
-    assert [take.stature for take in takes] == pytest.approx([1.5, 1.7])
-    assert [take.armature.name for take in takes] == ["tiny Actor", "tiny.002 Actor"]
-    assert np.array([len(take.markers) for take in takes]).tolist() == [5, 5]

@@ -30,14 +30,9 @@ FRAMES = 16
 FAST = ("--method", "interpolation", "--no-report")
 
 
-@pytest.fixture(scope="module")
-def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES)
-
-
 @pytest.fixture
-def take(pristine: Path, tmp_path: Path) -> Path:
-    return Path(shutil.copytree(pristine, tmp_path / "take"))
+def take(tmp_path: Path) -> Path:
+    return write_synthetic_take(tmp_path / "take", FRAMES)
 
 
 @pytest.fixture

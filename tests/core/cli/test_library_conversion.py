@@ -24,14 +24,9 @@ FRAMES = 24
 pytestmark = pytest.mark.usefixtures("no_blender")
 
 
-@pytest.fixture(scope="module")
-def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES)
-
-
 @pytest.fixture
-def take(pristine: Path, tmp_path: Path) -> Path:
-    folder = Path(shutil.copytree(pristine, tmp_path / "take"))
+def take(tmp_path: Path) -> Path:
+    folder = write_synthetic_take(tmp_path / "take", FRAMES)
     (folder / "keyframes.json").rename(tmp_path / "posed.json")
     return folder
 

@@ -1,4 +1,4 @@
-"""The whole way from a take to a motion."""
+"""The whole way from a take to a motion, and notes on it."""
 
 import json
 import os
@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -13,11 +14,13 @@ import pytest
 from _recorded import assert_recorded
 from _synthetic_take import BODY, SIZE, true_postures, write_synthetic_take
 from keymark.core.errors import InputError
+from keymark.core.estimate.notes import evidence_notes
 from keymark.core.estimate.reconstruct import METHODS, Reconstruction, reconstruct
+from keymark.core.footage.keypoints.keypoints import People
 from keymark.core.prior.keyframes import interpolate_linearly
 from keymark.core.progress import Progress, run
 from keymark.core.review.score import read_truth, score_points
-from keymark.core.take.take import Take
+from keymark.core.take.take import Take, with_evidence
 from keymark.core.take.take_file import read_take
 from threadpoolctl import threadpool_info, threadpool_limits
 
@@ -155,3 +158,28 @@ def test_footage_beats_every_interpolation_of_hand_posed_keyframes(
         for points in (result.motion.points, linear, result.interpolation.points)
     )
     assert ours < 0.8 * min(plain, smooth)
+
+
+@pytest.mark.parametrize(
+    ("kinds", "checked"),
+    [
+        (("markers",), "the actor's lengths and the markers' segments"),
+        (("keypoints",), "the actor's lengths and whom the keypoints show"),
+        (("markers", "keypoints"), "lengths, the markers' segments and whom the keypoints show"),
+        (("contours",), "the actor's lengths and the poses"),
+    ],
+)
+def test_doubtful_keyframes_send_people_to_what_the_take_has(
+    kinds: tuple[str, ...], checked: str, tmp_path: Path
+) -> None:
+    take = read_take(write_synthetic_take(tmp_path / "take", 8, 4))
+    people = People(("nose",), "a detector", take.camera.resolution, ())
+    take = with_evidence(replace(take, keypoints=(people,)), kinds)
+    evidence = SimpleNamespace(
+        model=SimpleNamespace(camera=take.camera),
+        timing_frames=0.0,
+        posing_scale=9.0,
+        distrust=[1.0] * len(take.markers),
+    )
+    (note,) = evidence_notes(take, evidence)
+    assert note.endswith(checked)

@@ -1,7 +1,6 @@
 """Evidence of a take: markers, keypoints, hints of depth and contours, each of which may be missing."""
 
 import json
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +19,9 @@ FRAMES = 16
 MOVING = {"matrix_world": None, "matrix_world_frames": FRAMES * [MATRIX_WORLD]}
 
 
-@pytest.fixture(scope="module")
-def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_synthetic_take(tmp_path_factory.mktemp("evidence") / "pristine", FRAMES)
-
-
 @pytest.fixture
-def folder(pristine: Path, tmp_path: Path) -> Path:
-    return Path(shutil.copytree(pristine, tmp_path / "take"))
+def folder(tmp_path: Path) -> Path:
+    return write_synthetic_take(tmp_path / "take", FRAMES)
 
 
 def edit(folder: Path, **fields: Any) -> None:

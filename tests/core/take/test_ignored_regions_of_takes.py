@@ -1,7 +1,6 @@
 """Regions of the picture: those ignored in a take, and those where its markers are expected."""
 
 import json
-import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,14 +22,9 @@ BOX = {"box": [1, 2.5, 30, 40]}
 STROKE = {"stroke": [[5, 5], [9.5, 7]], "radius_px": 4, "frames": [11, 13]}
 
 
-@pytest.fixture(scope="module")
-def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_synthetic_take(tmp_path_factory.mktemp("ignored") / "pristine", FRAMES)
-
-
 @pytest.fixture
-def folder(pristine: Path, tmp_path: Path) -> Path:
-    return Path(shutil.copytree(pristine, tmp_path / "take"))
+def folder(tmp_path: Path) -> Path:
+    return write_synthetic_take(tmp_path / "take", FRAMES)
 
 
 def ignoring(folder: Path, value: Any) -> Path:

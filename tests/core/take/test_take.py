@@ -17,14 +17,9 @@ from keymark.core.take.take_file import read_take, write_take
 FRAMES = 24
 
 
-@pytest.fixture(scope="module")
-def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_synthetic_take(tmp_path_factory.mktemp("takes") / "pristine", FRAMES)
-
-
 @pytest.fixture
-def folder(pristine: Path, tmp_path: Path) -> Path:
-    return Path(shutil.copytree(pristine, tmp_path / "take"))
+def folder(tmp_path: Path) -> Path:
+    return write_synthetic_take(tmp_path / "take", FRAMES)
 
 
 def changed(folder: Path, name: str, change: Callable[[Any], object]) -> None:
