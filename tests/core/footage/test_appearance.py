@@ -127,7 +127,9 @@ def test_hues_have_names() -> None:
 
 
 WALL = np.array([150.0, 165.0, 160.0])
-RED, GREEN, SKIN = (np.array(color, dtype=float) for color in ((45, 40, 215), (60, 140, 50), (140, 165, 215)))
+CLOTH, GREEN, BARE = (
+    np.array(color, dtype=float) for color in ((45, 40, 215), (60, 140, 50), (140, 165, 215))
+)
 SIZE, NOISE, FINER = 60, 2.0, 4
 SIGNIFICANT = 10.0
 DEVIATION = np.full((SIZE, SIZE), NOISE, dtype=np.float32)
@@ -137,7 +139,7 @@ def surface(color: np.ndarray) -> Surface:
     return Surface(contrast(color), 5.0)
 
 
-PALETTE = Palette(surface(RED), (surface(GREEN), surface(SKIN)))
+PALETTE = Palette(surface(CLOTH), (surface(GREEN), surface(BARE)))
 
 
 def bar(left: float, color: np.ndarray, image: np.ndarray) -> np.ndarray:
@@ -165,7 +167,7 @@ def swept(first: float, last: float, color: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("width", [0.0, 6.0, 12.0])
 def test_a_bar_is_found_where_it_was_on_average(width: float) -> None:
-    found = look(swept(26.0 - width / 2, 26.0 + width / 2, RED))
+    found = look(swept(26.0 - width / 2, 26.0 + width / 2, CLOTH))
     assert len(found.gain) == 1 and found.gain[0] > SIGNIFICANT
     centroid, second = centroid_and_second_moment(found.moments)
     np.testing.assert_allclose(centroid[0], (29.0, 30.0), atol=0.5)
@@ -175,7 +177,7 @@ def test_a_bar_is_found_where_it_was_on_average(width: float) -> None:
 
 
 def test_the_wider_the_blur_the_smaller_the_share() -> None:
-    sharp, blurred = look(swept(26.0, 26.0, RED)), look(swept(20.0, 32.0, RED))
+    sharp, blurred = look(swept(26.0, 26.0, CLOTH)), look(swept(20.0, 32.0, CLOTH))
     assert sharp.peak[0] > 0.9 > 0.65 > blurred.peak[0] > 0.35
     assert 0.0 < sharp.certainty[0] <= 1.0 and sharp.gain[0] <= MOST_GAIN * SIZE**2
 
@@ -191,19 +193,19 @@ def test_a_shadow_is_no_surface() -> None:
     assert look(shaded).gain.max(initial=0.0) < 0.1 * SIGNIFICANT
 
 
-@pytest.mark.parametrize("color", [GREEN, SKIN])
+@pytest.mark.parametrize("color", [GREEN, BARE])
 @pytest.mark.parametrize("width", [0.0, 10.0])
 def test_another_surface_is_another_blurred_or_not(color: np.ndarray, width: float) -> None:
     assert look(swept(20.0, 20.0 + width, color)).gain.max(initial=0.0) < SIGNIFICANT
-    alone = Palette(surface(RED), ())
-    if color is SKIN:
+    alone = Palette(surface(CLOTH), ())
+    if color is BARE:
         assert (
             look(swept(20.0, 20.0, color), palette=alone).gain.max() > SIGNIFICANT
         )  # what the others prevent
 
 
 def test_a_sliver_before_another_surface_is_found() -> None:
-    hidden = bar(28.0, GREEN, bar(26.0, RED, wall()))
+    hidden = bar(28.0, GREEN, bar(26.0, CLOTH, wall()))
     found = look(hidden)
     best = int(found.gain.argmax())
     centroid, _ = centroid_and_second_moment(found.moments)
@@ -212,7 +214,7 @@ def test_a_sliver_before_another_surface_is_found() -> None:
 
 
 def test_an_unknown_background_tells_nothing() -> None:
-    seen = bar(26.0, RED, wall()).astype(np.uint8)
+    seen = bar(26.0, CLOTH, wall()).astype(np.uint8)
     assert PALETTE.unmix(seen, wall().astype(np.float32), DEVIATION).gain.any()
     nothing = np.full(seen.shape, np.nan, dtype=np.float32)
     assert not PALETTE.unmix(seen, nothing, DEVIATION).gain.any()
@@ -220,8 +222,8 @@ def test_an_unknown_background_tells_nothing() -> None:
 
 def test_a_surface_is_the_usual_color_of_its_pixels() -> None:
     rng = np.random.default_rng(3)
-    pixels = np.clip(RED + rng.normal(0.0, 4.0, (200, 3)), 0, 255).astype(np.uint8)
+    pixels = np.clip(CLOTH + rng.normal(0.0, 4.0, (200, 3)), 0, 255).astype(np.uint8)
     pixels[:20] = WALL.astype(np.uint8)
     learned = surface_of(pixels)
-    np.testing.assert_allclose(learned.color, contrast(RED), atol=1.5)
+    np.testing.assert_allclose(learned.color, contrast(CLOTH), atol=1.5)
     assert learned.deviation < 6.0
