@@ -13,6 +13,7 @@ from _synthetic_take import write_synthetic_take
 from keymark.operators.cli.main import main
 
 FRAMES = 16
+QUICKLY = ("--method", "interpolation", "--no-report", "--quiet")
 
 
 @pytest.fixture
@@ -42,24 +43,10 @@ def test_a_folder_filled_from_within_finds_its_clip_as_well(
     from keymark.core.files import output_folder
 
     monkeypatch.setattr(output_folder.os, "access", lambda path, mode: Path(path) == out)
-    words = [
-        "convert",
-        str(take),
-        "--output",
-        str(out),
-        "--method",
-        "interpolation",
-        "--no-report",
-        "--quiet",
-    ]
+    words = ["convert", str(take), "--output", str(out), *QUICKLY]
     assert main(words) == 0
-    assert sorted(path.name for path in out.iterdir()) == [
-        ".as_made.json",
-        "conversion.json",
-        "motion.blend",
-        "motion.bvh",
-        "motion.json",
-    ]
+    made = {".as_made.json", "conversion.json", "motion.blend", "motion.bvh", "motion.json"}
+    assert {path.name for path in out.iterdir()} == made
     bpy.ops.wm.open_mainfile(filepath=str(out / "motion.blend"))
     (clip,) = bpy.data.movieclips
     assert Path(os.path.normpath(bpy.path.abspath(clip.filepath))).is_file()
@@ -97,8 +84,7 @@ def test_a_scene_that_cannot_be_written_leaves_nothing_behind(
         raise ConversionError(f"{path.name}: the exporter failed")
 
     monkeypatch.setattr(result_files, "write_bvh", fail)
-    words = ["convert", str(take), "--output", str(tmp_path / "out"), "--method", "interpolation", "--quiet"]
-    assert main(words) == 1
+    assert main(["convert", str(take), "--output", str(tmp_path / "out"), *QUICKLY]) == 1
     said = capfd.readouterr()
     assert said.out == "" and "the exporter failed" in said.err and len(said.err.splitlines()) == 1
     assert not (tmp_path / "out").exists()
@@ -115,16 +101,7 @@ def test_a_failure_leaves_the_old_files_and_nothing_else(
     from keymark.operators.bridge import result_files
 
     out = tmp_path / "results" / "out"
-    words = [
-        "convert",
-        str(take),
-        "--output",
-        str(out),
-        "--method",
-        "interpolation",
-        "--quiet",
-        "--no-report",
-    ]
+    words = ["convert", str(take), "--output", str(out), *QUICKLY]
     assert main(words) == 0
     before = tree(out.parent)
     if within:
