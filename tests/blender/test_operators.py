@@ -98,11 +98,6 @@ def test_proposals_can_be_jumped_to(opened: bpy.types.Scene) -> None:
     assert bpy.ops.keymark.jump_to_proposal(direction="PREVIOUS") == {"CANCELLED"}
 
 
-def test_a_pixel_outside_the_footage_is_refused(opened: bpy.types.Scene) -> None:
-    with pytest.raises(RuntimeError, match=r"\(500, 3\) lies outside the footage, which is 160 x 120"):
-        bpy.ops.keymark.pick_marker_color(pixel=(500.0, 3.0))
-
-
 def test_two_markers_on_one_segment_are_refused(opened: bpy.types.Scene) -> None:
     active_take(opened).markers[1].segment = "trunk"
     with pytest.raises(RuntimeError, match="Two markers have the segment 'trunk'"):

@@ -30,18 +30,6 @@ def test_the_nearer_field_counts_and_objects_are_merged() -> None:
     assert fields["camera"].sources == {"lens_mm": "0.json: camera", "resolution": "1.json: camera"}
 
 
-def test_null_removes_an_inherited_field_and_stays_where_there_is_none() -> None:
-    fields = merged({"fps": 24, "camera": {"shift_x": 0.1}}, {"fps": None, "camera": {"shift_x": None}})
-    assert "fps" not in fields and fields["camera"] == {} and "fps" not in fields.sources
-    with pytest.raises(InputError, match=r"^1\.json: fps is null"):
-        Fields(merged({}, {"fps": None}), "1.json").required("fps", "a number")
-
-
-def test_a_removed_field_can_be_given_again() -> None:
-    fields = merged({"method": "ekf"}, {"method": None}, {"method": "map"})
-    assert fields == {"method": "map"} and fields.sources == {"method": "2.json"}
-
-
 PAIRS = [
     (one, other)
     for groups in ALTERNATIVES
@@ -64,11 +52,6 @@ def test_of_two_ways_to_say_one_thing_the_nearer_counts(pair: tuple[str, str]) -
 
 def test_comments_are_left_out_at_any_level() -> None:
     assert merged({"//": 1, "camera": {"// lens": "?", "lens_mm": 1}}) == {"camera": {"lens_mm": 1}}
-
-
-def test_an_object_replaces_another_value_and_the_other_way_round() -> None:
-    assert merged({"distortion": [1, 2]}, {"distortion": {"k1": 3}}) == {"distortion": {"k1": 3}}
-    assert merged({"distortion": {"k1": 3}}, {"distortion": [1]}) == {"distortion": [1]}
 
 
 @pytest.mark.parametrize(

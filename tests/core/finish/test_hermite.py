@@ -20,11 +20,6 @@ def test_a_cubic_needs_two_keys() -> None:
     assert spline.slopes[-1, 0] == pytest.approx(slope, abs=1e-3)
 
 
-def test_every_frame_a_key_meets_the_data() -> None:
-    spline = fit_keys(TIMES, wave(), np.arange(40), NONE)
-    assert spline.evaluate(TIMES, 0, 39) == pytest.approx(wave(), abs=1e-9)
-
-
 def test_exact_keys_have_the_datas_values_and_others_may_not() -> None:
     data = wave()
     data[20] += 0.3

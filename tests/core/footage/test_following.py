@@ -8,8 +8,6 @@ from keymark.core.footage import markers
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.markers import regions_of_frame, track_markers
 from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle
-from keymark.core.footage.segmentation.search_windows import NO_COLOR, Window, pack_windows
-from keymark.core.footage.segmentation.working_image import halvings, measuring_image, searching_factor
 
 STRETCH = 9
 
@@ -109,33 +107,6 @@ def test_a_marker_of_the_walls_color_is_refused_with_the_reason() -> None:
     images = [draw([(wall, (80.0 + 6.0 * i, 90.0), (30.0, 15.0), 0.0)], rng) for i in range(20)]
     with pytest.raises(InputError, match=r"marker sleeve has the color .* [67]\d % of the picture .* too"):
         tracked(images, (MarkerStyle("sleeve", "forearm.L", wall),))
-
-
-def test_panels_are_the_windows_and_repeat_the_border_beyond_the_picture() -> None:
-    rng = np.random.default_rng(9)
-    images = [rng.integers(0, 256, (40, 60, 3), dtype=np.uint8) for _ in range(2)]
-    sheet = pack_windows(images, [Window(0, 0, 3, 5, 6, 15, 18), Window(1, 1, 4, -2, 10, 8, 22)])
-    np.testing.assert_array_equal(sheet.picture[:12, :10], images[0][6:18, 5:15])
-    half = measuring_image(images[1], 1)
-    np.testing.assert_array_equal(sheet.picture[:10, 13:21], half[10:20, :8])
-    np.testing.assert_array_equal(sheet.picture[:10, 11], half[10:20, 0])
-    np.testing.assert_array_equal(sheet.picture[10:12, 13:21], np.stack([half[19, :8]] * 2))
-    assert sheet.color.tolist()[:21] == [NO_COLOR] + [3] * 9 + [NO_COLOR] * 2 + [4] * 9
-    assert sheet.image[0] == 0 and sheet.image[12] == 1 and sheet.scale[0] == 1 and sheet.scale[12] == 2
-    assert sheet.shift[:, 0].tolist() == [5, 6] and sheet.shift[:, 11].tolist() == [-13, 10]
-    assert sheet.picture.shape[0] % 2 == 0 and sheet.picture.shape[1] % 2 == 0
-
-
-@pytest.mark.parametrize(
-    ("size", "times", "factor"),
-    [((320, 240), 0, 2), ((640, 480), 1, 2), ((1280, 720), 2, 2), ((1920, 1080), 2, 2), ((3840, 2160), 3, 2)],
-)
-def test_pictures_of_every_size_are_measured_and_searched_on_like_grids(
-    size: tuple[int, int], times: int, factor: int
-) -> None:
-    assert halvings(size) == times
-    grid = (size[1] >> times, size[0] >> times)
-    assert searching_factor(grid) == factor
 
 
 def test_one_frame_is_measured_as_in_a_pass_over_the_clip() -> None:

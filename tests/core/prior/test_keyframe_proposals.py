@@ -207,10 +207,3 @@ def test_with_nothing_at_all_the_speed_is_even_and_that_is_said() -> None:
     found = speed_of()
     np.testing.assert_array_equal(found.values, np.zeros(FRAMES))
     assert "evenly" in found.note
-
-
-def test_unseen_keypoints_are_none() -> None:
-    tracks = tracks_of(swinging(), TIME)
-    nobody = seen(np.full((FRAMES, len(NAMES), 2), np.nan), score=0.0)
-    segments = ("forearm.L",) * len(NAMES)
-    np.testing.assert_array_equal(speed_of(tracks, segments, nobody).values, marker_speed(tracks))

@@ -45,16 +45,6 @@ def test_a_review_comes_back_from_its_arrays() -> None:
     assert again.marker_names == review.marker_names and again.size == (160, 120)
 
 
-def test_a_review_without_weak_frames_comes_back() -> None:
-    arrays = {
-        name: value for name, value in made_up_review().to_arrays().items() if not name.startswith("weak")
-    }
-    empty = {
-        name: value[:0] for name, value in made_up_review().to_arrays().items() if name.startswith("weak")
-    }
-    assert Review.from_arrays({**arrays, **empty}).weak_frames == ()
-
-
 def test_a_review_that_was_kept_before_there_were_keypoints_has_none() -> None:
     arrays = made_up_review().to_arrays()
     new = ("weak_point", "contours")

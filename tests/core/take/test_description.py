@@ -167,11 +167,6 @@ def test_a_wrong_setting_is_named_with_its_file(fields: dict[str, Any], said: st
         describe(take_in(shoot / "other"), fields, "list.jsonl, line 1")
 
 
-def test_null_removes_an_inherited_setting(shoot: Path) -> None:
-    write_json(shoot / "shoot.json", {"root": True, "library": "walking", "method": "ekf"})
-    assert settings_of(take_in(shoot / "take", library=None)) == ConversionSettings(method="ekf")
-
-
 @pytest.mark.parametrize(
     ("content", "said"),
     [

@@ -45,12 +45,6 @@ def marked(take: Take) -> bool:
     return len(take.markers) == 5
 
 
-def test_a_take_has_markers_and_contours_as_ever(folder: Path) -> None:
-    take = read_take(folder)
-    assert marked(take) and take.keypoints == () and take.contours
-    assert evidence_of(take) == (MARKERS, CONTOURS)
-
-
 @pytest.mark.parametrize("markers", [None, {}])
 def test_markers_may_be_missing(folder: Path, markers: object) -> None:
     edit(folder, markers=None)

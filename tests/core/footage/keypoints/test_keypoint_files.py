@@ -1,6 +1,5 @@
 """Files of keypoints: every format gives the same people, and what does not fit the clip is said."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -337,17 +336,3 @@ def test_unusable_folders_are_refused_with_a_sentence(tmp_path: Path, change: An
     folder = write_openpose(tmp_path / "json", BODY)
     change(folder / "clip_000000000003_keypoints.json")
     refused(folder, words)
-
-
-def test_the_takes_at_hand(shared_takes: Path) -> None:
-    for take in sorted(shared_takes.iterdir()):
-        path = take / "keypoints_mediapipe.json"
-        if path.exists():
-            people = read_keypoints(path, None, _size(take), None, 1)
-            assert people.names == BLAZEPOSE33.names and people.most_people == 1 and not people.notes
-            assert any(np.isfinite(frame.hint_m).any() for frame in people.frames)
-
-
-def _size(take: Path) -> tuple[int, int]:
-    width, height = json.loads((take / "take.json").read_text(encoding="utf-8"))["camera"]["resolution"]
-    return width, height

@@ -99,16 +99,6 @@ def test_without_any_hint_the_largest_who_stays_is_followed() -> None:
     np.testing.assert_array_equal(chosen, truth)
 
 
-def test_a_jump_to_somebody_else_is_left_out() -> None:
-    frames = 60
-    performer, other = walker((60, 60), (0.5, 0), frames, 0), walker((280, 40), (-1, 0), frames, 1)
-    person = performer.copy()
-    person[20:32] = other[20:32]
-    seen, _ = scene([person], np.ones((frames, 1), dtype=bool))
-    chosen = choose_performer(seen, expected_from(performer, 10), FPS)
-    assert (chosen[20:32] == NOBODY).all() and (np.delete(chosen, slice(20, 32)) == 0).all()
-
-
 def test_a_crowd_is_searched_where_the_performer_is_expected() -> None:
     frames = 25
     people = [walker((30, 60), (2.0, 0), frames, 0)]
