@@ -14,6 +14,7 @@ def output(center: float, width: float, degree: float) -> OutputSet:
 def test_distance_counts_in_half_gaps() -> None:
     expected = [1, 0.5, 0, 0.5, 1, 0.5, 0, 1 / 3, 2 / 3, 1, 2 / 3, 1 / 3, 0, 1 / 3, 2 / 3]
     np.testing.assert_allclose(keyframe_distance(15, [2, 6, 12]), expected, rtol=1e-12)
+    np.testing.assert_allclose(keyframe_distance(9, [6, 8])[[0, 7]], 1.0, rtol=1e-12)
 
 
 def test_a_single_keyframe_measures_by_the_clip() -> None:
