@@ -1,14 +1,14 @@
-"""Everyone in a clip, found by the landmark network and followed from frame to frame.
+"""Everyone in a clip, found by the landmark network and followed from picture to picture.
 
-The clip is decoded once, a stretch at a time. People are looked for at the end of every stretch, by crops of
-several sizes and places; from there they are followed backward until they are lost or met, and forward into
-the next stretches. Who of them is the performer is chosen later, as among any detector's people
-(`keypoints/performer`).
+The clip is decoded once, a stretch at a time. From the middle of every stretch people are followed both ways
+at once, by two processors, and those of the stretch before forward until they meet. Others are looked for at its
+end, by crops of several sizes and places, and followed backward. Who of them is the performer is chosen later, as
+among any detector's people (`keypoints/performer`).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, zip_longest
 
 import cv2
 import numpy as np
@@ -21,7 +21,8 @@ from .keypoints.keypoints import People, SeenPeople
 from .pose_network import LAYOUT, NAME, Crop, Pose, PoseNetwork
 
 DETECTING = "Detecting keypoints"
-STRETCH = 60  # frames kept at a time, 170 MB
+STRETCH = 60  # pictures kept at a time, 170 MB
+LOOKS_A_SECOND = 30.0  # the usual rate of video, from which on pictures are left out
 LARGEST_SIDE_PX = 1280  # pictures are made as small; the network sees 256 pixels of a person
 HEIGHTS = (1.15, 0.75, 0.5, 0.33)  # sides of the crops that are looked into, by the height of the picture
 SIZES = (0.75,)  # the same by the largest person who is followed already
@@ -35,37 +36,38 @@ SMALLEST = 0.35  # others are followed from this share of the largest one's size
 class _Sighting:
     """A person in one frame."""
 
-    track: int  # number of the person, a new one where somebody was lost in between
+    track: int  # a new number wherever somebody is found; `_Tracking.person` says whose
     pose: Pose
 
 
-def find_people(clip: Clip, network: PoseNetwork, longest: int) -> Job[People]:
-    """Find everyone in a clip of at most `longest` frames.
+def find_people(clip: Clip, network: PoseNetwork) -> Job[People]:
+    """Find everyone in a clip; where it has many pictures a second, those between the looked at have nobody.
 
     Raises:
-        InputError: It is a picture, has no frames or too many, or nobody is in it.
+        InputError: It is a picture, has no frames, or nobody is in it.
     """
     refuse_picture(clip)
     scale = min(1.0, LARGEST_SIDE_PX / max(clip.size))
+    every = max(1, round(clip.fps / LOOKS_A_SECOND))
     tracking = _Tracking(network)
     seen: list[list[_Sighting]] = []
+    count = 0
     yield Progress(DETECTING, 0.0)
-    for pictures in _stretches(clip, scale):
+    for pictures, count in _stretches(clip, scale, every):  # noqa: B007 - the last count is the clip's
         for done in tracking.follow(pictures):
-            yield Progress(DETECTING, min((len(seen) + done) / clip.frame_count, 1.0))
+            yield Progress(DETECTING, min(every * (len(seen) + done) / clip.frame_count, 1.0))
         seen += tracking.seen
-        if len(seen) > longest:
-            raise InputError(f"{clip.path}: has more than {longest} frames; cut it into shorter clips")
     if not seen:
         raise InputError(f"{clip.path}: holds no frame that can be decoded; it must be a video or images")
-    kept = _believed(seen)
+    kept = _believed(seen, tracking.person)
     if not any(kept):
         raise InputError(
-            f"{clip.path}: nobody is seen in any of its {len(seen)} frames; it must show a person, at "
+            f"{clip.path}: nobody is seen in any of its {count} frames; it must show a person, at "
             "least from the head to the hips and not too small"
         )
-    frames = tuple(_people(frame, clip.size, scale) for frame in kept)
-    return People(LAYOUT.names, NAME, clip.size, frames)
+    frames = [SeenPeople.nobody(len(LAYOUT.names))] * count
+    frames[::every] = [_people(frame, clip.size, scale) for frame in kept]
+    return People(LAYOUT.names, NAME, clip.size, tuple(frames))
 
 
 def refuse_picture(clip: Clip) -> None:
@@ -76,76 +78,116 @@ def refuse_picture(clip: Clip) -> None:
         )
 
 
-def _stretches(clip: Clip, scale: float) -> Iterator[list[Image]]:
+def _stretches(clip: Clip, scale: float, every: int) -> Iterator[tuple[list[Image], int]]:
+    """Stretches of every so manieth picture, with the number of frames up to the end of each."""
     pictures: list[Image] = []
-    for _, _, picture in clip.frames():
+    count = 0
+    for index, _, picture in clip.frames():
+        count = index + 1
+        if index % every:
+            continue
+        if len(pictures) == STRETCH:
+            yield pictures, index
+            pictures = []
         if scale < 1.0:
             size = (round(scale * clip.size[0]), round(scale * clip.size[1]))
             picture = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
         pictures.append(picture)
-        if len(pictures) == STRETCH:
-            yield pictures
-            pictures = []
     if pictures:
-        yield pictures
+        yield pictures, count
 
 
 class _Tracking:
-    """Whom the frames of one stretch after another show."""
+    """Whom the pictures of one stretch after another show."""
 
     def __init__(self, network: PoseNetwork) -> None:
         self._network = network
-        self._tracks = 0
-        self._began = False
+        self._same: list[int] = []  # for each track an earlier one of the same person, or itself
         self.seen: list[list[_Sighting]] = []
-        """Of each frame of the last stretch."""
+        """Of each picture of the last stretch."""
+
+    def person(self, track: int) -> int:
+        """The first track of the person whom a track shows."""
+        while self._same[track] != track:
+            track = self._same[track]
+        return track
 
     def follow(self, pictures: Sequence[Image]) -> Iterator[int]:
-        """Follow everyone through the next stretch; yields the number of frames that are done."""
+        """Follow everyone through the next stretch; yields the number of pictures that are done."""
         before = self.seen[-1] if self.seen else []
         self.seen = [[] for _ in pictures]
-        if not self._began:
-            self._began = True
-            yield from self._look(pictures, 0)
-        else:
-            yield from self._go(pictures, before, range(len(pictures)))
         last = len(pictures) - 1
+        middle = last // 2
+        crops = [one.pose.crop for one in before]
+        poses = _settled(self._network, pictures[middle], crops) if before else None
+        yield from self._look(pictures, middle, poses)
+        yield from self._go(pictures, [([one for one in before if not self._met(one, 0)], range(last + 1))])
         yield from self._look(pictures, last)
-        if not any(self.seen):
-            yield from self._look(pictures, last // 2)
+        if not self._same:
+            yield from self._look(pictures, 0)
 
-    def _look(self, pictures: Sequence[Image], index: int) -> Iterator[int]:
-        """Look for new people in a frame, and follow them both ways."""
-        known = [one.pose for one in self.seen[index]]
-        new = []
-        for pose in _scan(self._network, pictures[index], known):
-            new.append(_Sighting(self._tracks, pose))
-            self._tracks += 1
+    def _look(
+        self, pictures: Sequence[Image], index: int, poses: Sequence[Pose] | None = None
+    ) -> Iterator[int]:
+        """Follow new people of a picture both ways, by default whoever is found there."""
+        if poses is None:
+            poses = _scan(self._network, pictures[index], [one.pose for one in self.seen[index]])
+        first = len(self._same)
+        new = [_Sighting(track, pose) for track, pose in enumerate(poses, first)]
+        self._same += range(first, first + len(new))
         self.seen[index] += new
-        yield from self._go(pictures, new, range(index - 1, -1, -1))
-        yield from self._go(pictures, new, range(index + 1, len(pictures)))
+        ways = range(index - 1, -1, -1), range(index + 1, len(pictures))
+        yield from self._go(pictures, [(new, way) for way in ways])
 
-    def _go(self, pictures: Sequence[Image], people: Sequence[_Sighting], way: range) -> Iterator[int]:
-        """Follow people until they are lost, or met by others who are followed already."""
-        for index in way:
-            now = []
-            for one in people:
-                pose = _next(self._network, pictures[index], one.pose)
-                if pose is not None and not _is_among(pose, [other.pose for other in self.seen[index]]):
-                    now.append(_Sighting(one.track, pose))
-                    self.seen[index].append(now[-1])
-                yield index
-            people = now
+    def _go(self, pictures: Sequence[Image], walks: Sequence[tuple[list[_Sighting], range]]) -> Iterator[int]:
+        """Follow people, each on their way, until they are lost or met by others who are followed already."""
+        people = [own for own, _ in walks]
+        for step in zip_longest(*(way for _, way in walks)):
+            asked = [
+                (walk, index, one)
+                for walk, index in enumerate(step)
+                if index is not None
+                for one in people[walk]
+            ]
+            if not asked:
+                return
+            people = [[] for _ in walks]
+            poses = self._network.each([(pictures[index], one.pose.crop) for _, index, one in asked])
+            for (walk, index, one), pose in zip(asked, poses, strict=True):
+                now = _Sighting(one.track, pose)
+                if _is_followed(one.pose, pose, pictures[index]) and not self._met(now, index):
+                    people[walk].append(now)
+                    self.seen[index].append(now)
+            yield sum(map(bool, self.seen))
+
+    def _met(self, one: _Sighting, index: int) -> bool:
+        """Whether somebody is seen in a picture already, whose tracks are one person's then."""
+        met = next((other for other in self.seen[index] if _is_among(one.pose, [other.pose])), None)
+        if met is not None:
+            first, later = sorted((self.person(one.track), self.person(met.track)))
+            self._same[later] = first
+        return met is not None
 
 
-def _next(network: PoseNetwork, picture: Image, before: Pose) -> Pose | None:
-    """The person in the next frame; None where lost."""
-    now = network(picture, before.crop)
+def _is_followed(before: Pose, now: Pose, picture: Image) -> bool:
+    """Whether a person is the one of the picture before, and not lost."""
     moved = np.hypot(*(now.crop.center - before.crop.center)) / before.crop.side
     grown = max(now.crop.side / before.crop.side, before.crop.side / max(now.crop.side, 1.0))
-    if now.presence < 0.5 or now.score.mean() < 0.3 or moved > 0.35 or grown > 1.5:
-        return None
-    return now if _is_inside(now, picture) else None
+    lost = now.presence < 0.5 or now.score.mean() < 0.3 or moved > 0.35 or grown > 1.5
+    return not lost and _is_inside(now, picture)
+
+
+def _settled(network: PoseNetwork, picture: Image, crops: Sequence[Crop]) -> list[Pose]:
+    """Whom crops show for sure, once these have moved to them; the surest first, each once."""
+    poses = [pose for pose in network.each([(picture, crop) for crop in crops]) if pose.presence > 0.3]
+    for _ in range(2):  # somebody may be there, in another place of the crop
+        poses = network.each([(picture, pose.crop) for pose in poses])
+    found: list[Pose] = []
+    for pose in sorted(poses, key=lambda one: -one.presence * float(one.score.mean())):
+        sure = pose.presence > 0.9 and pose.score.mean() > 0.5 and _is_inside(pose, picture)
+        if sure and not _is_among(pose, found):
+            found.append(pose)
+    return found
 
 
 def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[Pose]:
@@ -154,19 +196,12 @@ def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[P
     sides = [size * largest for size in SIZES] if known else [size * len(picture) for size in HEIGHTS]
     found: list[Pose] = []
     for number, side in enumerate(sides):
-        here = []
-        for crop in _grid(picture, side):
-            if any(_overlap(crop, pose.crop) for pose in chain(known, found)):
-                continue
-            pose = network(picture, crop)
-            looks = 2 if pose.presence > 0.3 else 0  # somebody may be there, in another place of the crop
-            for _ in range(looks):
-                pose = network(picture, pose.crop)
-            sure = pose.presence > 0.9 and pose.score.mean() > 0.5 and _is_inside(pose, picture)
-            if looks and sure and pose.crop.side > SMALLEST * largest:
-                here.append(pose)
-        for pose in sorted(here, key=lambda one: -one.presence * float(one.score.mean())):
-            if not _is_among(pose, [*known, *found]) and len(known) + len(found) < 4:
+        there = [pose.crop for pose in chain(known, found)]
+        crops = [crop for crop in _grid(picture, side) if not any(_overlap(crop, one) for one in there)]
+        small = SMALLEST * largest
+        for pose in _settled(network, picture, crops):
+            new = pose.crop.side > small and not _is_among(pose, [*known, *found])
+            if new and len(known) + len(found) < 4:
                 found.append(pose)
                 largest = max(largest, pose.crop.side)
         if found and not known and number:  # somebody else may be one size smaller
@@ -209,18 +244,18 @@ def _is_among(pose: Pose, others: Sequence[Pose]) -> bool:
     )
 
 
-def _believed(seen: Sequence[Sequence[_Sighting]]) -> list[list[Pose]]:
-    """The people of each frame but those of a moment; where nobody meets another, those of one size."""
+def _believed(seen: Sequence[Sequence[_Sighting]], person: Callable[[int], int]) -> list[list[Pose]]:
+    """The people of each picture but those of a moment; where nobody meets another, those of one size."""
     sides: dict[int, list[float]] = {}
     for one in chain.from_iterable(seen):
-        sides.setdefault(one.track, []).append(one.pose.crop.side)
+        sides.setdefault(person(one.track), []).append(one.pose.crop.side)
     longest = max(map(len, sides.values()), default=0)
-    kept = {track for track, own in sides.items() if len(own) >= min(longest, 4)}
+    kept = {who for who, own in sides.items() if len(own) >= min(longest, 4)}
     if all(len(frame) < 2 for frame in seen) and kept:
         usual = float(np.median(max(sides.values(), key=len)))
         alike = (usual / MOST_OTHER, usual * MOST_OTHER)
-        kept = {track for track in kept if alike[0] < float(np.median(sides[track])) < alike[1]}
-    return [[one.pose for one in frame if one.track in kept] for frame in seen]
+        kept = {who for who in kept if alike[0] < float(np.median(sides[who])) < alike[1]}
+    return [[one.pose for one in frame if person(one.track) in kept] for frame in seen]
 
 
 def _people(poses: Sequence[Pose], size: tuple[int, int], scale: float) -> SeenPeople:

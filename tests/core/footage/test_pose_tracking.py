@@ -38,7 +38,7 @@ def drawn(people: Sequence[People3], size: tuple[int, int] = SIZE, name: str = "
 
 
 def seen(people: Sequence[People3], size: tuple[int, int] = SIZE) -> People:
-    return run(find_people(drawn(people, size), cast(Any, FakeNetwork()), 10_000))
+    return run(find_people(drawn(people, size), cast(Any, FakeNetwork())))
 
 
 def counts(people: People) -> list[int]:
@@ -49,7 +49,7 @@ def test_one_person_is_followed_over_the_ends_of_stretches() -> None:
     frames = STRETCH * 2 + 5
     clip = drawn([[(90.0 + index, 120.0, 50.0)] for index in range(frames)])
     progress: list[Progress] = []
-    found = run(find_people(clip, cast(Any, FakeNetwork()), 10_000), progress.append)
+    found = run(find_people(clip, cast(Any, FakeNetwork())), progress.append)
     assert counts(found) == [1] * frames and found.size == SIZE
     truth = np.array([90.0 + frames - 1, 120.0]) + 50.0 * SHAPE
     np.testing.assert_allclose(found.frames[-1].pixel[0], truth, atol=2.0)
@@ -96,9 +96,6 @@ def test_a_clip_without_anybody_is_one_sentence() -> None:
         seen([[]] * 60)
     with pytest.raises(InputError, match="holds no frame"):
         seen([])
-    clip = drawn([[(160.0, 120.0, 50.0)]] * 60, name="long.mp4")
-    with pytest.raises(InputError, match=r"long.mp4: has more than 50 frames"):
-        run(find_people(clip, cast(Any, FakeNetwork()), 50))
 
 
 needs_model = pytest.mark.skipif(
@@ -182,7 +179,7 @@ def test_the_performer_of_the_demonstration_is_found(repository: Path) -> None:
     images = list(clip.source.at(range(6)))
 
     short = Clip(clip.path, cast(Any, Drawn([image for _, image in images], size=clip.size)))
-    found = run(find_people(short, PoseNetwork(), 100))
+    found = run(find_people(short, PoseNetwork()))
     usual = read_keypoints(take / "keypoints.json", None, clip.size)
     both = [name for name in found.names if name in usual.names]
     own, theirs = [[names.index(name) for name in both] for names in (found.names, usual.names)]
