@@ -1,14 +1,14 @@
 """Everyone in a clip, found by the landmark network and followed from picture to picture.
 
-The clip is decoded once, a stretch at a time. From the middle of every stretch people are followed both ways
-at once, by two processors, and those of the stretch before forward until they meet. Others are looked for at its
-end, by crops of several sizes and places, and followed backward. Who of them is the performer is chosen later, as
-among any detector's people (`keypoints/performer`).
+The clip is decoded once, a stretch at a time. People are looked for at the end of every stretch, by crops of
+several sizes and places; from there they are followed backward until they are lost or met, and forward into
+the next stretches. Who of them is the performer is chosen later, as among any detector's people
+(`keypoints/performer`).
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain, zip_longest
+from itertools import chain
 
 import cv2
 import numpy as np
@@ -29,6 +29,7 @@ SIZES = (0.75,)  # the same by the largest person who is followed already
 STEP = 0.5  # between crops, by their side
 APART = 0.3  # share of a crop's side within which two crops show the same person
 MOST_OTHER = 1.6  # ratio of sizes beyond which a later person is another
+OVERLOOKED = 0.1  # shift, turn and growth of a crop for which the network's training makes up
 SMALLEST = 0.35  # others are followed from this share of the largest one's size on
 
 
@@ -36,7 +37,7 @@ SMALLEST = 0.35  # others are followed from this share of the largest one's size
 class _Sighting:
     """A person in one frame."""
 
-    track: int  # a new number wherever somebody is found; `_Tracking.person` says whose
+    track: int  # number of the person, a new one where somebody was lost in between
     pose: Pose
 
 
@@ -59,7 +60,7 @@ def find_people(clip: Clip, network: PoseNetwork) -> Job[People]:
         seen += tracking.seen
     if not seen:
         raise InputError(f"{clip.path}: holds no frame that can be decoded; it must be a video or images")
-    kept = _believed(seen, tracking.person)
+    kept = _believed(seen)
     if not any(kept):
         raise InputError(
             f"{clip.path}: nobody is seen in any of its {count} frames; it must show a person, at "
@@ -72,7 +73,7 @@ def find_people(clip: Clip, network: PoseNetwork) -> Job[People]:
 
 def refuse_picture(clip: Clip) -> None:
     """Refuse a single picture in place of a clip."""
-    if clip.frame_count == 1 and not clip.knows_its_rate:
+    if clip.frame_count == 1:
         raise InputError(
             f"{clip.path}: is a single picture; it must be a video, or a folder of the pictures of one"
         )
@@ -102,71 +103,66 @@ class _Tracking:
 
     def __init__(self, network: PoseNetwork) -> None:
         self._network = network
-        self._same: list[int] = []  # for each track an earlier one of the same person, or itself
+        self._tracks = 0
+        self._began = False
         self.seen: list[list[_Sighting]] = []
         """Of each picture of the last stretch."""
-
-    def person(self, track: int) -> int:
-        """The first track of the person whom a track shows."""
-        while self._same[track] != track:
-            track = self._same[track]
-        return track
 
     def follow(self, pictures: Sequence[Image]) -> Iterator[int]:
         """Follow everyone through the next stretch; yields the number of pictures that are done."""
         before = self.seen[-1] if self.seen else []
         self.seen = [[] for _ in pictures]
-        last = len(pictures) - 1
-        middle = last // 2
-        crops = [one.pose.crop for one in before]
-        poses = _settled(self._network, pictures[middle], crops) if before else None
-        yield from self._look(pictures, middle, poses)
-        yield from self._go(pictures, [([one for one in before if not self._met(one, 0)], range(last + 1))])
-        yield from self._look(pictures, last)
-        if not self._same:
+        if not self._began:
+            self._began = True
             yield from self._look(pictures, 0)
+        else:
+            yield from self._go(pictures, before, range(len(pictures)))
+        last = len(pictures) - 1
+        yield from self._look(pictures, last)
+        if not any(self.seen):
+            yield from self._look(pictures, last // 2)
 
-    def _look(
-        self, pictures: Sequence[Image], index: int, poses: Sequence[Pose] | None = None
-    ) -> Iterator[int]:
-        """Follow new people of a picture both ways, by default whoever is found there."""
-        if poses is None:
-            poses = _scan(self._network, pictures[index], [one.pose for one in self.seen[index]])
-        first = len(self._same)
-        new = [_Sighting(track, pose) for track, pose in enumerate(poses, first)]
-        self._same += range(first, first + len(new))
+    def _look(self, pictures: Sequence[Image], index: int) -> Iterator[int]:
+        """Look for new people in a picture, and follow them both ways."""
+        known = [one.pose for one in self.seen[index]]
+        poses = _scan(self._network, pictures[index], known)
+        new = [_Sighting(track, pose) for track, pose in enumerate(poses, self._tracks)]
+        self._tracks += len(new)
         self.seen[index] += new
-        ways = range(index - 1, -1, -1), range(index + 1, len(pictures))
-        yield from self._go(pictures, [(new, way) for way in ways])
+        yield from self._go(pictures, new, range(index - 1, -1, -1))
+        yield from self._go(pictures, new, range(index + 1, len(pictures)))
 
-    def _go(self, pictures: Sequence[Image], walks: Sequence[tuple[list[_Sighting], range]]) -> Iterator[int]:
-        """Follow people, each on their way, until they are lost or met by others who are followed already."""
-        people = [own for own, _ in walks]
-        for step in zip_longest(*(way for _, way in walks)):
-            asked = [
-                (walk, index, one)
-                for walk, index in enumerate(step)
-                if index is not None
-                for one in people[walk]
-            ]
-            if not asked:
+    def _go(self, pictures: Sequence[Image], people: Sequence[_Sighting], way: range) -> Iterator[int]:
+        """Follow people until they are lost, or met by others who are followed already.
+
+        Two pictures are looked at at once, in the same crops; the second anew where somebody has left theirs.
+        """
+        for pair in (way[at : at + 2] for at in range(0, len(way), 2)):
+            if not people:
                 return
-            people = [[] for _ in walks]
-            poses = self._network.each([(pictures[index], one.pose.crop) for _, index, one in asked])
-            for (walk, index, one), pose in zip(asked, poses, strict=True):
-                now = _Sighting(one.track, pose)
-                if _is_followed(one.pose, pose, pictures[index]) and not self._met(now, index):
-                    people[walk].append(now)
-                    self.seen[index].append(now)
-            yield sum(map(bool, self.seen))
+            crops = {one.track: one.pose.crop for one in people}
+            asked = [(index, one.track) for index in pair for one in people]
+            looks = self._network.each([(pictures[index], crops[track]) for index, track in asked])
+            poses = dict(zip(asked, looks, strict=True))
+            for index in pair:
+                now = []
+                for one in people:
+                    pose = poses[index, one.track]
+                    if not _is_near(one.pose.crop, crops[one.track]):
+                        pose = self._network(pictures[index], one.pose.crop)
+                    others = [other.pose for other in self.seen[index]]
+                    if _is_followed(one.pose, pose, pictures[index]) and not _is_among(pose, others):
+                        now.append(_Sighting(one.track, pose))
+                        self.seen[index].append(now[-1])
+                people = now
+                yield sum(map(bool, self.seen))
 
-    def _met(self, one: _Sighting, index: int) -> bool:
-        """Whether somebody is seen in a picture already, whose tracks are one person's then."""
-        met = next((other for other in self.seen[index] if _is_among(one.pose, [other.pose])), None)
-        if met is not None:
-            first, later = sorted((self.person(one.track), self.person(met.track)))
-            self._same[later] = first
-        return met is not None
+
+def _is_near(crop: Crop, other: Crop) -> bool:
+    """Whether the network sees the same in two crops, but for what it has learned to overlook."""
+    turned = abs(np.angle(np.exp(1j * (crop.angle - other.angle))))
+    moved = float(np.hypot(*(crop.center - other.center))) / other.side
+    return max(moved, turned, abs(crop.side / other.side - 1.0)) < OVERLOOKED
 
 
 def _is_followed(before: Pose, now: Pose, picture: Image) -> bool:
@@ -178,14 +174,23 @@ def _is_followed(before: Pose, now: Pose, picture: Image) -> bool:
 
 
 def _settled(network: PoseNetwork, picture: Image, crops: Sequence[Crop]) -> list[Pose]:
-    """Whom crops show for sure, once these have moved to them; the surest first, each once."""
-    poses = [pose for pose in network.each([(picture, crop) for crop in crops]) if pose.presence > 0.3]
+    """Whom crops show for sure, once these have moved to them; the surest first."""
+    poses = network.each([(picture, crop) for crop in crops])
+    poses = _distinct([pose for pose in poses if pose.presence > 0.3])
     for _ in range(2):  # somebody may be there, in another place of the crop
-        poses = network.each([(picture, pose.crop) for pose in poses])
+        poses = _distinct(network.each([(picture, pose.crop) for pose in poses]))
+    return [
+        pose
+        for pose in poses
+        if pose.presence > 0.9 and pose.score.mean() > 0.5 and _is_inside(pose, picture)
+    ]
+
+
+def _distinct(poses: Sequence[Pose]) -> list[Pose]:
+    """Each person once, the surest first."""
     found: list[Pose] = []
     for pose in sorted(poses, key=lambda one: -one.presence * float(one.score.mean())):
-        sure = pose.presence > 0.9 and pose.score.mean() > 0.5 and _is_inside(pose, picture)
-        if sure and not _is_among(pose, found):
+        if not _is_among(pose, found):
             found.append(pose)
     return found
 
@@ -244,18 +249,18 @@ def _is_among(pose: Pose, others: Sequence[Pose]) -> bool:
     )
 
 
-def _believed(seen: Sequence[Sequence[_Sighting]], person: Callable[[int], int]) -> list[list[Pose]]:
+def _believed(seen: Sequence[Sequence[_Sighting]]) -> list[list[Pose]]:
     """The people of each picture but those of a moment; where nobody meets another, those of one size."""
     sides: dict[int, list[float]] = {}
     for one in chain.from_iterable(seen):
-        sides.setdefault(person(one.track), []).append(one.pose.crop.side)
+        sides.setdefault(one.track, []).append(one.pose.crop.side)
     longest = max(map(len, sides.values()), default=0)
-    kept = {who for who, own in sides.items() if len(own) >= min(longest, 4)}
+    kept = {track for track, own in sides.items() if len(own) >= min(longest, 4)}
     if all(len(frame) < 2 for frame in seen) and kept:
         usual = float(np.median(max(sides.values(), key=len)))
         alike = (usual / MOST_OTHER, usual * MOST_OTHER)
-        kept = {who for who in kept if alike[0] < float(np.median(sides[who])) < alike[1]}
-    return [[one.pose for one in frame if person(one.track) in kept] for frame in seen]
+        kept = {track for track in kept if alike[0] < float(np.median(sides[track])) < alike[1]}
+    return [[one.pose for one in frame if one.track in kept] for frame in seen]
 
 
 def _people(poses: Sequence[Pose], size: tuple[int, int], scale: float) -> SeenPeople:

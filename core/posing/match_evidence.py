@@ -306,9 +306,7 @@ def products(first: SingleArray, second: SingleArray) -> SingleArray:
     return np.stack([u[0] * v[0], u[1] * v[1], u[2] * v[2], *mixed], axis=-1)
 
 
-def student_cost(
-    squared: SingleArray, dimensions: int, degrees: float = DEGREES_OF_FREEDOM
-) -> SingleArray:
+def student_cost(squared: SingleArray, dimensions: int, degrees: float = DEGREES_OF_FREEDOM) -> SingleArray:
     """Negative log likelihood under Student's t of squared distances, up to a constant."""
     off = squared / np.float32(degrees)
     off += np.float32(1.0)
