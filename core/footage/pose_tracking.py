@@ -104,19 +104,16 @@ class _Tracking:
     def __init__(self, network: PoseNetwork) -> None:
         self._network = network
         self._tracks = 0
-        self._began = False
         self.seen: list[list[_Sighting]] = []
         """Of each picture of the last stretch."""
 
     def follow(self, pictures: Sequence[Image]) -> Iterator[int]:
         """Follow everyone through the next stretch; yields the number of pictures that are done."""
-        before = self.seen[-1] if self.seen else []
-        self.seen = [[] for _ in pictures]
-        if not self._began:
-            self._began = True
-            yield from self._look(pictures, 0)
+        before, self.seen = self.seen, [[] for _ in pictures]
+        if before:
+            yield from self._go(pictures, before[-1], range(len(pictures)))
         else:
-            yield from self._go(pictures, before, range(len(pictures)))
+            yield from self._look(pictures, 0)
         last = len(pictures) - 1
         yield from self._look(pictures, last)
         if not any(self.seen):
@@ -161,8 +158,8 @@ class _Tracking:
 def _is_near(crop: Crop, other: Crop) -> bool:
     """Whether the network sees the same in two crops, but for what it has learned to overlook."""
     turned = abs(np.angle(np.exp(1j * (crop.angle - other.angle))))
-    moved = float(np.hypot(*(crop.center - other.center))) / other.side
-    return max(moved, turned, abs(crop.side / other.side - 1.0)) < OVERLOOKED
+    moved = np.hypot(*(crop.center - other.center)) / other.side
+    return bool(max(moved, turned, abs(crop.side / other.side - 1.0)) < OVERLOOKED)
 
 
 def _is_followed(before: Pose, now: Pose, picture: Image) -> bool:

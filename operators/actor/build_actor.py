@@ -170,13 +170,8 @@ class KEYMARK_OT_measure_actor(Stature, BaseOperator, bpy.types.Operator):
 
         take = active_take(context.scene)
         frame = frame_in_footage(footage_of(context.scene, take), scene_evidence(take), reading_of(take))
-        measured = measured_in_frame(
-            frame,
-            self.given_stature(),
-            tuple(self.head_pixel),
-            tuple(self.floor_pixel),
-            self.arms_stretched,
-        )
+        head, floor = tuple(self.head_pixel), tuple(self.floor_pixel)
+        measured = measured_in_frame(frame, self.given_stature(), head, floor, self.arms_stretched)
         size_actor(context, take, measured.body)
         take.stature = self.stature
         if not has_keyframes(take):
