@@ -214,7 +214,7 @@ def test_footage_is_matched_again_beside_what_is_posed(saved: Saved, scene: bpy.
     take = active_take(scene)
     assert {key.co.x: key.co.y for key in keyed(take) if key.type == "KEYFRAME"} == poses
     assert len(poses) == 2 and len(take.matching.matches) == saved.property("matching.matches.len") == 5
-    assert take.matching.fit == pytest.approx(saved.property("matching.fit"), abs=0.05)
+    assert 0.0 < take.matching.fit < 1.0  # A probability now; files of 0.1.0 hold a share of the footage.
 
 
 def keyed(take: bpy.types.PropertyGroup) -> list[bpy.types.Keyframe]:
