@@ -89,7 +89,7 @@ def rows_of(name: str, folder: Path, network: PoseNetwork) -> list[Row]:
     if file is not None:
         rows.append(scored(name, OTHER, read_keypoints(file, None, clip.size), truth))
     began = time.process_time()
-    people = run(find_people(clip, network, 10_000))
+    people = run(find_people(clip, network))
     ms = 1000.0 * (time.process_time() - began) / len(people.frames)
     return [*rows, scored(name, OWN, people, truth, ms)]
 

@@ -1,5 +1,7 @@
 """A network in the place of the real one: it sees colored discs on black as people."""
 
+from collections.abc import Sequence
+
 import cv2
 import numpy as np
 from keymark.core.arrays import Image
@@ -28,6 +30,10 @@ class FakeNetwork:
         fits = 0.4 < CIRCLE * radius / crop.side < 2.0
         near = np.abs(centers[nearest] - crop.center).max() < 0.35 * crop.side
         return self._pose(centers[nearest], radius, float(fits and near))
+
+    def each(self, asked: Sequence[tuple[Image, Crop]]) -> list[Pose]:
+        """Look at one crop after the other."""
+        return [self(*one) for one in asked]
 
     def _pose(self, center: np.ndarray, radius: float, presence: float) -> Pose:
         hint = np.zeros((COUNT, 3))

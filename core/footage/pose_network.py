@@ -5,6 +5,8 @@ must move and turn with the person: `Pose.crop` is where to look next.
 """
 
 import hashlib
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,6 +28,7 @@ POINTS, CENTER, ABOVE = 39, 33, 34
 """Point 33 is between the hips, 34 above it on the circle about the whole person."""
 CIRCLE = 2.5  # side of a crop by the circle's radius
 NEIGHBORS = 3  # a point goes to the middle of its heat map within so many cells
+MOST_AT_ONCE = 2  # networks: one person is followed two ways
 OUTPUTS = ("Identity", "Identity_1", "Identity_3", "Identity_4")
 
 
@@ -75,8 +78,12 @@ class PoseNetwork:
         known = [line.split()[0] for line in CHECKSUMS.read_text(encoding="utf-8").splitlines()]
         if hashlib.sha256(weights).hexdigest() not in known:  # OpenCV would crash
             raise InputError(f"{model}: the network that finds keypoints is damaged or another one; {again}")
+        self._weights = np.frombuffer(weights, dtype=np.uint8)
+        self._nets = [self._read()]
+
+    def _read(self) -> cv2.dnn.Net:
         try:
-            self._net = cv2.dnn.readNetFromTFLite(np.frombuffer(weights, dtype=np.uint8))
+            return cv2.dnn.readNetFromTFLite(self._weights)
         except cv2.error as error:  # built without FlatBuffers, as Debian's
             raise InputError(
                 f"{cv2.__file__}: this OpenCV ({cv2.__version__}) cannot read the network that finds "
@@ -85,7 +92,30 @@ class PoseNetwork:
 
     def __call__(self, picture: Image, crop: Crop) -> Pose:
         """The person in a crop of a picture (height, width, 3), blue first."""
-        return self.postprocess(self.infer(self.preprocess(picture, crop)), crop)
+        return self.each([(picture, crop)])[0]
+
+    def each(self, asked: Sequence[tuple[Image, Crop]]) -> list[Pose]:
+        """The persons in crops of pictures, of which as many are looked at at once as there are networks.
+
+        Each network has one thread: that is faster than several threads for one look.
+        """
+        threads = cv2.getNumThreads()
+        workers = max(1, min(len(asked), threads, MOST_AT_ONCE))
+        while len(self._nets) < workers:
+            self._nets.append(self._read())
+        cv2.setNumThreads(1)
+        try:
+            with ThreadPoolExecutor(workers) as pool:
+                return list(pool.map(lambda one: self._look(*one), asked))
+        finally:
+            cv2.setNumThreads(threads)
+
+    def _look(self, picture: Image, crop: Crop) -> Pose:
+        net = self._nets.pop()  # nobody else has it then
+        try:
+            return self.postprocess(self.infer(net, self.preprocess(picture, crop)), crop)
+        finally:
+            self._nets.append(net)
 
     def preprocess(self, picture: Image, crop: Crop) -> SingleArray:
         """The network's input (1, 3, 256, 256), red first, 0 to 1."""
@@ -96,10 +126,12 @@ class PoseNetwork:
         seen = cv2.warpAffine(picture, matrix, size, flags=flags, borderMode=cv2.BORDER_REPLICATE)
         return np.asarray(cv2.dnn.blobFromImage(seen, 1.0 / 255.0, swapRB=True), dtype=np.float32)
 
-    def infer(self, blob: SingleArray) -> tuple[SingleArray, float, SingleArray, SingleArray]:
+    def infer(
+        self, net: cv2.dnn.Net, blob: SingleArray
+    ) -> tuple[SingleArray, float, SingleArray, SingleArray]:
         """Points (39, 5), presence, heat maps (39, 64, 64) and points in space (39, 3)."""
-        self._net.setInput(blob)
-        points, presence, heat, world = self._net.forward(OUTPUTS)
+        net.setInput(blob)
+        points, presence, heat, world = net.forward(OUTPUTS)
         shapes = ((POINTS, 5), (POINTS, CELLS, CELLS), (POINTS, 3))
         arrays = [
             np.asarray(out, dtype=np.float32).reshape(shape)

@@ -1,4 +1,4 @@
-"""Everyone in a clip, found by the landmark network and followed from frame to frame.
+"""Everyone in a clip, found by the landmark network and followed from picture to picture.
 
 The clip is decoded once, a stretch at a time. People are looked for at the end of every stretch, by crops of
 several sizes and places; from there they are followed backward until they are lost or met, and forward into
@@ -21,13 +21,15 @@ from .keypoints.keypoints import People, SeenPeople
 from .pose_network import LAYOUT, NAME, Crop, Pose, PoseNetwork
 
 DETECTING = "Detecting keypoints"
-STRETCH = 60  # frames kept at a time, 170 MB
+STRETCH = 60  # pictures kept at a time, 170 MB
+LOOKS_A_SECOND = 30.0  # the usual rate of video, from which on pictures are left out
 LARGEST_SIDE_PX = 1280  # pictures are made as small; the network sees 256 pixels of a person
 HEIGHTS = (1.15, 0.75, 0.5, 0.33)  # sides of the crops that are looked into, by the height of the picture
 SIZES = (0.75,)  # the same by the largest person who is followed already
 STEP = 0.5  # between crops, by their side
 APART = 0.3  # share of a crop's side within which two crops show the same person
 MOST_OTHER = 1.6  # ratio of sizes beyond which a later person is another
+OVERLOOKED = 0.1  # shift, turn and growth of a crop for which the network's training makes up
 SMALLEST = 0.35  # others are followed from this share of the largest one's size on
 
 
@@ -39,113 +41,155 @@ class _Sighting:
     pose: Pose
 
 
-def find_people(clip: Clip, network: PoseNetwork, longest: int) -> Job[People]:
-    """Find everyone in a clip of at most `longest` frames.
+def find_people(clip: Clip, network: PoseNetwork) -> Job[People]:
+    """Find everyone in a clip; where it has many pictures a second, those between the looked at have nobody.
 
     Raises:
-        InputError: It is a picture, has no frames or too many, or nobody is in it.
+        InputError: It is a picture, has no frames, or nobody is in it.
     """
     refuse_picture(clip)
     scale = min(1.0, LARGEST_SIDE_PX / max(clip.size))
+    every = max(1, round(clip.fps / LOOKS_A_SECOND))
     tracking = _Tracking(network)
     seen: list[list[_Sighting]] = []
+    count = 0
     yield Progress(DETECTING, 0.0)
-    for pictures in _stretches(clip, scale):
+    for pictures, count in _stretches(clip, scale, every):  # noqa: B007 - the last count is the clip's
         for done in tracking.follow(pictures):
-            yield Progress(DETECTING, min((len(seen) + done) / clip.frame_count, 1.0))
+            yield Progress(DETECTING, min(every * (len(seen) + done) / clip.frame_count, 1.0))
         seen += tracking.seen
-        if len(seen) > longest:
-            raise InputError(f"{clip.path}: has more than {longest} frames; cut it into shorter clips")
     if not seen:
         raise InputError(f"{clip.path}: holds no frame that can be decoded; it must be a video or images")
     kept = _believed(seen)
     if not any(kept):
         raise InputError(
-            f"{clip.path}: nobody is seen in any of its {len(seen)} frames; it must show a person, at "
+            f"{clip.path}: nobody is seen in any of its {count} frames; it must show a person, at "
             "least from the head to the hips and not too small"
         )
-    frames = tuple(_people(frame, clip.size, scale) for frame in kept)
-    return People(LAYOUT.names, NAME, clip.size, frames)
+    frames = [SeenPeople.nobody(len(LAYOUT.names))] * count
+    frames[::every] = [_people(frame, clip.size, scale) for frame in kept]
+    return People(LAYOUT.names, NAME, clip.size, tuple(frames))
 
 
 def refuse_picture(clip: Clip) -> None:
     """Refuse a single picture in place of a clip."""
-    if clip.frame_count == 1 and not clip.knows_its_rate:
+    if clip.frame_count == 1:
         raise InputError(
             f"{clip.path}: is a single picture; it must be a video, or a folder of the pictures of one"
         )
 
 
-def _stretches(clip: Clip, scale: float) -> Iterator[list[Image]]:
+def _stretches(clip: Clip, scale: float, every: int) -> Iterator[tuple[list[Image], int]]:
+    """Stretches of every so manieth picture, with the number of frames up to the end of each."""
     pictures: list[Image] = []
-    for _, _, picture in clip.frames():
+    count = 0
+    for index, _, picture in clip.frames():
+        count = index + 1
+        if index % every:
+            continue
+        if len(pictures) == STRETCH:
+            yield pictures, index
+            pictures = []
         if scale < 1.0:
             size = (round(scale * clip.size[0]), round(scale * clip.size[1]))
             picture = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
         pictures.append(picture)
-        if len(pictures) == STRETCH:
-            yield pictures
-            pictures = []
     if pictures:
-        yield pictures
+        yield pictures, count
 
 
 class _Tracking:
-    """Whom the frames of one stretch after another show."""
+    """Whom the pictures of one stretch after another show."""
 
     def __init__(self, network: PoseNetwork) -> None:
         self._network = network
         self._tracks = 0
-        self._began = False
         self.seen: list[list[_Sighting]] = []
-        """Of each frame of the last stretch."""
+        """Of each picture of the last stretch."""
 
     def follow(self, pictures: Sequence[Image]) -> Iterator[int]:
-        """Follow everyone through the next stretch; yields the number of frames that are done."""
-        before = self.seen[-1] if self.seen else []
-        self.seen = [[] for _ in pictures]
-        if not self._began:
-            self._began = True
-            yield from self._look(pictures, 0)
+        """Follow everyone through the next stretch; yields the number of pictures that are done."""
+        before, self.seen = self.seen, [[] for _ in pictures]
+        if before:
+            yield from self._go(pictures, before[-1], range(len(pictures)))
         else:
-            yield from self._go(pictures, before, range(len(pictures)))
+            yield from self._look(pictures, 0)
         last = len(pictures) - 1
         yield from self._look(pictures, last)
         if not any(self.seen):
             yield from self._look(pictures, last // 2)
 
     def _look(self, pictures: Sequence[Image], index: int) -> Iterator[int]:
-        """Look for new people in a frame, and follow them both ways."""
+        """Look for new people in a picture, and follow them both ways."""
         known = [one.pose for one in self.seen[index]]
-        new = []
-        for pose in _scan(self._network, pictures[index], known):
-            new.append(_Sighting(self._tracks, pose))
-            self._tracks += 1
+        poses = _scan(self._network, pictures[index], known)
+        new = [_Sighting(track, pose) for track, pose in enumerate(poses, self._tracks)]
+        self._tracks += len(new)
         self.seen[index] += new
         yield from self._go(pictures, new, range(index - 1, -1, -1))
         yield from self._go(pictures, new, range(index + 1, len(pictures)))
 
     def _go(self, pictures: Sequence[Image], people: Sequence[_Sighting], way: range) -> Iterator[int]:
-        """Follow people until they are lost, or met by others who are followed already."""
-        for index in way:
-            now = []
-            for one in people:
-                pose = _next(self._network, pictures[index], one.pose)
-                if pose is not None and not _is_among(pose, [other.pose for other in self.seen[index]]):
-                    now.append(_Sighting(one.track, pose))
-                    self.seen[index].append(now[-1])
-                yield index
-            people = now
+        """Follow people until they are lost, or met by others who are followed already.
+
+        Two pictures are looked at at once, in the same crops; the second anew where somebody has left theirs.
+        """
+        for pair in (way[at : at + 2] for at in range(0, len(way), 2)):
+            if not people:
+                return
+            crops = {one.track: one.pose.crop for one in people}
+            asked = [(index, one.track) for index in pair for one in people]
+            looks = self._network.each([(pictures[index], crops[track]) for index, track in asked])
+            poses = dict(zip(asked, looks, strict=True))
+            for index in pair:
+                now = []
+                for one in people:
+                    pose = poses[index, one.track]
+                    if not _is_near(one.pose.crop, crops[one.track]):
+                        pose = self._network(pictures[index], one.pose.crop)
+                    others = [other.pose for other in self.seen[index]]
+                    if _is_followed(one.pose, pose, pictures[index]) and not _is_among(pose, others):
+                        now.append(_Sighting(one.track, pose))
+                        self.seen[index].append(now[-1])
+                people = now
+                yield sum(map(bool, self.seen))
 
 
-def _next(network: PoseNetwork, picture: Image, before: Pose) -> Pose | None:
-    """The person in the next frame; None where lost."""
-    now = network(picture, before.crop)
+def _is_near(crop: Crop, other: Crop) -> bool:
+    """Whether the network sees the same in two crops, but for what it has learned to overlook."""
+    turned = abs(np.angle(np.exp(1j * (crop.angle - other.angle))))
+    moved = np.hypot(*(crop.center - other.center)) / other.side
+    return bool(max(moved, turned, abs(crop.side / other.side - 1.0)) < OVERLOOKED)
+
+
+def _is_followed(before: Pose, now: Pose, picture: Image) -> bool:
+    """Whether a person is the one of the picture before, and not lost."""
     moved = np.hypot(*(now.crop.center - before.crop.center)) / before.crop.side
     grown = max(now.crop.side / before.crop.side, before.crop.side / max(now.crop.side, 1.0))
-    if now.presence < 0.5 or now.score.mean() < 0.3 or moved > 0.35 or grown > 1.5:
-        return None
-    return now if _is_inside(now, picture) else None
+    lost = now.presence < 0.5 or now.score.mean() < 0.3 or moved > 0.35 or grown > 1.5
+    return not lost and _is_inside(now, picture)
+
+
+def _settled(network: PoseNetwork, picture: Image, crops: Sequence[Crop]) -> list[Pose]:
+    """Whom crops show for sure, once these have moved to them; the surest first."""
+    poses = network.each([(picture, crop) for crop in crops])
+    poses = _distinct([pose for pose in poses if pose.presence > 0.3])
+    for _ in range(2):  # somebody may be there, in another place of the crop
+        poses = _distinct(network.each([(picture, pose.crop) for pose in poses]))
+    return [
+        pose
+        for pose in poses
+        if pose.presence > 0.9 and pose.score.mean() > 0.5 and _is_inside(pose, picture)
+    ]
+
+
+def _distinct(poses: Sequence[Pose]) -> list[Pose]:
+    """Each person once, the surest first."""
+    found: list[Pose] = []
+    for pose in sorted(poses, key=lambda one: -one.presence * float(one.score.mean())):
+        if not _is_among(pose, found):
+            found.append(pose)
+    return found
 
 
 def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[Pose]:
@@ -154,19 +198,12 @@ def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[P
     sides = [size * largest for size in SIZES] if known else [size * len(picture) for size in HEIGHTS]
     found: list[Pose] = []
     for number, side in enumerate(sides):
-        here = []
-        for crop in _grid(picture, side):
-            if any(_overlap(crop, pose.crop) for pose in chain(known, found)):
-                continue
-            pose = network(picture, crop)
-            looks = 2 if pose.presence > 0.3 else 0  # somebody may be there, in another place of the crop
-            for _ in range(looks):
-                pose = network(picture, pose.crop)
-            sure = pose.presence > 0.9 and pose.score.mean() > 0.5 and _is_inside(pose, picture)
-            if looks and sure and pose.crop.side > SMALLEST * largest:
-                here.append(pose)
-        for pose in sorted(here, key=lambda one: -one.presence * float(one.score.mean())):
-            if not _is_among(pose, [*known, *found]) and len(known) + len(found) < 4:
+        there = [pose.crop for pose in chain(known, found)]
+        crops = [crop for crop in _grid(picture, side) if not any(_overlap(crop, one) for one in there)]
+        small = SMALLEST * largest
+        for pose in _settled(network, picture, crops):
+            new = pose.crop.side > small and not _is_among(pose, [*known, *found])
+            if new and len(known) + len(found) < 4:
                 found.append(pose)
                 largest = max(largest, pose.crop.side)
         if found and not known and number:  # somebody else may be one size smaller
@@ -210,7 +247,7 @@ def _is_among(pose: Pose, others: Sequence[Pose]) -> bool:
 
 
 def _believed(seen: Sequence[Sequence[_Sighting]]) -> list[list[Pose]]:
-    """The people of each frame but those of a moment; where nobody meets another, those of one size."""
+    """The people of each picture but those of a moment; where nobody meets another, those of one size."""
     sides: dict[int, list[float]] = {}
     for one in chain.from_iterable(seen):
         sides.setdefault(one.track, []).append(one.pose.crop.side)

@@ -29,7 +29,7 @@ from ..footage.pose_network import PoseNetwork
 from ..footage.pose_tracking import find_people, refuse_picture
 from ..footage.standing_moments import standing_keypoints
 from ..progress import Job, Progress, stretch
-from ..take.clip_check import LONGEST_FRAMES, open_footage
+from ..take.clip_check import open_footage
 from ..take.conversion_settings import ConversionSettings
 from ..take.description import ASSUMED, Description, keypoint_files
 from ..take.evidence import KEYPOINTS
@@ -77,7 +77,7 @@ def place_take(description: Description, settings: ConversionSettings) -> Job[Pl
     files = keypoint_files(description, settings)
     seen = f"read from {listed(file.name for file in files)}"
     if not files:
-        job = find_people(open_footage(description.clip, take.fps), PoseNetwork(), LONGEST_FRAMES)
+        job = find_people(open_footage(description.clip, take.fps), PoseNetwork())
         people = yield from stretch(job, 0.0, SEEN)
         take, seen = replace(take, keypoints=(people,)), seen_in_words(people)
     yield Progress("Placing the camera", SEEN)

@@ -14,7 +14,6 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.human import HUMAN, LIMBS, mass_weights
 from ..estimate.terms.contact import STEP_M
-from ..numerics.robust import multivariate_cost
 from .library_motion import PartBelief
 from .match_evidence import EXCHANGED_COST, FrameLikelihood, extent_cost, lowest, products, student_cost
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
@@ -301,17 +300,22 @@ def pair_costs(left: LegChoices, right: LegChoices, mass: SingleArray) -> Single
 
     `mass` (N, 2) is the center of mass without the legs' shares, times the rest's share, from the hips [m].
     """
-    center = mass[:, None, None] + left.mass[:, :, None] + right.mass[:, None]
-    first = left.foot[:, :, None]
-    way = right.foot[:, None] - first
-    along = ((center - first) * way).sum(axis=-1) / np.maximum((way * way).sum(axis=-1), np.float32(1e-4))
+    # The floor's axes first: sums over a last axis of two would take most of the time.
+    middle, far, near, foot, other = (
+        np.ascontiguousarray(np.moveaxis(each, -1, 0))
+        for each in (mass, left.mass, right.mass, left.foot, right.foot)
+    )
+    first = foot[..., None]
+    way = other[:, :, None] - first
+    from_first = middle[..., None, None] + far[..., None] + near[:, :, None] - first
+    along = (from_first * way).sum(axis=0) / np.maximum((way * way).sum(axis=0), np.float32(1e-4))
     higher = right.height[:, None] - left.height[:, :, None]
     along = np.where(higher > STEP_M, 0.0, np.where(higher < -STEP_M, 1.0, np.clip(along, 0.0, 1.0)))
-    off = center - first - along[..., None].astype(np.float32) * way
+    off = from_first - along.astype(np.float32) * way
     # Horizontal distance of the center of mass from the feet that stand: a foot's length, a step under way.
-    squared = (off * off).sum(axis=-1) / np.float32(0.12**2)
+    squared = (off * off).sum(axis=0) / np.float32(0.12**2)
     # Of Student's t: who runs, leaps or leans on something is forgiven.
-    falling = multivariate_cost(squared, 3.0, 2)
+    falling = student_cost(squared, 2, 3.0)
     stands = standing_cost(np.minimum(left.height[:, :, None], right.height[:, None])) + falling
     return np.asarray(np.minimum(stands, NO_CONTACT_COST))
 

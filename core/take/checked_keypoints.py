@@ -8,7 +8,7 @@ from ..files.digest import digest
 from ..footage.clips.frame_checks import FrameFindings
 from ..footage.keypoints.keypoints import People, SeenPeople
 from ..footage.picture_check import PictureFinding, applied, check_by_pictures
-from ..footage.pose_network import PoseNetwork
+from ..footage.pose_network import NAME, PoseNetwork
 from ..footage.reading import Reading
 from ..progress import Job, within
 from .performer_keypoints import FEWEST_KEYFRAMES
@@ -25,7 +25,7 @@ def with_checked_keypoints(take: Take, reading: Reading, done: float = 0.0) -> J
     `done` is the fraction done before; looking takes a second or two.
 
     Pictures are not asked where posed keyframes tell (see `estimate/keypoint_trust`), of points that a person
-    has placed, and without the pose network.
+    has placed or that the pose network has just found in them, and without the network.
 
     Raises:
         InputError: Keypoints are not of this clip.
@@ -34,9 +34,9 @@ def with_checked_keypoints(take: Take, reading: Reading, done: float = 0.0) -> J
     posed = sum(keyframe.matched is None for keyframe in take.keyframes)
     if reading.steady is not None:  # places are no longer the clip's own, and were checked before
         return take
-    network = _network() if take.keypoints and posed < FEWEST_KEYFRAMES else None
-    for people in take.keypoints:
-        asked = not people.by_hand and not people.looked
+    is_asked = [not (each.by_hand or each.looked or _is_own(each)) for each in take.keypoints]
+    network = _network() if any(is_asked) and posed < FEWEST_KEYFRAMES else None
+    for people, asked in zip(take.keypoints, is_asked, strict=True):
         if network is not None and reading.glimpses is not None and asked:
             key = digest(reading.key, people.names, *_arrays(people))
             if key not in _known or not reading.key:
@@ -47,6 +47,10 @@ def with_checked_keypoints(take: Take, reading: Reading, done: float = 0.0) -> J
             people = applied(people, _known[key])
         checked.append(_each_once(people, reading.frame_findings))
     return replace(take, keypoints=tuple(checked))
+
+
+def _is_own(people: People) -> bool:
+    return people.source == NAME and not people.file
 
 
 @lru_cache(maxsize=1)

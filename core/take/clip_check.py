@@ -37,22 +37,41 @@ def open_clip(take: Take) -> Clip:
 
 
 def open_footage(path: Path, fps: float | None) -> Clip:
-    """Open a clip without its take; `fps` is the rate of an image sequence."""
+    """Open a clip without its take; `fps` is the rate of an image sequence.
+
+    Raises:
+        InputError: The clip is missing, unreadable or too long.
+    """
     try:
-        return Clip.open(path, fps=fps)
+        clip = Clip.open(path, fps=fps)
     except OSError as error:
         raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
+    if clip.frame_count > LONGEST_FRAMES and _counted(clip) > LONGEST_FRAMES:  # headers may exaggerate
+        raise _too_long(path, clip.fps)
+    return clip
 
 
 def picture_count(path: Path, fps: float) -> int:
-    """Number of pictures of a clip without its take; of a sound file quickly, by its undecoded packets."""
-    clip = open_footage(path, fps)
+    """Number of pictures of a clip without its take."""
+    return _counted(open_footage(path, fps))
+
+
+def _counted(clip: Clip) -> int:
+    """Number of pictures up to one too many; of a sound file quickly, by its undecoded packets."""
     if not isinstance(clip.source, VideoFile):
         return clip.frame_count
-    packets = None if clip.source.is_trimmed else read_packets(path)
-    if packets is not None and packets.complete:
+    packets = None if clip.source.is_trimmed else read_packets(clip.path, LONGEST_FRAMES + 1)
+    if packets is not None:
         return len(packets.time_s)
     return sum(1 for _ in islice(clip.source.time_stamps(), LONGEST_FRAMES + 1))
+
+
+def _too_long(path: Path, fps: float) -> InputError:
+    longest_s = LONGEST_FRAMES / fps
+    return InputError(
+        f"{path}: has more than {LONGEST_FRAMES} frames, {longest_s / 60.0:.0f} minutes; it must be shorter: "
+        f"cut it, as with ffmpeg -ss 0 -t {int(longest_s)} -i CLIP part1.mp4"
+    )
 
 
 def check_size(take: Take, clip: Clip) -> None:
@@ -79,10 +98,7 @@ def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
     """
     path = take.file
     if count > LONGEST_FRAMES:
-        raise InputError(
-            f"{take.clip}: has more than {LONGEST_FRAMES} frames, {LONGEST_FRAMES / take.fps / 60.0:.0f} "
-            "minutes; a take must be shorter: cut it, as with ffmpeg -ss 0 -t 600 -i CLIP part1.mp4"
-        )
+        raise _too_long(take.clip, take.fps)
     if take.frame_count not in (None, count):
         raise InputError(
             f"{path}: frame_count is {take.frame_count}; "

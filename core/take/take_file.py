@@ -54,6 +54,15 @@ FRAME_RATE = Number(1.0, 1000.0, "frames per second")
 FRAME_START = Whole(-(10**6), 10**6)
 
 
+def check_height(height_m: float, name: str) -> None:
+    """Refuse what is no performer's height, as one in centimeters; `name` is what people call it."""
+    if SHORTEST_M <= height_m <= TALLEST_M:
+        return
+    in_cm = SHORTEST_M <= height_m / 100.0 <= TALLEST_M
+    hint = f", and this in centimeters is {height_m / 100.0:g}" if in_cm else ", as in 1.78"
+    raise InputError(f"{name} is {height_m:g}; meters from {SHORTEST_M:g} to {TALLEST_M:g} are valid{hint}")
+
+
 class CameraKind(Kind):
     """A camera."""
 

@@ -43,7 +43,7 @@ class KEYMARK_OT_build_actor(Stature, BaseOperator, bpy.types.Operator):
         from ..bridge.pose import write_posture
         from .take_actor import has_keyframes, performers_stance, size_actor
 
-        body = Body(Actor.from_stature(self.stature))
+        body = Body(Actor.from_stature(self.given_stature()))
         take = ensure_take(context.scene)
         had_actor = size_actor(context, take, body)
         take.stature = self.stature
@@ -170,9 +170,8 @@ class KEYMARK_OT_measure_actor(Stature, BaseOperator, bpy.types.Operator):
 
         take = active_take(context.scene)
         frame = frame_in_footage(footage_of(context.scene, take), scene_evidence(take), reading_of(take))
-        measured = measured_in_frame(
-            frame, self.stature, tuple(self.head_pixel), tuple(self.floor_pixel), self.arms_stretched
-        )
+        head, floor = tuple(self.head_pixel), tuple(self.floor_pixel)
+        measured = measured_in_frame(frame, self.given_stature(), head, floor, self.arms_stretched)
         size_actor(context, take, measured.body)
         take.stature = self.stature
         if not has_keyframes(take):

@@ -71,9 +71,16 @@ class Stature:
         subtype="DISTANCE",
         precision=4,
         default=1.75,
-        min=0.5,
-        max=3.0,
+        soft_min=0.5,
+        soft_max=3.0,
     )
+
+    def given_stature(self) -> float:
+        """The height [m]; refuses what nobody has, which Blender's limits would change without a word."""
+        from ...core.take.take_file import check_height
+
+        check_height(round(self.stature, 4), "Height")
+        return float(self.stature)
 
 
 class KEYMARK_PG_lengths(bpy.types.PropertyGroup):

@@ -109,12 +109,13 @@ class KEYMARK_OT_animate(Stature, JobOperator, bpy.types.Operator):
         """Load the clip, and go on; what is complete stays in the scene where the job ends early."""
         from .stages import animate, follow_found_file
 
+        stature = self.given_stature()
         path = chosen_file(self, "a video, or one image of a numbered sequence")
         there = find_take(scene)
         take = load_into_take(bpy.context, path, there is not None and there.clip is not None)
         _keep_folder(path.parent)
         follow_found_file(take, path)
-        return animate(self, scene, self.stature, self.character, self.character_file)
+        return animate(self, scene, stature, self.character, self.character_file)
 
     def finish(self, scene: bpy.types.Scene, result: list[str]) -> None:
         for line in result:

@@ -126,13 +126,13 @@ def detect(scene: bpy.types.Scene) -> "Job[Detected]":
     """Find everybody in the active take's clip; the scene stays as it is."""
     from ...core.footage.pose_network import PoseNetwork
     from ...core.footage.pose_tracking import find_people
-    from ...core.take.clip_check import LONGEST_FRAMES, open_footage
+    from ...core.take.clip_check import open_footage
 
     take = active_take(scene)
     identifier, source = take.identifier, footage_of(scene, take)
     output, first = _output(take, source.path), source.first_frame
     clip = open_footage(source.path, source.rate)
-    people = yield from find_people(clip, PoseNetwork(), LONGEST_FRAMES)
+    people = yield from find_people(clip, PoseNetwork())
     return Detected(identifier, output, people, clip.fps, first)
 
 

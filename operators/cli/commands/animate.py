@@ -7,7 +7,7 @@ from pathlib import Path
 from ....core.errors import InputError
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.description import ASSUMED, describe
-from ....core.take.take_file import SHORTEST_M, TALLEST_M, USUAL_HEIGHT_M
+from ....core.take.take_file import USUAL_HEIGHT_M, check_height
 from ..console import arguments_console
 from ..conversion.character_result import FORMAT, check_exporters, export_formats
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
@@ -28,11 +28,8 @@ from ..parser import Command, UsageError, argument
 def animate_command(arguments: argparse.Namespace) -> None:
     """Animate the clip that the command line names, and list what was assumed, found and made."""
     height_m = arguments.height
-    if height_m is not None and not SHORTEST_M <= height_m <= TALLEST_M:
-        in_cm = SHORTEST_M <= height_m / 100.0 <= TALLEST_M
-        hint = f", and this in centimeters is {height_m / 100.0:g}" if in_cm else ", as in 1.78"
-        valid = f"meters from {SHORTEST_M:g} to {TALLEST_M:g} are valid"
-        raise UsageError(f"{HEIGHT} is {height_m:g}; {valid}{hint}")
+    if height_m is not None:
+        check_height(height_m, HEIGHT)
     formats = export_formats(arguments.format)
     if formats and arguments.character is None:
         raise UsageError("--format is given without --character, of which it writes further files")

@@ -17,7 +17,7 @@ from ....core.footage.pose_network import PoseNetwork
 from ....core.footage.pose_tracking import find_people
 from ....core.progress import run, stretch
 from ....core.shoot.discovery import VIDEOS, ShootTake, find_takes, open_shoot
-from ....core.take.clip_check import LONGEST_FRAMES, open_footage
+from ....core.take.clip_check import open_footage
 from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, Description, find_shoot_files, sidecar_file
 from ....core.take.take_file import FRAME_RATE, FRAME_START
 from ..console import Console, arguments_console
@@ -148,7 +148,7 @@ def _detect(footage: Footage, network: PoseNetwork, console: Console, first: flo
     if not os.access(footage.output.parent, os.W_OK | os.X_OK):
         raise InputError(f"{footage.output}: cannot be written; its folder must exist and be writable")
     clip = open_footage(footage.clip, footage.fps)
-    job = find_people(clip, network, LONGEST_FRAMES)
+    job = find_people(clip, network)
     with closing(stretch(job, first, last)) as stretched:
         people = run(stretched, console.progress)
     write_keypoints(footage.output, people, footage.frame_start, clip.fps)

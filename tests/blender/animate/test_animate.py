@@ -47,6 +47,15 @@ def only_take() -> PropertyGroup:
     return active_take(bpy.context.scene)
 
 
+@pytest.mark.parametrize(
+    ("height", "sentence"), [(178.0, "in centimeters is 1.78"), (0.0, "Height is 0; meters")]
+)
+def test_a_height_that_is_none_is_a_sentence(clip: Path, height: float, sentence: str) -> None:
+    with pytest.raises(RuntimeError, match=sentence):
+        bpy.ops.keymark.animate(filepath=str(clip), stature=height)
+    assert not bpy.context.scene.keymark.takes
+
+
 def test_all_steps_are_there_and_the_character_of_a_file_performs(clip: Path, tmp_path: Path) -> None:
     armature = build_character(plain_character())
     file, name = tmp_path / "anna.blend", armature.name

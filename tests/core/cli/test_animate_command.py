@@ -16,6 +16,7 @@ from keymark.core.pipeline import place
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.prior.library import write_library
 from keymark.core.shoot.discovery import find_takes
+from keymark.core.take import clip_check
 from keymark.core.take.motion import read_motion
 from keymark.core.take.take_file import read_take
 from keymark.operators.cli.conversion import convert_take
@@ -93,7 +94,7 @@ def test_without_keypoints_they_are_detected(
     found = read_keypoints(file, FRAMES, (160, 120), 30.0, 1)
     file.unlink()
 
-    def find(_clip: object, _network: object, _longest: int) -> Any:
+    def find(_clip: object, _network: object) -> Any:
         yield place.Progress("Detecting keypoints", 0.0)
         return found
 
@@ -138,6 +139,18 @@ def picture(folder: Path, _monkeypatch: pytest.MonkeyPatch) -> Path:
     return file
 
 
+def of_one_frame(folder: Path, _monkeypatch: pytest.MonkeyPatch) -> Path:
+    write_frames(folder / "clip.mp4", list(drawn_frames(true_postures(1))))
+    return folder / "clip.mp4"
+
+
+def too_long(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    write_frames(folder / "clip.mp4", list(drawn_frames(true_postures(8))))
+    monkeypatch.setattr(clip_check, "LONGEST_FRAMES", 6)
+    monkeypatch.setattr(place, "PoseNetwork", lambda: pytest.fail("the network was read"))
+    return folder / "clip.mp4"
+
+
 def take(folder: Path, _monkeypatch: pytest.MonkeyPatch) -> Path:
     write_json(folder / "take.json", {})
     return folder
@@ -152,6 +165,8 @@ def nothing(folder: Path, _monkeypatch: pytest.MonkeyPatch) -> Path:
     [
         (damaged, "is damaged or another one"),
         (picture, "photo.png: is a single picture; it must be a video"),
+        (of_one_frame, "clip.mp4: is a single picture; it must be a video"),
+        (too_long, "clip.mp4: has more than 6 frames, 0 minutes; it must be shorter: cut it, as with ffmpeg"),
         (take, "is a take, which keymark convert is for"),
         (nothing, "none.mp4"),
     ],

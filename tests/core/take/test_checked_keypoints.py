@@ -15,7 +15,7 @@ from keymark.core.arrays import Array
 from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.keypoints.keypoints import Keypoints, People, SeenPeople
-from keymark.core.footage.pose_network import LAYOUT, MODEL
+from keymark.core.footage.pose_network import LAYOUT, MODEL, NAME
 from keymark.core.footage.reading import read_clip, reading_arrays, reading_from_arrays
 from keymark.core.progress import run
 from keymark.core.take import checked_keypoints
@@ -200,7 +200,7 @@ def test_a_jump_to_a_passer_by_is_left_out(failing: Callable[[str], Path], plain
     assert any("the 20 frames that show him are left out" in note for note in found.notes)
 
 
-def test_posed_keyframes_and_points_by_hand_need_no_network(
+def test_posed_keyframes_points_by_hand_and_those_just_found_need_no_network(
     synthetic: Take, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     network = FakeNetwork()
@@ -210,6 +210,7 @@ def test_posed_keyframes_and_points_by_hand_need_no_network(
     for take in (
         replace(synthetic, keypoints=(detected(back),)),
         replace(synthetic, keyframes=(), keypoints=(detected(back, by_hand=True),)),
+        replace(synthetic, keyframes=(), keypoints=(replace(detected(back), source=NAME, file=""),)),
     ):
         assert run(with_checked_keypoints(take, reading)).keypoints == take.keypoints
     assert network.looks == 0
