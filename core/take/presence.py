@@ -135,6 +135,14 @@ def unseen_notes(limbs: tuple[str, ...]) -> tuple[str, ...]:
     return (f"{named_limbs(limbs)} never seen and stay at rest; pose keyframes where that is wrong",)
 
 
+def unseen_line(empty: int, limbs: tuple[str, ...]) -> str:
+    """The same in one line, for a motion with so many empty frames; empty where nothing is missing."""
+    frames = "1 frame" if empty == 1 else f"{empty} frames"
+    parts = [f"nobody is seen in {frames}"] * bool(empty)
+    parts += [f"{named_limbs(limbs)} never seen"] * bool(limbs)
+    return ", ".join(parts)
+
+
 def named_limbs(limbs: tuple[str, ...]) -> str:
     """Some limbs as the beginning of a sentence, with its verb: `the legs are`."""
     kinds = {kind: [limb for limb in limbs if limb.startswith(kind)] for kind in ("arm", "leg")}

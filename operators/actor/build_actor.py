@@ -4,15 +4,13 @@ import bpy
 
 from ...core.body.actor import Actor
 from ..follow.evidence import scene_evidence
-from ..overlays.tools import Clicks, show_clicks
 from ..shell.base_operator import BaseOperator, warn
-from ..shell.footage_clicks import NAVIGATION, footage_is_shown
-from ..shell.footage_view import pixel_under, stop_asking
-from ..shell.job_operator import cancel_click
+from ..shell.footage_clicks import ClickSequence
+from ..shell.footage_view import FootageRequest
 from ..shell.notices import give_notices
 from ..shell.requirements import actor, bones_editable, camera, footage, idle
 from ..shell.results import reading_of
-from ..shell.takes import active_take, ensure_take, find_take, footage_of, has_lost_actor, redraw_footage
+from ..shell.takes import active_take, ensure_take, find_take, footage_of, has_lost_actor
 from .properties import Stature, panel_lengths
 
 
@@ -94,7 +92,7 @@ class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, "The actor has these lengths now; keyframes and pose are kept")
 
 
-class KEYMARK_OT_measure_actor(Stature, BaseOperator, bpy.types.Operator):
+class KEYMARK_OT_measure_actor(ClickSequence, Stature, BaseOperator, bpy.types.Operator):
     """Click on the top of the head and the floor between the feet, in a frame where the performer stands"""
 
     bl_idname = "keymark.measure_actor"
@@ -120,47 +118,29 @@ class KEYMARK_OT_measure_actor(Stature, BaseOperator, bpy.types.Operator):
         default=False,
     )
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        take = active_take(context.scene)
-        self.stature = take.stature
-        if not footage_is_shown(self, context, take):
-            return {"CANCELLED"}
-        self._clicks = Clicks()
-        show_clicks(self._clicks)
-        context.window.cursor_modal_set("CROSSHAIR")
-        self._ask(context)
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
+    _head: tuple[float, float] | None = None
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if cancel_click(self, context, event):
-            return {"CANCELLED"}
-        if event.type == "MOUSEMOVE":
-            self._clicks.mouse = event.mouse_x, event.mouse_y
-            redraw_footage(context)
-        if event.type != "LEFTMOUSE" or event.value != "PRESS":
-            return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
-        pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
-        if pixel is None:
-            self.report({"WARNING"}, "That is not on the footage; click in the picture")
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        self.stature, self._head = active_take(context.scene).stature, None
+        return super().invoke(context, event)
+
+    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+        if self._head is None:
+            return FootageRequest("Click on the top of the head"), "Esc: Cancel"
+        wanted = FootageRequest("Now click on the floor", "between the feet", head=self._head)
+        return wanted, "Backspace: Back   |   Esc: Cancel"
+
+    def go_back(self, context: bpy.types.Context) -> None:
+        self._head = None
+
+    def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
+        if self._head is None:
+            self._head = pixel
+            self.ask(context)
             return {"RUNNING_MODAL"}
-        if self._clicks.head is None:
-            self._clicks.head = pixel
-            self._ask(context)
-            return {"RUNNING_MODAL"}
-        self.head_pixel, self.floor_pixel = self._clicks.head, pixel
+        self.head_pixel, self.floor_pixel = self._head, pixel
         self.cancel(context)
         return self.execute(context)
-
-    def _ask(self, context: bpy.types.Context) -> None:
-        first = self._clicks.head is None
-        wanted = "Click on the top of the head" if first else "Now click on the floor between the feet"
-        context.workspace.status_text_set(f"{wanted}   |   Esc: Cancel")
-        redraw_footage(context)
-
-    def cancel(self, context: bpy.types.Context) -> None:
-        show_clicks(None)
-        stop_asking(context)
 
     def run(self, context: bpy.types.Context) -> None:
         """Measure the performer, resize the actor, and stand it there unless it has keyframes."""

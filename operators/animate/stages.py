@@ -137,6 +137,7 @@ def _opened(context: bpy.types.Context, file: str) -> bpy.types.Object:
     own = bpy.data.scenes.new("Character")
     try:
         imported = import_character(CharacterFile.parse(bpy.path.abspath(file)), own)
+        imported.armature.data.display_type = "STICK"  # octahedra of long bones would hide the mesh
         for collection in list(own.collection.children):
             context.scene.collection.children.link(collection)
     finally:

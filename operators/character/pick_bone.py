@@ -8,6 +8,7 @@ from ...core.arrays import Array
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator, reported
 from ..shell.footage_clicks import NAVIGATION
+from ..shell.footage_view import FootageRequest, ask, follow_mouse, stop_asking
 from ..shell.job_operator import cancel_click
 from ..shell.requirements import idle
 from .characters import active_character, few, find_character, full_title
@@ -16,6 +17,7 @@ from .recognition import RoleBoneOperator, active_bone_of, chain_role, give_bone
 from .requirements import armature
 
 NEAR_PX = 25.0  # farthest that a click may be from a bone, at a UI scale of 1
+ENTER, ESCAPE = "Enter: {bone}, the active one   |   ", "Esc: Cancel"
 SAME_PX = 3.0
 """Bones that are hardly farther than the nearest lie over it; the one nearest to the viewer counts."""
 
@@ -114,6 +116,7 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if cancel_click(self, context, event):
             return {"CANCELLED"}
+        follow_mouse(context, event)
         with reported(self):
             return self._watch(context, event)
         self.cancel(context)
@@ -145,17 +148,12 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         return self.execute(context)
 
     def _ask(self, context: bpy.types.Context, under: str) -> None:
-        role = full_title(self.role)
+        request = FootageRequest(f"Click on the bone: {full_title(self.role)}", under, of_footage=False)
         active = active_bone_of(active_character(context.scene))
-        words = f"{role.capitalize()}: {under}" if under else f"Click on the bone: {role}"
-        if not under and active is not None:
-            words += f"   |   Enter: {active}, the active one"
-        context.workspace.status_text_set(f"{words}   |   Esc: Cancel")
+        ask(context, request, ENTER.format(bone=active) + ESCAPE if active is not None else ESCAPE)
 
     def cancel(self, context: bpy.types.Context) -> None:
-        if context.window is not None:
-            context.window.cursor_modal_restore()
-            context.workspace.status_text_set(None)
+        stop_asking(context)
 
     def run(self, context: bpy.types.Context) -> None:
         if not self.bone:

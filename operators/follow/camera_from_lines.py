@@ -24,10 +24,17 @@ from ..footage.found_camera import fit_take, values, write_fit
 from ..footage.properties import KINDS, still_camera
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
-from ..shell.footage_view import FootageView, stop_asking, view_of_footage_under
+from ..shell.footage_view import (
+    FootageRequest,
+    FootageView,
+    ask,
+    follow_mouse,
+    stop_asking,
+    view_of_footage_under,
+)
 from ..shell.job_operator import cancel_click
 from ..shell.requirements import camera, footage, idle
-from ..shell.takes import active_take, footage_of, redraw_footage, redraw_sidebars_soon
+from ..shell.takes import active_take, footage_of, redraw_sidebars_soon
 from .evidence import has_keypoints, scene_evidence
 
 if TYPE_CHECKING:
@@ -58,16 +65,15 @@ def standing_performer(take: bpy.types.PropertyGroup, stature_m: float) -> "Upri
 
 
 REQUESTS = {
-    "VERTICAL": "Draw along something plumb: a door frame, the corner of a wall",
-    "LEVEL": "Draw lines on the floor or a wall that are level and parallel to each other",
-    "ACROSS": "Draw a level line at right angles to those",
-    "HEIGHT": "Draw from between the performer's feet to the top of the head, or type another known height",
+    "VERTICAL": ("Draw plumb lines", "along a door frame, the corner of a wall"),
+    "LEVEL": ("Draw level lines", "on the floor or a wall, parallel to each other"),
+    "ACROSS": ("Draw a level line across", "at right angles to the other level ones"),
+    "HEIGHT": ("Draw a height", "from between the feet to the top of the head, or type another known one"),
 }
-PERFORMER_REQUEST = "Click on the floor between the feet, then on the top of the head; type the body height"
-WALK_REQUEST = (
-    "Keypoints show the camera; Enter takes it, or click on the floor between the feet, then on the head"
-)
-KEYS = "{request}   |   Tab: Other Lines   |   X: Remove   |   Enter: Take   |   Esc: Cancel"
+FEET_AND_HEAD = "on the floor between the feet, then on the top of the head"
+PERFORMER_REQUEST = ("Click on the performer", f"{FEET_AND_HEAD}; type the body height")
+WALK_REQUEST = ("Keypoints show the camera", f"Enter takes it; or click {FEET_AND_HEAD}")
+KEYS = "Tab: Other Lines   |   X: Remove   |   Enter: Take   |   Esc: Cancel"
 
 
 class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
@@ -115,6 +121,7 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         if cancel_click(self, context, event):
             return {"CANCELLED"}
         self._place = event.mouse_x, event.mouse_y
+        follow_mouse(context, event)
         drawing, pressed = self._drawing, event.value == "PRESS"
         if pressed and event.type in {"RET", "NUMPAD_ENTER"}:
             return self._finish(context)
@@ -161,8 +168,7 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         wanted = REQUESTS[drawing.kind]
         if drawing.of_performer and drawing.kind == HEIGHT:
             wanted = PERFORMER_REQUEST if drawing.lines or drawing.fit is None else WALK_REQUEST
-        context.workspace.status_text_set(KEYS.format(request=wanted))
-        redraw_footage(context)
+        ask(context, FootageRequest(*wanted, mouse=self._place), KEYS)
 
     def _finish(self, context: bpy.types.Context) -> set[str]:
         """Keep the lines and set the camera; if they say nothing of it, everything is as before."""

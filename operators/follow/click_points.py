@@ -10,9 +10,8 @@ from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ...core.footage.keypoints.keypoints import BODY_POINTS
 from ..shell.base_operator import BaseOperator
-from ..shell.footage_clicks import NAVIGATION, ClickSequence, footage_is_shown
-from ..shell.footage_view import FootageRequest, pixel_under, side_of, stop_asking
-from ..shell.job_operator import cancel_click
+from ..shell.footage_clicks import ClickSequence
+from ..shell.footage_view import FootageRequest, side_of, stop_asking
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, redraw_footage, redraw_sidebars_soon
 from .evidence import clicked_here, clip_frame, keypoint_files
@@ -68,13 +67,8 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         take = active_take(context.scene)
-        if not footage_is_shown(self, context, take):
-            return {"CANCELLED"}
         self._before = take.follow.clicked_point, _all_clicks(take)
-        return self.wait_for_clicks(context)
-
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        return self.take_event(context, event)
+        return super().invoke(context, event)
 
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
         point = active_take(context.scene).follow.clicked_point
@@ -166,7 +160,7 @@ class KEYMARK_OT_remove_clicks(BaseOperator, bpy.types.Operator):
         return None
 
 
-class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
+class KEYMARK_OT_click_performer(ClickSequence, BaseOperator, bpy.types.Operator):
     """Click on the performer in a frame in which a detector sees several people; one frame is often enough"""
 
     bl_idname = "keymark.click_performer"
@@ -181,28 +175,13 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if not footage_is_shown(self, context, active_take(context.scene)):
-            return {"CANCELLED"}
-        context.window.cursor_modal_set("CROSSHAIR")
-        context.workspace.status_text_set("Click on the performer   |   Esc: Cancel")
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
+    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+        return FootageRequest("Click on the performer"), "Esc: Cancel"
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if cancel_click(self, context, event):
-            return {"CANCELLED"}
-        if event.type == "LEFTMOUSE" and event.value == "PRESS":
-            pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
-            self.cancel(context)
-            if pixel is None:
-                return {"CANCELLED", "PASS_THROUGH"}
-            self.pixel = pixel
-            return self.execute(context)
-        return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
-
-    def cancel(self, context: bpy.types.Context) -> None:
-        stop_asking(context)
+    def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
+        self.cancel(context)
+        self.pixel = pixel
+        return self.execute(context)
 
     def run(self, context: bpy.types.Context) -> None:
         """Vouch for the seen point that is nearest to the click: points by hand are the performer's."""

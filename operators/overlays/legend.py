@@ -26,6 +26,7 @@ from .figures import SLANTING, UPRIGHT, circles, dashes, diamonds, segments, squ
 GROUND = (0.0, 0.0, 0.0, 0.35)
 SAMPLE, GAP_AFTER, LINE, MARGIN = 26.0, 8.0, 18.0, 12.0
 """Length of a sample, distance to its text, height of a line, distance from the corner [px]."""
+VIEW_NAME = 40.0  # height of Blender's two lines on the view in the same corner [px]
 THIN, THICK = 1.5, 3.6
 
 
@@ -60,13 +61,14 @@ Row = tuple[Sample, str]
 def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Item, ...]:
     """A legend on a dark background, which sets it off from bright footage.
 
-    Rows are from the top down; x is the left end of the samples, y the base line of the last row.
+    Rows are from the top down; x is the left end of the samples, y the upper end of the first row.
     """
     if not rows:
         return ()
     strokes: list[Stroke] = []
     fills: list[Fill] = []
     labels: list[Label] = []
+    y -= len(rows) * LINE * style.scale
     for row, (sample, words) in enumerate(reversed(rows)):
         base = y + row * LINE * style.scale
         drawn = _sample(sample, x, base + 4.0 * style.scale, style)  # the letters' middle
@@ -124,13 +126,15 @@ def _keypoint_sample(sample: Sample, middle: Array, style: Style) -> list[Item]:
 
 
 def corner(area: bpy.types.Area, region: bpy.types.Region, scale: float) -> tuple[float, float]:
-    """The bottom left corner of a region's part that no toolbar or operator panel covers [region px]."""
-    left = bottom = 0.0
+    """The top left corner of a region's part that no toolbar, header or name of the view covers [region px].
+
+    Below, where a legend would lie as well, the performer's feet are.
+    """
+    left, top = 0.0, float(region.height)
     for other in area.regions:
         covers = other.width > 1 and other.height > 1 and other != region
         if covers and other.alignment == "LEFT":
             left = max(left, float(other.x + other.width - region.x))
-        elif covers and (other.type == "HUD" or (other.alignment == "BOTTOM" and other.y <= region.y)):
-            bottom = max(bottom, float(other.y + other.height - region.y))
-    lift = 22.0 if area.type == "CLIP_EDITOR" else 0.0  # its cache bar
-    return left + MARGIN * scale, bottom + (MARGIN + lift) * scale
+        elif covers and other.alignment == "TOP" and other.y < region.y + region.height:
+            top = min(top, float(other.y - region.y))
+    return left + MARGIN * scale, top - (MARGIN + VIEW_NAME) * scale

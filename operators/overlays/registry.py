@@ -44,7 +44,6 @@ OVERLAYS = (
     Overlay("Motion in the Clip Editor", motion.draw_clip_editor, "SpaceClipEditor"),
     *_in_both("Floor Grid", tools.draw_floor_grid),
     *_in_both("Camera's Lines", tools.draw_camera_lines),
-    *_in_both("Measuring", tools.draw_measuring),
     *_in_both("Requests", tools.draw_request),
     Overlay("Joints to Drag", tools.draw_joints, "SpaceView3D"),
     Overlay("Speed and Confidence in the Timeline", timeline.draw, "SpaceDopeSheetEditor"),

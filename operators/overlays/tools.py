@@ -1,4 +1,4 @@
-"""Overlays of running tools: joints to drag, lines that tell the camera, measuring, requests for clicks."""
+"""Overlays of running tools: joints to drag, lines that tell the camera, requests for clicks."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -189,43 +189,6 @@ def _grid(key: tuple[float | int, ...]) -> "FloorGrid":
     return floor_grid(Camera(lens_mm, sensor_width_mm, size, matrix, shift_x, shift_y, (k1, k2, k3)))
 
 
-# --- Measuring the performer: the clicked top of the head, and a line to the mouse
-
-
-@dataclass
-class Clicks:
-    """State of the operator that measures the performer."""
-
-    head: tuple[float, float] | None = None  # footage pixel of its top
-    mouse: tuple[int, int] = (0, 0)  # in the window [px]
-
-
-_clicks: Clicks | None = None
-
-
-def show_clicks(clicks: Clicks | None) -> None:
-    """Draw these clicks from now on; None ends the drawing."""
-    global _clicks
-    _clicks = clicks
-
-
-def draw_measuring(context: bpy.types.Context) -> None:
-    """Draw the first click and the height that a second one at the mouse would give."""
-    take = find_take(context.scene)
-    if _clicks is None or _clicks.head is None or take is None:
-        return
-    view = footage_view(context.scene, take, context.area, context.region)
-    if view is None:
-        return
-    reach = 7.0 * drawing.ui_scale()
-    head = view.to_region(_clicks.head)
-    mouse = np.array(_clicks.mouse, dtype=np.float64) - (context.region.x, context.region.y)
-    arms = reach * np.array([[[-1.0, 0.0], [1.0, 0.0]], [[0.0, -1.0], [0.0, 1.0]]])
-    drawing.lines(head + arms, drawing.INK, halo=1.0)
-    drawing.lines(np.stack([head, mouse])[None], drawing.INK, width=1.0, halo=0.6)
-    drawing.text("Top of Head", float(head[0]) + 1.5 * reach, float(head[1]) + 0.5 * reach)
-
-
 # --- What an operator asks for
 
 
@@ -238,7 +201,7 @@ def draw_request(context: bpy.types.Context) -> None:
     if request is None or take is None:
         return
     view = footage_view(context.scene, take, context.area, context.region)
-    if view is None:
+    if view is None and (request.of_footage or context.area.type != "VIEW_3D"):
         return
     scale, region = drawing.ui_scale(), context.region
     middle, top = 0.5 * region.width, region.height - 84.0 * scale
@@ -248,20 +211,24 @@ def draw_request(context: bpy.types.Context) -> None:
         drawing.text(request.detail, middle, below, size=DETAIL_SIZE, align="middle")
     x, y = request.mouse[0] - region.x, request.mouse[1] - region.y
     if 0 <= x < region.width and 0 <= y < region.height:
-        _near_mouse(request, view, float(x), float(y))
+        _near_mouse(request, view, region, float(x), float(y))
 
 
-def _near_mouse(request: FootageRequest, view: FootageView, x: float, y: float) -> None:
+def _near_mouse(
+    request: FootageRequest, view: FootageView | None, region: bpy.types.Region, x: float, y: float
+) -> None:
     scale = drawing.ui_scale()
     words = [request.keys]
-    if request.brush_px:
+    if view is not None and request.head is not None:
+        drawing.lines(np.array([[view.to_region(request.head), (x, y)]]), drawing.INK, halo=0.6)
+    if view is not None and request.brush_px:
         around = circles(np.zeros((1, 2)), request.brush_px, 48)
         rim = view.to_region(view.to_footage((x, y)) + around)
         drawing.lines(segments(rim, closed=True), drawing.INK, halo=1.0)
         y = float(rim[..., 1].max())
     else:
         words += [f"{request.title}, {request.detail}" if request.detail else request.title]
-    _write_near(words, view.region, x, y + 18.0 * scale)
+    _write_near(words, region, x, y + 18.0 * scale)
 
 
 def _write_near(lines: list[str], region: bpy.types.Region, x: float, y: float) -> None:

@@ -34,6 +34,8 @@ class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
             row.operator("keymark.reconstruct", icon="ARMATURE_DATA")
         if take.armature is not None and take.motion_action is not None:
             draw_shown_action(column, take, {"KEYFRAMES": take.keyframe_action, "MOTION": take.motion_action})
+        if take.review.unseen:
+            draw_sentence(column, context, take.review.unseen, "HIDE_ON")
         if len(take.notes):
             text = "1 Note" if len(take.notes) == 1 else f"{len(take.notes)} Notes"
             column.popover("KEYMARK_PT_reconstruct_notes", text=text, icon="INFO", translate=False)

@@ -65,12 +65,16 @@ def keep_reconstruction(
     operator: bpy.types.Operator, scene: bpy.types.Scene, result: "ReconstructionResult"
 ) -> str:
     """Write the motion; the keyframes stay in their own Action. Returns a sentence on it."""
+    from ...core.take.presence import unseen_line
+
     take = result.write(scene)
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
     take.notes.clear()
     for note in result.notes:
         take.notes.add().text = warn(operator, note)
-    count = len(result.reconstruction.motion.keyframe_indices)
+    motion = result.reconstruction.motion
+    take.review.unseen = capitalized(unseen_line(len(motion.empty), motion.unseen))
+    count = len(motion.keyframe_indices)
     return f"Reconstructed {len(result.frames)} frames from {count} keyframes"
 
 

@@ -57,6 +57,9 @@ class KEYMARK_PG_review(bpy.types.PropertyGroup):
         min=-1.0,
         max=1.0,
     )
+    unseen: bpy.props.StringProperty(
+        name="Not Seen", description="In how many frames nobody is seen, and which limbs never are"
+    )
     weak_frames: bpy.props.CollectionProperty(type=KEYMARK_PG_weak_frame)
     active_weak_frame: bpy.props.IntProperty(
         name="Weak Frame",

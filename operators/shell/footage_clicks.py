@@ -10,7 +10,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d, region_2d_to_locat
 
 from ...core.arrays import Array
 from .base_operator import reported
-from .footage_view import FootageRequest, ask, follow_mouse, pixel_under, shows_footage
+from .footage_view import FootageRequest, ask, follow_mouse, pixel_under, shows_footage, stop_asking
 from .job_operator import cancel_click
 from .takes import active_take
 
@@ -97,9 +97,9 @@ class ClickSequence:
     cursor = "CROSSHAIR"
     ends_beside = True  # whether a click beside the footage ends it; a brush is easily put down there
 
-    @abstractmethod
     def cancel(self, context: bpy.types.Context) -> None:
         """Take everything back, and stop asking; Blender calls this as well."""
+        stop_asking(context)
 
     @abstractmethod
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
@@ -109,15 +109,25 @@ class ClickSequence:
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
         """Take a click on a pixel of the footage; what `modal` returns."""
 
-    @abstractmethod
     def done(self, context: bpy.types.Context) -> set[str]:
-        """Keep what was clicked on; what `modal` returns."""
+        """Keep what was clicked on, by default nothing; what `modal` returns."""
+        self.cancel(context)
+        return {"CANCELLED"}
 
     def go_on(self, context: bpy.types.Context) -> None:
         """Skip what is asked for."""
 
     def go_back(self, context: bpy.types.Context) -> None:
         """Take the last click back."""
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Begin to ask, where the footage is shown."""
+        shown = footage_is_shown(self, context, active_take(context.scene))
+        return self.wait_for_clicks(context) if shown else {"CANCELLED"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Take an event."""
+        return self.take_event(context, event)
 
     def wait_for_clicks(self, context: bpy.types.Context) -> set[str]:
         """Begin to ask; what `invoke` returns."""

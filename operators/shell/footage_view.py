@@ -172,6 +172,8 @@ class FootageRequest:
     title: str  # as in `Click on: Forearm Left`
     detail: str = ""  # what is easily mistaken about it
     brush_px: float = 0.0  # radius of a brush in pixels of the footage; 0 for an operator without one
+    head: tuple[float, float] | None = None  # its top, in pixels of the footage, where it was clicked on
+    of_footage: bool = True  # whether the click is on the footage; else on what a 3D viewport shows
     mouse: tuple[int, int] = (-1, -1)  # position of the mouse in the window [px]
     keys: str = ""  # those that may be pressed
 

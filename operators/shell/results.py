@@ -112,7 +112,7 @@ def keep_review(take: bpy.types.PropertyGroup, review: "Review") -> None:
 def clear_review(take: bpy.types.PropertyGroup) -> None:
     """Reset the properties that show the review of a motion, which is gone."""
     shown = take.review
-    for name in ("frame_count", "confidence", "weak_frames", "active_weak_frame"):
+    for name in ("frame_count", "confidence", "unseen", "weak_frames", "active_weak_frame"):
         shown.property_unset(name)
 
 

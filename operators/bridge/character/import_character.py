@@ -101,7 +101,9 @@ def _importer(suffix: str, animated: bool) -> Callable[..., object]:
         return partial(bpy.ops.wm.fbx_import, use_anim=animated)
     if suffix == ".bvh":
         return partial(bpy.ops.import_anim.bvh, update_scene_fps=True, rotate_mode="NATIVE")
-    return bpy.ops.wm.usd_import if suffix.startswith(".usd") else bpy.ops.import_scene.gltf
+    if suffix.startswith(".usd"):
+        return bpy.ops.wm.usd_import
+    return partial(bpy.ops.import_scene.gltf, disable_bone_shape=True)  # balls that would fill the view
 
 
 def _name_in_file(name: str, taken: Iterable[str]) -> str:

@@ -234,12 +234,12 @@ def test_the_legend_keeps_clear_of_what_covers_the_region() -> None:
         return SimpleNamespace(type=kind, alignment=alignment, x=x, y=y, width=width, height=height)
 
     own = other("WINDOW", "NONE", 100, 50, 800, 600)
-    tools, panel = other("TOOLS", "LEFT", 100, 50, 60, 600), other("HUD", "FLOAT", 170, 50, 200, 40)
+    tools, header = other("TOOLS", "LEFT", 100, 50, 60, 600), other("HEADER", "TOP", 100, 624, 800, 26)
     closed = other("TOOLS", "LEFT", 100, 50, 1, 1)
     alone = corner(SimpleNamespace(type="VIEW_3D", regions=[own, closed]), own, 1.0)
-    x, y = corner(SimpleNamespace(type="VIEW_3D", regions=[own, tools, panel]), own, 1.0)
-    assert (x - alone[0], y - alone[1]) == (60.0, 40.0)
-    assert corner(SimpleNamespace(type="CLIP_EDITOR", regions=[own]), own, 1.0)[1] > alone[1]
+    x, y = corner(SimpleNamespace(type="VIEW_3D", regions=[own, tools, header]), own, 1.0)
+    assert (x - alone[0], y - alone[1]) == (60.0, -26.0)
+    assert alone[1] < own.height
 
 
 def test_a_lost_review_draws_nothing(registered: None) -> None:

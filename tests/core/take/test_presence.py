@@ -23,7 +23,7 @@ from keymark.core.progress import run
 from keymark.core.review.review import review
 from keymark.core.review.score import score_points
 from keymark.core.take.motion import read_motion, write_motion
-from keymark.core.take.presence import absence_notes, presence, unseen_limbs, unseen_notes
+from keymark.core.take.presence import absence_notes, presence, unseen_limbs, unseen_line, unseen_notes
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 
@@ -126,6 +126,8 @@ def test_limbs_that_are_never_seen_are_named_unless_something_is_posed(take: Tak
     limbs = unseen_limbs(take, unmarked().tracks, keypoints, gone())
     assert limbs == ("leg.L", "leg.R")
     assert unseen_notes(limbs)[0].startswith("the legs are never seen")
+    assert unseen_line(30, limbs) == "nobody is seen in 30 frames, the legs are never seen"
+    assert unseen_line(0, ()) == ""
     assert unseen_limbs(take, unmarked().tracks, seen_in(gone()), gone()) == ("leg.R",)
     assert unseen_notes(("arm.L", "leg.R"))[0].startswith("the left arm and the right leg are")
     posed = replace(take, keyframes=(Keyframe(0, Posture.rest(BODY.skeleton)),))
