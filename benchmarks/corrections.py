@@ -21,9 +21,10 @@ load_project()
 from keymark.core.body.posture_fit import fit_posture  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses, with_found  # noqa: E402
-from keymark.core.posing.inverse_kinematics import Pull, SightLine, pulled  # noqa: E402
+from keymark.core.posing.picture_depth import seen_at, with_likely_depth  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
+from keymark.core.prior.library import Library  # noqa: E402
 from keymark.core.prior.registry import SHIPPED, find_libraries  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
@@ -32,8 +33,6 @@ from keymark.core.take.take import Take  # noqa: E402
 COUNTS = (1, 2, 4, 10**6)
 """Numbers of frames corrected, the most doubtful first; the last stands for all keyframes."""
 KINDS = ("picture", "space")
-SEEN_M, KEPT_M = 0.003, 0.10  # how near a corrected point comes to its true image, and to its found depth
-FREE = 1.0  # standard deviation of joints that a person may turn [rad], and of the hips' place [m]
 
 
 @dataclass(frozen=True)
@@ -45,13 +44,21 @@ class Error:
     skate: float  # travel of ankles that stand [mm per frame]
 
 
-def measure(trial: Trial, found: FoundPoses) -> dict[str, Error]:
+def measure(trial: Trial, found: FoundPoses, libraries: Sequence[Library]) -> dict[str, Error]:
     """Errors as found, and after every number of corrections of each kind."""
     take = with_found(replace(trial.take, keyframes=()), found)
+    doubtful = sorted(take.keyframes, key=lambda key: 0.0 if key.matched is None else key.matched.confidence)
     measured = {"found": error_of(trial, take)}
     for kind in KINDS:
+        right = [
+            in_the_picture(trial, take, key, libraries, found.floor_m)
+            if kind == "picture"
+            else in_space(trial, take, key)
+            for key in doubtful
+        ]
         for count in COUNTS:
-            measured[f"{kind} {named(count)}"] = error_of(trial, corrected(trial, take, kind, count))
+            keyframes = sorted([*right[:count], *doubtful[count:]], key=lambda key: key.index)
+            measured[f"{kind} {named(count)}"] = error_of(trial, replace(take, keyframes=tuple(keyframes)))
     return measured
 
 
@@ -62,30 +69,18 @@ def error_of(trial: Trial, take: Take) -> Error:
     return Error(score.rooted, score.mpjpe_all, score.skate or 0.0)
 
 
-def corrected(trial: Trial, take: Take, kind: str, count: int) -> Take:
-    """The take with its most doubtful found keyframes put right."""
-    doubtful = sorted(take.keyframes, key=lambda key: 0.0 if key.matched is None else key.matched.confidence)
-    chosen = {key.index for key in doubtful[:count]}
-    correct = in_the_picture if kind == "picture" else in_space
-    return replace(
-        take,
-        keyframes=tuple(correct(trial, take, key) if key.index in chosen else key for key in take.keyframes),
-    )
+def in_the_picture(
+    trial: Trial, take: Take, found: Keyframe, libraries: Sequence[Library], floor_m: float | None
+) -> Keyframe:
+    """A keyframe whose points are dragged to where they are seen; lengths stay, so depths give way.
 
-
-def in_the_picture(trial: Trial, take: Take, found: Keyframe) -> Keyframe:
-    """A keyframe whose points are dragged to where they are seen; lengths stay, so depths give way."""
-    body, frame = take.body, found.index
-    truth = trial.truth[frame]
-    rotation, eye = take.camera.pose(frame)
-    there = body.points(body.pose(found.posture))
-    pulls = []
-    for row, name in enumerate(body.skeleton.point_names):
-        sight = np.asarray(take.camera.sight(truth[row], np.array(frame)))
-        line = SightLine(np.asarray(eye), sight)
-        pulls.append(Pull(name, line.nearest(there[row]), SEEN_M, sight, KEPT_M))
-    joints = [joint.name for joint in body.skeleton.joints]
-    return Keyframe(frame, pulled(body, found.posture, pulls, {name: FREE for name in ["place", *joints]}))
+    As the panel does it, its depth is then the likeliest one.
+    """
+    frame, camera = found.index, take.camera
+    posture = seen_at(take.body, camera, frame, found.posture, trial.truth[frame])
+    sure = 0.0 if found.matched is None else found.matched.confidence
+    likely = with_likely_depth(take.body, camera, frame, posture, found.posture, sure, libraries, floor_m)
+    return Keyframe(frame, likely, depth_found=True)
 
 
 def in_space(trial: Trial, take: Take, found: Keyframe) -> Keyframe:
@@ -133,7 +128,7 @@ def main(arguments: Sequence[str]) -> int:
     results = {}
     for name, trial in unposed_trials(options.takes, options.keypoints, plain=options.keypoints):
         found = run(pose_clip(replace(trial.take, keyframes=()), trial.reading, libraries))
-        results[name] = measure(trial, found)
+        results[name] = measure(trial, found, libraries)
     as_dictionaries = {
         name: {column: asdict(error) for column, error in row.items()} for name, row in results.items()
     }

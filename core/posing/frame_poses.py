@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, BoolArray
 from ..body.human import TRUNK, limb_of
 from ..body.posture import Posture
 from ..errors import InputError
@@ -180,10 +180,7 @@ def _candidates(
     """Distinct candidates, each the mean of the hypotheses near it; what keyframes tell stays if it leads."""
     body = known.pools.body
     points = points_from_hips(body, found.posture)
-    # Costs count for so many times less: what is seen of one body errs together, and so do its parts.
-    weight = np.exp(-(found.cost - found.cost.min()) / 3.0)
-    weight /= weight.sum()
-    near = np.linalg.norm(points[:, None] - points, axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
+    weight, near = _agreeing(points, found.cost)
     share = near @ weight
     leading = int(found.cost.argmin())
     kept = found.torso[leading] == NO_TORSO
@@ -207,6 +204,26 @@ def _candidates(
         sure = _confidence(float(share[chosen[rank]]), float(final.cost[rank]))
         made.append(Candidate(posture, name, flipped, sure))
     return by_confidence(made)
+
+
+def likeliest_mean(known: Knowledge, shown: FrameShown, found: Hypotheses, floor_m: float | None) -> Posture:
+    """The mean of the hypotheses around the one that most agree with, brought to what is seen."""
+    weight, near = _agreeing(points_from_hips(known.pools.body, found.posture), found.cost)
+    row = int((near @ weight).argmax())
+    mean, first = _mean(found.posture, row, near[row] * weight), np.array([row])
+    start = Hypotheses(mean, found.cost[first], found.torso[first], found.exchanged[first])
+    return refined(known, shown, start, floor_m).posture[0]
+
+
+def _agreeing(points: Array, cost: Array) -> tuple[Array, BoolArray]:
+    """Probabilities (S,) of hypotheses, and (S, S) which of them are about the same.
+
+    `points` (S, P, 3) relative to the hips [m], `cost` (S,).
+    """
+    # Costs count for so many times less: what is seen of one body errs together, and so do its parts.
+    weight = np.exp(-(cost - cost.min()) / 3.0)
+    near = np.linalg.norm(points[:, None] - points, axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
+    return weight / weight.sum(), near
 
 
 def _confidence(share: float, cost: float) -> float:

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
+from ...core.prior.texts import EVERY_LIBRARY
 from ..follow.evidence import points_to_follow, scene_evidence
 from ..shell.base_operator import BaseOperator
 from ..shell.job_progress import job_is_running
@@ -76,6 +77,32 @@ def set_corrected(
     improved = key_pose(context, take, depth_found=not in_depth and depth_is_found(take, frame))
     if improved:
         operator.report({"INFO"}, f"{improved} found keyframes around this one were posed anew")
+
+
+def at_likely_depth(
+    scene: bpy.types.Scene,
+    take: bpy.types.PropertyGroup,
+    body: "Body",
+    posture: "Posture",
+    found: "Posture",
+) -> "Posture":
+    """A posture that was put right in the camera's view, with the depth that is likeliest now.
+
+    It stays as it is unless the depth at this keyframe was found: `found` is what that was.
+    """
+    frame = scene.frame_current_final
+    if take.keyframe_action is None or not has_frame(keyframes_of(take), frame):
+        return posture
+    if not depth_is_found(take, frame):
+        return posture
+    from ...core.posing.picture_depth import with_likely_depth
+    from ..library.registry_files import named_libraries
+
+    match = known_matches(take).get(round(frame, 3))
+    confidence = 0.5 if match is None else match.confidence  # even odds where it was corrected before
+    libraries = named_libraries(take.matching.library_name or EVERY_LIBRARY)
+    floor_m = take.matching.known_floor_m
+    return with_likely_depth(body, camera_now(scene, take), 0, posture, found, confidence, libraries, floor_m)
 
 
 DIRECTIONS = (

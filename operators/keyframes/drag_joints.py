@@ -19,7 +19,7 @@ from ..shell.job_progress import job_is_running
 from ..shell.keyed_frames import keyframes_of
 from ..shell.requirements import actor, all_met, idle
 from ..shell.takes import active_take, find_take, redraw_editors, redraw_sidebars_soon
-from .corrections import DRAGGING, camera_now, set_corrected, shown_pose
+from .corrections import DRAGGING, at_likely_depth, camera_now, set_corrected, shown_pose
 
 if TYPE_CHECKING:
     from ...core.body.kinematics import Body
@@ -105,6 +105,8 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
         place, floor_m = np.array(self.place), take.matching.known_floor_m
         moved = dragged(body, posture, self.joint, place, sight, self.pushed, floor_m)
         in_depth = self.pushed or _shows_depth(context, take, sight, place)
+        if not in_depth:
+            moved = at_likely_depth(context.scene, take, body, moved, posture)
         set_corrected(self, context, take, moved, in_depth)
 
 
@@ -285,6 +287,9 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             if drag.moved.any() or pushed:
                 drag.in_depth = pushed or _shows_depth(context, take, drag.sight, drag.place)
                 self._done.append(drag)
+                if not any(each.in_depth for each in self._done):
+                    with reported(self):
+                        self._lean(context.scene, take, drag)
             else:
                 self._restore(drag, take)
             self._show(context)
@@ -293,6 +298,15 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             _preview(take, drag)
             self._show(context)
         return {"RUNNING_MODAL"}
+
+    def _lean(self, scene: bpy.types.Scene, take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
+        """Show the likeliest depth of what drags in the picture have come to."""
+        from ..bridge.pose import write_posture
+
+        assert drag.shown is not None  # it has moved
+        found = self._done[0].posture
+        drag.shown = at_likely_depth(scene, take, drag.body, drag.shown, found)
+        write_posture(take.armature, drag.shown)
 
     def _restore(self, drag: JointDrag, take: bpy.types.PropertyGroup) -> None:
         """Give the actor the pose from which a drag began."""

@@ -1,0 +1,103 @@
+"""The depth of a posture that a person has put right in the picture alone.
+
+A posture dragged to where it is seen keeps the lean of limbs and trunk that was found, though exactly seen
+points often contradict it. All postures that explain them are sought again, and what was found counts as much
+as it was sure.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..arrays import Array
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..estimate.clip_problem import uncalibrated
+from ..estimate.keyframe_error import POINT_STD_M, SURE_STD_M, UNSURE_STD_M
+from ..estimate.keypoint_evidence import KeypointEvidence
+from ..evidence.keypoints import ObservedKeypoints
+from ..evidence.regions import RegionModel
+from ..footage.camera import Camera
+from ..footage.keypoints.keypoints import Keypoints
+from ..footage.region_tracks import RegionTracks
+from ..prior.library import Library
+from .frame_poses import likeliest_mean
+from .frame_search import FrameShown, Hypotheses, knowledge, search
+from .inverse_kinematics import Pull, SightLine, pulled
+
+EVIDENT = "person"  # source of points that a person vouches for
+SEEN_M, KEPT_M = 0.003, 0.10  # how near points come to their lines of sight, and to their places along them
+FREE = 1.0  # standard deviation of joints that may turn [rad], and of the hips' place [m]
+
+
+def seen_at(body: Body, camera: Camera, frame: int, posture: Posture, places: Array) -> Posture:
+    """A posture pulled to where the camera sees places (P, 3) of its points; lengths stay."""
+    _, eye = camera.pose(frame)
+    own = body.points(body.pose(posture))
+    pulls = []
+    for name, there, sight in zip(
+        body.skeleton.point_names, own, camera.sight(places, np.array(frame)), strict=True
+    ):
+        line = SightLine(np.asarray(eye), sight)
+        pulls.append(Pull(name, line.nearest(there), SEEN_M, sight, KEPT_M))
+    joints = [joint.name for joint in body.skeleton.joints]
+    return pulled(body, posture, pulls, {name: FREE for name in ["place", *joints]})
+
+
+def with_likely_depth(
+    body: Body,
+    camera: Camera,
+    frame: int,
+    posture: Posture,
+    found: Posture,
+    confidence: float,
+    libraries: Sequence[Library],
+    floor_m: float | None = None,
+) -> Posture:
+    """The likeliest posture that is seen where a given one is.
+
+    Args:
+        body: The take's body.
+        camera: The take's camera.
+        frame: Index of the frame in the clip, which a moving camera's place depends on.
+        posture: The given one, right across the line of sight.
+        found: What was found, before a person put it right.
+        confidence: Probability that its depth is about right.
+        libraries: What is known of postures; without any posture the given one is returned.
+        floor_m: Height of the floor in the world [m]; None where it is not known.
+    """
+    usable = [library for library in libraries if library.postures]
+    places = body.points(body.pose(posture))
+    pixels, depth = camera.project(places, frame)
+    if not usable or not (np.isfinite(pixels).all() and (depth > 0.0).all()):
+        return posture
+    known, shown = knowledge(body, usable), _shown(body, camera, frame, pixels)
+    every = search(known, shown, floor_m)
+    rows = np.flatnonzero(~every.exchanged)  # left and right of a person's points are right
+    sided = Hypotheses(every.posture[rows], every.cost[rows], every.torso[rows], every.exchanged[rows])
+    sight = camera.sight(places, np.array(frame))
+    before, among = (body.points(body.pose(each)) for each in (found, sided.posture))
+    leaning = _leaning(among, sight) - _leaning(before, sight)
+    variance = confidence * SURE_STD_M[1] ** 2 + (1.0 - confidence) * UNSURE_STD_M[1] ** 2
+    # Tempered like all that is seen of one body: its points err together.
+    believed = 0.5 * (leaning**2).sum(axis=-1) / variance / 3.0
+    likeliest = likeliest_mean(known, shown, replace(sided, cost=sided.cost + believed), floor_m)
+    return seen_at(body, camera, frame, likeliest, places)
+
+
+def _leaning(places: Array, sight: Array) -> Array:
+    """(..., P) depths [m] of points (..., P, 3) relative to their mean."""
+    return np.asarray(((places - places.mean(axis=-2, keepdims=True)) * sight).sum(axis=-1))
+
+
+def _shown(body: Body, camera: Camera, frame: int, pixels: Array) -> FrameShown:
+    """A frame in which nothing but points (P, 2) of the body is seen [px]."""
+    names = body.skeleton.point_names
+    count = len(names)
+    sources = (EVIDENT,) * count
+    points = Keypoints(names, sources, pixels[None], np.ones((1, count)), np.full((1, count, 3), np.nan))
+    seen = replace(KeypointEvidence.usual(body, camera, names, sources), std_m=np.full(count, POINT_STD_M))
+    evidence = replace(uncalibrated(RegionModel(body, camera, ())), keypoints=seen)
+    tracks = RegionTracks.unmarked(np.zeros(1), camera.resolution)
+    return FrameShown(evidence, frame, tracks, points, ObservedKeypoints.of(points))
