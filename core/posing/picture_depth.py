@@ -83,9 +83,6 @@ def with_likely_depth(
     # Tempered like all that is seen of one body: its points err together.
     believed = 0.5 * (leaning**2).sum(axis=-1) / variance / 3.0
     likeliest = likeliest_mean(known, shown, replace(sided, cost=sided.cost + believed), floor_m)
-    # The way that was found goes on evenly: sizes alone would tell a distance anew in every frame.
-    away = ((places - body.points(body.pose(likeliest))) * sight).sum(axis=-1).mean()
-    likeliest = replace(likeliest, translation=likeliest.translation + away * sight.mean(axis=0))
     return seen_at(body, camera, frame, likeliest, places)
 
 
