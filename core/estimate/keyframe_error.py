@@ -148,6 +148,12 @@ def place_depth_std_m(
     return np.asarray(np.hypot(np.sqrt(variance), step))
 
 
+def found_std_m(confidence: Array) -> Array:
+    """Errors (..., 2) [m] across and along the line of sight of points that were found so surely (...)."""
+    sure = confidence[..., None]
+    return np.asarray(np.sqrt(sure * SURE_STD_M**2 + (1.0 - sure) * UNSURE_STD_M**2))
+
+
 def undetermined_covariance(
     points: Array,
     camera: Camera,
@@ -165,8 +171,7 @@ def undetermined_covariance(
     frame = np.arange(len(points))
     sight = camera.sight(points, frame[:, None])
     along = sight[..., :, None] * sight[..., None, :]
-    sure = confidence[:, None]
-    std_m = match_scale[:, None] * np.sqrt(sure * SURE_STD_M**2 + (1.0 - sure) * UNSURE_STD_M**2)
+    std_m = match_scale[:, None] * found_std_m(confidence)
     across_m, along_m = (np.interp(frame, index, own) for own in std_m.T)
     along_m = np.hypot(along_m, np.interp(frame, index, match_scale) * place_std_m)
     variance = np.square([across_m, along_m])[:, :, None, None, None]

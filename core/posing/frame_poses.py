@@ -191,7 +191,7 @@ def _candidates(
     # Hypotheses that lead to different means are farther apart than this on average, hips aligned.
     chosen = distinct_rows(points, order, 0.13, 8)
     means = Posture.concatenate([_mean(found.posture, row, near[row] * weight) for row in chosen])
-    start = Hypotheses(means, found.cost[chosen], found.torso[chosen], found.exchanged[chosen])
+    start = replace(found.chosen(chosen), posture=means)
     final = refined(known, shown, start, floor_m)
     if kept:
         rest = final.posture[np.arange(1, len(chosen))]
@@ -210,9 +210,12 @@ def likeliest_mean(known: Knowledge, shown: FrameShown, found: Hypotheses, floor
     """The mean of the hypotheses around the one that most agree with, brought to what is seen."""
     weight, near = _agreeing(points_from_hips(known.pools.body, found.posture), found.cost)
     row = int((near @ weight).argmax())
-    mean, first = _mean(found.posture, row, near[row] * weight), np.array([row])
-    start = Hypotheses(mean, found.cost[first], found.torso[first], found.exchanged[first])
+    mean = _mean(found.posture, row, near[row] * weight)
+    start = replace(found.chosen(np.array([row])), posture=mean)
     return refined(known, shown, start, floor_m).posture[0]
+
+
+ALIKE = 3.0  # costs count for so many times less: what is seen of one body errs together, and so do its parts
 
 
 def _agreeing(points: Array, cost: Array) -> tuple[Array, BoolArray]:
@@ -220,8 +223,7 @@ def _agreeing(points: Array, cost: Array) -> tuple[Array, BoolArray]:
 
     `points` (S, P, 3) relative to the hips [m], `cost` (S,).
     """
-    # Costs count for so many times less: what is seen of one body errs together, and so do its parts.
-    weight = np.exp(-(cost - cost.min()) / 3.0)
+    weight = np.exp(-(cost - cost.min()) / ALIKE)
     near = np.linalg.norm(points[:, None] - points, axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
     return weight / weight.sum(), near
 

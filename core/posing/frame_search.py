@@ -121,6 +121,10 @@ class Hypotheses:
     torso: IndexArray  # (S,) torso of the pools that each began with
     exchanged: BoolArray  # (S,) whether left and right of the keypoints are exchanged
 
+    def chosen(self, rows: IndexArray) -> "Hypotheses":
+        """Some of them, in the order of their rows."""
+        return Hypotheses(self.posture[rows], self.cost[rows], self.torso[rows], self.exchanged[rows])
+
 
 def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
     """What some libraries tell of postures on a body; that of the last few bodies is kept.
@@ -175,7 +179,7 @@ def _starts(
         0.05,
         count,
     )
-    return _chosen(every, kept), every.cost[kept], floor_m
+    return every.chosen(kept), every.cost[kept], floor_m
 
 
 def _screened(
@@ -248,10 +252,6 @@ def _side_by_side(
     )
     best, _ = descend(state, [belief, *terms], temperatures)
     return best.posture, total_cost(terms, best)
-
-
-def _chosen(given: Hypotheses, rows: IndexArray) -> Hypotheses:
-    return Hypotheses(given.posture[rows], given.cost[rows], given.torso[rows], given.exchanged[rows])
 
 
 def points_from_hips(body: Body, posture: Posture) -> Array:

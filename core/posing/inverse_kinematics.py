@@ -24,10 +24,10 @@ class SightLine:
     direction: Array  # (3,) unit vector, in which depth increases
 
     @classmethod
-    def to(cls, camera: Camera, place: Array) -> "SightLine":
-        """The line of sight of a camera that stands still to a place (3,) [m]."""
-        _, eye = camera.pose()
-        return cls(np.asarray(eye), np.asarray(camera.sight(place)))
+    def to(cls, camera: Camera, place: Array, frame: int | None = None) -> "SightLine":
+        """The line of sight of a camera to a place (3,) [m]; only one that stands still needs no frame."""
+        _, eye = camera.pose(frame)
+        return cls(np.asarray(eye), np.asarray(camera.sight(place, frame)))
 
     def along_m(self, place: Array) -> float:
         """How far along the line a place (3,) lies from its origin [m]."""

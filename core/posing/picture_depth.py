@@ -14,7 +14,7 @@ from ..arrays import Array
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..estimate.clip_problem import uncalibrated
-from ..estimate.keyframe_error import POINT_STD_M, SURE_STD_M, UNSURE_STD_M
+from ..estimate.keyframe_error import POINT_STD_M, found_std_m
 from ..estimate.keypoint_evidence import KeypointEvidence
 from ..evidence.keypoints import ObservedKeypoints
 from ..evidence.regions import RegionModel
@@ -22,8 +22,8 @@ from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
 from ..prior.library import Library
-from .frame_poses import likeliest_mean
-from .frame_search import FrameShown, Hypotheses, knowledge, search
+from .frame_poses import ALIKE, likeliest_mean
+from .frame_search import FrameShown, knowledge, search
 from .inverse_kinematics import Pull, SightLine, pulled
 
 EVIDENT = "person"  # source of points that a person vouches for
@@ -33,14 +33,11 @@ FREE = 1.0  # standard deviation of joints that may turn [rad], and of the hips'
 
 def seen_at(body: Body, camera: Camera, frame: int, posture: Posture, places: Array) -> Posture:
     """A posture pulled to where the camera sees places (P, 3) of its points; lengths stay."""
-    _, eye = camera.pose(frame)
     own = body.points(body.pose(posture))
     pulls = []
-    for name, there, sight in zip(
-        body.skeleton.point_names, own, camera.sight(places, np.array(frame)), strict=True
-    ):
-        line = SightLine(np.asarray(eye), sight)
-        pulls.append(Pull(name, line.nearest(there), SEEN_M, sight, KEPT_M))
+    for name, there, place in zip(body.skeleton.point_names, own, places, strict=True):
+        line = SightLine.to(camera, place, frame)
+        pulls.append(Pull(name, line.nearest(there), SEEN_M, line.direction, KEPT_M))
     joints = [joint.name for joint in body.skeleton.joints]
     return pulled(body, posture, pulls, {name: FREE for name in ["place", *joints]})
 
@@ -74,14 +71,12 @@ def with_likely_depth(
         return posture
     known, shown = knowledge(body, usable), _shown(body, camera, frame, pixels)
     every = search(known, shown, floor_m)
-    rows = np.flatnonzero(~every.exchanged)  # left and right of a person's points are right
-    sided = Hypotheses(every.posture[rows], every.cost[rows], every.torso[rows], every.exchanged[rows])
-    sight = camera.sight(places, np.array(frame))
+    sided = every.chosen(np.flatnonzero(~every.exchanged))  # left and right of a person's points are right
+    sight = camera.sight(places, frame)
     before, among = (body.points(body.pose(each)) for each in (found, sided.posture))
     leaning = _leaning(among, sight) - _leaning(before, sight)
-    variance = confidence * SURE_STD_M[1] ** 2 + (1.0 - confidence) * UNSURE_STD_M[1] ** 2
-    # Tempered like all that is seen of one body: its points err together.
-    believed = 0.5 * (leaning**2).sum(axis=-1) / variance / 3.0
+    _, along_m = found_std_m(np.array(confidence))
+    believed = 0.5 * ((leaning / along_m) ** 2).sum(axis=-1) / ALIKE
     likeliest = likeliest_mean(known, shown, replace(sided, cost=sided.cost + believed), floor_m)
     return seen_at(body, camera, frame, likeliest, places)
 

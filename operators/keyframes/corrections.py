@@ -7,7 +7,6 @@ import numpy as np
 
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
-from ...core.prior.texts import EVERY_LIBRARY
 from ..follow.evidence import points_to_follow, scene_evidence
 from ..shell.base_operator import BaseOperator
 from ..shell.job_progress import job_is_running
@@ -100,7 +99,7 @@ def at_likely_depth(
 
     match = known_matches(take).get(round(frame, 3))
     confidence = 0.5 if match is None else match.confidence  # even odds where it was corrected before
-    libraries = named_libraries(take.matching.library_name or EVERY_LIBRARY)
+    libraries = named_libraries(take.matching.library_name)
     floor_m = take.matching.known_floor_m
     return with_likely_depth(body, camera_now(scene, take), 0, posture, found, confidence, libraries, floor_m)
 

@@ -6,7 +6,6 @@ import bpy
 import numpy as np
 
 from ...core.errors import InputError
-from ...core.prior.texts import EVERY_LIBRARY
 from ...core.progress import stretch, within
 from ..bridge.scene_frames import shown_index
 from ..follow.evidence import points_to_follow
@@ -38,7 +37,7 @@ def find_poses(scene: bpy.types.Scene, library: str, floor_m: float | None) -> "
 
     settings = active_take(scene)
     identifier, count = settings.identifier, settings.keyframe_count or None
-    libraries = named_libraries(library or settings.matching.library_name or EVERY_LIBRARY)
+    libraries = named_libraries(library or settings.matching.library_name)
     proposed = proposed_frames(settings)
     clip = yield from stretch(read_scene_clip(scene, settings), 0.0, READ)
     proposals = None if proposed else (yield from stretch(_propose(clip, count), READ, MEASURED))

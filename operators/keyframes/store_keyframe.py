@@ -9,7 +9,6 @@ import numpy as np
 
 from ...core.body.human import HUMAN
 from ...core.errors import KeymarkError
-from ...core.prior.texts import EVERY_LIBRARY
 from ...core.progress import run
 from ..bridge.actions import assign_action
 from ..follow.evidence import followed_markers
@@ -87,7 +86,7 @@ def _pose_anew(
     take = take_around(known, section)
     matching = settings.matching
     floor_m = float(matching.floor_found) if matching.is_property_set("floor_found") else None
-    libraries = named_libraries(matching.library_name or EVERY_LIBRARY)
+    libraries = named_libraries(matching.library_name)
     between = section.first, section.last
     job = pose_clip(take, reading, libraries, floor_m, between=between, frames=section.changed)
     found = run(job)

@@ -25,12 +25,12 @@ def find_registered(identifier: str) -> Library | None:
 
 
 def named_libraries(name: str) -> Sequence[Library]:
-    """All libraries where `EVERY_LIBRARY` is said, else the one of this identifier, title or file.
+    """All libraries where `EVERY_LIBRARY` or nothing is said, else the one of this identifier, title or file.
 
     Raises:
         InputError: There is no such library.
     """
-    return all_libraries() if name == EVERY_LIBRARY else [load_registered(name)]
+    return all_libraries() if name in ("", EVERY_LIBRARY) else [load_registered(name)]
 
 
 def all_libraries() -> Sequence[Library]:
