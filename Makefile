@@ -95,7 +95,7 @@ test-faults: .venv-test/ready ## kill conversions and batches at random points, 
 test-blender: .venv-test/ready ## run the tests in a real Blender, and install the package there
 	@blender=$${BLENDER:-$$(sh tools/fetch_blender.sh)} || exit 1; status=0; \
 	echo "== Inside $$blender"; \
-	.venv-test/bin/python tools/test_in_blender.py "$$blender" $(or $(TESTS),tests/blender) || status=$$?; \
+	.venv-test/bin/python tools/test_in_blender.py "$$blender" $(quick) $(or $(TESTS),tests/blender) || status=$$?; \
 	echo "== The package, installed in $$blender"; \
 	BLENDER="$$blender" .venv-test/bin/python -m pytest -m 'not ui' tests/real_blender || status=$$?; \
 	exit $$status

@@ -68,16 +68,18 @@ class Camera:
                 old.unlink()
 
     def shoot(self, name: str) -> None:
-        """Draw the window and keep a picture of the screen as NN_name.png."""
+        """Draw the window with smooth lines and keep a picture of the screen as NN_name.png."""
         self.taken += 1
         self._keep(f"{self.taken:02d}_{name}.png")
 
     def _keep(self, file_name: str) -> None:
         window = bpy.context.window_manager.windows[0]
+        bpy.context.preferences.system.viewport_aa = "FXAA"
         with bpy.context.temp_override(window=window):
             bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
         # Blender's own screenshot operator gives black pictures on a virtual screen.
         subprocess.run(["import", "-window", "root", str(self.folder / file_name)], check=True)
+        bpy.context.preferences.system.viewport_aa = "OFF"
 
     def shoot_failure(self) -> None:
         """Keep a picture of what the screen shows now, whatever else is broken."""
@@ -110,4 +112,5 @@ def drive(script: Steps[None], camera: Camera) -> None:
         return 0.0
 
     bpy.context.preferences.view.show_splash = False
+    bpy.context.preferences.system.viewport_aa = "OFF"  # Drawn without a GPU, it takes half of all time
     bpy.app.timers.register(turn, first_interval=1.0, persistent=True)

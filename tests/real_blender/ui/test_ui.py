@@ -44,16 +44,6 @@ AGREEMENT_MM = 1.5
 PATIENCE_S = 3000.0
 
 
-def takes(repository: Path) -> dict[str, Path]:
-    """The takes of the session by name: the demonstration, whose pictures the docs show, and real footage."""
-    found = {"demo": repository / "presets" / "demo" / "aerobic"}
-    real = repository.parent / "shared" / "takes" / "real_balance"
-    return found | ({real.name: real} if (real / "take.json").is_file() else {})
-
-
-TAKES = takes(Path(__file__).resolve().parents[3])
-
-
 def run_script(
     blender: Blender, name: str, pictured: tuple[str, ...], take: Path | None, folder: Path, *words: str
 ) -> None:
@@ -93,24 +83,22 @@ def test_a_clip_and_a_height_lead_to_a_moving_character(
     assert int(clicks) <= ANIMATE_CLICKS and int(keys) <= ANIMATE_KEYS
 
 
-@pytest.mark.parametrize("name", TAKES)
 def test_a_session_leads_to_the_command_lines_motion(
-    blender: Blender, blender_on_screen: Blender, package: Path, repository: Path, tmp_path: Path, name: str
+    blender: Blender, blender_on_screen: Blender, package: Path, repository: Path, tmp_path: Path
 ) -> None:
     """All steps go through, each is pictured, and the finished armature scores as `keymark convert` does.
 
     The extension has left its own folder as it was installed.
     """
-    folder = repository / "build" / "screenshots" / name
-    run_script(blender_on_screen, "session.py", STEPS, TAKES[name], folder)
+    take = repository / "presets" / "demo" / "aerobic"
+    folder = repository / "build" / "screenshots" / "demo"
+    run_script(blender_on_screen, "session.py", STEPS, take, folder)
 
     output = tmp_path / "out"
-    words = ["convert", TAKES[name], "--output", output, "--quiet", "--no-report"]
+    words = ["convert", take, "--output", output, "--quiet", "--no-report"]
     done = blender.run("--command", "keymark", *words)
     assert done.returncode == 0, done.stdout + done.stderr
-    by_hand, by_command = (
-        _score(file, TAKES[name]) for file in (folder / "motion.json", output / "motion.json")
-    )
+    by_hand, by_command = (_score(file, take) for file in (folder / "motion.json", output / "motion.json"))
     assert by_hand.mpjpe == pytest.approx(by_command.mpjpe, abs=AGREEMENT_MM)
     assert by_hand.depth == pytest.approx(by_command.depth, abs=2.0 * AGREEMENT_MM)
     assert blender.changed_files(package) == set()
