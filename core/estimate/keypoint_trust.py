@@ -6,7 +6,7 @@ rest either; and where most of a source's points are, or all fit much better som
 whole source is left out.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,8 +17,8 @@ from ..body.kinematics import Pose
 from ..body.skeleton import SIDES
 from ..evidence.keypoints import HUMAN_LENGTHS_M, USUAL_PLACES, KeypointModel, ObservedKeypoints
 from ..footage.camera import Camera
-from ..footage.keypoints.keypoints import Keypoints, mirror_images
-from ..footage.keypoints.performer import principal_keypoints
+from ..footage.keypoints.keypoints import Keypoints, People, mirror_images
+from ..footage.keypoints.performer import person_size, principal_keypoints
 from ..numerics.markov_chain import cheapest_path
 from ..numerics.robust import DEGREES, multivariate_cost
 
@@ -183,6 +183,30 @@ def exchanged_back(keypoints: Keypoints, swapped: BoolArray) -> Keypoints:
         score=np.where(either, keypoints.score[:, partner], keypoints.score),
         hint_m=np.where(either[..., None], keypoints.hint_m[:, partner], keypoints.hint_m),
     )
+
+
+def sided_by_pictures(
+    keypoints: Keypoints, people: Sequence[People], height_m: float, time_s: Array
+) -> Keypoints:
+    """The keypoints with left and right as the pose network sees them in a few pictures, exchanged else.
+
+    A detector follows one person from frame to frame and may have his sides exchanged for long, in a layout
+    that is as plausible; the network that looks anew in a picture is not led by what it saw before.
+
+    `height_m`: of the performer, by which sizes in the picture are told.
+    """
+    for one in people:
+        frames = np.array(sorted(one.in_pictures), dtype=np.intp)
+        own = np.array([source == one.source for source in keypoints.sources])
+        if not len(frames) or own.sum() != len(one.names):
+            continue
+        seen = np.full((len(frames), len(own), 2), np.nan)
+        seen[:, own] = [one.in_pictures[frame] for frame in frames]
+        near = np.abs(np.arange(len(time_s))[:, None] - frames).argmin(axis=1)
+        scale = np.full(len(time_s), np.median(person_size(seen[:, own])) / height_m)
+        swapped = find_swaps(keypoints, seen[near], scale, frames, time_s)
+        keypoints = exchanged_back(keypoints, swapped & own)
+    return keypoints
 
 
 def doubted_at_changes(keypoints: Keypoints, swapped: BoolArray, time_s: Array) -> Keypoints:

@@ -17,7 +17,7 @@ from ..progress import Part
 from .clips.album import Glimpses
 from .keypoints.keypoints import People, SeenPeople, mirrored_point
 from .keypoints.performer import person_size
-from .pose_network import CIRCLE, LAYOUT, Crop, Pose, PoseNetwork
+from .pose_network import CIRCLE, LAYOUT, NAME, Crop, Pose, PoseNetwork
 from .pose_tracking import find_in_picture
 
 FITS = 0.1
@@ -45,6 +45,8 @@ class PictureFinding:
     mirrored: bool = False  # whether left and right of its pictures are exchanged
     looked: Mapping[int, bool] = field(default_factory=dict)
     """Frames that were looked at, and whether the network sees somebody there whom the file has."""
+    seen: Mapping[int, Array] = field(default_factory=dict, compare=False)
+    """(N, 2) where the network sees the points of a file that is right [px]; NaN where it does not."""
     refusal: str = ""  # why it cannot be used, to follow the file's name
 
     @property
@@ -93,8 +95,11 @@ def check_by_pictures(
             refusal="nobody in it is where a person is seen in the clip's pictures, at any size or time; it "
             "must be of this clip"
         )
-    return check.explained([look for look, _ in looks if look.poses]) or PictureFinding(
-        looked=dict(zip(frames, fitting, strict=True))
+    shown = [look for look, _ in looks if look.poses]
+    return check.explained(shown) or PictureFinding(
+        looked=dict(zip(frames, fitting, strict=True)),
+        # What it found itself from frame to frame it knows better than from one picture alone.
+        seen={look.frame: check.in_order(look.poses[0]) for look in shown if people.source != NAME},
     )
 
 
@@ -132,6 +137,12 @@ class _Check:
             for pose in poses
         ]
         return _Look(frame, points)
+
+    def in_order(self, pose: Array) -> Array:
+        """(N, 2) points of the network in the order of the file's."""
+        points = np.full((len(self.people.names), 2), np.nan)
+        points[self._own] = pose
+        return points
 
     def distance(
         self,
@@ -250,7 +261,7 @@ def applied(people: People, finding: PictureFinding) -> People:
     if finding.mirrored:
         names = tuple(mirrored_point(name) for name in names)
         notes.append(f"{people.source}: is of a mirrored copy of the clip; left and right were exchanged")
-    people = replace(people, looked=finding.looked)
+    people = replace(people, looked=finding.looked, in_pictures=finding.seen)
     if not notes:
         return people
     frames = []

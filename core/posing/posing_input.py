@@ -11,7 +11,7 @@ from ..body.body_volume import sole_heights_m
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..errors import InputError
-from ..estimate.keypoint_trust import upright
+from ..estimate.keypoint_trust import sided_by_pictures, upright
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
@@ -115,6 +115,7 @@ def posing_input(take: Take, reading: Reading, keyframe_count: int | None = None
         given = (("marker", take.markers), ("keypoint", take.keypoints))
         missing = " and ".join(name for name, has in given if has)
         raise InputError(f"{take.clip}: no {missing} is seen in the footage, so no posture can be found")
+    keypoints = sided_by_pictures(keypoints, take.keypoints, take.body.actor.stature_m, tracks.time_s)
     speed = run(evidence_speed(tracks, take.marker_segments, keypoints)).values
     there = presence(take, reading, keypoints)
     posed = [keyframe for keyframe in take.keyframes if there[keyframe.index]]

@@ -16,13 +16,14 @@ from keymark.core.estimate.keypoint_trust import (
     doubted_at_changes,
     exchanged_back,
     find_swaps,
+    sided_by_pictures,
     upright,
 )
 from keymark.core.estimate.terms.term import NormalEquations, add_drift, drift, drift_cost
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.evidence.keypoints import KeypointModel
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.keypoints.keypoints import Keypoints
+from keymark.core.footage.keypoints.keypoints import Keypoints, People
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
@@ -179,6 +180,21 @@ def test_legs_alone_may_be_exchanged() -> None:
     swapped = find_swaps(mixed, predicted, np.full(FRAMES, 85.0), np.array(POSED), np.arange(FRAMES) / 30.0)
     np.testing.assert_array_equal(swapped, some[:, None] & legs)
     np.testing.assert_array_equal(exchanged_back(mixed, swapped).pixel, GOOD.pixel)
+
+
+def test_sides_are_those_that_pictures_show_where_nothing_is_posed() -> None:
+    time_s, looks = np.arange(FRAMES) / 30.0, range(5, FRAMES, 11)
+    some = np.zeros(FRAMES, dtype=bool)
+    some[:52] = True  # for more than half of the clip, from its beginning
+    turned = sides_exchanged(GOOD, some)
+    shown = {frame: GOOD.pixel[frame] + 1.5 for frame in looks}
+    people = People(LAYOUT, SOURCE, CAMERA.resolution, (), in_pictures=shown)
+    mended = sided_by_pictures(turned, [people], 1.7, time_s)
+    np.testing.assert_array_equal(mended.pixel, GOOD.pixel)
+    same = sided_by_pictures(GOOD, [people], 1.7, time_s)
+    np.testing.assert_array_equal(same.pixel, GOOD.pixel)
+    alone = sided_by_pictures(turned, [replace(people, in_pictures={})], 1.7, time_s)
+    np.testing.assert_array_equal(alone.pixel, turned.pixel)
 
 
 def test_points_near_a_change_of_sides_count_for_little() -> None:

@@ -16,7 +16,7 @@ from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.clips.frame_checks import FrameChecks
 from keymark.core.footage.keypoints.keypoints import People, SeenPeople, mirrored_point
 from keymark.core.footage.picture_check import PictureFinding, applied, check_by_pictures
-from keymark.core.footage.pose_network import LAYOUT
+from keymark.core.footage.pose_network import LAYOUT, NAME
 from keymark.core.progress import run
 
 SIZE, FRAMES, FPS = (320, 240), 60, 30.0
@@ -66,6 +66,10 @@ def test_a_file_of_this_clip_stays_as_it_is(glimpses: Glimpses) -> None:
     assert found == PictureFinding(looked=dict.fromkeys(glimpses.frames, True))
     assert network.looks == GLIMPSES
     same = applied(own, found)
+    assert tuple(same.in_pictures) == tuple(glimpses.frames)
+    for frame, shown in same.in_pictures.items():
+        np.testing.assert_allclose(shown, people().frames[frame].pixel[0], atol=2.0)
+    assert not finding(replace(own, source=NAME), glimpses).seen  # of itself it knows more than a picture
     assert same.frames == own.frames and not same.notes
 
 
