@@ -68,7 +68,7 @@ class ClipProblem:
     prior: Posture  # the interpolated postures with the turns
     turns: IndexArray  # (K - 1,) whole turns about the vertical that the prior adds in each gap
     limb_size: Array  # (D,) factor on the accelerations of each degree of freedom's limb
-    rests: Array | None  # (F - 1, A) how far each ankle seen stands by the footage; None where not asked
+    rests: Array | None  # (F - 1, A) how far each ankle seen rests by the footage; None where not asked
     depth_factor: Array  # (F, P) on the noise of the prior's depths, by how far the prior misses each point
     observed: ObservedRegions  # the markers' regions: as tracked, and those found at a second look
 

@@ -193,10 +193,10 @@ def without_corrections(problem: ClipProblem) -> ClipProblem:
 
 
 def rests_of(problem: ClipProblem, spans: list[Window], states: list[ClipState]) -> Array:
-    """(F - 1, A) how far each ankle that is seen stands in states of some windows, 0 to 1; 0 elsewhere."""
+    """(F - 1, A) how far each ankle that is seen rests in states of some windows, 0 to 1; 0 elsewhere."""
     terms = [stillness_term(problem, window) for window in spans]
     rests = np.zeros((problem.frames - 1, len(terms[0].points) if terms else 0))
     for window, term, state in zip(spans, terms, states, strict=True):
         if window.last - window.first > 1 and term.points:
-            rests[window.first : window.last - 1] = term.standing(state)
+            rests[window.first : window.last - 1] = term.resting(state)
     return rests

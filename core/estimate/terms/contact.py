@@ -31,7 +31,7 @@ class StillnessTerm:
     camera: Camera
     points: tuple[int, ...]  # indices of the principal points it is about
     step_s: Array  # (F - 1,) time between frames [s]
-    rests: Array | None = None  # (F - 1, points) how far each is known to stand, whatever its speed, 0 to 1
+    rests: Array | None = None  # (F - 1, points) how far each is known to rest, whatever its speed and height
     release_speed_m_s: float = 0.2  # across the line of sight, c, at which rows count a quarter
     depth_share: float = 0.3  # how much motion along the line of sight counts to that speed
     release_height_m: float = 0.04  # above the lowest point, at which rows count a quarter
@@ -76,10 +76,14 @@ class StillnessTerm:
         standing = _kernel(speed) * _kernel(height)
         return np.asarray(standing if self.rests is None else np.maximum(standing, HELD * self.rests**4))
 
-    def standing(self, state: ClipState) -> Array:
-        """(F - 1, points) how far each point is taken to stand in a state, 0 to 1."""
+    def resting(self, state: ClipState) -> Array:
+        """(F - 1, points) how far each point stays where it is in a state, at whatever height, 0 to 1.
+
+        A foot that is held still in the air rests too, and a height is not known to a few centimeters.
+        """
         places = state.body.points(state.pose)[:, list(self.points)]
-        return self._standing(np.diff(places, axis=0), 0.5 * (places[1:] + places[:-1]), state.frame[1:])
+        speed, _ = self._moving(np.diff(places, axis=0), 0.5 * (places[1:] + places[:-1]), state.frame[1:])
+        return _kernel(speed)
 
     def _moving(self, travel: Array, middle: Array, frame: IndexArray) -> tuple[Array, Array]:
         """(F - 1, points) speed and height, in those at which rows count a quarter."""

@@ -8,7 +8,7 @@ from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_state import ClipState
-from keymark.core.estimate.terms.contact import HELD, FloorTerm, GroundTerm, StillnessTerm
+from keymark.core.estimate.terms.contact import FloorTerm, GroundTerm, StillnessTerm
 from keymark.core.estimate.terms.motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
 from keymark.core.estimate.terms.regions import RegionTerm
 from keymark.core.estimate.terms.term import NormalEquations, QuadraticBuilder, Term, total_cost
@@ -81,9 +81,18 @@ def test_a_foot_that_is_known_to_rest_is_held_however_fast_it_moves() -> None:
     at, step_s = state(size=0.5), np.full(FRAMES - 1, 1.0 / 30.0)
     free = StillnessTerm(CAMERA, (11, 12), step_s)
     known = replace(free, rests=np.ones((FRAMES - 1, 2)))
-    assert free.standing(at).max() < 0.5
-    np.testing.assert_array_equal(known.standing(at), HELD)
+    assert free.resting(at).max() < 0.5
     assert np.abs(gradient(known, at)).max() > 10.0 * np.abs(gradient(free, at)).max()
+
+
+def test_a_foot_rests_wherever_it_stays_in_place_the_higher_one_too() -> None:
+    at = state(size=0.0)
+    bent = np.array([name.startswith("knee.R") for name in BODY.skeleton.dof_names], dtype=float)
+    still = replace(at, prior=at.prior[np.zeros(FRAMES, dtype=np.intp)].plus(np.tile(bent, (FRAMES, 1))))
+    heights = BODY.points(still.pose)[0, [11, 12], 2]
+    term = StillnessTerm(CAMERA, (11, 12), np.full(FRAMES - 1, 1.0 / 30.0))
+    assert np.ptp(heights) > 2.0 * term.release_height_m
+    np.testing.assert_allclose(term.resting(still), 1.0)
 
 
 def test_the_depth_term_pulls_towards_the_priors_depths() -> None:
