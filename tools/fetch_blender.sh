@@ -86,7 +86,7 @@ if [ "$(cat "$tree/keymark-packages" 2>/dev/null)" != "$packages" ]; then
     make_tree
 fi
 write_command blender "blender"
-write_command blender-screen "xvfb-run -a -s '-screen 0 1600x1000x24 +extension GLX' blender"
+write_command blender-screen "xvfb-run -a -s '-screen 0 1920x1080x24 +extension GLX' blender"
 version=$("$folder/bin/blender" --version </dev/null | head -n 1)
 [ -n "$version" ] || fail "The fetched Blender does not start: remove $tree and try again, or $other_way"
 say "$version is ready: $folder/bin/blender"

@@ -12,7 +12,7 @@ import pytest
 from installed_blender import Blender
 
 PLATFORM = {"Linux": "linux-x64", "Windows": "windows-x64", "Darwin": "macos-arm64"}[platform.system()]
-SCREEN = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 +extension GLX"]
+SCREEN = ["xvfb-run", "-a", "-s", "-screen 0 1920x1080x24 +extension GLX"]
 
 
 @pytest.fixture(scope="session")

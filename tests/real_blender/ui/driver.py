@@ -72,14 +72,24 @@ class Camera:
         self.taken += 1
         self._keep(f"{self.taken:02d}_{name}.png")
 
+    def seen(self) -> bytes:
+        """The colors of all pixels of the window, as it is drawn now."""
+        return self._import("rgb:-")
+
     def _keep(self, file_name: str) -> None:
-        window = bpy.context.window_manager.windows[0]
         bpy.context.preferences.system.viewport_aa = "FXAA"
+        self._import(str(self.folder / file_name))
+        bpy.context.preferences.system.viewport_aa = "OFF"
+
+    def _import(self, target: str) -> bytes:
+        """Blender's own screenshot operator gives black pictures on a virtual screen."""
+        window = bpy.context.window_manager.windows[0]
         with bpy.context.temp_override(window=window):
             bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
-        # Blender's own screenshot operator gives black pictures on a virtual screen.
-        subprocess.run(["import", "-window", "root", str(self.folder / file_name)], check=True)
-        bpy.context.preferences.system.viewport_aa = "OFF"
+        # The window stands in the lower left corner of the screen.
+        own = ["-gravity", "SouthWest", "-crop", f"{window.width}x{window.height}+0+0", "+repage"]
+        command = ["import", "-window", "root", *own, target]
+        return subprocess.run(command, check=True, capture_output=True).stdout
 
     def shoot_failure(self) -> None:
         """Keep a picture of what the screen shows now, whatever else is broken."""

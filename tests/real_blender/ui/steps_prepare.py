@@ -22,17 +22,20 @@ SEARCH_PX = 0.06
 """How far from where a sleeve should be a person looks for its color, as a share of the picture's width."""
 
 
-def start_empty(person: Person) -> Steps[None]:
-    """A scene without anything, a timeline that is high enough to draw in, Keymark's tab in the sidebar."""
+def start_empty(person: Person, raised_px: int = HIGHER_PX) -> Steps[None]:
+    """A scene without anything, a timeline that is high enough to draw in, Keymark's tab in the sidebar.
+
+    `raised_px` is 0 where the timeline stays as Blender opens it.
+    """
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     yield from turns(5)
     viewport = person.hands.area("VIEW_3D")
     edge = viewport.x + 0.6 * viewport.width, viewport.y - 1
     height = viewport.height
-    yield from person.hands.drag(edge, (edge[0], edge[1] + HIGHER_PX))
-    expect(
-        person.hands.area("VIEW_3D").height < height - 0.5 * HIGHER_PX, "the timeline cannot be made higher"
-    )
+    if raised_px:
+        yield from person.hands.drag(edge, (edge[0], edge[1] + raised_px))
+        lowered = height - person.hands.area("VIEW_3D").height
+        expect(lowered > 0.5 * raised_px, "the timeline cannot be made higher")
     yield from person.hands.open_sidebar("VIEW_3D", "Keymark")
     person.step_done("Empty scene")
     yield from person.look("empty")
@@ -60,15 +63,20 @@ def footage(person: Person) -> Steps[None]:
     shown = controls()
     expect(len(shown) <= FRESH_CONTROLS, f"a fresh clip shows {len(shown)} controls: {shown}")
     yield from find_camera(person)
-    camera = person.take.camera
-    camera.matrix_world = Matrix(known.camera.matrix_world.tolist())
-    camera.data.sensor_fit, camera.data.sensor_width = "HORIZONTAL", known.camera.sensor_width_mm
-    camera.data.lens = known.camera.lens_mm
-    camera.data.shift_x, camera.data.shift_y = known.camera.shift_x, known.camera.shift_y
+    stand_camera(person)
     person.step_done("Align the camera")
     yield from turns(2)
     yield from look_through_camera(person)
     yield from person.look("footage")
+
+
+def stand_camera(person: Person) -> None:
+    """Set the camera up as it truly stood."""
+    camera, known = person.take.camera, person.known.camera
+    camera.matrix_world = Matrix(known.matrix_world.tolist())
+    camera.data.sensor_fit, camera.data.sensor_width = "HORIZONTAL", known.sensor_width_mm
+    camera.data.lens = known.lens_mm
+    camera.data.shift_x, camera.data.shift_y = known.shift_x, known.shift_y
 
 
 def look_through_camera(person: Person) -> Steps[None]:

@@ -16,7 +16,7 @@ from keymark.core.take.take_file import read_take
 pytestmark = pytest.mark.ui
 
 UNPOSED_MM = 200.0  # Error with hips aligned beyond which a motion is no likeness of the performer's
-GEOMETRY = ("0", "0", "1600", "1000")
+SCREEN, LARGE_SCREEN, SMALL_SCREEN = ("1600", "1000"), ("1920", "1080"), ("1280", "720")
 STEPS = (
     *("empty", "footage", "markers", "actor", "keyframes", "reconstructed", "review", "finish"),
     *("drag_joints", "dragging", "dragged", "from_the_side", "corrected", "character", "retargeted"),
@@ -36,6 +36,7 @@ ANIMATE_CLICKS, ANIMATE_KEYS = 2, 2
 """Tab and Animate; N and Enter. Choosing the file and entering the height are three clicks more."""
 MOST_CLICKS = 40
 """From the clip to the motion: a button, five sleeves, a few buttons more, and four doubtful keyframes."""
+STATES = ("empty", "clip", "performer", "poses", "correcting", "motion", "character", "export")
 SHELF_STEPS = ("libraries", "assets")
 MARKER_STEPS = ("asked", "masks_while_picking", "one_row", "warned", "brushing", "brushed", "still_area")
 CLICKS_MM = 4.0  # What a clicked point and a track in a single frame may change
@@ -45,13 +46,19 @@ PATIENCE_S = 3000.0
 
 
 def run_script(
-    blender: Blender, name: str, pictured: tuple[str, ...], take: Path | None, folder: Path, *words: str
+    blender: Blender,
+    name: str,
+    pictured: tuple[str, ...],
+    take: Path | None,
+    folder: Path,
+    *words: str,
+    screen: tuple[str, str] = SCREEN,
 ) -> None:
     """Run a session's script in a Blender with a screen; it must go through, and leave pictures."""
     script = Path(__file__).with_name(name)
     done = blender.run(
         *("--factory-startup", "--addons", "bl_ext.user_default.keymark", "--enable-event-simulate"),
-        *("--window-geometry", *GEOMETRY, "--no-window-focus", "--python", script, "--"),
+        *("--window-geometry", "0", "0", *screen, "--no-window-focus", "--python", script, "--"),
         *([] if take is None else [take]),
         folder,
         *words,
@@ -149,6 +156,15 @@ def test_libraries_are_seen(blender_on_screen: Blender, repository: Path) -> Non
     take = repository / "presets" / "demo" / "aerobic"
     folder = repository / "build" / "screenshots" / "shelf"
     run_script(blender_on_screen, "shelf_session.py", SHELF_STEPS, take, folder)
+
+
+@pytest.mark.parametrize("screen", [SMALL_SCREEN, LARGE_SCREEN], ids="x".join)
+def test_every_step_fits_into_the_sidebar(
+    blender_on_screen: Blender, repository: Path, screen: tuple[str, str]
+) -> None:
+    take = repository / "presets" / "demo" / "greeting"
+    folder = repository / "build" / "screenshots" / f"states_{screen[1]}"
+    run_script(blender_on_screen, "states_session.py", STATES, take, folder, screen=screen)
 
 
 def plain_take(demo: Path, folder: Path) -> Path:

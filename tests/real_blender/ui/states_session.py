@@ -1,0 +1,90 @@
+"""The panel in every state from the clip to the character, on a screen of some size.
+
+Usage: as of session.py, without a step. Each state leaves a picture; the step that is open then must fit into
+the sidebar without scrolling, and at the end, when most is shown, each of them.
+"""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1])]
+
+import bpy  # noqa: E402
+import steps_character  # noqa: E402
+import steps_correct  # noqa: E402
+import steps_prepare  # noqa: E402
+from driver import Camera, Steps, drive, expect, turns  # noqa: E402
+from person import Person, keymark  # noqa: E402
+
+
+def session(take: Path, folder: Path, camera: Camera) -> Steps[None]:
+    """Go from one state to the next by what buttons call, and look at each."""
+    person = Person(take, folder, camera, hurried=True)
+    known = person.known
+    yield from steps_prepare.start_empty(person, raised_px=0)
+    bpy.ops.keymark.load_footage(filepath=str(known.clip))
+    steps_prepare.stand_camera(person)
+    yield from steps_prepare.look_through_camera(person)
+    yield from seen(person, "clip", "footage")
+    person.take.stature = known.body.actor.stature_m
+    bpy.ops.keymark.load_keypoints(filepath=str(take / "keypoints.json"))
+    bpy.ops.keymark.build_actor()
+    yield from seen(person, "performer", "actor")
+    bpy.ops.keymark.pose_all()
+    yield from seen(person, "poses", "keyframes")
+    yield from correcting(person)
+    bpy.ops.keymark.reconstruct()
+    yield from seen(person, "motion", "reconstruct")
+    yield from steps_character.basic_human(person)
+    bpy.ops.keymark.add_character()
+    bpy.ops.keymark.retarget()
+    yield from seen(person, "character", "character")
+    bpy.ops.keymark.bake_motion()
+    yield from seen(person, "export", "finish")
+    for step in keymark("operators.shell.steps").STEPS:
+        yield from fits(person, step)
+
+
+def correcting(person: Person) -> Steps[None]:
+    """The most doubtful pose, and one wrist of it dragged."""
+    doubtful = min(person.take.matching.matches, key=lambda match: match.confidence)
+    person.scene.frame_set(round(doubtful.frame))
+    yield from person.hands.move_over("VIEW_3D")
+    yield from person.hands.invoke("keymark.drag_joints")
+    expect(person.jobs(), "joints cannot be dragged")
+    yield from steps_correct.dragged(person, "wrist.L")
+    yield from person.look("correcting")
+    yield from steps_correct.ended(person, "ESC")
+
+
+def seen(person: Person, name: str, step: str) -> Steps[None]:
+    """Picture a state with one step open."""
+    person.step_done(name)
+    yield from fits(person, step)
+    yield from person.look(name)
+
+
+def fits(person: Person, step: str) -> Steps[None]:
+    """Open a step; the wheel then finds nothing above or below what its sidebar shows."""
+    setattr(bpy.context.window_manager.keymark_steps, step, True)
+    for wheel in ("WHEELUPMOUSE", "WHEELDOWNMOUSE"):
+        yield from person.hands.scroll("VIEW_3D", wheel, 0)  # the mouse goes there
+        shown = yield from still(person)
+        yield from person.hands.scroll("VIEW_3D", wheel, 5)
+        expect(shown == (yield from still(person)), f"with the step {step} open the sidebar scrolls: {wheel}")
+
+
+def still(person: Person) -> Steps[bytes]:
+    """What the screen shows, once panels have slid to their places."""
+    before, now = b"", person.camera.seen()
+    while now != before:
+        yield from turns(4)
+        before, now = now, person.camera.seen()
+    return now
+
+
+if __name__ == "__main__":
+    take_name, folder_name = sys.argv[sys.argv.index("--") + 1 :]
+    taking = Camera(Path(folder_name))
+    drive(session(Path(take_name), Path(folder_name), taking), taking)
