@@ -61,13 +61,14 @@ def _draw_lost(layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy
 
 
 class KEYMARK_PT_actor_options(Popover, bpy.types.Panel):
-    """The actor's height and lengths."""
+    """The actor's height and lengths, and whether a detector's depths count."""
 
     bl_label = "Performer Options"
 
     def draw(self, context: bpy.types.Context) -> None:
         take, column = active_take(context.scene), self.column()
         column.operator("keymark.measure_actor", text="Measure in This Frame", icon="ARROW_LEFTRIGHT")
+        column.prop(take.follow, "use_depth_hints")
         column.prop(take, "armature")
         if take.armature is None:
             return

@@ -28,7 +28,6 @@ class KeypointReading:
     problem: str = ""  # Why it cannot be read, for people
     is_missing: bool = False
     has_changed: bool = False  # Whether it has been written since it was loaded
-    has_hints: bool = False  # Whether it guesses depths
 
 
 _readings: LruCache[KeypointReading] = LruCache(12)
@@ -48,8 +47,7 @@ def keypoint_reading(take: bpy.types.PropertyGroup, entry: bpy.types.PropertyGro
         except InputError as error:
             sentence = str(error).replace(str(path), path.name)
             return KeypointReading(None, sentence, is_missing=state is None)
-        hints = any(bool(np.isfinite(frame.hint_m).any()) for frame in people.frames)
-        return KeypointReading(people, has_changed=state != entry.contents, has_hints=hints)
+        return KeypointReading(people, has_changed=state != entry.contents)
 
     return _readings.get(key, read) or KeypointReading(None)
 
@@ -130,18 +128,6 @@ def _one_person(source: str, seen: Seen, is_tracked: bool = False) -> FrameKeypo
 
 
 # --- Labels of the panels
-
-
-def seen_label(frame: FrameKeypoints) -> str:
-    """What a source sees in a frame, of the person of whom it sees most: `27 of 33 points, score 0.91`."""
-    seen = np.isfinite(frame.pixel).all(axis=-1)
-    if not seen.any():
-        return "Nobody in this frame"
-    row = int(seen.sum(axis=-1).argmax())
-    return (
-        f"{int(seen[row].sum())} of {len(frame.names)} points, score "
-        f"{float(frame.score[row][seen[row]].mean()):.2f}"
-    )
 
 
 def keypoints_label(take: bpy.types.PropertyGroup) -> str:

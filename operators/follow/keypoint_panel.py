@@ -8,7 +8,7 @@ from ..shell.footage_view import clip_index
 from ..shell.panel import RowList, draw_progress, draw_sentence
 from ..shell.takes import active_take
 from .evidence import clip_frame, keypoint_path
-from .frame_keypoints import clicked_label, keypoint_reading, people_at, seen_label
+from .frame_keypoints import clicked_label, keypoint_reading, people_at
 from .marker_properties import segment_title
 from .tracks import assigned_tracks, point_of
 
@@ -160,7 +160,6 @@ def _draw_file(
         return
     people = reading.people
     here = people_at(people, clip_index(take))
-    layout.label(text=seen_label(here), translate=False, icon="INFO")
     for note in people.notes:
         draw_sentence(layout, context, capitalized(note), "ERROR")
     if people.most_people > 1:
@@ -168,8 +167,6 @@ def _draw_file(
         text = "1 person here" if len(here.pixel) == 1 else f"{len(here.pixel)} people here"
         row.label(text=text, translate=False, icon="COMMUNITY")
         row.operator("keymark.click_performer", text="Click Performer")
-    if reading.has_hints:
-        layout.prop(take.follow, "use_depth_hints")
     if reading.has_changed:
         row = layout.row(align=True)
         row.label(text="The file has changed", icon="FILE_REFRESH")

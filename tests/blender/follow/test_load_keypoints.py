@@ -20,7 +20,6 @@ from keymark.operators.follow.frame_keypoints import (
     keypoint_reading,
     keypoints_at,
     keypoints_label,
-    seen_label,
 )
 from keymark.operators.follow.load_keypoints import KEYMARK_OT_detect_keypoints
 from keymark.operators.shell.takes import active_take
@@ -82,7 +81,6 @@ def test_what_is_seen_is_said(plain: bpy.types.Scene, keypoint_file: Path) -> No
     take = load(keypoint_file)
     (seen,) = keypoints_at(take, 5)
     assert (seen.source, seen.seen_count, seen.pixel.shape) == ("truth", 13, (1, 13, 2))
-    assert seen_label(seen) == "13 of 13 points, score 0.90"
     assert keypoints_label(take) == "13 of 13"
     assert keypoints_at(take, 400)[0].seen_count == 0
     take.follow.files[0].is_used = False
