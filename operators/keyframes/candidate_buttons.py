@@ -52,6 +52,9 @@ def _limbs(names: list[str]) -> list[str]:
 
 
 PERCENT_UNITS = 2.1
+MOST_SHOWN = (
+    4  # candidates; the step then fits a sidebar of a small screen, and the others are hardly ever right
+)
 
 
 def percent(share: float) -> str:
@@ -72,11 +75,11 @@ def draw_candidates_head(
 def draw_candidates(
     layout: bpy.types.UILayout, match: bpy.types.PropertyGroup, operator: str, is_shown: bool = True
 ) -> None:
-    """Draw a row for each candidate of a frame, whose button calls an operator with its index.
+    """Draw a row for each of a frame's likeliest candidates; its button calls an operator with its index.
 
     None is marked where the frame was posed in another way.
     """
-    for index, candidate in enumerate(match.candidates):
+    for index, candidate in enumerate(match.candidates[:MOST_SHOWN]):
         row = layout.row(align=True)
         button = row.operator(
             operator,

@@ -3,6 +3,7 @@
 import bpy
 
 from ...core.body.human import HUMAN
+from ..overlays.candidates import look_at
 from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
 from ..shell.keyed_frames import doubtful_matches, invalidate_keyed_frames, match_at, state_of
@@ -170,6 +171,7 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         match = matching.matches[matching.shown_match]
         if properties.candidate >= len(match.candidates):
             return str(cls.__doc__)
+        look_at(context, properties.candidate)
         said = candidate_title(match, match.candidates[properties.candidate])
         return f"{said}. Key this posture instead; what is keyed at the frame is replaced"
 

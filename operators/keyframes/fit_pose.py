@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from ..follow.evidence import points_to_follow, scene_evidence
+from ..overlays.candidates import look_at
 from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
 from ..shell.keyed_frames import offered_at, show_keyframes
@@ -51,6 +52,7 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
         offered = None if take is None else offered_at(take, context.scene.frame_current_final)
         if offered is None or properties.candidate >= len(offered.candidates):
             return str(cls.__doc__)
+        look_at(context, properties.candidate)
         said = candidate_title(offered, offered.candidates[properties.candidate])
         return f"{said}. Pose the actor like this; nothing is keyed until you store it"
 

@@ -54,24 +54,16 @@ def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> t
 def draw_found(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
     """Draw found keyframes, the way to the next doubtful one, and the choice among a frame's candidates."""
     matching = take.matching
-    _draw_counts(column, take)
     column.template_list(
         "KEYMARK_UL_matches", "", matching, "matches", matching, "shown_match", rows=3, maxrows=3
     )
-    doubtful = count_found(take)[1]
+    count, doubtful = count_found(take)
     going = column.row()
     going.enabled = doubtful > 0
-    words = f"Next Doubtful ({doubtful})" if doubtful else "None Doubtful"
+    words = f"Next Doubtful ({doubtful} of {count})" if doubtful else f"None of {count} Doubtful"
     jump = going.operator("keymark.jump_to_match", text=words, translate=False, icon="NEXT_KEYFRAME")
     jump.direction, jump.only_doubtful = "NEXT", True
     _draw_candidates(column, context, take)
-
-
-def _draw_counts(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """Draw how many were found, and how many of them are in doubt."""
-    count, doubtful = count_found(take)
-    words = f"{count} found, {doubtful or 'none'} of them doubtful"
-    layout.label(text=words, icon="QUESTION" if doubtful else "CHECKMARK", translate=False)
 
 
 def _draw_candidates(

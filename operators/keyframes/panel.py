@@ -95,12 +95,13 @@ def _draw_here(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy
     draw_contradictions(column, context, take)
     posing = column.column(align=True)
     if not draw_progress(posing, context, "keymark.fit_pose"):
-        posing.operator("keymark.fit_pose", icon="ARMATURE_DATA").start = "KEYFRAMES"
+        row = side_by_side(posing)
+        row.operator("keymark.fit_pose", text="Fit Pose", icon="ARMATURE_DATA").start = "KEYFRAMES"
+        row.operator("keymark.store_keyframe", icon="KEY_HLT")
     offered = offered_at(take, context.scene.frame_current_final)
     if offered is not None:
         draw_candidates_head(posing, context, offered)
         draw_candidates(posing, offered, "keymark.show_offered")
-    posing.operator("keymark.store_keyframe", icon="KEY_HLT")
 
 
 def _draw_corrections(

@@ -1,7 +1,7 @@
-"""Overlay of a found keyframe's candidates: the postures that its frame may show, as faint figures.
+"""Overlay of a candidate: a posture that a found keyframe's frame may show, as a faint figure.
 
-They are numbered and colored like the buttons that take them, over the footage and from any other side, where
-depth shows. The one that the frame has is the actor itself.
+It is the one whose button the mouse was over last, in the button's color and with its number, over the
+footage and from any other side, where depth shows. The one that the frame has is the actor itself.
 """
 
 import bpy
@@ -13,7 +13,7 @@ from ..bridge.camera_placement import read_lens
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.keyed_frames import match_at, offered_at, state_of
 from ..shell.results import LruCache
-from ..shell.takes import find_take, footage_of
+from ..shell.takes import find_take, footage_of, redraw_footage
 from . import drawing
 from .drawing import (
     CANDIDATE_COLORS,
@@ -35,6 +35,19 @@ _points: "LruCache[Array]" = LruCache()
 """(N, 13, 3) points of a found keyframe's candidates, by what they depend on."""
 
 
+_looked_at: tuple[float, int] | None = None
+"""Scene frame, and the candidate there whose button the mouse was over last."""
+
+
+def look_at(context: bpy.types.Context, candidate: int) -> None:
+    """Draw a candidate of the current frame; called where Blender asks for the tooltip of its button."""
+    global _looked_at
+    wanted = context.scene.frame_current_final, candidate
+    if wanted != _looked_at:
+        _looked_at = wanted
+        redraw_footage(context)
+
+
 def candidate_color(index: int) -> Color:
     """A candidate's color in the user's theme."""
     red, green, blue = bpy.context.preferences.themes[0].collection_color[index % CANDIDATE_COLORS].color
@@ -49,7 +62,10 @@ def draw(context: bpy.types.Context) -> None:
     if take is None or hidden or not settings.show_candidates or context.screen.is_animation_playing:
         return
     match = _shown(take, scene.frame_current_final)
-    if match is None or take.armature is None:
+    if match is None or take.armature is None or _looked_at is None:
+        return
+    frame, candidate = _looked_at
+    if frame != scene.frame_current_final or candidate in (match.chosen, len(match.candidates)):
         return
     points = candidate_points(take.armature, match)
     footage = footage_view(scene, take, context.area, context.region)
@@ -59,7 +75,7 @@ def draw(context: bpy.types.Context) -> None:
         positions = over_footage(scene, take, footage, points)
     else:
         return
-    paint(picture(positions, match.chosen, settings))
+    paint(picture(positions, candidate, match.chosen, settings))
 
 
 def _shown(take: bpy.types.PropertyGroup, frame: float) -> bpy.types.PropertyGroup | None:
@@ -99,42 +115,23 @@ def over_footage(
     return footage.to_region(np.where((depth > 0.0)[..., None], pixels, np.nan))
 
 
-def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) -> list[Item]:
-    """The figures of all candidates but the chosen one, each with its number where it differs from that.
+def picture(positions: Array, candidate: int, chosen: int, settings: bpy.types.PropertyGroup) -> list[Item]:
+    """The figure of a candidate, with its number where it is farthest from the chosen one.
 
-    `positions` (N, 13, 2) are region pixels of the candidates' points, NaN where not seen.
+    `positions` (N, 13, 2) are region pixels of all candidates' points, NaN where not seen.
     """
-    scale, names = drawing.ui_scale(), HUMAN.point_names
-    heights = np.ptp(np.nan_to_num(positions[..., 1]), axis=-1)
-    style = Style(settings.opacity, scale, body_scale(heights / TALL_M, scale))
+    scale, figure = drawing.ui_scale(), positions[candidate]
+    tall_px = float(np.ptp(np.nan_to_num(figure[:, 1])))
+    style = Style(settings.opacity, scale, body_scale(np.array([tall_px / TALL_M]), scale))
     width = style.limb * style.width * style.body_scale
-    items: list[Item] = []
-    taken: list[Array] = []
-    for index, figure in enumerate(positions):
-        if index == chosen:
-            continue
-        color = style.color(candidate_color(index))
-        lines, sides = limb_lines(names, figure)
-        items += [
-            Stroke(lines, color, width, GHOST * style.halo),
-            Stroke(lines[sides == "R"], style.color(CORE), style.core * width),
-        ]
-        apart = np.nan_to_num(np.linalg.norm(figure - positions[chosen], axis=-1), nan=-1.0)
-        if apart.max() >= 0.0:
-            x, y = _number_place(figure, apart, taken, 16.0 * scale)
-            taken.append(np.array([x, y]))
-            items.append(Label(str(index + 1), x, y + 6.0 * scale, (*color[:3], 1.0), "middle"))
+    color = style.color(candidate_color(candidate))
+    lines, sides = limb_lines(HUMAN.point_names, figure)
+    items: list[Item] = [
+        Stroke(lines, color, width, GHOST * style.halo),
+        Stroke(lines[sides == "R"], style.color(CORE), style.core * width),
+    ]
+    apart = np.nan_to_num(np.linalg.norm(figure - positions[chosen], axis=-1), nan=-1.0)
+    if apart.max() >= 0.0:
+        x, y = figure[apart.argmax()]
+        items.append(Label(str(candidate + 1), float(x), float(y) + 6.0 * scale, (*color[:3], 1.0), "middle"))
     return items
-
-
-def _number_place(figure: Array, apart: Array, taken: list[Array], beside: float) -> tuple[float, float]:
-    """The point [px] of a figure (13, 2) above which its number stands, `beside` those already there.
-
-    `apart` (13,) is the distance from the chosen figure's points [px], negative where not seen.
-    """
-    order = [point for point in np.argsort(-apart, kind="stable") if apart[point] >= 0.0]
-    free = (
-        point for point in order if all(np.linalg.norm(figure[point] - other) >= beside for other in taken)
-    )
-    x, y = figure[next(free, order[0])]
-    return float(x), float(y)

@@ -35,8 +35,8 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     )
     show_candidates: _switch(
         "Candidates",
-        "Draw what else a found keyframe may show as faint figures, in the colors and with the "
-        "numbers of the buttons that take them",
+        "Draw the posture whose button the mouse is over, which a found keyframe may show too, as a faint "
+        "figure in the button's color",
     )
     show_paths: _switch(
         "Paths",

@@ -9,6 +9,7 @@ from _found import made_up_frames
 from keymark.core.body.human import HUMAN
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.camera_placement import read_camera
+from keymark.operators.keyframes.change_match import KEYMARK_OT_replace_match
 from keymark.operators.keyframes.match_edits import add_candidate, add_match, key_matches
 from keymark.operators.overlays import candidates
 from keymark.operators.overlays.drawing import Label, Stroke, candidate_icon
@@ -59,7 +60,7 @@ def test_each_has_the_color_and_the_number_of_its_button(match: Group, opened: b
     positions = candidates.over_footage(opened, active_take(opened), FOOTAGE, points)
     settings = SimpleNamespace(opacity=0.5)
     for chosen, other in ((0, 1), (1, 0)):
-        lines, cores, number = candidates.picture(positions, chosen, settings)
+        lines, cores, number = candidates.picture(positions, other, chosen, settings)
         assert isinstance(lines, Stroke) and len(lines.segments) == 12 and len(cores.segments) == 4
         theme = bpy.context.preferences.themes[0].collection_color[other].color
         assert tuple(lines.color)[:3] == pytest.approx(tuple(theme)) and lines.color[3] < 0.5
@@ -72,35 +73,30 @@ def test_each_has_the_color_and_the_number_of_its_button(match: Group, opened: b
     assert all(candidate_icon(index) in icons for index in range(9))
 
 
-def test_numbers_of_figures_that_are_alike_stand_apart(match: Group, opened: bpy.types.Scene) -> None:
-    points = candidates.candidate_points(active_take(opened).armature, match)
-    positions = candidates.over_footage(opened, active_take(opened), FOOTAGE, points)
-    settings = SimpleNamespace(opacity=0.5)
-    many = np.concatenate([positions[:1], np.repeat(positions[1:2], 4, axis=0)])
-    numbers = [item for item in candidates.picture(many, 0, settings) if isinstance(item, Label)]
-    places = np.array([[number.x, number.y] for number in numbers])
-    apart = np.linalg.norm(places[:, None] - places, axis=-1)[np.triu_indices(4, 1)]
-    assert len(numbers) == 4 and apart.min() >= 16.0
-    tiny = 0.01 * many
-    tiny[1:, 0] += 1.0
-    numbers = [item for item in candidates.picture(tiny, 0, settings) if isinstance(item, Label)]
-    assert len({(number.x, number.y) for number in numbers}) == 1
-
-
 def test_points_that_are_not_seen_are_left_out() -> None:
     positions = np.full((2, 13, 2), np.nan)
     positions[0] = np.arange(26.0).reshape(13, 2)
-    lines, cores = candidates.picture(positions, 0, SimpleNamespace(opacity=1.0))
+    lines, cores = candidates.picture(positions, 1, 0, SimpleNamespace(opacity=1.0))
     assert len(lines.segments) == len(cores.segments) == 0
 
 
-@pytest.mark.parametrize("reason", ["nothing", "another frame", "off", "posed", "playing", "one candidate"])
-def test_they_are_drawn_at_an_undecided_frame_alone(
+def tooltip(candidate: int) -> str:
+    """What Blender asks of a button that the mouse is over."""
+    settings = SimpleNamespace(candidate=candidate)
+    return KEYMARK_OT_replace_match.description(bpy.context, settings)
+
+
+REASONS = ["nothing", "another frame", "off", "posed", "playing", "one candidate", "the chosen one"]
+
+
+@pytest.mark.parametrize("reason", REASONS)
+def test_the_one_under_the_mouse_is_drawn_at_an_undecided_frame_alone(
     match: Group, opened: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, reason: str
 ) -> None:
     painted = []
     monkeypatch.setattr(candidates, "paint", painted.append)
     monkeypatch.setattr(candidates, "footage_view", lambda *_: FOOTAGE)
+    assert tooltip(0 if reason == "the chosen one" else 1)
     if reason == "another frame":
         opened.frame_set(6)
     if reason == "off":
