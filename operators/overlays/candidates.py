@@ -42,10 +42,16 @@ _looked_at: tuple[float, int] | None = None
 def look_at(context: bpy.types.Context, candidate: int) -> None:
     """Draw a candidate of the current frame; called where Blender asks for the tooltip of its button."""
     global _looked_at
-    wanted = context.scene.frame_current_final, candidate
+    wanted = float(context.scene.frame_current_final), candidate
     if wanted != _looked_at:
         _looked_at = wanted
         redraw_footage(context)
+
+
+def looked_at(scene: bpy.types.Scene) -> int:
+    """The candidate of the current frame whose button the mouse was over last; -1 for none."""
+    frame, candidate = _looked_at or (None, -1)
+    return candidate if frame == scene.frame_current_final else -1
 
 
 def candidate_color(index: int) -> Color:
@@ -62,10 +68,8 @@ def draw(context: bpy.types.Context) -> None:
     if take is None or hidden or not settings.show_candidates or context.screen.is_animation_playing:
         return
     match = _shown(take, scene.frame_current_final)
-    if match is None or take.armature is None or _looked_at is None:
-        return
-    frame, candidate = _looked_at
-    if frame != scene.frame_current_final or candidate in (match.chosen, len(match.candidates)):
+    candidate = looked_at(scene)
+    if match is None or take.armature is None or candidate in (-1, match.chosen):
         return
     points = candidate_points(take.armature, match)
     footage = footage_view(scene, take, context.area, context.region)

@@ -201,10 +201,10 @@ class Hands:
                 if found is not None:
                     break
                 found = yield from self._search(kind, copy, wanted, shares)
-                seen = self._showing(kind)
+                seen = self.showing(kind)
                 if found is None:
                     yield from self.scroll(kind, "WHEELDOWNMOUSE", NOTCHES)
-                    if self._showing(kind) == seen:
+                    if self.showing(kind) == seen:
                         break
             if found is not None:
                 return found
@@ -268,6 +268,7 @@ class Hands:
             self.window.event_simulate(type=wheel, value="PRESS", x=self.x, y=self.y)
         yield from turns(4)
 
-    def _showing(self, kind: str) -> tuple[float, float]:
+    def showing(self, kind: str) -> tuple[float, float]:
+        """The lower left corner of what a sidebar shows of its panels [px]."""
         x, y = self.region(kind, "UI").view2d.region_to_view(0, 0)
         return round(x), round(y)

@@ -1,7 +1,8 @@
 """The panel in every state from the clip to the character, on a screen of some size.
 
 Usage: as of session.py, without a step. Each state leaves a picture; the step that is open then must fit into
-the sidebar without scrolling, and at the end, when most is shown, each of them.
+the sidebar without scrolling, and at the end, when most is shown, each of them. In doubt, the mouse rests on
+another candidate, which then is drawn.
 """
 
 import sys
@@ -14,8 +15,10 @@ import bpy  # noqa: E402
 import steps_character  # noqa: E402
 import steps_correct  # noqa: E402
 import steps_prepare  # noqa: E402
-from driver import Camera, Steps, drive, expect, turns  # noqa: E402
+from driver import Camera, Steps, drive, expect, turns, until  # noqa: E402
 from person import Person, keymark  # noqa: E402
+
+FOLDED_PX = 34  # Height of a folded step, the gap above it included
 
 
 def session(take: Path, folder: Path, camera: Camera) -> Steps[None]:
@@ -50,12 +53,21 @@ def correcting(person: Person) -> Steps[None]:
     """The most doubtful pose, and one wrist of it dragged."""
     doubtful = min(person.take.matching.matches, key=lambda match: match.confidence)
     person.scene.frame_set(round(doubtful.frame))
+    yield from person.hands.move(*(yield from candidate(person, 1)))
+    shown = keymark("operators.overlays.candidates").looked_at
+    yield from until(lambda: shown(person.scene) == 1, "the figure of the candidate under the mouse")
+    yield from person.look("candidate")
     yield from person.hands.move_over("VIEW_3D")
     yield from person.hands.invoke("keymark.drag_joints")
     expect(person.jobs(), "joints cannot be dragged")
     yield from steps_correct.dragged(person, "wrist.L")
     yield from person.look("correcting")
     yield from steps_correct.ended(person, "ESC")
+
+
+def candidate(person: Person, number: int) -> Steps[tuple[int, int]]:
+    """Where the button of a frame's candidate is."""
+    return person.hands.find_button("keymark.replace_match", f"candidate={number}")
 
 
 def seen(person: Person, name: str, step: str) -> Steps[None]:
@@ -66,13 +78,21 @@ def seen(person: Person, name: str, step: str) -> Steps[None]:
 
 
 def fits(person: Person, step: str) -> Steps[None]:
-    """Open a step; the wheel then finds nothing above or below what its sidebar shows."""
+    """Open a step: but for the lines of later ones, the sidebar shows all without scrolling."""
+    steps = list(keymark("operators.shell.steps").STEPS)
     setattr(bpy.context.window_manager.keymark_steps, step, True)
-    for wheel in ("WHEELUPMOUSE", "WHEELDOWNMOUSE"):
-        yield from person.hands.scroll("VIEW_3D", wheel, 0)  # the mouse goes there
-        shown = yield from still(person)
-        yield from person.hands.scroll("VIEW_3D", wheel, 5)
-        expect(shown == (yield from still(person)), f"with the step {step} open the sidebar scrolls: {wheel}")
+    yield from person.hands.scroll("VIEW_3D", "WHEELUPMOUSE", 40)
+    yield from still(person)
+    _, top = person.hands.showing("VIEW_3D")
+    yield from person.hands.scroll("VIEW_3D", "WHEELDOWNMOUSE", 40)
+    yield from still(person)
+    below = top - person.hands.showing("VIEW_3D")[1]
+    yield from person.hands.scroll("VIEW_3D", "WHEELUPMOUSE", 40)
+    later = FOLDED_PX * (len(steps) - 1 - steps.index(step))
+    expect(
+        below <= later, f"with the step {step} open {below} px are below the sidebar, {later} of them folded"
+    )
+    print(f"{step}: {below} px below the sidebar", flush=True)
 
 
 def still(person: Person) -> Steps[bytes]:

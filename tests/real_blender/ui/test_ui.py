@@ -36,7 +36,7 @@ ANIMATE_CLICKS, ANIMATE_KEYS = 2, 2
 """Tab and Animate; N and Enter. Choosing the file and entering the height are three clicks more."""
 MOST_CLICKS = 40
 """From the clip to the motion: a button, five sleeves, a few buttons more, and four doubtful keyframes."""
-STATES = ("empty", "clip", "performer", "poses", "correcting", "motion", "character", "export")
+STATES = ("empty", "clip", "performer", "poses", "candidate", "correcting", "motion", "character", "export")
 SHELF_STEPS = ("libraries", "assets")
 MARKER_STEPS = ("asked", "masks_while_picking", "one_row", "warned", "brushing", "brushed", "still_area")
 CLICKS_MM = 4.0  # What a clicked point and a track in a single frame may change
