@@ -152,7 +152,8 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        return FORMATS[properties.format].description
+        chosen = FORMATS[properties.format]
+        return chosen.missing() or chosen.description
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         folder = "//" if bpy.data.filepath else ""

@@ -4,7 +4,6 @@ import bpy
 
 from ..bridge.export_formats import FORMATS
 from ..reconstruct.panel import draw_shown_action
-from ..shell.base_operator import capitalized
 from ..shell.panel import Popover, draw_progress, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
@@ -42,13 +41,10 @@ class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
             _draw_result(column, context, take)
         column.popover("KEYMARK_PT_asset", icon="ASSET_MANAGER")
         grid = column.grid_flow(columns=2, even_columns=True, align=True)
-        missing = {}
         for kind, listed in FORMATS.items():
-            each, missing[kind] = grid.row(), listed.missing()
-            each.enabled = missing[kind] is None
+            each = grid.row()
+            each.enabled = listed.missing() is None  # its tooltip says why
             each.operator("keymark.export_motion", text=listed.name, icon="EXPORT").format = kind
-        for sentence in filter(None, missing.values()):
-            draw_sentence(column, context, capitalized(sentence), "INFO")
 
 
 def _draw_result(

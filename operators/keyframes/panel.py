@@ -84,7 +84,8 @@ def _draw_here(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy
     shown = data.action if data is not None else None
     if shown is not None and shown in (take.motion_action, take.finish.action):
         column.operator("keymark.show_action", text="Show Keyframes", icon="ERROR").which = "KEYFRAMES"
-    elif any(round(posed) == frame for posed in posed_frames(take)):
+        return
+    if any(round(posed) == frame for posed in posed_frames(take)):
         column.label(text=f"Frame {frame} is posed", icon="KEYFRAME_HLT", translate=False)
     elif has_frame(matched_frames(take), frame):
         pass  # the list of found ones shows it

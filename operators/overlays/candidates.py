@@ -11,7 +11,7 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ..bridge.camera_placement import read_lens
 from ..shell.footage_view import FootageView, footage_view
-from ..shell.keyed_frames import match_at, offered_at, state_of
+from ..shell.keyed_frames import match_at, offered_at, shows_keyframes, state_of
 from ..shell.results import LruCache
 from ..shell.takes import find_take, footage_of, redraw_footage
 from . import drawing
@@ -69,7 +69,9 @@ def draw(context: bpy.types.Context) -> None:
         return
     match = _shown(take, scene.frame_current_final)
     candidate = looked_at(scene)
-    if match is None or take.armature is None or candidate in (-1, match.chosen):
+    if match is None or take.armature is None or not shows_keyframes(take):
+        return
+    if candidate in (-1, match.chosen):
         return
     points = candidate_points(take.armature, match)
     footage = footage_view(scene, take, context.area, context.region)

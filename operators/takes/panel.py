@@ -47,7 +47,7 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
     if take.finish.outdated:
         return "Next: review, then bake again"
     if any(result.outdated for character in take.characters for result in character.results):
-        return "Next: retarget the character again"
+        return "Next: retarget again"
     if not any(result.action for character in take.characters for result in character.results):
         finished = take.finish.action is not None
         return "Next: a character, or export" if finished else "Next: review, then a character"

@@ -13,6 +13,7 @@ ACROSS = (0.5, 0.75, 0.2, 0.35, 0.9, 0.08)
 STEP_PX = 16  # Buttons are about 20 px high
 NOTCHES = 15
 """Of the wheel, of about 40 px each: nearly all that a sidebar shows, so that nothing is passed over."""
+BELOW_TOP_PX = 50  # Where there is a panel in any case
 MARGIN_PX = 6  # Beside what panels show, in the sidebar still
 PAGES = 10  # More than any sidebar is long
 
@@ -261,9 +262,12 @@ class Hands:
         return str(manager.clipboard)
 
     def scroll(self, kind: str, wheel: str, notches: int) -> Steps[None]:
-        """Turn the wheel over a sidebar, at its margin: over a list it would scroll that."""
+        """Turn the wheel over a sidebar, at its margin: over a list it would scroll that.
+
+        Near its top, since below its panels the wheel would zoom the view.
+        """
         region = self.region(kind, "UI")
-        yield from self.move(region.x + MARGIN_PX, region.y + 0.5 * region.height)
+        yield from self.move(region.x + MARGIN_PX, region.y + region.height - BELOW_TOP_PX)
         for _ in range(notches):
             self.window.event_simulate(type=wheel, value="PRESS", x=self.x, y=self.y)
         yield from turns(4)

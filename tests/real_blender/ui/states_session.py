@@ -12,7 +12,6 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1])]
 
 import bpy  # noqa: E402
-import steps_character  # noqa: E402
 import steps_correct  # noqa: E402
 import steps_prepare  # noqa: E402
 from driver import Camera, Steps, drive, expect, turns, until  # noqa: E402
@@ -39,8 +38,8 @@ def session(take: Path, folder: Path, camera: Camera) -> Steps[None]:
     yield from correcting(person)
     bpy.ops.keymark.reconstruct()
     yield from seen(person, "motion", "reconstruct")
-    yield from steps_character.basic_human(person)
-    bpy.ops.keymark.add_character()
+    keymark("operators.bridge.character.rigify_human").enable_rigify()
+    bpy.ops.keymark.add_rigify_human()
     bpy.ops.keymark.retarget()
     yield from seen(person, "character", "character")
     bpy.ops.keymark.bake_motion()

@@ -15,7 +15,7 @@ def character(person: Person) -> Steps[None]:
     if person.take.finish.action is None:  # the session begins here
         bpy.ops.keymark.bake_motion()
         bpy.ops.wm.save_as_mainfile(filepath=str(person.folder / "session.blend"))
-    yield from basic_human(person)
+    yield from _basic_human(person)
     before = person.hands.clicks
     yield from person.undoable("adding a character", lambda: _click(person, "keymark.add_character"))
     clicks = person.hands.clicks - before
@@ -130,7 +130,7 @@ def _choose(person: Person) -> Steps[None]:
     yield from turns(3)
 
 
-def basic_human(person: Person) -> Steps[None]:
+def _basic_human(person: Person) -> Steps[None]:
     """Rigify's basic human, generated beside the performer, selected."""
     rigify_human = keymark("operators.bridge.character.rigify_human")
     rigify_human.enable_rigify()
