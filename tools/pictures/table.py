@@ -28,7 +28,10 @@ DRAWN = (
 Box = tuple[int, int, int, int]
 VIEWPORT: Box = (0, 27, 1315, 980)
 """Left, top, right and bottom, on a session's screen, of the viewport with sidebar and timeline [px]."""
-SIDEBAR: Box = (1029, 78, 1315, 804)
+LARGE: Box = (400, 27, 1580, 1054)
+"""The right part of the viewport on a screen of 1920x1080, with the sidebar."""
+SMALL: Box = (0, 27, 1052, 700)
+"""The viewport on one of 1280x720."""
 SHOWN_WIDTH = 1053
 """Width to which a part of the screen is reduced, where it is wider [px]."""
 
@@ -56,24 +59,22 @@ class Screenshot:
         return found[-1]
 
 
+STATES = ("clip", "performer", "poses", "candidate", "correcting", "motion", "character", "export")
+"""Of the panel, from the clip to the character; each is shown on a large screen and on a small one."""
 SCREENSHOTS: Mapping[str, Screenshot] = {
+    **{f"workflow_{state}.jpg": Screenshot("states_1080", state, LARGE) for state in STATES},
+    **{f"small_{state}.jpg": Screenshot("states_720", state, SMALL) for state in STATES},
     "first_example.jpg": Screenshot("first", "example"),
     "first_reconstructed.jpg": Screenshot("first", "reconstructed"),
     "first_review.jpg": Screenshot("first", "review"),
     "first_character.jpg": Screenshot("first", "character"),
     "first_retargeted.jpg": Screenshot("first", "retargeted"),
     "workflow_camera.jpg": Screenshot("library", "lines"),
-    "workflow_footage.jpg": Screenshot("library", "footage"),
     "workflow_follow.jpg": Screenshot("plain", "clicked"),
     "workflow_markers.jpg": Screenshot("library", "markers"),
-    "workflow_actor.jpg": Screenshot("library", "actor"),
     "workflow_side.jpg": Screenshot("library", "from_the_side"),
     "workflow_keyframes.jpg": Screenshot("demo", "keyframes"),
-    "workflow_correct.jpg": Screenshot("demo", "dragging"),
     "workflow_reconstructing.jpg": Screenshot("demo", "reconstructing"),
-    "workflow_review.jpg": Screenshot("demo", "review"),
-    "workflow_finish.jpg": Screenshot("demo", "finish"),
-    "workflow_character.jpg": Screenshot("demo", "retargeted"),
     "libraries_match.jpg": Screenshot("library", "posed_all"),
 }
 """Pictures that show Blender."""

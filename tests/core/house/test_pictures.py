@@ -44,7 +44,7 @@ def test_sessions_take_the_screenshots(repository: Path) -> None:
     scripts = repository / "tests" / "real_blender" / "ui"
     steps = "\n".join(file.read_text(encoding="utf-8") for file in scripts.glob("*.py"))
     for name, screenshot in SCREENSHOTS.items():
-        taken = re.search(rf'\.(look|shoot)\("{screenshot.name}"\)', steps)
+        taken = re.search(rf'(\.look|\.shoot|seen)\((person, )?"{screenshot.name}"', steps)
         assert taken, f"{name}: no session takes `{screenshot.name}`"
         assert f'"{screenshot.session}"' in (scripts / "test_ui.py").read_text(encoding="utf-8"), name
 
