@@ -219,7 +219,7 @@ def _footer(tracks: RegionTracks, outlines: ContourModel | None) -> str:
         shown = "Ellipse and cross: region found of each marker. "
     elif outlines is not None:
         shown = "Lines beside the limbs: contours as the motion predicts them. "
-    return f"{shown}Numbers: scene frames; key: posed by hand."
+    return f"{shown}Numbers: scene frames; key: keyframes."
 
 
 def _draw_estimate(tile: Canvas, take: Take, figure: StickFigure, tracks: RegionTracks, cell: Cell) -> None:

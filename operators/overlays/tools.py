@@ -12,6 +12,7 @@ from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ..bridge.camera_placement import still_camera
 from ..bridge.object_space import joint_places
+from ..footage.camera_view import free_box
 from ..footage.drawn_lines import Drawing, DrawnLine, current_camera, running
 from ..footage.found_camera import HINTS, is_found, values
 from ..shell.footage_clicks import WorldInRegion
@@ -73,7 +74,7 @@ def draw_joints(context: bpy.types.Context) -> None:
         drawing.polygons(rim, drawing.INK if hovered else drawing.faded(color, 0.35))
         drawing.lines(segments(rim, closed=True), np.array(color), width=2.0, halo=0.9)
         if hovered:
-            _write_near(_handles.keys.split("   |   ")[::-1], context.region, *position + 18.0 * scale)
+            _write_near(context, _handles.keys.split("   |   ")[::-1], *position + 18.0 * scale)
 
 
 def _draw_path(view: WorldInRegion, joint: str, places: Array) -> None:
@@ -211,11 +212,11 @@ def draw_request(context: bpy.types.Context) -> None:
         drawing.text(request.detail, middle, below, size=DETAIL_SIZE, align="middle")
     x, y = request.mouse[0] - region.x, request.mouse[1] - region.y
     if 0 <= x < region.width and 0 <= y < region.height:
-        _near_mouse(request, view, region, float(x), float(y))
+        _near_mouse(context, request, view, float(x), float(y))
 
 
 def _near_mouse(
-    request: FootageRequest, view: FootageView | None, region: bpy.types.Region, x: float, y: float
+    context: bpy.types.Context, request: FootageRequest, view: FootageView | None, x: float, y: float
 ) -> None:
     scale = drawing.ui_scale()
     words = [request.keys]
@@ -227,14 +228,14 @@ def _near_mouse(
         drawing.lines(segments(rim, closed=True), drawing.INK, halo=1.0)
         y = float(rim[..., 1].max())
     else:
-        words += [f"{request.title}, {request.detail}" if request.detail else request.title]
-    _write_near(words, region, x, y + 18.0 * scale)
+        words += [each for each in (request.detail, request.title) if each]
+    _write_near(context, words, x, y + 18.0 * scale)
 
 
-def _write_near(lines: list[str], region: bpy.types.Region, x: float, y: float) -> None:
-    """Write lines of text, the lowest first, to the right of a place, within the region."""
-    scale = drawing.ui_scale()
+def _write_near(context: bpy.types.Context, lines: list[str], x: float, y: float) -> None:
+    """Write lines of text, the lowest first, to the right of a place, within what no sidebar covers."""
+    scale, (_, _, free_px, _) = drawing.ui_scale(), free_box(context.area, context.region)
     for number, words in enumerate(lines):
         width = drawing.text_size(words, NEAR_SIZE)[0]
-        left = max(min(x + 18.0 * scale, region.width - width - 18.0 * scale), 18.0 * scale)
+        left = max(min(x + 18.0 * scale, free_px - width - 18.0 * scale), 18.0 * scale)
         drawing.text(words, left, y + number * 1.5 * NEAR_SIZE * scale, size=NEAR_SIZE)
