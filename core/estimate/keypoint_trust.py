@@ -18,9 +18,10 @@ from ..body.skeleton import SIDES
 from ..evidence.keypoints import HUMAN_LENGTHS_M, USUAL_PLACES, KeypointModel, ObservedKeypoints
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints, People, mirror_images
-from ..footage.keypoints.performer import person_size, principal_keypoints
+from ..footage.keypoints.performer import FITS, person_size, principal_keypoints
 from ..numerics.markov_chain import cheapest_path
 from ..numerics.robust import DEGREES, multivariate_cost
+from ..numerics.vectors import runs
 
 
 @dataclass(frozen=True)
@@ -106,6 +107,7 @@ def _lag(points: ObservedKeypoints, predicted: Array, scale: Array, frame: Index
 ARMS = ("shoulder", "elbow", "wrist", "index", "thumb", "pinky")
 LEGS = ("hip", "knee", "ankle", "heel", "toe", "small_toe")
 FACE = ("eye", "ear")  # too near each other to tell: exchanged where arms and legs are
+FEWEST_LOOKS = 2  # of the pose network, by which left and right are exchanged
 STATES = np.array([[False, False], [True, False], [False, True], [True, True]])  # arms, legs exchanged
 
 
@@ -191,10 +193,12 @@ def sided_by_pictures(
     """The keypoints with left and right as the pose network sees them in a few pictures, exchanged else.
 
     A detector follows one person from frame to frame and may have his sides exchanged for long, in a layout
-    that is as plausible; the network that looks anew in a picture is not led by what it saw before.
+    that is as plausible; the network that looks anew in a picture is not led by what it saw before. Looks at
+    somebody else, or at a place from which the camera has turned, tell nothing, and a look alone may err.
 
     `height_m`: of the performer, by which sizes in the picture are told.
     """
+    partner = mirror_images(keypoints.names, keypoints.sources)
     for one in people:
         frames = np.array(sorted(one.in_pictures), dtype=np.intp)
         own = np.array([source == one.source for source in keypoints.sources])
@@ -202,11 +206,27 @@ def sided_by_pictures(
             continue
         seen = np.full((len(frames), len(own), 2), np.nan)
         seen[:, own] = [one.in_pictures[frame] for frame in frames]
+        either = np.stack([keypoints.pixel[frames], keypoints.pixel[frames][:, partner]])
+        fits = _apart(either[:, :, own], seen[:, own]).min(axis=0) < FITS
+        frames, seen = frames[fits], seen[fits]
+        if len(frames) < FEWEST_LOOKS:
+            continue
         near = np.abs(np.arange(len(time_s))[:, None] - frames).argmin(axis=1)
         scale = np.full(len(time_s), np.median(person_size(seen[:, own])) / height_m)
-        swapped = find_swaps(keypoints, seen[near], scale, frames, time_s)
-        keypoints = exchanged_back(keypoints, swapped & own)
+        swapped = own & find_swaps(keypoints, seen[near], scale, frames, time_s)
+        for column in np.flatnonzero(swapped.any(axis=0)):
+            for first, last in runs(swapped[:, column]):
+                if np.count_nonzero((frames >= first) & (frames < last)) < FEWEST_LOOKS:
+                    swapped[first:last, column] = False
+        keypoints = exchanged_back(keypoints, swapped)
     return keypoints
+
+
+def _apart(first: Array, second: Array) -> Array:
+    """(...) mean distance of points (..., K, 2), in sizes of the second; infinite where none is in both."""
+    apart = np.linalg.norm(first - second, axis=-1) / person_size(second)[..., None]
+    count = np.isfinite(apart).sum(axis=-1)
+    return np.where(count > 0, np.nansum(apart, axis=-1) / np.maximum(count, 1), np.inf)
 
 
 def doubted_at_changes(keypoints: Keypoints, swapped: BoolArray, time_s: Array) -> Keypoints:

@@ -16,13 +16,10 @@ from ..errors import InputError
 from ..progress import Part
 from .clips.album import Glimpses
 from .keypoints.keypoints import People, SeenPeople, mirrored_point
-from .keypoints.performer import person_size
+from .keypoints.performer import FITS, person_size
 from .pose_network import CIRCLE, LAYOUT, NAME, Crop, Pose, PoseNetwork
 from .pose_tracking import find_in_picture
 
-FITS = 0.1
-"""Mean distance of two detectors' points of the same person, in sizes of the person, that they stay below:
-what they call a hip or an ankle differs by some 3 %."""
 BETTER = 0.6  # another reading of a file must bring its points so much nearer
 LEAST_OFF = 0.04  # nearer points are right as they stand
 FARTHEST = 0.5  # a distance counts at most so much

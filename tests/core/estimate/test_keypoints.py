@@ -23,7 +23,8 @@ from keymark.core.estimate.terms.term import NormalEquations, add_drift, drift, 
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.evidence.keypoints import KeypointModel
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.keypoints.keypoints import Keypoints, People
+from keymark.core.footage.keypoints.keypoints import Keypoints, People, mirror_images
+from keymark.core.footage.keypoints.performer import person_size
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
@@ -195,6 +196,23 @@ def test_sides_are_those_that_pictures_show_where_nothing_is_posed() -> None:
     np.testing.assert_array_equal(same.pixel, GOOD.pixel)
     alone = sided_by_pictures(turned, [replace(people, in_pictures={})], 1.7, time_s)
     np.testing.assert_array_equal(alone.pixel, turned.pixel)
+
+
+@pytest.mark.parametrize("mistaken", ["one look", "somebody else", "the camera turned"])
+def test_sides_that_are_right_stay_where_looks_are_mistaken(mistaken: str) -> None:
+    time_s, looks = np.arange(FRAMES) / 30.0, range(5, FRAMES, 11)
+    other_side = GOOD.pixel[:, mirror_images(GOOD.names, GOOD.sources)]
+    away_px = 0.3 * np.array([float(np.median(person_size(GOOD.pixel))), 0.0])
+    shown = {frame: GOOD.pixel[frame] for frame in looks}
+    if mistaken == "one look":
+        shown[27] = other_side[27]
+    elif mistaken == "somebody else":
+        shown = {frame: other_side[frame] + away_px for frame in looks}
+    else:
+        shown = {frame: GOOD.pixel[frame] + away_px for frame in looks}
+    people = People(LAYOUT, SOURCE, CAMERA.resolution, (), in_pictures=shown)
+    kept = sided_by_pictures(GOOD, [people], 1.7, time_s)
+    np.testing.assert_array_equal(kept.pixel, GOOD.pixel)
 
 
 def test_points_near_a_change_of_sides_count_for_little() -> None:
