@@ -52,9 +52,7 @@ def _limbs(names: list[str]) -> list[str]:
 
 
 PERCENT_UNITS = 2.1
-MOST_SHOWN = (
-    4  # candidates; the step then fits a sidebar of a small screen, and the others are hardly ever right
-)
+MOST_SHOWN = 4  # candidates, the likeliest; with more the step would not fit the sidebar of a small screen
 
 
 def percent(share: float) -> str:

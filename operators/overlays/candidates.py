@@ -67,11 +67,12 @@ def draw(context: bpy.types.Context) -> None:
     hidden = space.type == "VIEW_3D" and not space.overlay.show_overlays
     if take is None or hidden or not settings.show_candidates or context.screen.is_animation_playing:
         return
-    match = _shown(take, scene.frame_current_final)
     candidate = looked_at(scene)
-    if match is None or take.armature is None or not shows_keyframes(take):
+    if candidate < 0 or take.armature is None or not shows_keyframes(take):
         return
-    if candidate in (-1, match.chosen):
+    match = _shown(take, scene.frame_current_final)
+    # The frame may have got other candidates since.
+    if match is None or candidate == match.chosen or candidate >= len(match.candidates):
         return
     points = candidate_points(take.armature, match)
     footage = footage_view(scene, take, context.area, context.region)

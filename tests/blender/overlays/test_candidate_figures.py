@@ -87,6 +87,7 @@ def tooltip(candidate: int) -> str:
 
 
 REASONS = ["nothing", "another frame", "off", "posed", "playing", "one candidate", "the chosen one"]
+REASONS += ["fewer since", "the motion is shown"]
 
 
 @pytest.mark.parametrize("reason", REASONS)
@@ -105,6 +106,10 @@ def test_the_one_under_the_mouse_is_drawn_at_an_undecided_frame_alone(
         bpy.ops.keymark.store_keyframe()
     if reason == "one candidate":
         match.candidates.remove(1)
+    if reason == "fewer since":
+        candidates.look_at(bpy.context, len(match.candidates))
+    if reason == "the motion is shown":
+        active_take(opened).armature.animation_data.action = bpy.data.actions.new("Motion")
     context = SimpleNamespace(
         scene=opened,
         space_data=SimpleNamespace(type="CLIP_EDITOR"),

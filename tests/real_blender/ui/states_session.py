@@ -52,7 +52,8 @@ def correcting(person: Person) -> Steps[None]:
     """The most doubtful pose, and one wrist of it dragged."""
     doubtful = min(person.take.matching.matches, key=lambda match: match.confidence)
     person.scene.frame_set(round(doubtful.frame))
-    yield from person.hands.move(*(yield from candidate(person, 1)))
+    place = yield from person.hands.find_button("keymark.replace_match", "candidate=1")
+    yield from person.hands.move(*place)
     shown = keymark("operators.overlays.candidates").looked_at
     yield from until(lambda: shown(person.scene) == 1, "the figure of the candidate under the mouse")
     yield from person.look("candidate")
@@ -62,11 +63,6 @@ def correcting(person: Person) -> Steps[None]:
     yield from steps_correct.dragged(person, "wrist.L")
     yield from person.look("correcting")
     yield from steps_correct.ended(person, "ESC")
-
-
-def candidate(person: Person, number: int) -> Steps[tuple[int, int]]:
-    """Where the button of a frame's candidate is."""
-    return person.hands.find_button("keymark.replace_match", f"candidate={number}")
 
 
 def seen(person: Person, name: str, step: str) -> Steps[None]:
