@@ -1,9 +1,9 @@
 """Corrections: what the motion found without posing gains from the most doubtful frames put right.
 
-In the picture only, where every point is seen where it truly is and keeps the depth that was found; and in
-space.
+In the picture only, where every point is set where it truly is seen, or as a careful person sets it; and in
+space. Lengths are the performer's, or the average ones of somebody as tall.
 
-Usage: corrections.py [TAKE ...] [--keypoints] with names or folders of takes. See README.md.
+Usage: corrections.py [TAKE ...] [--keypoints] [--average] with names or folders of takes. See README.md.
 """
 
 import argparse
@@ -18,10 +18,13 @@ from trials import Trial, unposed_trials
 
 load_project()
 
+from keymark.core.arrays import Array  # noqa: E402
+from keymark.core.body.actor import Actor  # noqa: E402
+from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.body.posture_fit import fit_posture  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses, with_found  # noqa: E402
-from keymark.core.posing.picture_depth import seen_at, with_likely_depth  # noqa: E402
+from keymark.core.posing.picture_depth import put_right  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
@@ -32,7 +35,9 @@ from keymark.core.take.take import Take  # noqa: E402
 
 COUNTS = (1, 2, 4, 10**6)
 """Numbers of frames corrected, the most doubtful first; the last stands for all keyframes."""
-KINDS = ("picture", "space")
+KINDS = ("picture", "by hand", "space")
+CARE_M, SEED = 0.01, 7
+"""How far from a joint a careful person drags a point, along each axis [m]."""
 
 
 @dataclass(frozen=True)
@@ -49,11 +54,13 @@ def measure(trial: Trial, found: FoundPoses, libraries: Sequence[Library]) -> di
     take = with_found(replace(trial.take, keyframes=()), found)
     doubtful = sorted(take.keyframes, key=lambda key: 0.0 if key.matched is None else key.matched.confidence)
     measured = {"found": error_of(trial, take)}
+    careless = np.random.default_rng(SEED).normal(0.0, CARE_M, trial.truth.shape)
     for kind in KINDS:
+        seen = trial.truth + careless if kind == "by hand" else trial.truth
         right = [
-            in_the_picture(trial, take, key, libraries, found.floor_m)
-            if kind == "picture"
-            else in_space(trial, take, key)
+            in_space(trial, take, key)
+            if kind == "space"
+            else in_the_picture(take, key, seen[key.index], libraries, found.floor_m)
             for key in doubtful
         ]
         for count in COUNTS:
@@ -70,17 +77,16 @@ def error_of(trial: Trial, take: Take) -> Error:
 
 
 def in_the_picture(
-    trial: Trial, take: Take, found: Keyframe, libraries: Sequence[Library], floor_m: float | None
+    take: Take, found: Keyframe, seen: Array, libraries: Sequence[Library], floor_m: float | None
 ) -> Keyframe:
-    """A keyframe whose points are dragged to where they are seen; lengths stay, so depths give way.
-
-    As the panel does it, its depth is then the likeliest one.
-    """
-    frame, camera = found.index, take.camera
-    posture = seen_at(take.body, camera, frame, found.posture, trial.truth[frame])
+    """A keyframe whose points are dragged to where they are seen, as the panel does it."""
+    frame, body = found.index, take.body
+    places = dict(zip(body.skeleton.point_names, seen, strict=True))
     sure = 0.0 if found.matched is None else found.matched.confidence
-    likely = with_likely_depth(take.body, camera, frame, posture, found.posture, sure, libraries, floor_m)
-    return Keyframe(frame, likely, depth_found=True)
+    posture = put_right(
+        body, take.camera, frame, found.posture, found.posture, places, sure, libraries, floor_m
+    )
+    return Keyframe(frame, posture, depth_found=True)
 
 
 def in_space(trial: Trial, take: Take, found: Keyframe) -> Keyframe:
@@ -123,16 +129,20 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument(
         "--keypoints", action="store_true", help="hold takes against a detector's keypoints as well"
     )
+    parser.add_argument("--average", action="store_true", help="use lengths that follow from the height")
     options = parser.parse_args(arguments)
     libraries = find_libraries(EVERY_LIBRARY, [SHIPPED])
     results = {}
     for name, trial in unposed_trials(options.takes, options.keypoints, plain=options.keypoints):
+        if options.average:
+            body = Body(Actor.from_stature(trial.take.body.actor.stature_m))
+            trial = replace(trial, take=replace(trial.take, body=body))
         found = run(pose_clip(replace(trial.take, keyframes=()), trial.reading, libraries))
         results[name] = measure(trial, found, libraries)
     as_dictionaries = {
         name: {column: asdict(error) for column, error in row.items()} for name, row in results.items()
     }
-    file = "corrections_keypoints" if options.keypoints else "corrections"
+    file = "corrections" + "_keypoints" * options.keypoints + "_average" * options.average
     write_results(
         file,
         "Distance from the truth with the hips aligned / in place [mm] / travel of standing ankles "

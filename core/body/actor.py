@@ -6,7 +6,7 @@ Proportions of stature: Drillis & Contini (1966), *Body Segment Parameters*, as 
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import isfinite
+from math import isclose, isfinite
 from types import MappingProxyType
 from typing import Annotated, Any
 
@@ -64,6 +64,12 @@ class Actor(Record):
     def stature_m(self) -> float:
         """Stature [m], estimated from the legs by average proportions."""
         return self._stature(self.segments_m)
+
+    @property
+    def is_average(self) -> bool:
+        """Whether all lengths follow from the stature, so that nobody has measured this performer."""
+        average = Actor.from_stature(self.stature_m).segments_m
+        return all(isclose(self.segments_m[name], length, rel_tol=1e-3) for name, length in average.items())
 
     @classmethod
     def from_stature(cls, stature_m: float) -> "Actor":

@@ -38,16 +38,6 @@ def posing_covariance(body: Body, pose: Pose) -> Array:
     return np.asarray(0.5 * (covariance + np.swapaxes(covariance, -1, -2)))
 
 
-def picture_information(body: Body, camera: Camera, posture: Posture, frame: IndexArray) -> Array:
-    """(K, D, D) what a person's usual care in the picture alone tells of the posture's tangent."""
-    pose = body.pose(posture)
-    sight = camera.sight(body.points(pose), frame[:, None])
-    across = np.eye(3) - sight[..., :, None] * sight[..., None, :]
-    count = body.skeleton.dof_count
-    rows = (across @ body.points_jacobian(pose)).reshape(len(frame), -1, count) / POINT_STD_M
-    return np.asarray(np.swapaxes(rows, -1, -2) @ rows)
-
-
 def velocities(keyframes: Posture, frame: IndexArray) -> Array:
     """Velocities of K keyframes' postures, (K, D) of the tangent per frame: of the parabola through three."""
     if len(frame) < 2:
@@ -58,6 +48,28 @@ def velocities(keyframes: Posture, frame: IndexArray) -> Array:
     before = -keyframes[:-2].minus(keyframes[1:-1]) / gap[:-1]
     velocity[1:-1] = (gap[1:] * before + gap[:-1] * after[1:]) / (gap[1:] + gap[:-1])
     return velocity
+
+
+# --- Put right in the picture
+
+
+SET_STD_M = 0.02  # how near to a joint a person sets a point in the picture [m]
+AVERAGE_STD_M = 0.025  # how far average lengths put points off, which differ by 4 to 5 percent between people
+
+
+def picture_std_m(body: Body) -> float:
+    """How far across the line of sight points are from where a person has set them in the picture [m]."""
+    return float(np.hypot(SET_STD_M, AVERAGE_STD_M * body.actor.is_average))
+
+
+def picture_information(body: Body, camera: Camera, posture: Posture, frame: IndexArray) -> Array:
+    """(K, D, D) what postures put right in the picture alone tell of the posture's tangent."""
+    pose = body.pose(posture)
+    sight = camera.sight(body.points(pose), frame[:, None])
+    across = np.eye(3) - sight[..., :, None] * sight[..., None, :]
+    count = body.skeleton.dof_count
+    rows = (across @ body.points_jacobian(pose)).reshape(len(frame), -1, count) / picture_std_m(body)
+    return np.asarray(np.swapaxes(rows, -1, -2) @ rows)
 
 
 # --- Matched

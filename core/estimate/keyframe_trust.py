@@ -25,6 +25,16 @@ from .keyframe_evidence import SeenAtKeyframes, read_keyframes
 FEWEST_POSED = 2  # fewer posed keyframes calibrate nothing
 
 
+def calibrating(matched: BoolArray, corrected: BoolArray) -> BoolArray:
+    """(K,) keyframes by which a clip's evidence is judged: those posed, and those put right in the picture.
+
+    Of the latter two count as one: a person puts right what is wrong there, not what is usual.
+    """
+    posed = ~matched
+    enough = posed.sum() + corrected.sum() // 2 >= FEWEST_POSED
+    return posed | corrected if enough else posed
+
+
 def read_mixed_keyframes(
     model: RegionModel, noise: RegionNoise, at: SeenAtKeyframes, match_scale: Array, corrected: BoolArray
 ) -> Generator[None, None, KeyframeEvidence]:
@@ -37,15 +47,18 @@ def read_mixed_keyframes(
     if not match_scale.any():
         return (yield from read_keyframes(model, noise, at))
     posed = np.flatnonzero(match_scale == 0.0)
+    seen = np.flatnonzero(calibrating(match_scale > 0.0, corrected))
     information = np.linalg.inv(match_covariance(at.posture, model.camera, at.frame))
     information /= np.where(match_scale > 0.0, match_scale, 1.0)[:, None, None] ** 2
-    seen = np.flatnonzero((match_scale == 0.0) | corrected)
     if len(seen) >= FEWEST_POSED:
         posing = posing_covariance(model.body, model.body.pose(at.posture))
         if corrected.any():
             there = at[np.flatnonzero(corrected)]
             pictured = picture_information(model.body, model.camera, there.posture, there.frame)
             posing[corrected] = np.linalg.inv(information[corrected] + pictured)
+            if at.points is not None:  # whose guessed depths found ones would not judge
+                depth_m = np.where(corrected[:, None], np.nan, at.points.depth_m)
+                at = replace(at, points=replace(at.points, depth_m=depth_m))
         evidence = yield from read_keyframes(model, noise, replace(at, posing=posing)[seen])
         information[posed] = evidence.information[np.isin(seen, posed)]
         return replace(evidence, information=information)

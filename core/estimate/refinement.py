@@ -172,18 +172,18 @@ def _learned(
     return (yield from scaled(learning, 0.0, 1.0))
 
 
-# --- Rests of the feet, which a corrected keyframe amid found ones does not tear
+# --- Rests of the feet, which keyframes that are not posed do not tear
 
 
-def without_corrections(problem: ClipProblem) -> ClipProblem:
-    """The problem with every keyframe as doubtful as a found one; the same where all are, or none is.
+def doubting(problem: ClipProblem) -> ClipProblem:
+    """The problem with every keyframe as doubtful as a found one.
 
     A keyframe that a person put right lies beside frames whose evidence has a foot a little elsewhere. Feet
     that move from frame to frame are released, so the one frame would jump there and back. Where feet rest
     is therefore asked before the keyframe is believed, and holds afterwards: a correction moves all of it.
     """
     decided = ~problem.matched | problem.corrected
-    if not problem.matched.any() or not decided.any():
+    if not decided.any():
         return problem
     information = problem.evidence.information.copy()
     frame = problem.keyframes[decided]

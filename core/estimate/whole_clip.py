@@ -31,12 +31,12 @@ from .contour_evidence import ContourEvidence, contour_rows, learn_contours
 from .contour_search import all_located, contour_schedule
 from .keyframe_error import depth_std_m
 from .keyframe_evidence import SeenAtKeyframes
-from .keyframe_trust import FEWEST_POSED, read_mixed_keyframes
+from .keyframe_trust import FEWEST_POSED, calibrating, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import doubted_at_changes, exchanged_back, find_swaps, keypoint_trust, upright
 from .performer_placement import lower_ankle_m
-from .refinement import refine, rests_of, without_corrections
+from .refinement import doubting, refine, rests_of
 from .terms.reference import ExpectedPoints
 from .warm_start import blend_weight, continued, revised_windows
 from .window_problem import WindowProblem
@@ -51,6 +51,7 @@ class WholeClipOptions:
     regions: RegionNoise = field(default_factory=RegionNoise)
     window_s: float = 20.0  # longer clips are solved in windows of about this length [s] ...
     margin_s: float = 3.0  # ... that overlap by this, several times as far as any term remembers [s]
+    resting: bool = True  # where keyframes are found, feet that rest are held
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,8 +131,8 @@ def estimate_whole_clip(
     swapped = _swaps(usual.model, keypoints, prior, index, tracks.time_s)
     keypoints = doubted_at_changes(exchanged_back(keypoints, swapped), swapped, tracks.time_s)
     corrected = np.zeros_like(matched) if believed.corrected is None else believed.corrected
-    posed = index[~matched | corrected]
-    if keypoints.names and not len(posed):  # posed keyframes tell how hints err
+    posed = index[calibrating(matched, corrected)]
+    if keypoints.names and matched.all():  # keyframes posed in space tell how hints err
         keypoints = upright(keypoints, camera)
         usual = replace(usual, depths=usual.depths.unposed())
     points = ObservedKeypoints.of(keypoints)
@@ -218,7 +219,7 @@ def _solve(
             for first, last in runs(problem.there)
             for window in revised_windows(changed[first:last], length, margin // 2)
         ]
-        result = yield from _solve_windows(problem, spans, changed, album, earlier)
+        result = yield from _solve_windows(problem, spans, changed, options, album, earlier)
         share = blend_weight(changed, margin // 2)[:, None]
         step = share * result.posture.minus(earlier.posture)
         return replace(result, posture=earlier.posture.plus(step))
@@ -227,13 +228,14 @@ def _solve(
         for first, last in runs(problem.there)
         for window in windows(last - first, length, margin)
     ]
-    return (yield from _solve_windows(problem, every, problem.there, album, None, contours))
+    return (yield from _solve_windows(problem, every, problem.there, options, album, None, contours))
 
 
 def _solve_windows(
     problem: ClipProblem,
     spans: list[Window],
     anew: BoolArray,
+    options: WholeClipOptions,
     album: Album | None,
     earlier: WholeClipResult | None,
     contours: ContourEvidence | None = None,
@@ -248,12 +250,13 @@ def _solve_windows(
     stretches = list(zip(spans, shares[:-1], shares[1:], strict=True))
     # All windows by their markers first: contours learned from the whole clip then join them without a seam.
     states = []
-    doubted = without_corrections(problem)
+    resting = options.resting and bool(problem.matched.any())
+    doubted = doubting(problem) if resting else problem
     for window, begun, ended in stretches:
         part = WindowProblem(doubted, window, problem.start(window))
         yield from scaled(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
         states.append(part.state.without_cache())
-    if doubted is not problem:
+    if resting:
         problem = replace(problem, rests=rests_of(doubted, spans, states))
         for row, (window, _, ended) in enumerate(stretches):
             part = WindowProblem(problem, window, states[row])

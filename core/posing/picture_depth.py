@@ -1,11 +1,12 @@
-"""The depth of a posture that a person has put right in the picture alone.
+"""A found posture that a person has put right in the picture alone: where it leans then.
 
-A posture dragged to where it is seen keeps the lean of limbs and trunk that was found, though exactly seen
-points often contradict it. All postures that explain them are sought again, and what was found counts as much
-as it was sure.
+Points set in the picture tell how a body leans, since leaning parts look shorter than they are. That needs
+the performer's own lengths: average ones would bend straight limbs and lean upright trunks. With these,
+points keep the depth that was found, as far as they may. With measured ones all postures that explain the
+points are sought again, and what was found counts as much as it was sure.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from ..arrays import Array
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..estimate.clip_problem import uncalibrated
-from ..estimate.keyframe_error import POINT_STD_M, found_std_m
+from ..estimate.keyframe_error import JOINT_STD_DEG, found_std_m, picture_std_m
 from ..estimate.keypoint_evidence import KeypointEvidence
 from ..evidence.keypoints import ObservedKeypoints
 from ..evidence.regions import RegionModel
@@ -23,62 +24,93 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
 from ..prior.library import Library
 from .frame_poses import ALIKE, likeliest_mean
-from .frame_search import FrameShown, knowledge, search
+from .frame_search import FrameShown, Hypotheses, Knowledge, knowledge, refined, search
 from .inverse_kinematics import Pull, SightLine, pulled
 
 EVIDENT = "person"  # source of points that a person vouches for
-SEEN_M, KEPT_M = 0.003, 0.10  # how near points come to their lines of sight, and to their places along them
-FREE = 1.0  # standard deviation of joints that may turn [rad], and of the hips' place [m]
+KEPT_M = 0.04  # how near points come to their depth, beside how far they were moved
+HELD_M = 0.002  # how near the point under the mouse comes to it
+PLACE_FREE_M = 1.0  # the hips may come anywhere
 
 
-def seen_at(body: Body, camera: Camera, frame: int, posture: Posture, places: Array) -> Posture:
-    """A posture pulled to where the camera sees places (P, 3) of its points; lengths stay."""
-    own = body.points(body.pose(posture))
-    pulls = []
-    for name, there, place in zip(body.skeleton.point_names, own, places, strict=True):
-        line = SightLine.to(camera, place, frame)
-        pulls.append(Pull(name, line.nearest(there), SEEN_M, line.direction, KEPT_M))
-    joints = [joint.name for joint in body.skeleton.joints]
-    return pulled(body, posture, pulls, {name: FREE for name in ["place", *joints]})
-
-
-def with_likely_depth(
+def put_right(
     body: Body,
     camera: Camera,
     frame: int,
-    posture: Posture,
     found: Posture,
+    shown: Posture,
+    places: Mapping[str, Array],
     confidence: float,
     libraries: Sequence[Library],
     floor_m: float | None = None,
+    held: str | None = None,
 ) -> Posture:
-    """The likeliest posture that is seen where a given one is.
+    """The likeliest posture that is seen as a person has put it right in the picture.
 
     Args:
         body: The take's body.
         camera: The take's camera.
         frame: Index of the frame in the clip, which a moving camera's place depends on.
-        posture: The given one, right across the line of sight.
         found: What was found, before a person put it right.
-        confidence: Probability that its depth is about right.
-        libraries: What is known of postures; without any posture the given one is returned.
+        shown: A posture about as it should be seen, from which to start.
+        places: By name of a point that a person has set, a place (3,) where the camera sees it [m]. The
+            others are seen about where `shown` has them.
+        confidence: Probability that the found depth is about right.
+        libraries: What is known of postures, asked where the lengths are the performer's own.
         floor_m: Height of the floor in the world [m]; None where it is not known.
+        held: The point that is set just now, which comes to lie on its sight.
     """
+    names = body.skeleton.point_names
+    is_set = np.array([name in places for name in names])
+    start = body.points(body.pose(shown))
+    seen = np.array([places.get(name, place) for name, place in zip(names, start, strict=True)])
+    across_m, along_m = found_std_m(np.array(confidence))
+    std_m = np.where(is_set, picture_std_m(body), across_m)
+    near_m = np.where([name == held for name in names], HELD_M, std_m)
+    own = _pulled(body, camera, frame, found, shown, seen, near_m)
     usable = [library for library in libraries if library.postures]
-    places = body.points(body.pose(posture))
-    pixels, depth = camera.project(places, frame)
-    if not usable or not (np.isfinite(pixels).all() and (depth > 0.0).all()):
-        return posture
-    known, shown = knowledge(body, usable), _shown(body, camera, frame, pixels)
-    every = search(known, shown, floor_m)
-    sided = every.chosen(np.flatnonzero(~every.exchanged))  # left and right of a person's points are right
-    sight = camera.sight(places, frame)
-    before, among = (body.points(body.pose(each)) for each in (found, sided.posture))
+    pixels, depth = camera.project(seen, frame)
+    if body.actor.is_average or not usable or not (np.isfinite(pixels).all() and (depth > 0.0).all()):
+        return own
+    known, evident = knowledge(body, usable), _shown(body, camera, frame, pixels, std_m)
+    every = _with(own, known, evident, search(known, evident, floor_m), floor_m)
+    sight = camera.sight(seen, frame)
+    before, among = (body.points(body.pose(each)) for each in (found, every.posture))
     leaning = _leaning(among, sight) - _leaning(before, sight)
-    _, along_m = found_std_m(np.array(confidence))
     believed = 0.5 * ((leaning / along_m) ** 2).sum(axis=-1) / ALIKE
-    likeliest = likeliest_mean(known, shown, replace(sided, cost=sided.cost + believed), floor_m)
-    return seen_at(body, camera, frame, likeliest, places)
+    likeliest = likeliest_mean(known, evident, replace(every, cost=every.cost + believed), floor_m)
+    return _pulled(body, camera, frame, likeliest, likeliest, seen, near_m)
+
+
+def _pulled(
+    body: Body, camera: Camera, frame: int, deep: Posture, start: Posture, seen: Array, std_m: Array
+) -> Posture:
+    """A posture pulled to the sights of places (P, 3), where its points keep the depth of another's."""
+    there = body.points(body.pose(deep))
+    pulls = []
+    for name, own, place, std in zip(body.skeleton.point_names, there, seen, std_m, strict=True):
+        line = SightLine.to(camera, place, frame)
+        # What is moved far across the sight may have come as far along it.
+        kept_m = float(np.hypot(KEPT_M, line.off_m(own)))
+        pulls.append(Pull(name, line.nearest(own), float(std), line.direction, kept_m))
+    free = {joint.name: np.radians(JOINT_STD_DEG[joint.name.split(".")[0]]) for joint in body.skeleton.joints}
+    return pulled(body, start, pulls, {"place": PLACE_FREE_M, **free})
+
+
+def _with(
+    own: Posture, known: Knowledge, shown: FrameShown, sought: Hypotheses, floor_m: float | None
+) -> Hypotheses:
+    """A posture and those sought whose left and right are a person's."""
+    nothing = np.zeros(1)
+    first = Hypotheses(Posture.stack([own]), nothing, nothing.astype(np.intp), nothing.astype(np.bool_))
+    first = refined(known, shown, first, floor_m)
+    rest = sought.chosen(np.flatnonzero(~sought.exchanged))
+    return Hypotheses(
+        Posture.concatenate([first.posture, rest.posture]),
+        np.concatenate([first.cost, rest.cost]),
+        np.concatenate([first.torso, rest.torso]),
+        np.concatenate([first.exchanged, rest.exchanged]),
+    )
 
 
 def _leaning(places: Array, sight: Array) -> Array:
@@ -86,13 +118,13 @@ def _leaning(places: Array, sight: Array) -> Array:
     return np.asarray(((places - places.mean(axis=-2, keepdims=True)) * sight).sum(axis=-1))
 
 
-def _shown(body: Body, camera: Camera, frame: int, pixels: Array) -> FrameShown:
-    """A frame in which nothing but points (P, 2) of the body is seen [px]."""
+def _shown(body: Body, camera: Camera, frame: int, pixels: Array, std_m: Array) -> FrameShown:
+    """A frame in which nothing but points (P, 2) of the body is seen [px], with their errors (P,) [m]."""
     names = body.skeleton.point_names
     count = len(names)
     sources = (EVIDENT,) * count
     points = Keypoints(names, sources, pixels[None], np.ones((1, count)), np.full((1, count, 3), np.nan))
-    seen = replace(KeypointEvidence.usual(body, camera, names, sources), std_m=np.full(count, POINT_STD_M))
+    seen = replace(KeypointEvidence.usual(body, camera, names, sources), std_m=std_m)
     evidence = replace(uncalibrated(RegionModel(body, camera, ())), keypoints=seen)
     tracks = RegionTracks.unmarked(np.zeros(1), camera.resolution)
     return FrameShown(evidence, frame, tracks, points, ObservedKeypoints.of(points))

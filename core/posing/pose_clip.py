@@ -15,7 +15,13 @@ from ..body.body_volume import rested
 from ..body.posture import Posture
 from ..errors import InputError
 from ..estimate.performer_placement import found_ankle_m
-from ..estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
+from ..estimate.whole_clip import (
+    Believed,
+    Seen,
+    WholeClipOptions,
+    WholeClipResult,
+    estimate_whole_clip,
+)
 from ..footage.reading import Reading
 from ..prior.keyframes import Keyframe, interpolate
 from ..prior.library import Library
@@ -130,6 +136,7 @@ def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[Whol
             given.unseen,
             corrected=corrected,
         ),
+        WholeClipOptions(resting=False),  # a held foot would pull on the postures around
     )
 
 

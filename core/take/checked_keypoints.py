@@ -31,7 +31,7 @@ def with_checked_keypoints(take: Take, reading: Reading, done: float = 0.0) -> J
         InputError: Keypoints are not of this clip.
     """
     checked = []
-    posed = sum(keyframe.matched is None for keyframe in take.keyframes)
+    posed = sum(keyframe.is_posed for keyframe in take.keyframes)
     if reading.steady is not None:  # places are no longer the clip's own, and were checked before
         return take
     is_asked = [not (each.by_hand or each.looked or _is_own(each)) for each in take.keypoints]

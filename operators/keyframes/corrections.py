@@ -26,6 +26,9 @@ from .found_keyframes import known_matches
 from .store_keyframe import key_pose, note_corrected
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ...core.arrays import Array
     from ...core.body.kinematics import Body
     from ...core.body.posture import Posture
     from ...core.footage.camera import Camera
@@ -78,30 +81,35 @@ def set_corrected(
         operator.report({"INFO"}, f"{improved} found keyframes around this one were posed anew")
 
 
-def at_likely_depth(
+def put_right(
     scene: bpy.types.Scene,
     take: bpy.types.PropertyGroup,
     body: "Body",
-    posture: "Posture",
     found: "Posture",
+    shown: "Posture",
+    places: "Mapping[str, Array]",
+    held: str,
 ) -> "Posture":
-    """A posture that was put right in the camera's view, with the depth that is likeliest now.
+    """A posture `shown` after points were set in the camera's view, leaning as is likeliest now.
 
-    It stays as it is unless the depth at this keyframe was found: `found` is what that was.
+    It stays as it is unless the depth at this keyframe was found: `found` is what that was. `places` (3,) are
+    where the points lie in the view, by name.
     """
     frame = scene.frame_current_final
     if take.keyframe_action is None or not has_frame(keyframes_of(take), frame):
-        return posture
+        return shown
     if not depth_is_found(take, frame):
-        return posture
-    from ...core.posing.picture_depth import with_likely_depth
+        return shown
+    from ...core.posing import picture_depth
     from ..library.registry_files import named_libraries
 
     match = known_matches(take).get(round(frame, 3))
     confidence = 0.5 if match is None else match.confidence  # even odds where it was corrected before
     libraries = named_libraries(take.matching.library_name)
-    floor_m = take.matching.known_floor_m
-    return with_likely_depth(body, camera_now(scene, take), 0, posture, found, confidence, libraries, floor_m)
+    camera, floor_m = camera_now(scene, take), take.matching.known_floor_m
+    return picture_depth.put_right(
+        body, camera, 0, found, shown, places, confidence, libraries, floor_m, held
+    )
 
 
 DIRECTIONS = (

@@ -19,7 +19,7 @@ from ..shell.job_progress import job_is_running
 from ..shell.keyed_frames import keyframes_of
 from ..shell.requirements import actor, all_met, idle
 from ..shell.takes import active_take, find_take, redraw_editors, redraw_sidebars_soon
-from .corrections import DRAGGING, at_likely_depth, camera_now, set_corrected, shown_pose
+from .corrections import DRAGGING, camera_now, put_right, set_corrected, shown_pose
 
 if TYPE_CHECKING:
     from ...core.body.kinematics import Body
@@ -106,7 +106,7 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
         moved = dragged(body, posture, self.joint, place, sight, self.pushed, floor_m)
         in_depth = self.pushed or _shows_depth(context, take, sight, place)
         if not in_depth:
-            moved = at_likely_depth(context.scene, take, body, moved, posture)
+            moved = put_right(context.scene, take, body, posture, moved, {self.joint: place}, self.joint)
         set_corrected(self, context, take, moved, in_depth)
 
 
@@ -304,8 +304,8 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         from ..bridge.pose import write_posture
 
         assert drag.shown is not None  # it has moved
-        found = self._done[0].posture
-        drag.shown = at_likely_depth(scene, take, drag.body, drag.shown, found)
+        places = {each.joint: each.place for each in self._done}
+        drag.shown = put_right(scene, take, drag.body, self._done[0].posture, drag.shown, places, drag.joint)
         write_posture(take.armature, drag.shown)
 
     def _restore(self, drag: JointDrag, take: bpy.types.PropertyGroup) -> None:

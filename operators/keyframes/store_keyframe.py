@@ -137,8 +137,8 @@ def _depth_found(take: bpy.types.PropertyGroup, body: "Body", posture: "Posture"
 def key_pose(context: bpy.types.Context, take: bpy.types.PropertyGroup, depth_found: bool = False) -> int:
     """Key the actor's pose as it stands, in the take's keyframe Action at the current frame.
 
-    `depth_found`: whether it was put right in the picture alone. Returns how many found keyframes around it
-    were posed anew.
+    `depth_found`: whether it was put right in the picture alone, which tells its neighbors nothing: whether
+    they lean as it does is as open as before. Returns how many found keyframes around it were posed anew.
     """
     from ..bridge.keyframes import store_pose
 
@@ -148,7 +148,7 @@ def key_pose(context: bpy.types.Context, take: bpy.types.PropertyGroup, depth_fo
     note_contradictions(take, frame, ())
     take.offered.candidates.clear()
     invalidate_keyed_frames()
-    return improve_neighbors(context, take, frame)
+    return 0 if depth_found else improve_neighbors(context, take, frame)
 
 
 class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):

@@ -15,7 +15,7 @@ from ...evidence.regions import ObservedRegions, RegionNoise
 from ...prior.frame_prior import REFERENCE_STEP_S, FramePrior
 from ..clip_problem import ClipProblem, KeyframeEvidence
 from ..clip_state import ClipState, Window
-from ..keyframe_error import POINT_STD_M
+from ..keyframe_error import picture_std_m
 from ..keypoint_evidence import KeypointEvidence
 from ..performer_placement import ANKLE_HEIGHT_STD_M, SHOE_M, standing_ankle_m
 from .contact import BalanceTerm, FloorTerm, GroundTerm, StillnessTerm
@@ -166,14 +166,14 @@ def _keypoint_term(clip: ClipProblem, window: Window, step_s: Array) -> Keypoint
 
 
 def _picture_term(clip: ClipProblem, window: Window) -> KeypointTerm:
-    """Points of keyframes that were corrected in the picture, which is as sure as a posed one's."""
+    """Points of keyframes that were put right in the picture."""
     model = KeypointModel.usual(clip.body, clip.camera, clip.body.skeleton.point_names)
     frame = clip.keyframes[clip.corrected]
     pixel = np.full((clip.frames, len(model.names), 2), np.nan)
     pixel[frame] = model.pixels(clip.body.pose(clip.prior[frame]), frame)
     seen = np.isfinite(pixel).all(axis=-1)
     observed = ObservedKeypoints(pixel, seen.astype(np.float64), np.full(seen.shape, np.nan))
-    std_m = np.full(len(model.names), POINT_STD_M)
+    std_m = np.full(len(model.names), picture_std_m(clip.body))
     return KeypointTerm(model, observed[window.frames], std_m, None)
 
 
