@@ -12,6 +12,7 @@ from _scene_state import differences, scene_state
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.operators.bridge.keyframes import picture_corrected_frames
+from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.keyframes import drag_joints
 from keymark.operators.overlays.tools import Handles
 from keymark.operators.shell.keyed_frames import matched_frames, posed_frames
@@ -91,7 +92,7 @@ def test_a_drag_is_shown_and_escape_leaves_everything_as_it_was(tool: Any) -> No
     assert posture_of(bpy.context.scene).minus(posture) == pytest.approx(0.0, abs=1e-6)
 
 
-def test_enter_stores_all_drags_once_and_improves_the_neighbors(tool: Any, given: SimpleNamespace) -> None:
+def test_enter_stores_all_drags_once_and_leaves_the_neighbors(tool: Any, given: SimpleNamespace) -> None:
     bpy.ops.ed.undo_push(message="Opened")
     before, asked = scene_state(), len(given.frames)
     tool.drag(50, 40)
@@ -101,7 +102,7 @@ def test_enter_stores_all_drags_once_and_improves_the_neighbors(tool: Any, given
     assert tool.send("RET") == {"FINISHED"}
     take = active_take(bpy.context.scene)
     assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
-    assert given.frames[asked:] == [(0, 12)]
+    assert given.frames[asked:] == []
     assert shown(take, 7).minus(wanted) == pytest.approx(0.0, abs=1e-4)
     bpy.ops.ed.undo()
     assert differences(before, scene_state()) == ""
@@ -112,6 +113,23 @@ def test_without_a_drag_enter_stores_nothing(tool: Any) -> None:
     tool.drag(0, 0)
     assert tool.send("RET") == {"CANCELLED"}
     assert differences(before, scene_state()) == ""
+
+
+def test_what_was_set_before_stays_seen_while_another_joint_is_dragged(
+    tool: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The wrist follows the shoulder; set before, it comes back to where it was set."""
+    row, followed = HUMAN.point_names.index("wrist.L"), []
+    for set_px in (0, 20):
+        for joint, moved_px in (("wrist.L", set_px), ("shoulder.L", 40)):
+            before = joint_places(active_take(bpy.context.scene).armature)[row]
+            tool._handles.hovered = joint
+            monkeypatch.setattr(drag_joints, "nearest_joint", lambda *_, joint=joint: joint)
+            tool.drag(moved_px, 0)
+        after = joint_places(active_take(bpy.context.scene).armature)[row]
+        followed.append(float(np.linalg.norm((after - before)[[0, 2]])))
+        tool.send("ESC")
+    assert followed[0] > 0.03 and followed[1] < 0.5 * followed[0]
 
 
 @pytest.mark.usefixtures("still_neighbors")

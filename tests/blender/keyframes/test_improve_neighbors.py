@@ -12,6 +12,7 @@ from keymark.core.body.human import HUMAN
 from keymark.core.errors import InputError
 from keymark.core.footage.ignored_regions import IgnoredRegion
 from keymark.operators.bridge.object_space import joint_places
+from keymark.operators.bridge.pose import write_posture
 from keymark.operators.follow.ignored_regions import add_ignored_regions
 from keymark.operators.keyframes.corrections import camera_now
 from keymark.operators.keyframes.store_keyframe import improve_neighbors
@@ -32,6 +33,7 @@ def test_storing_a_keyframe_improves_the_found_ones_around_it(found: Group, give
     before = scene_state()
     given.confidences = {0: 0.95, 12: 0.85}
     given.contradictions = {12: ("shin.L",)}
+    write_posture(found.armature, posture_of(scene).plus(np.full(HUMAN.dof_count, 0.02)))
     bpy.ops.keymark.store_keyframe()
     bpy.ops.ed.undo_push(message="Stored")
     take = active_take(scene)
@@ -96,21 +98,23 @@ def test_a_correction_holds_where_nothing_is_found_around_it(found: Group, given
     assert results.reading_of(found) is not None
 
 
-def test_a_dragged_joint_of_a_found_keyframe_stays_and_improves_its_neighbors(
-    found: bpy.types.PropertyGroup, given: SimpleNamespace
+@pytest.mark.parametrize(("pushed", "improved"), [(False, []), (True, [(0, 12)])], ids=["picture", "depth"])
+def test_a_dragged_joint_of_a_found_keyframe_stays_and_improves_its_neighbors_in_depth(
+    found: bpy.types.PropertyGroup, given: SimpleNamespace, pushed: bool, improved: list[tuple[int, ...]]
 ) -> None:
+    """What is put right in the picture alone tells them nothing."""
     scene = bpy.context.scene
     scene.frame_set(7)
     bpy.ops.ed.undo_push(message="Opened")
     before, asked = scene_state(), len(given.frames)
     place = joint_places(found.armature)[HUMAN.point_names.index("wrist.L")] + [0.05, 0.0, 0.05]
     camera = camera_now(scene, found)
-    bpy.ops.keymark.move_joint(joint="wrist.L", place=place, sight=camera.sight(place, 0))
+    bpy.ops.keymark.move_joint(joint="wrist.L", place=place, sight=camera.sight(place, 0), pushed=pushed)
     bpy.ops.ed.undo_push(message="Moved")
     take = active_take(scene)
     assert posed_frames(take) == (7.0,)
     assert matched_frames(take) == (1.0, 13.0)
-    assert given.frames[asked:] == [(0, 12)]
+    assert given.frames[asked:] == improved
     reached = joint_places(take.armature)[HUMAN.point_names.index("wrist.L")]
     np.testing.assert_allclose(camera.project(reached, 0)[0], camera.project(place, 0)[0], atol=0.5)  # px
     bpy.ops.ed.undo()
