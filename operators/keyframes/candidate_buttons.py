@@ -66,8 +66,13 @@ def draw_candidates_head(
     """Draw which frame they are of, and how they are looked at."""
     head = layout.row(align=True)
     head.label(text=f"Frame {match.frame:g} may show", translate=False)
+    draw_side_view(head, context)
+
+
+def draw_side_view(row: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the button that looks at candidates from the side."""
     aside = context.space_data.region_3d.view_perspective != "CAMERA"
-    head.operator("keymark.look_from_side", text="", icon="AXIS_SIDE", depress=aside)
+    row.operator("keymark.look_from_side", text="", icon="AXIS_SIDE", depress=aside)
 
 
 def draw_candidates(

@@ -7,7 +7,7 @@ from ..shell.contradictions import contradictions_at
 from ..shell.keyed_frames import DOUBTFUL, count_found, state_of
 from ..shell.panel import RowList
 from ..shell.takes import active_take
-from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
+from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_side_view, percent
 
 STATES = {"POSED": ("KEYFRAME_HLT", "posed"), "GONE": ("X", "no key")}
 """Icon and words of what is no found keyframe any more."""
@@ -58,24 +58,23 @@ def draw_found(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy
         "KEYMARK_UL_matches", "", matching, "matches", matching, "shown_match", rows=3, maxrows=3
     )
     count, doubtful = count_found(take)
-    going = column.row()
+    row = column.row(align=True)
+    going = row.row(align=True)
     going.enabled = doubtful > 0
     words = f"Next Doubtful ({doubtful} of {count})" if doubtful else f"None of {count} Doubtful"
     jump = going.operator("keymark.jump_to_match", text=words, translate=False, icon="NEXT_KEYFRAME")
     jump.direction, jump.only_doubtful = "NEXT", True
-    _draw_candidates(column, context, take)
+    draw_side_view(row, context)
+    _draw_candidates(column, take)
 
 
-def _draw_candidates(
-    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-) -> None:
+def _draw_candidates(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
     """Draw the candidates of the chosen frame as buttons in their figures' colors, and what can be done."""
     matching = take.matching
     if matching.shown_match >= len(matching.matches):
         return
     match = matching.matches[matching.shown_match]
     box = layout.column(align=True)
-    draw_candidates_head(box, context, match)
     is_found = state_of(take, match) == "FOUND"
     draw_candidates(box, match, "keymark.replace_match", is_found)
     row = layout.row(align=True)

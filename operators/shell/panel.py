@@ -153,11 +153,10 @@ def _lines(context: bpy.types.Context, sentence: str, most_lines: int | None = N
 def draw_contradictions(
     layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> None:
-    """Draw what contradicts in the current frame, if anything does."""
+    """Draw what no plausible pose explains in the current frame, in a line, if there is anything."""
     names = contradictions_at(take, steady_frame(context))
     if names:
-        said = f"No plausible pose explains {', '.join(names)} here"
-        draw_sentence(layout, context, said, "ERROR")
+        draw_sentence(layout, context, f"Unexplained: {', '.join(names)}", "ERROR", most_lines=1)
 
 
 def draw_readout(layout: bpy.types.UILayout, text: str) -> None:
