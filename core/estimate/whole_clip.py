@@ -258,10 +258,6 @@ def _solve_windows(
         states.append(part.state.without_cache())
     if resting:
         problem = replace(problem, rests=rests_of(doubted, spans, states))
-        for row, (window, _, ended) in enumerate(stretches):
-            part = WindowProblem(problem, window, states[row])
-            yield from scaled(part.converge(), MARKERS_SHARE * ended, MARKERS_SHARE * ended)
-            states[row] = part.state.without_cache()
     if earlier is None:
         refining = refine(problem, spans, states, album, anew, contours)
     else:

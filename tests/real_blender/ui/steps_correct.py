@@ -81,10 +81,19 @@ def place(person: Person, joint: str) -> np.ndarray:
 
 def seen(person: Person, joint: str) -> tuple[float, float]:
     """Where the viewport shows it, in the window [px]."""
+    return seen_at(person, place(person, joint))
+
+
+def seen_at(person: Person, there: np.ndarray) -> tuple[float, float]:
+    """Where the viewport shows a place (3,), in the window [px]."""
     region = person.hands.region("VIEW_3D", "WINDOW")
     view = keymark("operators.shell.footage_clicks").WorldInRegion(region, region.data)
-    x, y = view.position(place(person, joint))
+    x, y = view.position(there)
     return region.x + x, region.y + y
+
+
+def apart_px(first: tuple[float, float], second: tuple[float, float]) -> float:
+    return float(np.linalg.norm(np.subtract(first, second)))
 
 
 def dragged(person: Person, joint: str) -> Steps[None]:
@@ -93,7 +102,7 @@ def dragged(person: Person, joint: str) -> Steps[None]:
     toward = np.array(seen(person, joint.replace("wrist", "shoulder"))) - start
     end = start + DRAGGED_PX * toward / np.linalg.norm(toward)
     yield from person.hands.drag(start, end)
-    off = np.linalg.norm(np.subtract(seen(person, joint), end))
+    off = apart_px(seen(person, joint), end)
     expect(off < NEAR_PX, f"the joint is {off:.1f} px beside the mouse")
 
 

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from person import Person, keymark
 from steps_correct import seen
 
+Points = NDArray[np.float64]
+
 MOST_FRAMES = 4  # Doubtful frames that a person in a hurry looks at
 BETTER = 0.85  # What is left of a pose's error where a person sees that another one is better
 SAME_M = 1e-3  # Change of that distance that is none
@@ -52,7 +54,7 @@ def _decide(person: Person) -> Steps[None]:
     if best != match.chosen and errors[best] < BETTER * errors[match.chosen]:
         yield from hands.click_button("keymark.replace_match", f"candidate={best}")
         done.append(f"candidate {best + 1}: {_error(person):.2f} m")
-    facing = _facing(person, _seen(person))
+    facing = _facing(person, performer(person))
     if facing != _facing(person, _shown(person)):
         kept = yield from _turned(person, facing)
         done += [f"turned: {_error(person):.2f} m"] * kept
@@ -103,42 +105,42 @@ def _kept(person: Person, before: float) -> Steps[bool]:
     return now < BETTER * before
 
 
-def _seen(person: Person) -> NDArray[np.float64]:
+def performer(person: Person) -> Points:
     """Where the performer's joints (13, 3) are in the current frame [m]."""
     known = person.known
     read_truth = keymark("core.review.score").read_truth
     truth = read_truth(known.folder / "truth.json", known.frame_start, person.take.clip.frame_duration)
-    points: NDArray[np.float64] = truth[person.scene.frame_current - known.frame_start]
+    points: Points = truth[person.scene.frame_current - known.frame_start]
     return points
 
 
-def _shown(person: Person) -> NDArray[np.float64]:
+def _shown(person: Person) -> Points:
     return np.array(keymark("operators.bridge.object_space").joint_places(person.take.armature))
 
 
-def _points(person: Person, candidate: Any) -> NDArray[np.float64]:
+def _points(person: Person, candidate: Any) -> Points:
     posture = keymark("operators.bridge.keyframes").candidate_posture(candidate)
-    points: NDArray[np.float64] = person.known.body.points(person.known.body.pose(posture))
+    points: Points = person.known.body.points(person.known.body.pose(posture))
     return points
 
 
-def _rooted(points: NDArray[np.float64]) -> NDArray[np.float64]:
+def _rooted(points: Points) -> Points:
     return points - 0.5 * (points[_row("hip.L")] + points[_row("hip.R")])
 
 
-def _error(person: Person, points: NDArray[np.float64] | None = None) -> float:
+def _error(person: Person, points: Points | None = None) -> float:
     """Mean distance of joints, the actor's by default, from the performer's, with hips aligned [m]."""
     shown = _shown(person) if points is None else points
-    return float(np.linalg.norm(_rooted(shown) - _rooted(_seen(person)), axis=-1).mean())
+    return float(np.linalg.norm(_rooted(shown) - _rooted(performer(person)), axis=-1).mean())
 
 
 def _off(person: Person, joint: str) -> float:
     """How far one of the actor's joints is from the performer's, with hips aligned [m]."""
-    apart = _rooted(_shown(person)) - _rooted(_seen(person))
+    apart = _rooted(_shown(person)) - _rooted(performer(person))
     return float(np.linalg.norm(apart[_row(joint)]))
 
 
-def _facing(person: Person, points: NDArray[np.float64]) -> str:
+def _facing(person: Person, points: Points) -> str:
     """Where a figure faces in the picture, as the menu names it."""
     left = points[_row("hip.L")] - points[_row("hip.R")] + points[_row("shoulder.L")]
     left -= points[_row("shoulder.R")]

@@ -39,6 +39,7 @@ MOST_CLICKS = 40
 STATES = ("empty", "clip", "performer", "poses", "candidate", "correcting", "motion", "character", "export")
 SHELF_STEPS = ("libraries", "assets")
 MARKER_STEPS = ("asked", "masks_while_picking", "one_row", "warned", "brushing", "brushed", "still_area")
+HARM_MM = 2.0  # What feet that rest elsewhere by a few pixels make of a motion
 CLICKS_MM = 4.0  # What a clicked point and a track in a single frame may change
 AGREEMENT_MM = 1.5
 """The eyedropper's colors are a level or two off the take's, and the armature's bones are float32."""
@@ -128,6 +129,15 @@ def test_few_clicks_lead_from_the_clip_to_a_motion(
     clicks = int((folder / "summary.txt").read_text(encoding="utf-8").split()[0])
     assert clicks <= MOST_CLICKS
     assert _score(folder / "motion.json", take).rooted < UNPOSED_MM
+
+
+def test_poses_put_right_by_mouse_harm_no_motion(blender_on_screen: Blender, repository: Path) -> None:
+    take = repository / "presets" / "demo" / "greeting"
+    folder = repository / "build" / "screenshots" / "drag"
+    run_script(blender_on_screen, "drag_session.py", ("put_right",), take, folder, "keypoints.json", "2")
+    errors = json.loads((folder / "errors.json").read_text(encoding="utf-8"))
+    before, after = np.array(errors["0"]), np.array(errors["2"])
+    assert (after < before + HARM_MM).all(), f"{before} to {after} mm"
 
 
 def test_plain_clothes_lead_to_a_motion(
