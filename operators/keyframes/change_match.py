@@ -73,7 +73,7 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
 
 
 class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
-    """Count this frame as posed by you: it is trusted as much, and finding again leaves it alone"""
+    """Count this pose as right in the picture: finding again leaves it alone, its depth stays as found"""
 
     bl_idname = "keymark.accept_match"
     bl_label = "Accept"
@@ -93,9 +93,7 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
         take_over(take.armature, take.keyframe_action, HUMAN, (frame,))
         note_contradictions(take, frame, ())
         invalidate_keyed_frames()
-        improved = improve_neighbors(context, take, frame)
-        also = f"; {improved} found ones around it were posed anew" if improved else ""
-        self.report({"INFO"}, f"Frame {frame:g} counts as posed now{also}")
+        self.report({"INFO"}, f"Frame {frame:g} counts as right in the picture now")
         return None
 
 

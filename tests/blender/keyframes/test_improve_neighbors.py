@@ -48,7 +48,7 @@ def test_storing_a_keyframe_improves_the_found_ones_around_it(found: Group, give
     assert differences(before, scene_state()) == ""
 
 
-def test_accepting_and_replacing_improve_as_well(found: Group, given: SimpleNamespace) -> None:
+def test_replacing_improves_as_well_and_accepting_does_not(found: Group, given: SimpleNamespace) -> None:
     asked = len(given.frames)
     found.matching.shown_match = 0
     bpy.ops.keymark.replace_match(candidate=1)
@@ -57,8 +57,7 @@ def test_accepting_and_replacing_improve_as_well(found: Group, given: SimpleName
     chosen = shown(take, 1)
     take.matching.shown_match = 1
     bpy.ops.keymark.accept_match()
-    assert given.frames[asked + 1] == (12,) and given.between[-1] == (6, 12)
-    assert [each.index for each in given.takes[-1].keyframes] == [0, 6]
+    assert len(given.frames) == asked + 1
     assert shown(take, 1).minus(chosen) == pytest.approx(0.0, abs=1e-6)
 
 
