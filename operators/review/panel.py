@@ -31,7 +31,7 @@ class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
 def reason_words(item: bpy.types.PropertyGroup) -> str:
     """The reason of a weak frame, with the marker or the body point that it lies with."""
     words = item.bl_rna.properties["reason"].enum_items[item.reason].name
-    what = item.marker or (item.point and segment_title(item.point))
+    what = "" if item.reason == "FAR" else item.marker or (item.point and segment_title(item.point))
     return f"{words}: {what}" if what else words
 
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import bpy
+import numpy as np
 
 from ....core.arrays import Array
 from ....core.body.kinematics import SegmentMotion
@@ -75,6 +76,7 @@ def complete_map(
 SOLVED, PROBED, FIRST = 0.25, 0.3, 0.8
 """Shares of the job at which the motion is solved, controls are known, and keys are found and measured."""
 LIFTINGS = ((FIRST, 0.9), (0.9, 1.0))  # the same of the times that feet are lifted, where they must be
+SPARE = 0.5  # of the depth that is allowed: so much farther feet are lifted, which thinned keys may lower
 REDUCED = 0.7  # share of the latter at which the keys are found
 
 
@@ -240,13 +242,12 @@ class _Performance:
 
     def lifts(self, motion: CharacterMotion, depth_m: Mapping[str, Array]) -> dict[str, Array]:
         """(F,) by leg how much higher a foot in the floor must be [m]; none where all feet are out of it."""
-        if not self.options.plant_feet or not any(
-            (depth > motion.size * IN_FLOOR_M).any() for depth in depth_m.values()
-        ):
+        most_m = motion.size * IN_FLOOR_M
+        if not self.options.plant_feet or not any((depth > most_m).any() for depth in depth_m.values()):
             return {}
         return {
             limb: floor_lifts(
-                depth,
+                np.where(depth > 0.0, depth + SPARE * most_m, 0.0),
                 [(rest.first, rest.last) for rest in motion.rests if rest.limb == limb],
                 self.source.time_s,
             )

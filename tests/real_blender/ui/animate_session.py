@@ -14,12 +14,15 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1])]
 
 import bpy  # noqa: E402
+import steps_correct  # noqa: E402
 import steps_first  # noqa: E402
 from driver import Camera, Steps, drive, expect, turns  # noqa: E402
-from person import EXTENSION, Person  # noqa: E402
+from person import EXTENSION, Person, keymark  # noqa: E402
 from steps_prepare import choose_file  # noqa: E402
+from steps_reconstruct import job  # noqa: E402
 
 HEIGHT_M = 1.71
+MOST_KEYS = 30  # Those that undo everything among them
 
 
 def animate(person: Person, clip: Path) -> Steps[None]:
@@ -47,8 +50,29 @@ def animate(person: Person, clip: Path) -> Steps[None]:
     yield from person.look("animated")
 
 
+def corrected(person: Person) -> Steps[None]:
+    """A wrist dragged in two poses, the doubtful ones first, and the character performs that motion."""
+    hands, frames = person.hands, keymark("operators.shell.keyed_frames")
+    for number in range(2):
+        matching = person.take.matching
+        if frames.doubtful_matches(person.take):
+            yield from hands.click_button("keymark.jump_to_match", "only_doubtful=True")
+        else:  # a click on a line of the list
+            matching.shown_match = number + 1
+            hands.clicks += 1
+            person.step_done("Choose a pose")
+        frame = person.scene.frame_current
+        yield from steps_correct.begun(person)
+        yield from steps_correct.stored(person, steps_correct.dragged, "wrist.L")
+        expect(frame in frames.posed_frames(person.take), f"frame {frame} is not put right")
+        hands.clicks += 1  # the drag
+    yield from job(person, "keymark.reconstruct")
+    yield from steps_first.retarget(person)
+    yield from person.look("put_right")
+
+
 def session(clip: Path, folder: Path, camera: Camera) -> Steps[None]:
-    """All of it; then one Ctrl Z takes it back."""
+    """All of it, two poses put right, and all taken back by Ctrl Z."""
     example = Path(sys.modules[EXTENSION].__file__).parent / "presets" / "demo" / "greeting"
     person = Person(example, folder, camera, hurried=True)
     yield from steps_first.sidebar(person)
@@ -57,8 +81,12 @@ def session(clip: Path, folder: Path, camera: Camera) -> Steps[None]:
     (folder / "summary.txt").write_text(summary + "\n", encoding="utf-8")
     print(f"From Blender as it starts to a moving character: {summary}", flush=True)
     yield from steps_first.play(person)
-    yield from person.hands.undo()  # where playing ended
-    yield from person.hands.undo()
+    yield from corrected(person)
+    corrections = person.summary()
+    (folder / "corrections.txt").write_text(corrections + "\n", encoding="utf-8")
+    print(f"The same with two poses put right: {corrections}", flush=True)
+    while len(person.scene.keymark.takes) and person.hands.keys < MOST_KEYS:
+        yield from person.hands.undo()
     expect(not len(person.scene.keymark.takes), "animating was not undone")
 
 
