@@ -127,5 +127,4 @@ def show_review(take: bpy.types.PropertyGroup, review: Review) -> None:
         item.reason = weak.reason.name
         item.marker = "" if weak.marker is None else review.marker_names[weak.marker]
         item.point = weak.point or ""
-        item.strength = weak.strength
     write_review_curves(take.armature, take.motion_action, review)

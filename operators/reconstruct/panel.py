@@ -17,8 +17,8 @@ class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        believed = take.review.confidence
-        return f"{100.0 * believed:.0f} %" if believed >= 0.0 else ""
+        count = len(take.review.weak_frames)
+        return f"{count} weak" if count else ""
 
     @classmethod
     def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:

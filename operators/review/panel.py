@@ -9,7 +9,7 @@ from ..shell.takes import active_take
 
 
 class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
-    """Weak frames: frame, reason and worth of another keyframe there."""
+    """Weak frames, the one that needs a keyframe most first: frame, and reason."""
 
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
@@ -20,12 +20,8 @@ class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
         number.label(text=f"{item.frame:g}")
         reason = item.bl_rna.properties["reason"].enum_items[item.reason]
         row.label(text=reason_words(item), icon=reason.icon, translate=False)
-        worth = row.row()
-        worth.ui_units_x = 2.0
         if is_posed(active_take(context.scene), item.frame):
-            worth.label(text="", icon="KEYTYPE_KEYFRAME_VEC")
-        else:
-            worth.progress(factor=item.strength, text="", type="BAR")
+            row.label(text="", icon="KEYTYPE_KEYFRAME_VEC")
 
 
 def reason_words(item: bpy.types.PropertyGroup) -> str:
@@ -39,9 +35,12 @@ def draw_review(
     column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> None:
     """Draw how sure the motion is, and the frames worth another keyframe."""
+    from ...core.review.confidence import TOLERANCE_SHARE
+
     review = take.review
     if review.confidence >= 0.0:
-        words = f"Confidence {100.0 * review.confidence:.0f} %"
+        near_cm = 100.0 * TOLERANCE_SHARE * take.stature
+        words = f"Joints Within {near_cm:.0f} cm: {100.0 * review.confidence:.0f} %"
         column.progress(factor=review.confidence, text=words, type="BAR")
     if not len(review.weak_frames):
         draw_sentence(column, context, "No frame needs another keyframe", "CHECKMARK")

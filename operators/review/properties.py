@@ -6,7 +6,7 @@ REASONS = (
     ("HIDDEN", "Hidden", "A marker or a body point is hidden around this frame", "HIDE_ON", 0),
     ("FAST", "Fast Motion", "The performer moves faster than usual around this frame", "FF", 1),
     ("FAR", "Keyframes Far", "The nearest keyframe is far", "ARROW_LEFTRIGHT", 2),
-    ("FOOTAGE", "Off Footage", "A marker or a keypoint is not where the motion puts it", "TRACKER", 3),
+    ("FOOTAGE", "Off", "A marker or a keypoint is not where the motion puts it", "TRACKER", 3),
 )
 
 
@@ -26,13 +26,6 @@ class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
     marker: bpy.props.StringProperty(name="Marker", description="Marker that is the reason, if any")
     point: bpy.props.StringProperty(
         name="Body Point", description="Body point whose keypoints are the reason, if any"
-    )
-    strength: bpy.props.FloatProperty(
-        name="Worth",
-        description="Worth of a keyframe here, relative to the worst frame's",
-        subtype="FACTOR",
-        min=0.0,
-        max=1.0,
     )
 
     def go_to(self, scene: bpy.types.Scene) -> None:

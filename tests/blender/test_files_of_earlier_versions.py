@@ -71,6 +71,7 @@ def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
 DROPPED = (
     "].matching.ranking",  # libraries are not ranked, all of them take part
     "].turntable.",
+    "].strength",  # of weak frames, which are in their order
     "keymark.libraries",  # the library is in its pose assets
     "keymark.active_library",
     "keymark.timeline.",
