@@ -41,7 +41,7 @@ MOST_CLICKS = 40
 STATES = ("empty", "clip", "performer", "poses", "candidate", "correcting", "motion", "character", "export")
 SHELF_STEPS = ("libraries", "assets")
 MARKER_STEPS = ("asked", "masks_while_picking", "one_row", "warned", "brushing", "brushed", "still_area")
-HARM_MM = 2.0  # What feet that rest elsewhere by a few pixels make of a motion
+HARM_MM = 4.0  # What feet that rest elsewhere by a few pixels make of a motion, twice
 CLICKS_MM = 4.0  # What a clicked point and a track in a single frame may change
 AGREEMENT_MM = 1.5
 """The eyedropper's colors are a level or two off the take's, and the armature's bones are float32."""
