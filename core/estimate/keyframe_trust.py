@@ -56,7 +56,7 @@ def read_mixed_keyframes(
             there = at[np.flatnonzero(corrected)]
             pictured = picture_information(model.body, model.camera, there.posture, there.frame)
             posing[corrected] = np.linalg.inv(information[corrected] + pictured)
-            if at.points is not None:  # whose guessed depths found ones would not judge
+            if at.points is not None:  # a found depth says nothing of a detector's guess
                 depth_m = np.where(corrected[:, None], np.nan, at.points.depth_m)
                 at = replace(at, points=replace(at.points, depth_m=depth_m))
         evidence = yield from read_keyframes(model, noise, replace(at, posing=posing)[seen])
