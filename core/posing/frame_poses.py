@@ -37,9 +37,7 @@ def believed_fit(
     fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, points=points)
     sides = np.array([False] if points is None else [False, True])
     postures = Posture.stack([fit.posture] * len(sides))
-    nothing = np.zeros(len(sides))
-    alone = Hypotheses(postures, nothing, nothing.astype(np.intp), sides)
-    cost = refined(known, shown, alone, floor_m).cost.min()
+    cost = refined(known, shown, Hypotheses.given(postures, sides), floor_m).cost.min()
     return fit, float(cost + belief_costs(belief, postures[:1])[0])
 
 
@@ -166,12 +164,10 @@ def _hypotheses(
     if belief is None:
         return found
     fit, cost = believed_fit(known, shown, belief, floor_m)
-    return Hypotheses(
-        Posture.concatenate([Posture.stack([fit.posture]), found.posture]),
-        np.concatenate([[cost], found.cost + belief_costs(belief, found.posture)]),
-        np.concatenate([[NO_TORSO], found.torso]),
-        np.concatenate([[False], found.exchanged]),
-    )
+    first = Hypotheses.given(Posture.stack([fit.posture]), np.array([False]))
+    first = replace(first, cost=np.array([cost]), torso=np.array([NO_TORSO]))
+    rest = replace(found, cost=found.cost + belief_costs(belief, found.posture))
+    return Hypotheses.concatenate([first, rest])
 
 
 def _candidates(

@@ -121,6 +121,22 @@ class Hypotheses:
     torso: IndexArray  # (S,) torso of the pools that each began with
     exchanged: BoolArray  # (S,) whether left and right of the keypoints are exchanged
 
+    @classmethod
+    def given(cls, posture: Posture, exchanged: BoolArray) -> "Hypotheses":
+        """Postures (S,) that come from elsewhere, whose costs nobody has asked yet."""
+        count = len(exchanged)
+        return cls(posture, np.zeros(count), np.zeros(count, dtype=np.intp), exchanged)
+
+    @classmethod
+    def concatenate(cls, parts: Sequence["Hypotheses"]) -> "Hypotheses":
+        """Those of several searches, in order."""
+        return cls(
+            Posture.concatenate([part.posture for part in parts]),
+            np.concatenate([part.cost for part in parts]),
+            np.concatenate([part.torso for part in parts]),
+            np.concatenate([part.exchanged for part in parts]),
+        )
+
     def chosen(self, rows: IndexArray) -> "Hypotheses":
         """Some of them, in the order of their rows."""
         return Hypotheses(self.posture[rows], self.cost[rows], self.torso[rows], self.exchanged[rows])
@@ -166,12 +182,7 @@ def _starts(
     found = [_screened(known, stances, shown, floor_m)]
     if len(shown.compared.points):
         found.append(_screened(known, stances, shown, floor_m, is_exchanged=True))
-    every = Hypotheses(
-        Posture.concatenate([each.posture for each in found]),
-        np.concatenate([each.cost for each in found]),
-        np.concatenate([each.torso for each in found]),
-        np.concatenate([each.exchanged for each in found]),
-    )
+    every = Hypotheses.concatenate(found)
     kept = distinct_rows(
         # Starts whose points, hips aligned, are nearer than this lead to the same posture.
         points_from_hips(known.pools.body, every.posture),

@@ -24,7 +24,7 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
 from ..prior.library import Library
 from .frame_poses import ALIKE, likeliest_mean
-from .frame_search import FrameShown, Hypotheses, Knowledge, knowledge, refined, search
+from .frame_search import FrameShown, Hypotheses, knowledge, refined, search
 from .inverse_kinematics import Pull, SightLine, pulled
 
 EVIDENT = "person"  # source of points that a person vouches for
@@ -73,7 +73,10 @@ def put_right(
     if body.actor.is_average or not usable or not (np.isfinite(pixels).all() and (depth > 0.0).all()):
         return own
     known, evident = knowledge(body, usable), _shown(body, camera, frame, pixels, std_m)
-    every = _with(own, known, evident, search(known, evident, floor_m), floor_m)
+    first = refined(known, evident, Hypotheses.given(Posture.stack([own]), np.array([False])), floor_m)
+    sought = search(known, evident, floor_m)
+    sided = sought.chosen(np.flatnonzero(~sought.exchanged))  # left and right of a person's points are right
+    every = Hypotheses.concatenate([first, sided])
     sight = camera.sight(seen, frame)
     before, among = (body.points(body.pose(each)) for each in (found, every.posture))
     leaning = _leaning(among, sight) - _leaning(before, sight)
@@ -95,22 +98,6 @@ def _pulled(
         pulls.append(Pull(name, line.nearest(own), float(std), line.direction, kept_m))
     free = {joint.name: np.radians(JOINT_STD_DEG[joint.name.split(".")[0]]) for joint in body.skeleton.joints}
     return pulled(body, start, pulls, {"place": PLACE_FREE_M, **free})
-
-
-def _with(
-    own: Posture, known: Knowledge, shown: FrameShown, sought: Hypotheses, floor_m: float | None
-) -> Hypotheses:
-    """A posture and those sought whose left and right are a person's."""
-    nothing = np.zeros(1)
-    first = Hypotheses(Posture.stack([own]), nothing, nothing.astype(np.intp), nothing.astype(np.bool_))
-    first = refined(known, shown, first, floor_m)
-    rest = sought.chosen(np.flatnonzero(~sought.exchanged))
-    return Hypotheses(
-        Posture.concatenate([first.posture, rest.posture]),
-        np.concatenate([first.cost, rest.cost]),
-        np.concatenate([first.torso, rest.torso]),
-        np.concatenate([first.exchanged, rest.exchanged]),
-    )
 
 
 def _leaning(places: Array, sight: Array) -> Array:

@@ -104,12 +104,15 @@ def plan_foot(
     return FootPath(turn, path, planted, path[:, 2] - ground_m - depth_m, ground_m)
 
 
-def floor_lifts(depth_m: Array, stands: Sequence[tuple[int, int]], time_s: Array) -> Array:
+def floor_lifts(
+    depth_m: Array, stands: Sequence[tuple[int, int]], time_s: Array, spare_m: float = 0.0
+) -> Array:
     """(F,) smooth lift that brings a foot out of the ground again that is (F,) deep in it [m].
 
-    It is the same throughout the frames (first, last) in which the foot stands, so that it goes on standing.
+    It is `spare_m` more than that, and the same throughout the frames (first, last) in which the foot stands,
+    so that it goes on standing.
     """
-    lift = np.maximum(depth_m, 0.0)
+    lift = np.where(depth_m > 0.0, depth_m + spare_m, 0.0)
     for first, last in stands:
         lift[first : last + 1] = lift[first : last + 1].max()
     return smooth_above(lift, time_s, LIFT_S)

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import bpy
-import numpy as np
 
 from ....core.arrays import Array
 from ....core.body.kinematics import SegmentMotion
@@ -247,9 +246,10 @@ class _Performance:
             return {}
         return {
             limb: floor_lifts(
-                np.where(depth > 0.0, depth + SPARE * most_m, 0.0),
+                depth,
                 [(rest.first, rest.last) for rest in motion.rests if rest.limb == limb],
                 self.source.time_s,
+                SPARE * most_m,
             )
             for limb, depth in depth_m.items()
         }

@@ -49,12 +49,10 @@ def set_right(
     confidence: float,
     libraries: tuple[Library, ...],
     body: Body = PERFORMER,
-    names: tuple[str, ...] = NAMES,
-    held: str | None = None,
 ) -> Posture:
-    """What was found, with points set where places (P, 3) are seen."""
-    places = {name: place for name, place in zip(NAMES, seen, strict=True) if name in names}
-    return put_right(body, CAMERA, 0, found, found, places, confidence, libraries, 0.0, held)
+    """What was found, with all points set where places (P, 3) are seen."""
+    places = dict(zip(NAMES, seen, strict=True))
+    return put_right(body, CAMERA, 0, found, found, places, confidence, libraries, 0.0)
 
 
 def error_m(posture: Posture, truth: Array, body: Body = PERFORMER) -> float:

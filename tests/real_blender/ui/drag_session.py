@@ -26,13 +26,8 @@ RIGHT_PX = 2.0  # A joint this near to where it should be seen is left alone
 def session(take: Path, folder: Path, camera: Camera, keypoints: str, counts: list[int]) -> Steps[None]:
     """Find all poses, put some right, and reconstruct before and after."""
     person = Person(take, folder, camera, hurried=True)
-    yield from steps_prepare.start_empty(person, raised_px=0)
-    bpy.ops.keymark.load_footage(filepath=str(person.known.clip))
-    steps_prepare.stand_camera(person)
-    yield from steps_prepare.look_through_camera(person)
-    person.take.stature = person.known.body.actor.stature_m
-    bpy.ops.keymark.load_keypoints(filepath=str(take / keypoints))
-    bpy.ops.keymark.build_actor()
+    yield from steps_prepare.clip(person)
+    steps_prepare.performer(person, keypoints)
     bpy.ops.keymark.pose_all()
     person.step_done("Find all poses")
     errors = {"0": error_mm(person)}

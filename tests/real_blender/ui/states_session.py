@@ -23,15 +23,9 @@ FOLDED_PX = 34  # Height of a folded step, the gap above it included
 def session(take: Path, folder: Path, camera: Camera) -> Steps[None]:
     """Go from one state to the next by what buttons call, and look at each."""
     person = Person(take, folder, camera, hurried=True)
-    known = person.known
-    yield from steps_prepare.start_empty(person, raised_px=0)
-    bpy.ops.keymark.load_footage(filepath=str(known.clip))
-    steps_prepare.stand_camera(person)
-    yield from steps_prepare.look_through_camera(person)
+    yield from steps_prepare.clip(person)
     yield from seen(person, "clip", "footage")
-    person.take.stature = known.body.actor.stature_m
-    bpy.ops.keymark.load_keypoints(filepath=str(take / "keypoints.json"))
-    bpy.ops.keymark.build_actor()
+    steps_prepare.performer(person, "keypoints.json")
     yield from seen(person, "performer", "actor")
     bpy.ops.keymark.pose_all()
     yield from seen(person, "poses", "keyframes")

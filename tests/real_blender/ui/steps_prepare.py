@@ -41,6 +41,21 @@ def start_empty(person: Person, raised_px: int = HIGHER_PX) -> Steps[None]:
     yield from person.look("empty")
 
 
+def clip(person: Person) -> Steps[None]:
+    """The clip in an empty scene, seen through its camera as it truly stood."""
+    yield from start_empty(person, raised_px=0)
+    bpy.ops.keymark.load_footage(filepath=str(person.known.clip))
+    stand_camera(person)
+    yield from look_through_camera(person)
+
+
+def performer(person: Person, keypoints: str) -> None:
+    """An actor of the performer's height, and the keypoints of a file in the take's folder."""
+    person.take.stature = person.known.body.actor.stature_m
+    bpy.ops.keymark.load_keypoints(filepath=str(person.known.folder / keypoints))
+    bpy.ops.keymark.build_actor()
+
+
 def opened(person: Person, reconstructed: bool) -> Steps[None]:
     """The take opened from its files, and reconstructed, for a session that begins at a later step."""
     bpy.ops.keymark.open_take(filepath=str(person.known.folder))
