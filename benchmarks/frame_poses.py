@@ -21,8 +21,6 @@ from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.errors import InputError  # noqa: E402
 from keymark.core.estimate.clip_problem import uncalibrated  # noqa: E402
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence  # noqa: E402
-from keymark.core.evidence.keypoints import ObservedKeypoints  # noqa: E402
-from keymark.core.evidence.regions import MarkerPlacement, RegionModel  # noqa: E402
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.footage.keypoints.keypoints import Keypoints  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
@@ -37,6 +35,8 @@ from keymark.core.take.performer_keypoints import performer_keypoints  # noqa: E
 from keymark.core.take.read_footage import read_footage  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402
+from keymark.core.terms.keypoints import ObservedKeypoints  # noqa: E402
+from keymark.core.terms.region_model import MarkerPlacement, RegionModel  # noqa: E402
 
 KEYPOINT_FILES = ("keypoints_mediapipe.json", "keypoints.json")
 MARKERS, KEYPOINTS, BOTH = "markers", "keypoints", "both"

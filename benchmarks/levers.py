@@ -31,16 +31,15 @@ from keymark.core.estimate import (  # noqa: E402
     window_problem,
 )
 from keymark.core.estimate.keypoint_trust import KeypointTrust  # noqa: E402
-from keymark.core.estimate.terms import regions  # noqa: E402
-from keymark.core.estimate.terms.contact import StillnessTerm  # noqa: E402
-from keymark.core.estimate.terms.motion import LimitTerm  # noqa: E402
-from keymark.core.evidence import regions as region_model  # noqa: E402
 from keymark.core.footage.segmentation import regions as segmentation  # noqa: E402
 from keymark.core.footage.segmentation.moments import Coverage  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.take.evidence import CONTOURS, KEYPOINTS, MARKERS  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402
 from keymark.core.take.take import with_evidence  # noqa: E402
+from keymark.core.terms import region_model, regions  # noqa: E402
+from keymark.core.terms.contact import StillnessTerm  # noqa: E402
+from keymark.core.terms.motion import LimitTerm  # noqa: E402
 
 Switch = tuple[Any, str, Any]  # a module, a name in it, and what stands in for that
 EVIDENCE = {"markers": (MARKERS, CONTOURS), "keypoints": (KEYPOINTS, CONTOURS), "contours": (CONTOURS,)}

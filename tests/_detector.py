@@ -4,9 +4,9 @@ import numpy as np
 from _scene import BODY, CAMERA
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.evidence.keypoints import KeypointModel
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.keypoints.keypoints import Keypoints, mirrored_point
+from keymark.core.terms.keypoints import KeypointModel
 
 LAYOUT = (
     "nose",

@@ -7,8 +7,6 @@ import numpy as np
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture, yawed_at
-from keymark.core.evidence.keypoints import KeypointModel
-from keymark.core.evidence.regions import MarkerPlacement, RegionModel
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.keypoints.keypoints import People, SeenPeople, mirrored_point
 from keymark.core.footage.reading import Reading
@@ -17,6 +15,8 @@ from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.prior.library import Library
 from keymark.core.prior.motion_playback import sample_motion
 from keymark.core.take.take import Take
+from keymark.core.terms.keypoints import KeypointModel
+from keymark.core.terms.region_model import MarkerPlacement, RegionModel
 
 SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 BODY = Body(Actor.from_stature(1.62))

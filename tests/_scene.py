@@ -5,9 +5,9 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.evidence.regions import MarkerPlacement, RegionModel
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.terms.region_model import MarkerPlacement, RegionModel
 
 SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 BODY = Body(Actor.from_stature(1.75))

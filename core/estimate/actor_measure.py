@@ -21,19 +21,13 @@ from ..body.human import HUMAN
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture, facing_rad
 from ..body.skeleton import SIDES
-from ..evidence.keypoints import LEAST_CONFIDENCE, PIXEL_STD, USUAL_PLACES, KeypointModel, ObservedKeypoints
-from ..evidence.regions import (
-    MarkerPlacement,
-    ObservedRegions,
-    RegionModel,
-    RegionNoise,
-    feature_rows,
-    limb_widths,
-)
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
 from ..numerics.robust import DEGREES, student_cost, student_weight
+from ..terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, USUAL_PLACES, KeypointModel, ObservedKeypoints
+from ..terms.region_model import MarkerPlacement, RegionModel
+from ..terms.regions import ObservedRegions, RegionNoise, feature_rows, limb_widths
 from .keyframe_evidence import (
     LARGEST,
     PRIOR_STD,

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from ..arrays import Array, BoolArray, Image, IndexArray
 from ..body.kinematics import Pose
-from ..evidence.contours import FREE, UNKNOWN, ContourModel, LimbAxes, part_map
-from ..evidence.occlusion import PartOutlines
 from ..footage.appearance import Appearance
 from ..footage.surface_colors import BAND_LEVELS as LEVELS
 from ..footage.surface_colors import BANDS, BandColors, band_cells, learn_band_colors
+from ..terms.contours import FREE, UNKNOWN, ContourModel, LimbAxes, part_map
+from ..terms.occlusion import PartOutlines
 from .contour_search import LARGEST_LOG_RATIO, SearchRange
 
 STEP_PX = 2.0  # distance of the pixels that are looked at, along the axis

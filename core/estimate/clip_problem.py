@@ -7,15 +7,17 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..evidence.keypoints import ObservedKeypoints
-from ..evidence.regions import FEATURES, ObservedRegions, RegionModel, RegionNoise
 from ..footage.camera import Camera
 from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
 from ..prior.keyframes import with_turns
-from .clip_state import ClipState, Window
+from ..terms.keypoints import ObservedKeypoints
+from ..terms.reference import ExpectedPoints
+from ..terms.region_model import RegionModel
+from ..terms.regions import FEATURES, ObservedRegions, RegionNoise
+from ..terms.state import ClipState
 from .keypoint_evidence import KeypointEvidence
-from .terms.reference import ExpectedPoints
+from .windows import Window
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,17 +13,28 @@ from numpy.typing import NDArray
 from ..arrays import Array, BoolArray, Image, IndexArray, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..evidence.contours import SHAPE, SHARES, SIDES, ContourModel, ContourPrediction, LimbAxes, part_map
 from ..footage.appearance import Appearance, learn_appearance
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..footage.surface_colors import BandColors
 from ..numerics.robust import DEGREES, student_weight
+from ..terms.contours import (
+    PIXEL_STD,
+    SHAPE,
+    SHARES,
+    SIDES,
+    SURFACE_SHARE,
+    AxialTerm,
+    ContourModel,
+    ContourPrediction,
+    ContourTerm,
+    LimbAxes,
+    part_map,
+)
 from .axial_search import find_shifts, learn_along
-from .clip_state import evenly_spread
 from .contour_search import BY_MARKERS, NARROW, Edges, Schedule, SearchRange, find_edges
 from .keyframe_rows import UNUSED, EvidenceRows
-from .terms.contours import PIXEL_STD, SURFACE_SHARE, AxialTerm, ContourTerm
+from .windows import evenly_spread
 
 CHUNK_FRAMES = 50
 SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])  # of a performer's parts: thickness at both ends, place

@@ -14,11 +14,11 @@ from ..arrays import Array, BoolArray, Image, IndexArray
 from ..body.body_volume import TRUNK
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
-from ..evidence.contours import ContourModel, ContourPrediction
-from ..evidence.occlusion import HIDDEN_DEPTH_M, PartOutlines, outline_depth
 from ..footage.appearance import Appearance
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
+from ..terms.contours import ContourModel, ContourPrediction
+from ..terms.occlusion import HIDDEN_DEPTH_M, PartOutlines, outline_depth
 
 INNER, OUTER = 2.0, 2.5  # distances inside and outside the contour at which occlusion is decided
 LARGEST_LOG_RATIO = 4.0  # bound of a single pixel's log likelihood ratio

@@ -13,23 +13,13 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body import rotations
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
-from ..evidence import keypoints as depths
-from ..evidence.keypoints import DEPTH_STD_M
-from ..evidence.line_ends import (
-    ANGLE,
-    LOG_RATIO,
-    LineEnds,
-    X,
-    Y,
-    angle_weight,
-    observed_characteristics,
-    residual,
-)
 from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks
 from ..progress import Part, Preview
+from ..terms.depths import DEPTH_STD_M, depths_jacobian, point_depths
 from . import fuzzy
 from .fuzzy import Memberships
+from .line_ends import ANGLE, LOG_RATIO, LineEnds, X, Y, angle_weight, observed_characteristics, residual
 
 
 @dataclass(frozen=True)
@@ -156,7 +146,7 @@ class FuzzyKalmanFilter:
     def prior_depths(self) -> Array:
         """(F, P) depths of the a priori postures' principal points [m]."""
         body, camera = self.line_ends.body, self.line_ends.camera
-        return depths.evaluate(body, camera, body.pose(self.prior), np.arange(self.prior.batch[0]))
+        return point_depths(body, camera, body.pose(self.prior), np.arange(self.prior.batch[0]))
 
     @cached_property
     def _gates(self) -> Array:
@@ -211,8 +201,8 @@ class FuzzyKalmanFilter:
         pose = body.pose(state.mean)
         rows, innovation, gated = self._marker_rows(state, pose, frame, observed, quality)
         scale = 1.0 / self.options.depth_std_m
-        rows.append(depths.jacobian(body, camera, pose, frame) * scale)
-        innovation.append((self.prior_depths[frame] - depths.evaluate(body, camera, pose, frame)) * scale)
+        rows.append(depths_jacobian(body, camera, pose, frame) * scale)
+        innovation.append((self.prior_depths[frame] - point_depths(body, camera, pose, frame)) * scale)
         result = update(state.covariance, np.concatenate(rows), np.concatenate(innovation))
         # The covariance belongs to tangent steps at the old mean; at the new one they are measured anew.
         moved = state.mean.plus_jacobian(result.step)

@@ -16,8 +16,8 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
-from ..evidence.keypoints import DEPTH_STD_M
 from ..footage.camera import Camera
+from ..terms.depths import DEPTH_STD_M
 
 # --- Posed
 

@@ -16,23 +16,16 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
-from ..evidence.keypoints import ObservedKeypoints
-from ..evidence.regions import (
-    FEATURES,
-    MarkerPlacement,
-    ObservedRegions,
-    RegionModel,
-    RegionNoise,
-    feature_rows,
-    missing_variance,
-)
 from ..footage.camera import Camera
 from ..numerics.robust import DEGREES, student_weight
+from ..terms.keypoints import ObservedKeypoints
+from ..terms.region_model import MarkerPlacement, RegionModel
+from ..terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
 from .clip_problem import KeyframeEvidence, uncalibrated
-from .clip_state import evenly_spread
 from .keyframe_error import POINT_STD_M, posing_covariance, velocities
 from .keyframe_rows import UNUSED, EvidenceRows, KeyframeRows
 from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, learned_std, read_depths
+from .windows import evenly_spread
 
 # --- Placement of the markers, and the limbs' girth
 

@@ -12,12 +12,13 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, chunks
 from ..body.posture import Posture
-from ..evidence.regions import RegionModel, RegionNoise
 from ..footage.keypoints.keypoints import Keypoints, mirrored_point
 from ..footage.keypoints.performer import principal_keypoints
 from ..footage.region_tracks import RegionTracks
 from ..numerics.vectors import columns_at
 from ..prior.keyframes import Keyframe, interpolate, leave_one_out_residuals
+from ..terms.region_model import RegionModel
+from ..terms.regions import RegionNoise
 from .clip_problem import KeyframeEvidence, uncalibrated
 from .keyframe_error import match_covariance, picture_information, posing_covariance
 from .keyframe_evidence import SeenAtKeyframes, read_keyframes

@@ -11,16 +11,10 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
-from ..evidence.keypoints import (
-    LEAST_CONFIDENCE,
-    PIXEL_STD,
-    USUAL_PLACES,
-    DepthLinks,
-    KeypointModel,
-    ObservedKeypoints,
-)
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import mirrored_point
+from ..terms.depths import DepthLinks
+from ..terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, USUAL_PLACES, KeypointModel, ObservedKeypoints
 from .keyframe_rows import UNUSED, EvidenceRows
 
 

@@ -10,12 +10,11 @@ from ..arrays import Array, BoolArray
 from ..body.body_volume import TRUNK
 from ..body.posture import Posture
 from ..errors import pluralize
-from ..evidence.keypoints import USUAL_PLACES, ObservedKeypoints
 from ..files.fields import listed
 from ..footage.keypoints.keypoints import Keypoints
 from ..numerics.robust import DEGREES, student_weight
+from ..terms.keypoints import USUAL_PLACES, KeypointTerm, ObservedKeypoints
 from .keypoint_evidence import KeypointEvidence
-from .terms.keypoints import KeypointTerm
 
 
 @dataclass(frozen=True, eq=False)

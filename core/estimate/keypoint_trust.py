@@ -15,13 +15,13 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN, mass_weights
 from ..body.kinematics import Pose
 from ..body.skeleton import SIDES
-from ..evidence.keypoints import HUMAN_LENGTHS_M, USUAL_PLACES, KeypointModel, ObservedKeypoints
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints, People, mirror_images
 from ..footage.keypoints.performer import FITS, person_size, principal_keypoints
 from ..numerics.markov_chain import cheapest_path
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..numerics.vectors import runs
+from ..terms.keypoints import HUMAN_LENGTHS_M, USUAL_PLACES, KeypointModel, ObservedKeypoints
 
 
 @dataclass(frozen=True)

@@ -17,11 +17,11 @@ from ..body.kinematics import Body
 from ..body.posture import Posture, facing_rad
 from ..body.skeleton import SIDES
 from ..errors import InputError
-from ..evidence.regions import MarkerPlacement, RegionModel
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.keypoints.performer import principal_keypoints
 from ..footage.region_tracks import RegionTracks
+from ..terms.region_model import MarkerPlacement, RegionModel
 
 TOUCHING_PERCENT = 30.0  # of the lowest soles, the floor: more than half touch it, but for runners
 SHOE_M = 0.012  # thickness of a shoe's sole, and of a heel that hardly ever lies wholly on the floor

@@ -13,7 +13,6 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..errors import InputError
-from ..evidence.regions import RegionModel
 from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading, of_same_footage
@@ -30,6 +29,7 @@ from ..take.presence import absence_notes, presence, unseen_limbs, unseen_notes
 from ..take.read_footage import average_model, read_footage
 from ..take.steady_camera import camera_notes
 from ..take.take import Take
+from ..terms.region_model import RegionModel
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
 from .keyframe_error import UNOBSERVED, place_depth_std_m, undetermined_covariance, unobserved_variance

@@ -26,9 +26,9 @@ from ..prior.texts import REFERENCE
 from ..take.performer_keypoints import performer_keypoints
 from ..take.reference import ReferenceMotion
 from ..take.take import Take
+from ..terms.reference import ExpectedPoints
 from .reference_alignment import AlignedReference, about_hips, align
 from .reference_placement import SeenPoints, place
-from .terms.reference import ExpectedPoints
 
 USUAL_STD_M = {
     "hip": 0.015,

@@ -15,20 +15,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, BoolArray
-from ..evidence.keypoints import DEPTH_STD_M
 from ..footage.clips.album import Album
 from ..prior.frame_prior import REFERENCE_STEP_S
 from ..progress import Part, scaled
+from ..terms.depths import DEPTH_STD_M
+from ..terms.state import ClipState
+from .assembly import stillness_term
 from .clip_problem import ClipProblem
-from .clip_state import ClipState, Window, spliced
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_search import all_located, contour_schedule, points_locate
 from .keyframe_error import match_covariance
 from .second_look import find_lost
-from .terms.assembly import stillness_term
 from .turn_choice import choose_turns
 from .warm_start import changed_gaps
 from .window_problem import WindowProblem
+from .windows import Window, spliced
 
 
 @dataclass(frozen=True)

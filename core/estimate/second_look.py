@@ -10,17 +10,18 @@ from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.body_volume import body_pieces
 from ..body.human import limb_of
 from ..body.posture import Posture
-from ..evidence.regions import FEATURES, SMALLEST_DEVIATION_PX, ObservedRegions
 from ..footage.ignored_regions import is_ignored
 from ..footage.region_tracks import RegionTracks
 from ..footage.segmentation.moments import centroid_and_second_moment
 from ..footage.segmentation.unmixing import Palette, Traces, traces
 from ..footage.surface_colors import bare_surfaces, common_colors, is_alike, marker_surfaces, usual_background
 from ..progress import Part, scaled
+from ..terms.regions import FEATURES, SMALLEST_DEVIATION_PX, ObservedRegions
+from ..terms.state import ClipState
 from .clip_problem import ClipProblem
-from .clip_state import ClipState, Window
 from .contour_evidence import ContourEvidence
 from .window_problem import WindowProblem
+from .windows import Window
 
 
 def seen_tracks(tracks: RegionTracks, observed: ObservedRegions) -> RegionTracks:

@@ -7,19 +7,20 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
-from ..evidence import keypoints as depths
-from ..evidence.keypoints import ObservedKeypoints
-from ..evidence.regions import FEATURES, ObservedRegions, RegionModel, RegionNoise, limb_widths
 from ..footage.keypoints.keypoints import mirror_images
 from ..footage.region_tracks import ExpectedRegions
 from ..prior.frame_prior import FramePrior
 from ..progress import run
+from ..terms.depths import depths_jacobian
+from ..terms.keypoints import ObservedKeypoints
+from ..terms.region_model import RegionModel
+from ..terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
+from ..terms.state import ClipState
+from ..terms.term import NormalEquations, Term, total_cost
+from .assembly import frame_terms
 from .clip_problem import KeyframeEvidence, uncalibrated
-from .clip_state import ClipState
 from .keyframe_evidence import SeenAtKeyframes, read_keyframes
 from .keypoint_evidence import KeypointEvidence
-from .terms.assembly import frame_terms
-from .terms.term import NormalEquations, Term, total_cost
 
 
 @dataclass(frozen=True)
@@ -208,6 +209,6 @@ def _factor(model: RegionModel, belief: FramePrior, frame: int) -> Array:
     The image tells little of depth, so the believed depths of the points count as observed (paper, eq. 9).
     """
     pose = model.body.pose(Posture.stack([belief.posture]))
-    rows = depths.jacobian(model.body, model.camera, pose, np.array([frame]))[0] / belief.depth_std_m
+    rows = depths_jacobian(model.body, model.camera, pose, np.array([frame]))[0] / belief.depth_std_m
     information = np.diag(belief.std**-2.0) + rows.T @ rows
     return np.linalg.cholesky(np.linalg.inv(information))

@@ -11,9 +11,10 @@ import numpy as np
 from ..arrays import Array, BoolArray
 from ..prior.keyframes import FULL_TURN, heading_steps_rad
 from ..progress import Part, scaled
+from ..terms.state import ClipState
 from .clip_problem import ClipProblem
-from .clip_state import ClipState, Window
 from .window_problem import WindowProblem, image_cost
+from .windows import Window
 
 BEGUN = (8.0, 4.0, 2.0, 1.0, 1.0)  # image variance in an alternative's first steps, which tell a hopeless one
 

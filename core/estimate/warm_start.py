@@ -15,15 +15,15 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 
 from ..arrays import Array, BoolArray
-from ..evidence.keypoints import ObservedKeypoints
-from ..evidence.regions import ObservedRegions
 from ..footage.camera import Camera
 from ..numerics.vectors import runs
+from ..terms.keypoints import ObservedKeypoints
+from ..terms.regions import ObservedRegions
 from .clip_problem import ClipProblem, KeyframeEvidence
-from .clip_state import Window, windows
 from .keyframe_error import posing_covariance, velocities
 from .keyframe_evidence import PRIOR_STD, keyframe_information, placement_values
 from .keypoint_evidence import KeypointEvidence
+from .windows import Window, windows
 
 
 @dataclass(frozen=True)

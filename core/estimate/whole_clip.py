@@ -15,8 +15,6 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..evidence.keypoints import KeypointModel, ObservedKeypoints
-from ..evidence.regions import MarkerPlacement, ObservedRegions, RegionModel, RegionNoise, limb_widths
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..footage.ignored_regions import IgnoredPixels
@@ -25,8 +23,11 @@ from ..footage.region_tracks import RegionTracks
 from ..numerics.vectors import runs
 from ..prior.frame_prior import REFERENCE_STEP_S, process_noise_factor
 from ..progress import Part, scaled
+from ..terms.keypoints import KeypointModel, ObservedKeypoints
+from ..terms.reference import ExpectedPoints
+from ..terms.region_model import MarkerPlacement, RegionModel
+from ..terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .clip_problem import ClipProblem, KeyframeEvidence
-from .clip_state import Window, spliced, windows
 from .contour_evidence import ContourEvidence, contour_rows, learn_contours
 from .contour_search import all_located, contour_schedule
 from .keyframe_error import depth_std_m
@@ -37,9 +38,9 @@ from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import doubted_at_changes, exchanged_back, find_swaps, keypoint_trust, upright
 from .performer_placement import lower_ankle_m
 from .refinement import doubting, refine, rests_of
-from .terms.reference import ExpectedPoints
 from .warm_start import blend_weight, continued, revised_windows
 from .window_problem import WindowProblem
+from .windows import Window, spliced, windows
 
 MARKERS_SHARE, REFINED_SHARE = 0.35, 0.6  # of the work: following markers, all before contours
 

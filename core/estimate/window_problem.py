@@ -7,16 +7,16 @@ import numpy as np
 
 from ..arrays import Array, BoolArray
 from ..body.posture import Posture
-from ..evidence.regions import FEATURES
 from ..progress import Part, Preview, scaled
+from ..terms.contours import AxialTerm, ContourTerm
+from ..terms.keypoints import KeypointTerm
+from ..terms.regions import FEATURES, RegionTerm
+from ..terms.state import ClipState
+from ..terms.term import NormalEquations, total_cost
+from .assembly import window_terms
 from .clip_problem import ClipProblem
-from .clip_state import ClipState, Window
 from .contour_evidence import ContourEvidence
-from .terms.assembly import window_terms
-from .terms.contours import AxialTerm, ContourTerm
-from .terms.keypoints import KeypointTerm
-from .terms.regions import RegionTerm
-from .terms.term import NormalEquations, total_cost
+from .windows import Window
 
 TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)  # of a first descent, which need not converge yet
 MATCHED_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))

@@ -9,7 +9,7 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
-from ..estimate.block_banded import BlockBanded
+from ..numerics.block_banded import BlockBanded
 from .contacts import STRAY_M, Contact, find_contacts
 from .foot_ground import Shins, Soles, find_ground, on_ground
 from .rig import Rig

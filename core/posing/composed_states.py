@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.human import HUMAN, LIMBS, mass_weights
-from ..estimate.terms.contact import STEP_M
+from ..terms.contact import STEP_M
 from .library_motion import PartBelief
 from .match_evidence import EXCHANGED_COST, FrameLikelihood, extent_cost, lowest, products, student_cost
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points

@@ -10,9 +10,9 @@ from ..body.human import TRUNK, limb_of
 from ..body.posture import Posture
 from ..errors import InputError
 from ..estimate.single_frame import FrameFit, fit_frame, frame_residuals
-from ..evidence.keypoints import JOINT_ERROR_STD_M, USUAL_PLACES
 from ..prior.frame_prior import FramePrior, unrelated_std
 from ..prior.library import Library
+from ..terms.keypoints import JOINT_ERROR_STD_M, USUAL_PLACES
 from .candidates import ABOUT_RIGHT_M, DISTINCT_M, PROBABILITY_BOUNDS, Candidate, by_confidence, distinct_rows
 from .frame_search import FrameShown, Hypotheses, Knowledge, knowledge, points_from_hips, refined, search
 from .known_motions import PARTS, part_shapes

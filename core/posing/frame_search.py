@@ -10,19 +10,19 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..estimate.assembly import free_frame_terms
 from ..estimate.clip_problem import KeyframeEvidence
-from ..estimate.clip_state import ClipState
 from ..estimate.performer_placement import place_standing
 from ..estimate.single_frame import descend, exchanged
-from ..estimate.terms.assembly import free_frame_terms
-from ..estimate.terms.term import total_cost
-from ..evidence.keypoints import ObservedKeypoints
-from ..evidence.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
 from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
 from ..prior.library import Library
+from ..terms.keypoints import ObservedKeypoints
+from ..terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
+from ..terms.state import ClipState
+from ..terms.term import total_cost
 from .candidates import distinct_rows
 from .compose_clip import PART_SCALE, WIDE
 from .composed_states import NO_CONTACT_COST, FrameCosts

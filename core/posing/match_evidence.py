@@ -16,11 +16,11 @@ from ..body.body_volume import PieceStack
 from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..evidence.regions import MarkerPlacement
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints, mirrored_point
 from ..footage.keypoints.performer import principal_keypoints
 from ..footage.region_tracks import RegionTracks
+from ..terms.region_model import MarkerPlacement
 
 CENTROID_STD_M = {"trunk": 0.05, "pelvis": 0.04, "chest": 0.06, "head": 0.07, "girdle": 0.06}
 """Deviation of a marker between performers at the same moment of a motion, the hips aligned."""

@@ -17,12 +17,12 @@ from ..body.posture import Posture
 from ..estimate.clip_problem import uncalibrated
 from ..estimate.keyframe_error import JOINT_STD_DEG, found_std_m, picture_std_m
 from ..estimate.keypoint_evidence import KeypointEvidence
-from ..evidence.keypoints import ObservedKeypoints
-from ..evidence.regions import RegionModel
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
 from ..prior.library import Library
+from ..terms.keypoints import ObservedKeypoints
+from ..terms.region_model import RegionModel
 from .frame_poses import ALIKE, likeliest_mean
 from .frame_search import FrameShown, Hypotheses, knowledge, refined, search
 from .inverse_kinematics import Pull, SightLine, pulled

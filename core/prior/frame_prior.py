@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
-from ..evidence.keypoints import DEPTH_STD_M
+from ..terms.depths import DEPTH_STD_M
 from .keyframes import Keyframe, interpolate
 
 REFERENCE_STEP_S = 1.0 / 30.0  # accelerations are stated as second differences at this step

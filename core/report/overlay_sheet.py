@@ -9,12 +9,12 @@ import numpy as np
 from ..arrays import Array, Image
 from ..body.kinematics import Pose
 from ..estimate.reconstruct import Reconstruction
-from ..evidence.contours import SHARES, SIDES, ContourModel
 from ..footage.region_tracks import RegionTracks
 from ..footage.segmentation.regions import ellipse_outline
 from ..review.compared_keypoints import ComparedKeypoints
 from ..take.motion import Motion
 from ..take.take import Take
+from ..terms.contours import SHARES, SIDES, ContourModel
 from .canvas import ACCENT, GRAY, INK, WHITE, Canvas, Color, ascii_text, truncated
 from .stick_figure import StickFigure, draw_figure, legend, stick_figure
 

@@ -11,11 +11,10 @@ from ..body.kinematics import extremity_names
 from ..estimate.keypoint_evidence import KeypointEvidence
 from ..estimate.keypoint_fit import KeypointFit, keypoint_fit
 from ..estimate.reconstruct import Reconstruction
-from ..estimate.terms.contours import SURFACE_SHARE
 from ..estimate.whole_clip import WholeClipResult
-from ..evidence.contours import SHARES, SIDES
-from ..evidence.keypoints import ObservedKeypoints
 from ..take.evidence import UsedEvidence, UsedKeypoints
+from ..terms.contours import SHARES, SIDES, SURFACE_SHARE
+from ..terms.keypoints import ObservedKeypoints
 from .compared_keypoints import ComparedKeypoints
 from .weak_frames import FrameEvidence
 

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Pose
 from ..estimate.reconstruct import Reconstruction
-from ..evidence.regions import RegionModel, RegionNoise, limb_widths
 from ..footage.segmentation.regions import CORNERS, ellipse_outline
 from ..progress import Job, Part, within
 from ..take.take import Take
+from ..terms.region_model import RegionModel
+from ..terms.regions import RegionNoise, limb_widths
 from .compared_keypoints import ComparedKeypoints
 from .confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
 from .frame_evidence import (

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import chunks
-from ..evidence.regions import MarkerPlacement, RegionModel
 from ..footage.reading import Reading, read_clip
 from ..footage.region_tracks import ExpectedRegions
 from ..prior.keyframes import interpolate
 from ..progress import Job, Progress, within
+from ..terms.region_model import MarkerPlacement, RegionModel
 from .clip_check import check_frame_count, check_in_front, clip_notes, open_clip
 from .take import Take
 

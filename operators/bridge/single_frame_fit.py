@@ -17,8 +17,6 @@ from ...core.estimate.clip_problem import uncalibrated
 from ...core.estimate.keypoint_evidence import KeypointEvidence
 from ...core.estimate.performer_placement import place_standing
 from ...core.estimate.single_frame import calibrated, expected_in_frame, frame_residuals
-from ...core.evidence.keypoints import ObservedKeypoints
-from ...core.evidence.regions import MarkerPlacement, ObservedRegions, RegionModel
 from ...core.footage.keypoints.keypoints import Keypoints
 from ...core.footage.markers import regions_of_frame
 from ...core.footage.reading import Reading, of_same_footage, reading_key
@@ -30,6 +28,9 @@ from ...core.posing.posing_input import PosedFrames
 from ...core.prior.frame_prior import prior_from_keyframes, prior_from_pose
 from ...core.prior.keyframes import Keyframe
 from ...core.prior.library import Library
+from ...core.terms.keypoints import ObservedKeypoints
+from ...core.terms.region_model import MarkerPlacement, RegionModel
+from ...core.terms.regions import ObservedRegions
 from .actor_lengths import read_body
 from .camera_placement import read_camera
 from .footage import Footage

@@ -21,7 +21,7 @@ ROOMS = (
     ("core.progress", "core.files"),
     ("core.body",),
     ("core.footage",),
-    ("core.evidence",),
+    ("core.terms",),
     ("core.prior",),
     ("core.take",),
     ("core.estimate",),
@@ -169,7 +169,7 @@ def test_a_wrong_import_is_found(name: str, source: str) -> None:
             "core.body.skeleton",
             "import numpy as np\nfrom . import rotations\nfrom ..errors import InputError",
         ),
-        ("core.evidence.regions", "from ..body.kinematics import Body\nfrom ..footage import camera"),
+        ("core.terms.regions", "from ..body.kinematics import Body\nfrom ..footage import camera"),
         ("core.estimate.reconstruct", "from ..take.take import Take\nfrom . import kalman"),
         ("operators.bridge.fcurves", "import bpy\nfrom ...core.body import skeleton"),
         (

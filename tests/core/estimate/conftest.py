@@ -7,7 +7,7 @@ import pytest
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.evidence.line_ends import LineEnds
+from keymark.core.estimate.line_ends import LineEnds
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
 

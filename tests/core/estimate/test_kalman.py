@@ -21,14 +21,11 @@ from keymark.core.estimate.kalman import (
     normalized_innovation_squared,
     update,
 )
-from keymark.core.evidence import keypoints as depths
-from keymark.core.evidence.line_ends import (
-    LineEnds,
-    observed_characteristics,
-)
+from keymark.core.estimate.line_ends import LineEnds, observed_characteristics
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run
+from keymark.core.terms.depths import point_depths
 
 See = Callable[..., RegionTracks]
 ALWAYS_FAR = Memberships(near_ends=1e-9, far_starts=0.0, far_full=1e-9)
@@ -270,7 +267,7 @@ def test_impossible_options_are_refused_by_name(wrong: dict[str, float]) -> None
 def test_the_a_priori_depths_are_those_of_the_prior(line_ends: LineEnds) -> None:
     prior, _ = drifting(line_ends, 5)
     estimator = FuzzyKalmanFilter(line_ends, prior, [0, 4])
-    expected = depths.evaluate(line_ends.body, line_ends.camera, line_ends.body.pose(prior[2]))
+    expected = point_depths(line_ends.body, line_ends.camera, line_ends.body.pose(prior[2]))
     np.testing.assert_allclose(estimator.prior_depths[2], expected, rtol=1e-12)
 
 

@@ -10,11 +10,11 @@ import pytest
 from _consistency import coverage, normalized_squared, verdict
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.kalman import FilterOptions, FuzzyKalmanFilter
+from keymark.core.estimate.line_ends import LineEnds
 from keymark.core.estimate.reconstruct import reconstruct
-from keymark.core.evidence import keypoints as depths
-from keymark.core.evidence.line_ends import LineEnds
 from keymark.core.progress import run
 from keymark.core.take.take_file import read_take
+from keymark.core.terms.depths import point_depths
 
 RUNS, FRAMES = 12, 14
 KEYFRAMES = (0, 5, 9, 13)
@@ -54,7 +54,7 @@ def simulate(
         pose = body.pose(truth)
         exact = line_ends.evaluate(pose)
         noise = nature.noise_std(exact, exact, quality, line_ends.width_px(pose))
-        shown = depths.evaluate(body, camera, pose) + OPTIONS.depth_std_m * rng.normal(size=13)
+        shown = point_depths(body, camera, pose) + OPTIONS.depth_std_m * rng.normal(size=13)
         estimator.prior_depths[frame] = shown
         done = estimator.correct(state, frame, exact + noise * rng.normal(size=noise.shape), quality)
         state = done.state

@@ -26,10 +26,10 @@ from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes, placement_v
 from keymark.core.estimate.keyframe_trust import read_mixed_keyframes
 from keymark.core.estimate.performer_placement import SHOE_M, lower_ankle_m
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
-from keymark.core.evidence.keypoints import DEPTH_STD_M
-from keymark.core.evidence.regions import ObservedRegions, RegionNoise, limb_widths
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
+from keymark.core.terms.depths import DEPTH_STD_M
+from keymark.core.terms.regions import ObservedRegions, RegionNoise, limb_widths
 
 FRAMES = 60
 TRUTH = exercise(FRAMES)

@@ -9,15 +9,10 @@ from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_problem import KeyframeEvidence
 from keymark.core.estimate.keyframe_error import posing_covariance
 from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes, read_keyframes
-from keymark.core.evidence.regions import (
-    MarkerPlacement,
-    ObservedRegions,
-    RegionModel,
-    RegionNoise,
-    limb_widths,
-)
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run
+from keymark.core.terms.region_model import MarkerPlacement, RegionModel
+from keymark.core.terms.regions import ObservedRegions, RegionNoise, limb_widths
 
 FRAMES = 90
 MOTION = exercise(FRAMES)

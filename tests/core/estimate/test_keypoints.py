@@ -9,7 +9,6 @@ from _detector import LAYOUT, SOURCE, changed, detect, in_order, lasting, sides_
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.block_banded import BlockBanded
 from keymark.core.estimate.keypoint_fit import keypoint_notes, observed_joints
 from keymark.core.estimate.keypoint_trust import (
     HINTS_SHARE,
@@ -19,15 +18,16 @@ from keymark.core.estimate.keypoint_trust import (
     sided_by_pictures,
     upright,
 )
-from keymark.core.estimate.terms.term import NormalEquations, add_drift, drift, drift_cost
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
-from keymark.core.evidence.keypoints import KeypointModel
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.keypoints.keypoints import Keypoints, People, mirror_images
 from keymark.core.footage.keypoints.performer import person_size
 from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.numerics.block_banded import BlockBanded
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
+from keymark.core.terms.keypoints import KeypointModel
+from keymark.core.terms.term import NormalEquations, add_drift, drift, drift_cost
 
 FRAMES = 90
 TRUTH = exercise(FRAMES)

@@ -9,12 +9,13 @@ import pytest
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_problem import ClipProblem
-from keymark.core.estimate.clip_state import ClipState, Window, windows
 from keymark.core.estimate.refinement import SIZES, adapted, limb_sizes
 from keymark.core.estimate.whole_clip import Believed, Seen, estimate_whole_clip
 from keymark.core.estimate.window_problem import WindowProblem
+from keymark.core.estimate.windows import Window, windows
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
+from keymark.core.terms.state import ClipState
 
 FRAMES, EVERY = 61, 15
 EVERYWHERE = np.ones(FRAMES, dtype=bool)

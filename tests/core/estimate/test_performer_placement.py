@@ -41,7 +41,7 @@ def test_the_floor_helps_where_the_camera_looks_down_on_it() -> None:
     camera = looking_down(0.5, (0.0, -3.5, 2.9))
     true = standing_posture(BODY)
     near = standing_posture(BODY, np.array([0.0, -0.35, 0.2]))  # what the same body too near looks like
-    from keymark.core.evidence.regions import MarkerPlacement, RegionModel
+    from keymark.core.terms.region_model import MarkerPlacement, RegionModel
 
     model = RegionModel(BODY, camera, tuple(MarkerPlacement.usual(name) for name in SEGMENTS))
     found = place_standing(BODY, camera, 0, film(Posture.stack([near]), model=model), SEGMENTS)
@@ -62,7 +62,7 @@ def test_one_who_bends_down_is_not_taken_to_be_far_away() -> None:
 def test_a_ground_elsewhere_is_left_alone() -> None:
     camera = looking_down(0.3, (0.0, -4.0, 4.3))
     true = standing_posture(BODY, np.array([0.0, 0.0, 2.0]))
-    from keymark.core.evidence.regions import MarkerPlacement, RegionModel
+    from keymark.core.terms.region_model import MarkerPlacement, RegionModel
 
     model = RegionModel(BODY, camera, tuple(MarkerPlacement.usual(name) for name in SEGMENTS))
     found = place_standing(BODY, camera, 0, film(Posture.stack([true]), model=model), SEGMENTS)

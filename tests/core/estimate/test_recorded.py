@@ -20,12 +20,12 @@ from keymark.core.estimate.reference_evidence import STD_M, error_factor, own_an
 from keymark.core.estimate.reference_placement import SeenPoints
 from keymark.core.estimate.single_frame import fit_frame, frame_residuals
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
-from keymark.core.evidence.regions import ObservedRegions
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.frame_prior import prior_from_keyframes
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
 from keymark.core.take.reference import ReferenceMotion
+from keymark.core.terms.regions import ObservedRegions
 
 FRAMES, POSED = 46, (0, 11, 22, 33, 45)
 TRUTH = exercise(FRAMES)

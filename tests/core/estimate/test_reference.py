@@ -12,7 +12,6 @@ from _scene import BODY, CAMERA, exercise
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.core.errors import InputError
-from keymark.core.estimate.clip_state import ClipState
 from keymark.core.estimate.reconstruct import check_reconstructible, reconstruct
 from keymark.core.estimate.reference_alignment import MIRRORED, AlignedReference, about_hips, align
 from keymark.core.estimate.reference_evidence import (
@@ -25,8 +24,6 @@ from keymark.core.estimate.reference_evidence import (
     with_reference,
 )
 from keymark.core.estimate.reference_placement import SeenPoints, place
-from keymark.core.estimate.terms.reference import ExpectedPoints, ReferenceTerm
-from keymark.core.estimate.terms.term import NormalEquations
 from keymark.core.footage.keypoints.keypoints import Keypoints, People, SeenPeople
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.region_tracks import RegionTracks
@@ -35,6 +32,9 @@ from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import run
 from keymark.core.take.reference import ReferenceMotion
 from keymark.core.take.take import Take
+from keymark.core.terms.reference import ExpectedPoints, ReferenceTerm
+from keymark.core.terms.state import ClipState
+from keymark.core.terms.term import NormalEquations
 from scipy.spatial.transform import Rotation
 
 FRAMES = 70

@@ -11,12 +11,13 @@ from keymark.core.estimate.clip_problem import KeyframeEvidence, uncalibrated
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence
 from keymark.core.estimate.performer_placement import place_standing
 from keymark.core.estimate.single_frame import FrameFit, fit_frame, frame_residuals
-from keymark.core.evidence.keypoints import KeypointModel, ObservedKeypoints
-from keymark.core.evidence.regions import ObservedRegions, RegionModel
 from keymark.core.footage.keypoints.keypoints import Keypoints, mirrored_point
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.frame_prior import FramePrior, prior_from_keyframes, prior_from_pose
 from keymark.core.prior.keyframes import Keyframe
+from keymark.core.terms.keypoints import KeypointModel, ObservedKeypoints
+from keymark.core.terms.region_model import RegionModel
+from keymark.core.terms.regions import ObservedRegions
 
 TRUTH = exercise(45)
 

@@ -13,7 +13,6 @@ from keymark.core.body.posture import Posture, yawed_at
 from keymark.core.errors import InputError
 from keymark.core.estimate.clip_problem import uncalibrated
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence
-from keymark.core.evidence.keypoints import KeypointModel, ObservedKeypoints
 from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.posing.frame_poses import FramePoses, find_frame_poses
@@ -23,6 +22,7 @@ from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library
 from keymark.core.prior.registry import SHIPPED, find_libraries
 from keymark.core.prior.texts import EVERY_LIBRARY
+from keymark.core.terms.keypoints import KeypointModel, ObservedKeypoints
 
 TURNS = {"front": 0.0, "left": 90.0, "behind": 180.0, "right": -90.0}
 NAMES = tuple(point.name for point in BODY.skeleton.points)

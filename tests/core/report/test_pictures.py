@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from _review import made_up_keypoints
 from _synthetic_take import BODY, CAMERA, SIZE, true_postures, write_synthetic_take
-from keymark.core.evidence.contours import ContourModel
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.report.canvas import INK, LEFT, RIGHT, Canvas, write_png
@@ -25,6 +24,7 @@ from keymark.core.take.conversion_record import PICTURES
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
+from keymark.core.terms.contours import ContourModel
 
 FRAMES = 20
 CAMERA_AHEAD = Camera.from_dict(CAMERA)

@@ -7,20 +7,20 @@ import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.clip_state import ClipState
-from keymark.core.estimate.terms.contact import FloorTerm, GroundTerm, StillnessTerm
-from keymark.core.estimate.terms.motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
-from keymark.core.estimate.terms.regions import RegionTerm
-from keymark.core.estimate.terms.term import NormalEquations, QuadraticBuilder, Term, total_cost
-from keymark.core.evidence import keypoints as depths
-from keymark.core.evidence.regions import (
+from keymark.core.prior.frame_prior import process_noise_factor
+from keymark.core.terms.contact import FloorTerm, GroundTerm, StillnessTerm
+from keymark.core.terms.depths import DepthTerm, point_depths
+from keymark.core.terms.motion import BeliefTerm, LimitTerm, SmoothnessTerm
+from keymark.core.terms.regions import (
     FEATURES,
     ObservedRegions,
     RegionNoise,
+    RegionTerm,
     feature_rows,
     missing_variance,
 )
-from keymark.core.prior.frame_prior import process_noise_factor
+from keymark.core.terms.state import ClipState
+from keymark.core.terms.term import NormalEquations, QuadraticBuilder, Term, total_cost
 
 FRAMES = 6
 DOFS = HUMAN.dof_count
@@ -98,11 +98,11 @@ def test_a_foot_rests_wherever_it_stays_in_place_the_higher_one_too() -> None:
 def test_the_depth_term_pulls_towards_the_priors_depths() -> None:
     at = state()
     frame = np.arange(FRAMES)
-    prior = depths.evaluate(BODY, CAMERA, BODY.pose(at.prior), frame)
+    prior = point_depths(BODY, CAMERA, BODY.pose(at.prior), frame)
     term = DepthTerm(CAMERA, prior)
 
     def cost(s: ClipState) -> float:
-        depth = depths.evaluate(BODY, CAMERA, s.pose, frame)
+        depth = point_depths(BODY, CAMERA, s.pose, frame)
         return float(0.5 * np.sum((depth - prior) ** 2) / term.std_m**2)
 
     assert_gradient(term, cost, at)
@@ -133,7 +133,7 @@ def test_terms_with_a_cost_descend_it_alone_and_together() -> None:
 
 def test_terms_of_a_clip_descend_their_cost() -> None:
     at = state(seed=7, size=0.02)
-    prior = depths.evaluate(BODY, CAMERA, BODY.pose(at.prior), at.frame)
+    prior = point_depths(BODY, CAMERA, BODY.pose(at.prior), at.frame)
     builder = QuadraticBuilder(FRAMES, DOFS)
     builder.add(slice(0, DOFS), (-0.9, 1.0), 0.3)
     for term in (DepthTerm(CAMERA, prior, np.full((FRAMES, 1), 0.2)), builder.term()):

@@ -5,9 +5,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...arrays import Array, BoolArray
-from ...body.skeleton import SIDES
-from ..clip_state import ClipState
+from ..arrays import Array, BoolArray
+from ..body.skeleton import SIDES
+from .state import ClipState
 from .term import NormalEquations, add_errors, errors_cost
 
 

@@ -8,10 +8,10 @@ from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise
 from keymark.core.body.body_volume import Piece, PieceStack
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.evidence import regions
-from keymark.core.evidence.occlusion import sample_silhouette, view_pieces
-from keymark.core.evidence.regions import MOMENTS, MarkerPlacement, RegionModel
 from keymark.core.footage.camera import Camera
+from keymark.core.terms import region_model
+from keymark.core.terms.occlusion import sample_silhouette, view_pieces
+from keymark.core.terms.region_model import MOMENTS, MarkerPlacement, RegionModel
 
 STEP = 1e-5
 
@@ -52,7 +52,7 @@ def test_moving_away_shrinks_a_region_with_the_square_of_distance() -> None:
 def test_jacobians_agree_with_central_differences_where_nothing_hides(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(regions, "visible_share", lambda pixels, depth, parts, own: np.ones(depth.shape))
+    monkeypatch.setattr(region_model, "visible_share", lambda pixels, depth, parts, own: np.ones(depth.shape))
     rng = np.random.default_rng(seed)
     posture = standing().plus(0.15 * rng.normal(size=(1, HUMAN.dof_count)))
     seen = predict(posture, jacobian=True)
@@ -88,7 +88,7 @@ def test_a_forearm_behind_the_back_is_hidden_and_keeps_finite_moments() -> None:
 def test_a_long_clip_is_predicted_as_its_frames_are(monkeypatch: pytest.MonkeyPatch) -> None:
     posture = exercise(9)
     whole = predict(posture, jacobian=True)
-    monkeypatch.setattr(regions, "PIECES_AT_ONCE", 2 * len(SEGMENTS))
+    monkeypatch.setattr(region_model, "PIECES_AT_ONCE", 2 * len(SEGMENTS))
     stretched = predict(posture, jacobian=True)
     for field in fields(whole):
         np.testing.assert_allclose(getattr(stretched, field.name), getattr(whole, field.name), atol=1e-8)

@@ -6,10 +6,10 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from ...arrays import Array, BoolArray, IndexArray
-from ...numerics.robust import DEGREES, student_cost, student_weight
-from ..block_banded import BlockBanded
-from ..clip_state import ClipState
+from ..arrays import Array, BoolArray, IndexArray
+from ..numerics.block_banded import BlockBanded
+from ..numerics.robust import DEGREES, student_cost, student_weight
+from .state import ClipState
 
 
 class NormalEquations:

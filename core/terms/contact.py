@@ -13,14 +13,14 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...arrays import Array, IndexArray
-from ...body.body_volume import sole_places
-from ...body.human import mass_weights
-from ...body.kinematics import Body
-from ...body.skeleton import SIDES
-from ...footage.camera import Camera
-from ...numerics.robust import student_cost, student_weight
-from ..clip_state import ClipState
+from ..arrays import Array, IndexArray
+from ..body.body_volume import sole_places
+from ..body.human import mass_weights
+from ..body.kinematics import Body
+from ..body.skeleton import SIDES
+from ..footage.camera import Camera
+from ..numerics.robust import student_cost, student_weight
+from .state import ClipState
 from .term import NormalEquations
 
 

@@ -7,23 +7,22 @@ order, since rounding depends on it.
 
 import numpy as np
 
-from ...arrays import Array
-from ...body.kinematics import Body
-from ...evidence import keypoints as depths
-from ...evidence.keypoints import LEAST_CONFIDENCE, KeypointModel, ObservedKeypoints
-from ...evidence.regions import ObservedRegions, RegionNoise
-from ...prior.frame_prior import REFERENCE_STEP_S, FramePrior
-from ..clip_problem import ClipProblem, KeyframeEvidence
-from ..clip_state import ClipState, Window
-from ..keyframe_error import picture_std_m
-from ..keypoint_evidence import KeypointEvidence
-from ..performer_placement import ANKLE_HEIGHT_STD_M, SHOE_M, standing_ankle_m
-from .contact import BalanceTerm, FloorTerm, GroundTerm, StillnessTerm
-from .keypoints import DepthHintTerm, KeypointTerm
-from .motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
-from .reference import ReferenceTerm
-from .regions import RegionTerm
-from .term import QuadraticBuilder, QuadraticTerm, Term
+from ..arrays import Array
+from ..body.kinematics import Body
+from ..prior.frame_prior import REFERENCE_STEP_S, FramePrior
+from ..terms.contact import BalanceTerm, FloorTerm, GroundTerm, StillnessTerm
+from ..terms.depths import DepthHintTerm, DepthTerm, point_depths
+from ..terms.keypoints import LEAST_CONFIDENCE, KeypointModel, KeypointTerm, ObservedKeypoints
+from ..terms.motion import BeliefTerm, LimitTerm, SmoothnessTerm
+from ..terms.reference import ReferenceTerm
+from ..terms.regions import ObservedRegions, RegionNoise, RegionTerm
+from ..terms.state import ClipState
+from ..terms.term import QuadraticBuilder, QuadraticTerm, Term
+from .clip_problem import ClipProblem, KeyframeEvidence
+from .keyframe_error import picture_std_m
+from .keypoint_evidence import KeypointEvidence
+from .performer_placement import ANKLE_HEIGHT_STD_M, SHOE_M, standing_ankle_m
+from .windows import Window
 
 ANKLES, LEGS = ("ankle.L", "ankle.R"), ("leg.L", "leg.R")
 LOOSE_FEET = {"release_speed_m_s": 0.4, "release_height_m": 0.06}
@@ -35,7 +34,7 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     frames = window.frames
     step_s = clip.step_s[window.first : window.last - 1]
     pace = float(np.median(step_s)) / REFERENCE_STEP_S if len(step_s) else 1.0
-    prior_depth = depths.evaluate(clip.body, clip.camera, clip.body.pose(state.prior), state.frame)
+    prior_depth = point_depths(clip.body, clip.camera, clip.body.pose(state.prior), state.frame)
     ankles = _seen_ankles(clip)
     evidence = clip.evidence
     terms: list[Term] = [

@@ -6,22 +6,23 @@ a calibration departs. Hands and feet do not turn against forearm and shin in a 
 what wrists and ankles really do.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.body_volume import HEAD_OVERSHOOT, HEEL_BEHIND
 from ..body.human import HUMAN, WAIST_HEIGHT
 from ..body.kinematics import Body, Pose
-from ..body.posture import Posture
 from ..body.rotations import cross
 from ..body.skeleton import SIDES, Placement
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
+from .state import ClipState
+from .term import NormalEquations, add_errors, errors_cost
 
 
 @dataclass(frozen=True)
@@ -168,104 +169,7 @@ class KeypointModel:
         return self.camera.project_jacobian(world, frame[:, None]), world
 
 
-# --- Links of the body whose depth a network guesses
-
-
-Ends = tuple[str, ...]  # body points whose middle is the end of a link
-HIPS: Ends = ("hip.L", "hip.R")
-SHOULDERS: Ends = ("shoulder.L", "shoulder.R")
-HEADS: tuple[Ends, ...] = (("head",), ("nose",), ("ear.L", "ear.R"))  # what may stand for it, by preference
-LIMBS = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
-
-
-@dataclass(frozen=True, eq=False)
-class DepthLinks:
-    """L links between the N points of a model."""
-
-    names: tuple[str, ...]  # (L,) without the side, which links on both sides share
-    sources: tuple[str, ...]  # (L,) whose points they join
-    ends: Array  # (L, N) weights of the points: 1 in all for the far end, -1 for the near one
-
-    @classmethod
-    def between(cls, names: Sequence[str], sources: Sequence[str]) -> "DepthLinks":
-        """All links between points that one source has."""
-        found: list[tuple[str, str, Array]] = []
-        for source in dict.fromkeys(sources):
-            index = {n: i for i, (n, s) in enumerate(zip(names, sources, strict=True)) if s == source}
-            for name, far, near in _links(index):
-                weights = np.zeros(len(names))
-                for points, sign in ((far, 1.0), (near, -1.0)):
-                    weights[[index[point] for point in points]] = sign / len(points)
-                found.append((name, source, weights))
-        ends = np.array([weights for _, _, weights in found]).reshape(len(found), len(names))
-        return cls(tuple(name for name, _, _ in found), tuple(source for _, source, _ in found), ends)
-
-    def lengths_m(self, model: KeypointModel) -> Array:
-        """(L,) the links' lengths at rest [m]."""
-        skeleton = model.body.skeleton
-        rest = model.body.pose(Posture.from_vector(skeleton, np.zeros((1, skeleton.dof_count))))
-        return np.linalg.norm(self.ends @ model.world(rest)[0], axis=-1)
-
-    def guessed(self, depth: Array) -> Array:
-        """(F, L) depths of the links by the points' guessed ones (F, N) [m]; NaN where an end is missing."""
-        known = np.isfinite(depth)
-        missing = (~known).astype(float) @ (self.ends != 0.0).T.astype(float)
-        return np.where(missing == 0.0, np.where(known, depth, 0.0) @ self.ends.T, np.nan)
-
-    def depths(self, model: KeypointModel, pose: Pose, frame: IndexArray) -> Array:
-        """(F, L) depths of the links at F poses [m]; `frame` (F,) as in the clip."""
-        return np.asarray(model.camera.depth(model.world(pose), frame[:, None]) @ self.ends.T)
-
-    def jacobian(self, model: KeypointModel, pose: Pose, frame: IndexArray) -> Array:
-        """(F, L, D) derivative of the depths by the posture's tangent."""
-        used = np.flatnonzero(self.ends.any(axis=0))
-        world = model.world(pose)[:, used]
-        axis = model.camera.depth_jacobian(world, frame[:, None])
-        return np.asarray(self.ends[:, used] @ pose.along_jacobian(model.joint[used], world, axis))
-
-
-def _links(index: dict[str, int]) -> list[tuple[str, Ends, Ends]]:
-    """Name, far and near end of the links between the points of one source."""
-    head = next((ends for ends in HEADS if all(point in index for point in ends)), ())
-    wanted: list[tuple[str, Ends, Ends]] = [
-        ("hips", HIPS[:1], HIPS[1:]),
-        ("shoulders", SHOULDERS[:1], SHOULDERS[1:]),
-        ("trunk", SHOULDERS, HIPS),
-        ("head", head, SHOULDERS),
-    ]
-    for near, far in LIMBS:
-        wanted += [(far, (f"{far}.{side}",), (f"{near}.{side}",)) for side in SIDES]
-    return [
-        (name, far, near)
-        for name, far, near in wanted
-        if far and all(point in index for point in (*far, *near))
-    ]
-
-
-# --- Depths of the principal points, d(θ) of the paper
-
-
-DEPTH_VARIANCE_M2 = 0.1  # variance of each depth's noise v_d [m²]: the paper's 10⁵ mm²
-DEPTH_STD_M = DEPTH_VARIANCE_M2**0.5
-
-
-def evaluate(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = None) -> Array:
-    """Depths of the principal points along the viewing axis (paper, eq. 9).
-
-    (..., P) [m], positive in front of the camera, of poses of any batch shape; `frame` of the batch shape.
-    """
-    return camera.depth(body.points(pose), _per_point(frame))
-
-
-def jacobian(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = None) -> Array:
-    """Derivative of the depths by the posture's tangent step, (..., P, D); arguments as `evaluate`."""
-    points = body.points(pose)
-    axis = camera.depth_jacobian(points, _per_point(frame))  # (..., P, 3)
-    return pose.along_jacobian([point.joint for point in body.skeleton.points], points, axis)
-
-
-def _per_point(frame: ArrayLike | None) -> IndexArray | None:
-    return None if frame is None else np.asarray(frame, dtype=np.intp)[..., None]
+# --- Observed
 
 
 PIXEL_STD = 0.35  # standard deviation of a perfect detection, as of a region's centroid [px]
@@ -312,3 +216,38 @@ class ObservedKeypoints:
     def __getitem__(self, index: slice | IndexArray) -> "ObservedKeypoints":
         """Those of some frames."""
         return ObservedKeypoints(self.pixel[index], self.confidence[index], self.depth_m[index])
+
+
+# --- The term
+
+
+@dataclass(frozen=True, eq=False)
+class KeypointTerm:
+    """Compares every keypoint that is seen with its prediction."""
+
+    model: KeypointModel
+    observed: ObservedKeypoints
+    std_m: Array  # (N,) error of a sure detection along each axis [m]; infinite for what is not believed
+    kept: Array | None  # (F - 1, 1) share of an error that is left in the next frame; None: frames are apart
+    robust: ClassVar[bool] = True
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add two rows for each keypoint."""
+        error, std_px, used = self.errors(state.pose, state.frame)
+        factor = np.where(used, 1.0 / std_px, 0.0)
+        jacobian = self.model.pixels_jacobian(state.pose, state.frame, factor)
+        add_errors(equations, error, used, jacobian, self.kept, temperature, state.tangent_jacobian)
+
+    def cost(self, state: ClipState) -> Array:
+        """(F,) see `errors_cost`."""
+        error, _, used = self.errors(state.pose, state.frame)
+        return errors_cost(error, used, self.kept)
+
+    def errors(self, pose: Pose, frame: IndexArray) -> tuple[Array, Array, BoolArray]:
+        """Errors (F, N, 2) in standard deviations, these (F, N) [px], and which are compared (F, N)."""
+        pixel, depth = self.model.camera.project(self.model.world(pose), frame[:, None])
+        scale = self.model.camera.focal_px / np.maximum(depth, 0.1)
+        sure = np.maximum(self.observed.confidence, LEAST_CONFIDENCE)
+        std_px = np.hypot(self.std_m * scale / sure, PIXEL_STD)
+        error = (pixel - self.observed.pixel) / std_px[..., None]
+        return error, std_px, np.isfinite(error).all(axis=-1) & np.isfinite(std_px)

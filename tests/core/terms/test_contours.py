@@ -4,17 +4,8 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, exercise
 from keymark.core.body.human import HUMAN
-from keymark.core.evidence.contours import (
-    FREE,
-    SHAPE,
-    SHARES,
-    SIDES,
-    UNKNOWN,
-    ContourModel,
-    LimbAxes,
-    part_map,
-)
-from keymark.core.evidence.occlusion import outline_depth
+from keymark.core.terms.contours import FREE, SHAPE, SHARES, SIDES, UNKNOWN, ContourModel, LimbAxes, part_map
+from keymark.core.terms.occlusion import outline_depth
 
 MODEL = ContourModel.average(BODY, CAMERA)
 AXES = LimbAxes(MODEL.parts, CAMERA)

@@ -1,4 +1,4 @@
-"""Measurement model of the markers' image regions, with Jacobians, and the rows of observed ones."""
+"""Measurement model of the markers' image regions, with Jacobians."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
@@ -12,7 +12,6 @@ from ..body.body_volume import Piece, PieceStack, body_pieces, marker_parts, seg
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..footage.camera import Camera
-from ..footage.region_tracks import RegionTracks
 from .occlusion import (
     TINY,
     Silhouette,
@@ -242,145 +241,3 @@ class RegionModel:
         linear, angular = rows[..., :3] @ turned, rows[..., 3:] @ turned
         # Rotation about an origin far from the camera is also a translation.
         return np.concatenate([linear, angular + cross(location[..., None, :], linear)], axis=-1)
-
-
-# --- Observed regions, and their rows against a prediction
-
-
-FEATURES = 5  # rows of one marker: centroid x, y and three of shape
-SMALLEST_DEVIATION_PX = 0.6
-AREA_TOLERANCE = 0.25  # share of an area that may be missing for other reasons than occlusion
-
-
-@dataclass(frozen=True)
-class RegionNoise:
-    """Noise of an observed region against a perfect model of the body.
-
-    Two sources: the image (pixels, chroma subsampling, blur) and the surface (limbs are no cylinders,
-    sleeves shift), which scales with the limb. Part of the latter changes slowly: a bias.
-    """
-
-    pixel_std_px: float = 0.35
-    surface_centroid_share: float = 0.10  # of the segment's mean half-width, like the three that follow
-    surface_shape_share: float = 0.07
-    bias_centroid_share: float = 0.20
-    bias_shape_share: float = 0.14
-    bias_time_s: float = 0.67
-    least_visible: float = 0.15  # least predicted visibility of a region that is compared
-
-    def surface_std(self, width: Array) -> Array:
-        """(..., 5) standard deviation of each feature for limbs of half-width (...) [as the width]."""
-        return width[..., None] * _per_feature(self.surface_centroid_share, self.surface_shape_share)
-
-    def bias_std(self, width: Array) -> Array:
-        """(..., 5) standard deviation of each feature's slow bias for limbs of half-width (...)."""
-        return width[..., None] * _per_feature(self.bias_centroid_share, self.bias_shape_share)
-
-
-def _per_feature(centroid: float, shape: float) -> Array:
-    return np.repeat([centroid, shape], (2, FEATURES - 2))
-
-
-@dataclass(frozen=True, eq=False)
-class ObservedRegions:
-    """Tracks with the axes and deviations that residuals need."""
-
-    centroid: Array  # (F, M, 2), NaN where hidden
-    second_moment: Array
-    axes: Array  # (F, M, 2, 2) columns are the observed axes
-    deviation: Array  # (F, M, 2) standard deviation of the region along them [px]
-    area: Array  # (F, M) [px], NaN where hidden
-    quality: Array  # (F, M)
-    variance: Array  # (F, M, 5) of the features beyond that of tracked regions [px²]
-
-    @classmethod
-    def from_tracks(cls, tracks: RegionTracks) -> "ObservedRegions":
-        """Axes and deviations of every visible region."""
-        seen = tracks.visible
-        moments = np.where(seen[..., None, None], tracks.second_moment, np.eye(2))
-        quality = np.where(seen, tracks.quality, 0.0)
-        variance = np.zeros((*seen.shape, FEATURES))
-        return cls(tracks.centroid, moments, *_axes(moments), tracks.area, quality, variance)
-
-    def replaced(self, where: tuple[IndexArray, IndexArray], found: "ObservedRegions") -> "ObservedRegions":
-        """The same with the regions at R pairs of a frame and a marker replaced by those of `found`, (R,)."""
-        changed = {}
-        for field in fields(self):
-            values = getattr(self, field.name).copy()
-            values[where] = getattr(found, field.name)
-            changed[field.name] = values
-        return ObservedRegions(**changed)
-
-    @classmethod
-    def found(
-        cls, centroid: Array, second_moment: Array, area: Array, quality: Array, variance: Array
-    ) -> "ObservedRegions":
-        """Regions (...) that were measured otherwise than by tracking."""
-        return cls(centroid, second_moment, *_axes(second_moment), area, quality, variance)
-
-    def __getitem__(
-        self, index: slice | IndexArray | tuple[slice | IndexArray, IndexArray]
-    ) -> "ObservedRegions":
-        """Some of the frames, of the frames and markers, or of the pairs of both."""
-        return ObservedRegions(*(getattr(self, field.name)[index] for field in fields(self)))
-
-
-def _axes(second_moment: Array) -> tuple[Array, Array]:
-    """Axes of regions and their deviations along these [px], not below what pixels resolve."""
-    values, axes = np.linalg.eigh(second_moment)
-    return axes, np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
-
-
-def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tuple[Array, Array | None]:
-    """Residuals (F, M, 5) [px], predicted minus observed, and their Jacobian (F, M, 5, D) if predicted."""
-    centroid = predicted.centroid - observed.centroid
-    turned = (
-        np.swapaxes(observed.axes, -1, -2)
-        @ (predicted.second_moment - observed.second_moment)
-        @ observed.axes
-    )
-    divisor = observed.deviation[..., :, None] + observed.deviation[..., None, :]
-    shape = np.stack([turned[..., a, b] / divisor[..., a, b] for a, b in MOMENTS], axis=-1)
-    residual = np.concatenate([centroid, shape], axis=-1)
-    if predicted.centroid_jacobian is None or predicted.moment_jacobian is None:
-        return residual, None
-    # Turning is linear in the entries xx, xy, yy: a 3 x 3 matrix a region.
-    u = observed.axes
-    turn = np.stack(
-        [
-            np.stack(
-                [
-                    u[..., 0, a] * u[..., 0, b],
-                    u[..., 0, a] * u[..., 1, b] + u[..., 1, a] * u[..., 0, b],
-                    u[..., 1, a] * u[..., 1, b],
-                ],
-                axis=-1,
-            )
-            / divisor[..., a, b, None]
-            for a, b in MOMENTS
-        ],
-        axis=-2,
-    )
-    rows = [predicted.centroid_jacobian, turn @ predicted.moment_jacobian]
-    return residual, np.concatenate(rows, axis=-2)
-
-
-def limb_widths(model: RegionModel, places: Array, frame: IndexArray) -> Array:
-    """(F, M) image half-width [px] of each marker's limb on a body at world places (F, 3)."""
-    scale = model.camera.focal_px / np.maximum(model.camera.depth(places, frame), 0.1)
-    return np.asarray(scale[:, None] * model.half_widths_m)
-
-
-def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction) -> Array:
-    """(F, M, 5) variance [px²] of the features for the part of a region that is missing, at an unknown end.
-
-    A table or a door that is not known to stand there may hide a part of a marker. A share f that is cut off
-    a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
-
-    `area` (F, M) is seen [px]; `area_ratio` (M,) is that of an unhidden region relative to the predicted one.
-    """
-    expected = np.maximum(predicted.area * area_ratio, 1.0)
-    missing = np.clip(np.nan_to_num(1.0 - area / expected) - AREA_TOLERANCE, 0.0, 1.0)
-    variance = np.stack([predicted.second_moment[..., axis, axis] for axis in (0, 1)], axis=-1)
-    shape = np.broadcast_to(variance.sum(-1, keepdims=True), (*variance.shape[:-1], FEATURES - 2))
-    return np.asarray(np.concatenate([3.0 * variance, shape], axis=-1) * missing[..., None] ** 2)

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from keymark.core.estimate.block_banded import BlockBanded
-from keymark.core.estimate.terms.term import QuadraticBuilder
+from keymark.core.numerics.block_banded import BlockBanded
+from keymark.core.terms.term import QuadraticBuilder
 
 SIZE = 4
 

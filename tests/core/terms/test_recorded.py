@@ -4,20 +4,15 @@ import numpy as np
 import pytest
 from _recorded import assert_recorded
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film
-from keymark.core.evidence import keypoints as depths
-from keymark.core.evidence.contours import ContourModel, LimbAxes, part_map
-from keymark.core.evidence.keypoints import DepthLinks, KeypointModel
-from keymark.core.evidence.line_ends import LineEnds, angle_weight, observed_characteristics, residual
-from keymark.core.evidence.occlusion import outline_depth
-from keymark.core.evidence.regions import (
-    ObservedRegions,
-    RegionModel,
-    feature_rows,
-    limb_widths,
-    missing_variance,
-)
+from keymark.core.estimate.line_ends import LineEnds, angle_weight, observed_characteristics, residual
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.keypoints.keypoints import BODY_POINTS
+from keymark.core.terms.contours import ContourModel, LimbAxes, part_map
+from keymark.core.terms.depths import DepthLinks, depths_jacobian, point_depths
+from keymark.core.terms.keypoints import KeypointModel
+from keymark.core.terms.occlusion import outline_depth
+from keymark.core.terms.region_model import RegionModel
+from keymark.core.terms.regions import ObservedRegions, feature_rows, limb_widths, missing_variance
 
 FRAMES = 12
 FRAME = np.arange(FRAMES)
@@ -68,8 +63,8 @@ def test_keypoints_and_depths() -> None:
     assert_recorded("keypoints", model.pixels(POSE, FRAME))
     assert_recorded("keypoints, slopes", model.pixels_jacobian(POSE, FRAME))
     assert_recorded("links", links.depths(model, POSE, FRAME), links.jacobian(model, POSE, FRAME))
-    assert_recorded("depths", depths.evaluate(BODY, CAMERA, POSE, FRAME))
-    assert_recorded("depths, slopes", depths.jacobian(BODY, CAMERA, POSE, FRAME))
+    assert_recorded("depths", point_depths(BODY, CAMERA, POSE, FRAME))
+    assert_recorded("depths, slopes", depths_jacobian(BODY, CAMERA, POSE, FRAME))
 
 
 def test_line_ends() -> None:

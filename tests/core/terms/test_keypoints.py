@@ -7,10 +7,10 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.evidence import keypoints as depths
-from keymark.core.evidence.keypoints import USUAL_PLACES, DepthLinks, KeypointModel
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.keypoints.keypoints import BODY_POINTS, mirrored_point
+from keymark.core.terms.depths import DepthLinks, depths_jacobian, point_depths
+from keymark.core.terms.keypoints import USUAL_PLACES, KeypointModel
 
 FRAMES = 4
 FRAME = np.arange(FRAMES)
@@ -109,7 +109,7 @@ def camera_in_front(poses: int | None = None) -> Camera:
 
 def test_the_rest_posture_stands_at_the_cameras_distance() -> None:
     pose = BODY.pose(Posture.rest(HUMAN))
-    np.testing.assert_allclose(depths.evaluate(BODY, camera_in_front(), pose), 4.0, atol=1e-12)
+    np.testing.assert_allclose(point_depths(BODY, camera_in_front(), pose), 4.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -118,10 +118,10 @@ def test_the_jacobian_agrees_with_central_differences_on_the_manifold(seed: int)
     posture = Posture.rest(HUMAN).plus(rng.normal(0.0, 0.6, HUMAN.dof_count))
     camera, frame, step = camera_in_front(2), 1, 1e-6
     shifted = [
-        depths.evaluate(
+        point_depths(
             BODY, camera, BODY.pose(posture.plus(sign * step * np.eye(HUMAN.dof_count))), np.full(34, 1)
         )
         for sign in (1.0, -1.0)
     ]
     numeric = (shifted[0] - shifted[1]).T / (2.0 * step)
-    np.testing.assert_allclose(depths.jacobian(BODY, camera, BODY.pose(posture), frame), numeric, atol=1e-8)
+    np.testing.assert_allclose(depths_jacobian(BODY, camera, BODY.pose(posture), frame), numeric, atol=1e-8)

@@ -9,11 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...arrays import Array
-from ...evidence import keypoints as depths
-from ...footage.camera import Camera
-from ...numerics.robust import DEGREES, student_cost, student_weight
-from ..clip_state import ClipState
+from ..arrays import Array
+from ..numerics.robust import DEGREES, student_cost, student_weight
+from .state import ClipState
 from .term import NormalEquations, QuadraticBuilder, QuadraticTerm
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
@@ -104,30 +102,3 @@ class LimitTerm:
         lower, upper = skeleton.limits[skeleton.hinge_dofs].T
         angles = state.posture.angles
         return np.asarray((angles - np.clip(angles, lower, upper)) / self.std_rad)
-
-
-@dataclass(frozen=True, eq=False)
-class DepthTerm:
-    """d(θ) against d(θ_p)."""
-
-    camera: Camera
-    prior_depth: Array  # (F, P) [m]
-    std_m: float | Array = depths.DEPTH_STD_M  # one for all or (F, 1)
-    robust: ClassVar[bool] = False
-
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add one row for each point."""
-        residual = self._residual(state)
-        jacobian = depths.jacobian(state.body, self.camera, state.pose, state.frame) @ state.tangent_jacobian
-        std_m = np.asarray(self.std_m)
-        equations.add_rows(residual / std_m, jacobian / std_m[..., None])
-
-    def cost(self, state: ClipState) -> Array:
-        """(F,) half the sum of squares."""
-        return np.asarray(0.5 * ((self._residual(state) / np.asarray(self.std_m)) ** 2).sum(-1))
-
-    def _residual(self, state: ClipState) -> Array:
-        """(F, P) [m]."""
-        return np.asarray(
-            depths.evaluate(state.body, self.camera, state.pose, state.frame) - self.prior_depth
-        )

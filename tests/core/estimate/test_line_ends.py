@@ -7,7 +7,7 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.core.evidence.line_ends import (
+from keymark.core.estimate.line_ends import (
     ANGLE,
     LOG_RATIO,
     LineEnds,

@@ -1,1 +1,0 @@
-"""The terms of the estimates' cost, one a file; `assembly` lists them. A new kind of evidence begins here."""

@@ -1,1 +1,0 @@
-"""Measurement models: what a posture predicts of the footage, with Jacobians."""

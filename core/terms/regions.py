@@ -1,0 +1,226 @@
+"""The markers' image regions against their prediction: centroid and second moments, in pixels.
+
+A second-moment residual is turned into the observed region's own axes and divided by twice the mean
+deviation along them, the linearized difference of matrix square roots: three numbers in pixels, with no
+angle to wrap and nothing singular when the region is round (instead of S_θ and S_λ, paper eqs 5 and 6).
+"""
+
+from dataclasses import dataclass, fields
+from typing import ClassVar
+
+import numpy as np
+
+from ..arrays import Array, IndexArray
+from ..footage.region_tracks import RegionTracks
+from ..numerics.robust import DEGREES, student_cost, student_weight
+from .region_model import MOMENTS, RegionModel, RegionPrediction
+from .state import ClipState
+from .term import NormalEquations
+
+FEATURES = 5  # rows of one marker: centroid x, y and three of shape
+SMALLEST_DEVIATION_PX = 0.6
+AREA_TOLERANCE = 0.25  # share of an area that may be missing for other reasons than occlusion
+
+
+@dataclass(frozen=True)
+class RegionNoise:
+    """Noise of an observed region against a perfect model of the body.
+
+    Two sources: the image (pixels, chroma subsampling, blur) and the surface (limbs are no cylinders,
+    sleeves shift), which scales with the limb. Part of the latter changes slowly: a bias.
+    """
+
+    pixel_std_px: float = 0.35
+    surface_centroid_share: float = 0.10  # of the segment's mean half-width, like the three that follow
+    surface_shape_share: float = 0.07
+    bias_centroid_share: float = 0.20
+    bias_shape_share: float = 0.14
+    bias_time_s: float = 0.67
+    least_visible: float = 0.15  # least predicted visibility of a region that is compared
+
+    def surface_std(self, width: Array) -> Array:
+        """(..., 5) standard deviation of each feature for limbs of half-width (...) [as the width]."""
+        return width[..., None] * _per_feature(self.surface_centroid_share, self.surface_shape_share)
+
+    def bias_std(self, width: Array) -> Array:
+        """(..., 5) standard deviation of each feature's slow bias for limbs of half-width (...)."""
+        return width[..., None] * _per_feature(self.bias_centroid_share, self.bias_shape_share)
+
+
+def _per_feature(centroid: float, shape: float) -> Array:
+    return np.repeat([centroid, shape], (2, FEATURES - 2))
+
+
+@dataclass(frozen=True, eq=False)
+class ObservedRegions:
+    """Tracks with the axes and deviations that residuals need."""
+
+    centroid: Array  # (F, M, 2), NaN where hidden
+    second_moment: Array
+    axes: Array  # (F, M, 2, 2) columns are the observed axes
+    deviation: Array  # (F, M, 2) standard deviation of the region along them [px]
+    area: Array  # (F, M) [px], NaN where hidden
+    quality: Array  # (F, M)
+    variance: Array  # (F, M, 5) of the features beyond that of tracked regions [px²]
+
+    @classmethod
+    def from_tracks(cls, tracks: RegionTracks) -> "ObservedRegions":
+        """Axes and deviations of every visible region."""
+        seen = tracks.visible
+        moments = np.where(seen[..., None, None], tracks.second_moment, np.eye(2))
+        quality = np.where(seen, tracks.quality, 0.0)
+        variance = np.zeros((*seen.shape, FEATURES))
+        return cls(tracks.centroid, moments, *_axes(moments), tracks.area, quality, variance)
+
+    def replaced(self, where: tuple[IndexArray, IndexArray], found: "ObservedRegions") -> "ObservedRegions":
+        """The same with the regions at R pairs of a frame and a marker replaced by those of `found`, (R,)."""
+        changed = {}
+        for field in fields(self):
+            values = getattr(self, field.name).copy()
+            values[where] = getattr(found, field.name)
+            changed[field.name] = values
+        return ObservedRegions(**changed)
+
+    @classmethod
+    def found(
+        cls, centroid: Array, second_moment: Array, area: Array, quality: Array, variance: Array
+    ) -> "ObservedRegions":
+        """Regions (...) that were measured otherwise than by tracking."""
+        return cls(centroid, second_moment, *_axes(second_moment), area, quality, variance)
+
+    def __getitem__(
+        self, index: slice | IndexArray | tuple[slice | IndexArray, IndexArray]
+    ) -> "ObservedRegions":
+        """Some of the frames, of the frames and markers, or of the pairs of both."""
+        return ObservedRegions(*(getattr(self, field.name)[index] for field in fields(self)))
+
+
+def _axes(second_moment: Array) -> tuple[Array, Array]:
+    """Axes of regions and their deviations along these [px], not below what pixels resolve."""
+    values, axes = np.linalg.eigh(second_moment)
+    return axes, np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
+
+
+def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tuple[Array, Array | None]:
+    """Residuals (F, M, 5) [px], predicted minus observed, and their Jacobian (F, M, 5, D) if predicted."""
+    centroid = predicted.centroid - observed.centroid
+    turned = (
+        np.swapaxes(observed.axes, -1, -2)
+        @ (predicted.second_moment - observed.second_moment)
+        @ observed.axes
+    )
+    divisor = observed.deviation[..., :, None] + observed.deviation[..., None, :]
+    shape = np.stack([turned[..., a, b] / divisor[..., a, b] for a, b in MOMENTS], axis=-1)
+    residual = np.concatenate([centroid, shape], axis=-1)
+    if predicted.centroid_jacobian is None or predicted.moment_jacobian is None:
+        return residual, None
+    # Turning is linear in the entries xx, xy, yy: a 3 x 3 matrix a region.
+    u = observed.axes
+    turn = np.stack(
+        [
+            np.stack(
+                [
+                    u[..., 0, a] * u[..., 0, b],
+                    u[..., 0, a] * u[..., 1, b] + u[..., 1, a] * u[..., 0, b],
+                    u[..., 1, a] * u[..., 1, b],
+                ],
+                axis=-1,
+            )
+            / divisor[..., a, b, None]
+            for a, b in MOMENTS
+        ],
+        axis=-2,
+    )
+    rows = [predicted.centroid_jacobian, turn @ predicted.moment_jacobian]
+    return residual, np.concatenate(rows, axis=-2)
+
+
+def limb_widths(model: RegionModel, places: Array, frame: IndexArray) -> Array:
+    """(F, M) image half-width [px] of each marker's limb on a body at world places (F, 3)."""
+    scale = model.camera.focal_px / np.maximum(model.camera.depth(places, frame), 0.1)
+    return np.asarray(scale[:, None] * model.half_widths_m)
+
+
+def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction) -> Array:
+    """(F, M, 5) variance [px²] of the features for the part of a region that is missing, at an unknown end.
+
+    A table or a door that is not known to stand there may hide a part of a marker. A share f that is cut off
+    a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
+
+    `area` (F, M) is seen [px]; `area_ratio` (M,) is that of an unhidden region relative to the predicted one.
+    """
+    expected = np.maximum(predicted.area * area_ratio, 1.0)
+    missing = np.clip(np.nan_to_num(1.0 - area / expected) - AREA_TOLERANCE, 0.0, 1.0)
+    variance = np.stack([predicted.second_moment[..., axis, axis] for axis in (0, 1)], axis=-1)
+    shape = np.broadcast_to(variance.sum(-1, keepdims=True), (*variance.shape[:-1], FEATURES - 2))
+    return np.asarray(np.concatenate([3.0 * variance, shape], axis=-1) * missing[..., None] ** 2)
+
+
+# --- The term
+
+
+GROUPS = (slice(0, 2), slice(2, FEATURES))  # rows that are outliers together: centroid and shape
+CONTRADICTED = 20.0  # cost of a marker that is seen where it should be hidden
+
+
+@dataclass(frozen=True, eq=False)
+class RegionTerm:
+    """Compares every visible marker with its prediction."""
+
+    model: RegionModel
+    observed: ObservedRegions
+    noise: RegionNoise
+    width_px: Array  # (F, M) mean half-width of each marker's limb in the image [px]
+    distrust: Array  # (M,) factor of the noise of each marker's regions
+    area_ratio: Array  # (M,) area of each marker's unhidden region, relative to the predicted one
+    robust: ClassVar[bool] = True
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add five rows for each marker that is seen and predicted to be seen."""
+        predicted = self.model.evaluate(state.pose, state.frame, jacobian=True)
+        residual, jacobian = feature_rows(self.observed, predicted)
+        assert jacobian is not None
+        count = len(self.model.placements)
+        residual = residual + state.bias.reshape(state.frames, count, FEATURES)
+        weight = np.sqrt(self.weights(residual, predicted, temperature))  # (F, M, 5)
+        residual = np.where(weight > 0.0, residual, 0.0) * weight
+        jacobian = (jacobian @ state.tangent_jacobian[:, None]) * weight[..., None]
+        jacobian[weight == 0.0] = 0.0  # a prediction behind the camera is no number
+        shape = (state.frames, count * FEATURES)
+        by_posture = jacobian.reshape(*shape, jacobian.shape[-1])
+        equations.add_biased_rows(residual.reshape(shape), by_posture, weight.reshape(shape))
+
+    def cost(self, state: ClipState) -> Array:
+        """(F,) negative logarithm of Student's t over all markers, up to a constant.
+
+        A marker that is seen where the posture hides it costs as much as one that is far off.
+        """
+        predicted = self.model.evaluate(state.pose, state.frame)
+        residual, _ = feature_rows(self.observed, predicted)
+        residual = residual + state.bias.reshape(residual.shape)
+        information = self._information(residual, predicted)
+        squared = np.nan_to_num(residual) ** 2 * information
+        cost = np.zeros(squared.shape[:2])
+        for group in GROUPS:
+            cost += student_cost(squared[..., group].sum(-1), DEGREES, group.stop - group.start)
+        contradicted = np.isfinite(self.observed.centroid[..., 0]) & (information[..., 0] == 0.0)
+        return np.asarray(np.where(contradicted, CONTRADICTED * self.observed.quality, cost).sum(-1))
+
+    def weights(self, residual: Array, predicted: RegionPrediction, temperature: float) -> Array:
+        """Information (F, M, 5) of each row [1/px²]; zero for what is not compared."""
+        information = self._information(residual, predicted) / temperature
+        squared = np.where(information > 0.0, np.nan_to_num(residual) ** 2 * information, 0.0)
+        for group in GROUPS:
+            size = group.stop - group.start
+            information[..., group] *= student_weight(squared[..., group].sum(-1), DEGREES, size)[..., None]
+        return np.asarray(information)
+
+    def _information(self, residual: Array, predicted: RegionPrediction) -> Array:
+        """The same before outliers are downweighted."""
+        usable = np.isfinite(residual).all(-1) & (predicted.visible > self.noise.least_visible)
+        trust = np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0)
+        variance = self.noise.pixel_std_px**2 + self.noise.surface_std(self.width_px) ** 2
+        variance = variance * self.distrust[:, None] ** 2
+        variance = variance + missing_variance(self.observed.area, self.area_ratio, predicted)
+        variance = variance + self.observed.variance
+        return np.asarray(np.where(usable[..., None], trust[..., None] / variance, 0.0))
