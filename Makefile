@@ -19,7 +19,7 @@ two_at_a_time := --numprocesses 2 --dist loadfile
 # What takes long and depends on no version of Python or Blender is tried in one of the two.
 quick := -m 'not faults and not slow'
 settings := pyproject.toml setup.py
-model := presets/models/pose_landmark.tflite
+model := presets/models/pose_landmark.onnx
 sources := $(shell find __init__.py blender_manifest.toml core operators presets -type f ! -name '*.pyc' 2>/dev/null)
 
 # make_venv FOLDER, PYTHON VERSION, CANDIDATE, WHAT TO INSTALL, WHAT IS SAID: a new virtual environment, complete once it
@@ -40,7 +40,7 @@ help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1|/p' $(firstword $(MAKEFILE_LIST)) | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
 
 # The network that finds keypoints: 28 MB out of an archive of 41. Where it cannot be had, all else works.
-$(model): presets/models/SHA256SUMS tools/fetch_model.py
+$(model): presets/models/SHA256SUMS tools/fetch_model.py tools/convert_network.py
 	@python=$$($(find_python) 3.11 $(PYTHON)) && "$$python" tools/fetch_model.py || echo "keymark detect is left out." >&2
 
 .venv-demo/ready: $(settings) $(sources) $(model)

@@ -1,8 +1,8 @@
 """Put the network that finds keypoints where Keymark looks for it, once; see presets/models/NOTICE.
 
 It lies in public archives: the large network in npm's @mediapipe/pose; a smaller, less exact one in pip's
-mediapipe, which is taken where there is no npm, unless --best is given. Their checksums stand in
-presets/models/SHA256SUMS.
+mediapipe, which is taken where there is no npm, unless --best is given. `convert_network` makes ONNX of it.
+The checksums before and after stand in presets/models/SHA256SUMS.
 """
 
 import hashlib
@@ -15,12 +15,16 @@ import tempfile
 import zipfile
 from pathlib import Path
 
+from convert_network import onnx_of
+
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "presets" / "models"
-MODEL = FOLDER / "pose_landmark.tflite"
+MODEL = FOLDER / "pose_landmark.onnx"
 CACHE = ROOT / ".cache"
 LARGE, SMALL = "pose_landmark_heavy.tflite", "pose_landmark_full.tflite"
 NPM, PIP = "@mediapipe/pose@0.5.1675469404", "mediapipe==0.10.14"
+OUTPUTS = ("Identity", "Identity_1", "Identity_3", "Identity_4")
+"""Points, presence, heat maps and points in space: all but the picture of where the person is."""
 WHEEL = ["--only-binary=:all:", "--python-version", "3.11", "--platform", "manylinux2014_x86_64"]
 
 
@@ -65,8 +69,7 @@ def fetched(names: list[str]) -> tuple[str, bytes]:
             except (OSError, subprocess.SubprocessError, KeyError, ValueError) as error:
                 reasons.append(f"{name}: {error}")
                 continue
-            if hashlib.sha256(weights).hexdigest() != checksums()[name]:
-                raise SystemExit(f"{name}: its checksum is not that of presets/models/SHA256SUMS.")
+            check(name, weights)
             whole = Path(folder, name)
             whole.write_bytes(weights)
             os.replace(whole, kept)
@@ -74,16 +77,29 @@ def fetched(names: list[str]) -> tuple[str, bytes]:
     raise SystemExit(f"The network that finds keypoints cannot be fetched ({'; '.join(reasons)}).")
 
 
+def converted(name: str) -> str:
+    """The name under which a network's checksum as ONNX stands in the list."""
+    return name.replace(".tflite", ".onnx")
+
+
+def check(name: str, data: bytes) -> None:
+    """End the program unless a file is the one whose checksum is listed."""
+    if hashlib.sha256(data).hexdigest() != checksums()[name]:
+        raise SystemExit(f"{name}: its checksum is not that of presets/models/SHA256SUMS.")
+
+
 def main(arguments: list[str]) -> int:
     """Fetch it unless it is there."""
     names = [LARGE] if "--best" in arguments else [LARGE, SMALL]
     there = hashlib.sha256(MODEL.read_bytes()).hexdigest() if MODEL.is_file() else ""
-    if there in [checksums()[name] for name in names]:
+    if there in [checksums()[converted(name)] for name in names]:
         MODEL.touch()
         return 0
     name, weights = fetched(names)
+    network = onnx_of(weights, OUTPUTS)
+    check(converted(name), network)
     part = MODEL.with_suffix(".part")
-    part.write_bytes(weights)
+    part.write_bytes(network)
     os.replace(part, MODEL)
     print(f"{MODEL.relative_to(ROOT)} is MediaPipe's {name}.", file=sys.stderr)
     return 0

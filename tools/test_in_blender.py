@@ -10,8 +10,9 @@ import os
 import subprocess
 import sys
 import tempfile
-import tomllib
 from pathlib import Path
+
+from package.wheels import pins
 
 ROOT = Path(__file__).resolve().parent.parent
 MODULES = {
@@ -20,6 +21,7 @@ MODULES = {
     "hypothesis": "hypothesis",
     "imageio_ffmpeg": "imageio-ffmpeg",
     "jsonschema": "jsonschema",
+    "onnxruntime": "onnxruntime",
     "pytest": "pytest",
     "scipy": "scipy",
     "threadpoolctl": "threadpoolctl",
@@ -44,19 +46,17 @@ def ask(blender: str) -> tuple[str, list[str]]:
 
 def install(version: str, missing: list[str]) -> Path:
     """Install the missing modules for that Python version into a folder below .cache/, and return it."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    lines = project["dependencies"] + project["optional-dependencies"]["dev"]
-    pins = {line.split("==")[0]: line for line in lines if "==" in line}
-    wanted = [pins[MODULES[name]] for name in missing]
+    requirements = pins(version)
+    wanted = [requirements[MODULES[name]] for name in missing]
     folder = ROOT / ".cache" / f"blender-python-{version}"
     record = folder / "installed.json"
     if record.is_file() and json.loads(record.read_text()) == wanted:
         return folder
     pip = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--upgrade"]
     pip += ["--target", str(folder), "--python-version", version, "--only-binary=:all:"]
-    alone = [line for line in wanted if line.startswith(("c3d", "scipy", "opencv"))]
+    alone = [line for line in wanted if line.startswith(("c3d", "scipy", "opencv", "onnxruntime"))]
     others = [line for line in wanted if line not in alone]
-    if alone:  # their only dependency is numpy, which must stay Blender's own
+    if alone:  # of what they depend on they need numpy alone, which must stay Blender's own
         subprocess.run([*pip, "--no-deps", *alone], check=True)
     if others:
         subprocess.run([*pip, *others], check=True)

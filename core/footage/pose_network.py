@@ -1,7 +1,7 @@
 """MediaPipe's landmark network, which sees one person in a square crop (BlazePose, Bazarevsky et al. 2020).
 
-OpenCV runs it on the processor. It has learned crops about the hips with the person upright, so that the crop
-must move and turn with the person: `Pose.crop` is where to look next.
+onnxruntime runs it on the processor. It has learned crops about the hips with the person upright, so that the
+crop must move and turn with the person: `Pose.crop` is where to look next.
 """
 
 import hashlib
@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -18,7 +19,7 @@ from ..errors import InputError
 from .keypoints.layouts import LAYOUTS
 
 FOLDER = Path(__file__).resolve().parents[2] / "presets" / "models"
-MODEL = FOLDER / "pose_landmark.tflite"
+MODEL = FOLDER / "pose_landmark.onnx"
 """The weights, which are no part of the source: `tools/fetch_model.py` puts them here."""
 CHECKSUMS = FOLDER / "SHA256SUMS"
 NAME = "BlazePose"
@@ -28,8 +29,8 @@ POINTS, CENTER, ABOVE = 39, 33, 34
 """Point 33 is between the hips, 34 above it on the circle about the whole person."""
 CIRCLE = 2.5  # side of a crop by the circle's radius
 NEIGHBORS = 3  # a point goes to the middle of its heat map within so many cells
-MOST_AT_ONCE = 2  # networks: one person is followed two ways
-OUTPUTS = ("Identity", "Identity_1", "Identity_3", "Identity_4")
+MOST_AT_ONCE = 2  # looks: one person is followed two ways
+OUTPUTS = ("Identity", "Identity_1", "Identity_3", "Identity_4")  # as `tools/fetch_model.py` keeps them
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,46 +77,24 @@ class PoseNetwork:
                 f"{model}: the network that finds keypoints cannot be read ({error.strerror}); {again}"
             ) from error
         known = [line.split()[0] for line in CHECKSUMS.read_text(encoding="utf-8").splitlines()]
-        if hashlib.sha256(weights).hexdigest() not in known:  # OpenCV would crash
+        if hashlib.sha256(weights).hexdigest() not in known:
             raise InputError(f"{model}: the network that finds keypoints is damaged or another one; {again}")
-        self._weights = np.frombuffer(weights, dtype=np.uint8)
-        self._nets = [self._read()]
-
-    def _read(self) -> cv2.dnn.Net:
-        try:
-            return cv2.dnn.readNetFromTFLite(self._weights)
-        except cv2.error as error:  # built without FlatBuffers, as Debian's
-            raise InputError(
-                f"{cv2.__file__}: this OpenCV ({cv2.__version__}) cannot read the network that finds "
-                "keypoints; opencv-python-headless, which Keymark's zip brings, can"
-            ) from error
+        self._session = _session(weights)
 
     def __call__(self, picture: Image, crop: Crop) -> Pose:
         """The person in a crop of a picture (height, width, 3), blue first."""
         return self.each([(picture, crop)])[0]
 
-    def each(self, asked: Sequence[tuple[Image, Crop]]) -> list[Pose]:
-        """The persons in crops of pictures, of which as many are looked at at once as there are networks.
+    def each(self, looks: Sequence[tuple[Image, Crop]]) -> list[Pose]:
+        """The persons in crops of pictures.
 
-        Each network has one thread: that is faster than several threads for one look.
+        Two looks at a time with one thread each are faster than several threads for one look.
         """
-        threads = cv2.getNumThreads()
-        workers = max(1, min(len(asked), threads, MOST_AT_ONCE))
-        while len(self._nets) < workers:
-            self._nets.append(self._read())
-        cv2.setNumThreads(1)
-        try:
-            with ThreadPoolExecutor(workers) as pool:
-                return list(pool.map(lambda one: self._look(*one), asked))
-        finally:
-            cv2.setNumThreads(threads)
+        with ThreadPoolExecutor(max(1, min(len(looks), cv2.getNumThreads(), MOST_AT_ONCE))) as pool:
+            return list(pool.map(lambda look: self._look(*look), looks))
 
     def _look(self, picture: Image, crop: Crop) -> Pose:
-        net = self._nets.pop()  # nobody else has it then
-        try:
-            return self.postprocess(self.infer(net, self.preprocess(picture, crop)), crop)
-        finally:
-            self._nets.append(net)
+        return self.postprocess(self.infer(self.preprocess(picture, crop)), crop)
 
     def preprocess(self, picture: Image, crop: Crop) -> SingleArray:
         """The network's input (1, 3, 256, 256), red first, 0 to 1."""
@@ -126,18 +105,16 @@ class PoseNetwork:
         seen = cv2.warpAffine(picture, matrix, size, flags=flags, borderMode=cv2.BORDER_REPLICATE)
         return np.asarray(cv2.dnn.blobFromImage(seen, 1.0 / 255.0, swapRB=True), dtype=np.float32)
 
-    def infer(
-        self, net: cv2.dnn.Net, blob: SingleArray
-    ) -> tuple[SingleArray, float, SingleArray, SingleArray]:
+    def infer(self, blob: SingleArray) -> tuple[SingleArray, float, SingleArray, SingleArray]:
         """Points (39, 5), presence, heat maps (39, 64, 64) and points in space (39, 3)."""
-        net.setInput(blob)
-        points, presence, heat, world = net.forward(OUTPUTS)
-        shapes = ((POINTS, 5), (POINTS, CELLS, CELLS), (POINTS, 3))
-        arrays = [
-            np.asarray(out, dtype=np.float32).reshape(shape)
-            for out, shape in zip((points, heat, world), shapes, strict=True)
-        ]
-        return arrays[0], float(np.ravel(presence)[0]), arrays[1], arrays[2]
+        (name,) = (one.name for one in self._session.get_inputs())
+        points, presence, heat, world = self._session.run(OUTPUTS, {name: blob})
+        return (
+            points.reshape(POINTS, 5),
+            float(presence[0, 0]),
+            heat.reshape(POINTS, CELLS, CELLS),
+            world.reshape(POINTS, 3),
+        )
 
     def postprocess(self, out: tuple[SingleArray, float, SingleArray, SingleArray], crop: Crop) -> Pose:
         """The pose in the picture."""
@@ -151,6 +128,22 @@ class PoseNetwork:
         hint[:, :2] = hint[:, :2] @ crop.turn.T
         used = LAYOUT.numbers
         return Pose(pixel[used], _sigmoid(points[used, 3]), hint[used], float(presence), around)
+
+
+def _session(weights: bytes) -> Any:
+    """An onnxruntime session on one thread, for several looks at once."""
+    try:
+        import onnxruntime
+    except ImportError as error:
+        raise InputError(
+            f"onnxruntime, which runs the network that finds keypoints, cannot be loaded ({error}); install "
+            "Keymark's zip for this Blender again"
+        ) from error
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    options.log_severity_level = 4
+    options.enable_cpu_mem_arena = False
+    return onnxruntime.InferenceSession(weights, options, providers=["CPUExecutionProvider"])
 
 
 def _refined(place: SingleArray, heat: SingleArray) -> Array:

@@ -13,7 +13,7 @@ from zipfile import ZipFile
 import pytest
 from installed_blender import Blender
 
-LIMITS_MB = {"linux-x64": 118.0, "windows-x64": 106.5, "macos-arm64": 103.0}
+LIMITS_MB = {"linux-x64": 146.0, "windows-x64": 121.0, "macos-arm64": 121.0}
 """For Windows 75 was meant; its wheels, which have to be left as they are, take 76 (docs/releasing.md)."""
 VERSION = "import bpy; print('ANSWER', *bpy.app.version)"
 
@@ -65,11 +65,17 @@ def test_no_wheel_of_another_python_or_platform_is_inside(
 ) -> None:
     assert sorted(str(path).removeprefix("./") for path in manifest["wheels"]) == wheels  # type: ignore[attr-defined]
     parts = [Path(name).stem.split("-") for name in wheels]
-    assert [part[0] for part in parts] == ["c3d", "opencv_python_headless", "scipy", "threadpoolctl"]
+    assert [part[0] for part in parts] == [
+        "c3d",
+        "onnxruntime",
+        "opencv_python_headless",
+        "scipy",
+        "threadpoolctl",
+    ]
     interfaces = {part[0]: part[-2] for part in parts}
     own = f"cp{python_of_blender.replace('.', '')}"
     pure = {"c3d": "none", "threadpoolctl": "none"}
-    assert interfaces == {"opencv_python_headless": "abi3", "scipy": own, **pure}
+    assert interfaces == {"onnxruntime": own, "opencv_python_headless": "abi3", "scipy": own, **pure}
     (platform,) = manifest["platforms"]  # type: ignore[misc]
     system = {"linux-x64": "linux", "windows-x64": "win", "macos-arm64": "macos"}[platform]
     assert all(part[-1] == "any" or system in part[-1] for part in parts)

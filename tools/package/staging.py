@@ -10,7 +10,7 @@ from .builds import Build
 from .wheels import ROOT, wheels_of
 
 MANIFEST = "blender_manifest.toml"
-MODEL = "presets/models/pose_landmark.tflite"
+MODEL = "presets/models/pose_landmark.onnx"
 """The network, which git does not know."""
 
 

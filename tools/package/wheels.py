@@ -11,6 +11,8 @@ import tempfile
 import tomllib
 from pathlib import Path
 
+from packaging.requirements import Requirement
+
 from .builds import Build
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -20,6 +22,7 @@ WHEELS = ROOT / "wheels"
 BINARY_INTERFACES = {
     "scipy": "cp{python}",  # a wheel for each Python
     "opencv-python-headless": "abi3",  # one wheel for every Python
+    "onnxruntime": "cp{python}",
     "threadpoolctl": "none",  # pure Python
     "c3d": "none",
 }
@@ -34,17 +37,24 @@ TAGS = {
 def wheels_of(build: Build) -> list[Path]:
     """The wheels of one zip, downloaded if missing."""
     python = build.series.python.replace(".", "")
-    requirements = pins()
+    requirements = pins(build.series.python)
     return [
         download(requirements[name], build.platform, python, interface.format(python=python))
         for name, interface in BINARY_INTERFACES.items()
     ]
 
 
-def pins() -> dict[str, str]:
-    """The pinned requirements of pyproject.toml by distribution: {"scipy": "scipy==..."}."""
+def pins(python: str) -> dict[str, str]:
+    """Pinned requirements for a Python (`3.11`) by distribution: {"scipy": "scipy==..."}."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    return {line.split("==")[0]: line for line in project["dependencies"] if "==" in line}
+    lines = project["dependencies"] + project["optional-dependencies"]["dev"]
+    wanted = [Requirement(line) for line in lines if "==" in line.partition(";")[0]]
+    here = {"python_version": python}
+    return {
+        one.name: f"{one.name}{one.specifier}"
+        for one in wanted
+        if one.marker is None or one.marker.evaluate(here)
+    }
 
 
 def download(requirement: str, platform: str, python: str, interface: str) -> Path:

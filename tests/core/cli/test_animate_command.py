@@ -123,8 +123,8 @@ def test_a_height_that_is_none_is_refused(
 
 
 def damaged(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    model = folder / "model.tflite"
-    model.write_bytes(b"TFL3")
+    model = folder / "model.onnx"
+    model.write_bytes(b"ONNX")
     network = place.PoseNetwork
     monkeypatch.setattr(place, "PoseNetwork", lambda: network(model))
     write_frames(folder / "clip.mp4", list(drawn_frames(true_postures(5))))

@@ -1,6 +1,7 @@
 """People are found in a clip and followed, by a landmark network whose points lie where they are seen."""
 
 import hashlib
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, cast
@@ -137,10 +138,7 @@ def test_a_clip_without_anybody_is_one_sentence() -> None:
         seen([])
 
 
-needs_model = pytest.mark.skipif(
-    not MODEL.is_file() or "flatbuffers:" not in cv2.getBuildInformation().lower(),
-    reason="tools/fetch_model.py was not run, or this OpenCV is built without FlatBuffers",
-)
+needs_model = pytest.mark.skipif(not MODEL.is_file(), reason="tools/fetch_model.py was not run")
 
 
 def bare() -> PoseNetwork:
@@ -190,24 +188,21 @@ def test_the_input_shows_the_crop_red_first() -> None:
 
 def test_a_missing_or_damaged_file_is_one_sentence(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"cannot be read .*fetch_model.py"):
-        PoseNetwork(tmp_path / "none.tflite")
-    broken = tmp_path / "broken.tflite"
-    broken.write_bytes(b"TFL3" * 1000)
+        PoseNetwork(tmp_path / "none.onnx")
+    broken = tmp_path / "broken.onnx"
+    broken.write_bytes(b"ONNX" * 1000)
     with pytest.raises(InputError, match=r"is damaged or another one; install"):
         PoseNetwork(broken)
 
 
-def test_an_opencv_without_networks_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(_: object) -> None:
-        raise cv2.error("Build OpenCV with FlatBuffers")
-
-    weights = tmp_path / "weights.tflite"
-    weights.write_bytes(b"TFL3")
+def test_a_missing_runtime_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    weights = tmp_path / "weights.onnx"
+    weights.write_bytes(b"ONNX")
     listed = tmp_path / "SHA256SUMS"
-    listed.write_text(f"{hashlib.sha256(b'TFL3').hexdigest()}  weights.tflite\n", encoding="utf-8")
+    listed.write_text(f"{hashlib.sha256(b'ONNX').hexdigest()}  weights.onnx\n", encoding="utf-8")
     monkeypatch.setattr("keymark.core.footage.pose_network.CHECKSUMS", listed)
-    monkeypatch.setattr(cv2.dnn, "readNetFromTFLite", refuse)
-    with pytest.raises(InputError, match=r"this OpenCV \(4\..*zip brings"):
+    monkeypatch.setitem(sys.modules, "onnxruntime", None)
+    with pytest.raises(InputError, match=r"^onnxruntime, .* cannot be loaded .*; install Keymark's zip"):
         PoseNetwork(weights)
 
 
