@@ -23,7 +23,7 @@ from keymark.core.body.actor import Actor  # noqa: E402
 from keymark.core.body.body_volume import standing_height_m  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
 from keymark.core.body.kinematics import Body  # noqa: E402
-from keymark.core.footage.keypoints.keypoint_file import write_keypoints  # noqa: E402
+from keymark.core.detect.keypoint_file import write_keypoints  # noqa: E402
 from keymark.core.pipeline.convert import FoundReconstruction, convert, find_and_reconstruct  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
 from keymark.core.prior.registry import registered_libraries  # noqa: E402

@@ -20,13 +20,13 @@ load_project()
 
 from keymark.core.body.body_volume import standing_height_m  # noqa: E402
 from keymark.core.body.kinematics import Body  # noqa: E402
+from keymark.core.camera.camera import Camera, default_camera_pose, guess_lens  # noqa: E402
+from keymark.core.camera.camera_evidence import CameraEvidence, Uprights  # noqa: E402
+from keymark.core.camera.camera_fields import CameraPlacement  # noqa: E402
+from keymark.core.camera.camera_fit import HEIGHT, LENS, PARAMETERS, ROLL, TILT, fit_camera  # noqa: E402
+from keymark.core.detect.keypoint_file import read_keypoints  # noqa: E402
+from keymark.core.detect.standing_moments import standing_keypoints  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
-from keymark.core.footage.camera import Camera, default_camera_pose, guess_lens  # noqa: E402
-from keymark.core.footage.camera_evidence import CameraEvidence, Uprights  # noqa: E402
-from keymark.core.footage.camera_fields import CameraPlacement  # noqa: E402
-from keymark.core.footage.camera_fit import HEIGHT, LENS, PARAMETERS, ROLL, TILT, fit_camera  # noqa: E402
-from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
-from keymark.core.footage.standing_moments import standing_keypoints  # noqa: E402
 from keymark.core.posing.found_poses import with_found  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402

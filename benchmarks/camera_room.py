@@ -14,8 +14,8 @@ from keymark.core.body.body_volume import (  # noqa: E402
     HEAD_OVERSHOOT,  # noqa: E402
     standing_height_m,  # noqa: E402
 )
-from keymark.core.footage.camera import Camera  # noqa: E402
-from keymark.core.footage.camera_evidence import CameraEvidence  # noqa: E402
+from keymark.core.camera.camera import Camera  # noqa: E402
+from keymark.core.camera.camera_evidence import CameraEvidence  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 
 HAND_PX = 1.5

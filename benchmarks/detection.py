@@ -16,15 +16,15 @@ from takes import chosen_takes, load_project, write_results
 load_project()
 
 from keymark.core.arrays import Array  # noqa: E402
-from keymark.core.footage.clips.album import Glimpses  # noqa: E402
-from keymark.core.footage.clips.clip import Clip  # noqa: E402
-from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
-from keymark.core.footage.keypoints.keypoints import People  # noqa: E402
-from keymark.core.footage.picture_check import check_by_pictures  # noqa: E402
-from keymark.core.footage.pose_network import PoseNetwork  # noqa: E402
-from keymark.core.footage.pose_tracking import find_people  # noqa: E402
+from keymark.core.detect.keypoint_file import read_keypoints  # noqa: E402
+from keymark.core.detect.keypoints import People  # noqa: E402
+from keymark.core.detect.picture_check import check_by_pictures  # noqa: E402
+from keymark.core.detect.pose_network import PoseNetwork  # noqa: E402
+from keymark.core.detect.pose_tracking import find_people  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402
+from keymark.core.video.album import Glimpses  # noqa: E402
+from keymark.core.video.clip import Clip  # noqa: E402
 from wrong_keypoints import NOT_OF_THE_PICTURE  # noqa: E402
 
 LIMBS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")

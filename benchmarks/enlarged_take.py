@@ -19,8 +19,8 @@ from takes import load_project
 
 load_project()
 
+from keymark.core.camera.camera import Camera  # noqa: E402
 from keymark.core.files.json_file import write_json  # noqa: E402
-from keymark.core.footage.camera import Camera  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.take.evidence import CONTOURS, MARKERS  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402

@@ -21,12 +21,12 @@ sys.path.insert(0, str(ROOT / "tools"))
 from keymark.core.arrays import Image  # noqa: E402
 from keymark.core.errors import KeymarkError  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
-from keymark.core.footage.clips.clip import Clip  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
 from keymark.core.take.evidence import CONTOURS, MARKERS  # noqa: E402
 from keymark.core.take.examples import AEROBIC, POSED_BY_HAND, example_folder  # noqa: E402
 from keymark.core.take.take import with_evidence  # noqa: E402
+from keymark.core.video.clip import Clip  # noqa: E402
 from make_takes import make  # noqa: E402
 from studio.catalogue.demonstration import DEMONSTRATION  # noqa: E402
 from studio.described import Described  # noqa: E402

@@ -18,12 +18,12 @@ load_project()
 
 from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
+from keymark.core.detect.keypoint_file import read_keypoints  # noqa: E402
+from keymark.core.detect.keypoints import Keypoints  # noqa: E402
 from keymark.core.errors import InputError  # noqa: E402
 from keymark.core.estimate.clip_problem import uncalibrated  # noqa: E402
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence  # noqa: E402
-from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
-from keymark.core.footage.keypoints.keypoints import Keypoints  # noqa: E402
-from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
+from keymark.core.markers.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.posing.frame_poses import find_frame_poses  # noqa: E402
 from keymark.core.posing.frame_search import FrameShown, knowledge  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402

@@ -31,8 +31,8 @@ from keymark.core.estimate import (  # noqa: E402
     window_problem,
 )
 from keymark.core.estimate.keypoint_trust import KeypointTrust  # noqa: E402
-from keymark.core.footage.segmentation import regions as segmentation  # noqa: E402
-from keymark.core.footage.segmentation.moments import Coverage  # noqa: E402
+from keymark.core.markers import regions as segmentation  # noqa: E402
+from keymark.core.markers.moments import Coverage  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.take.evidence import CONTOURS, KEYPOINTS, MARKERS  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402

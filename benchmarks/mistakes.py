@@ -17,9 +17,9 @@ from keymark.core.body.human import HUMAN  # noqa: E402
 from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.body.posture_fit import fit_posture  # noqa: E402
-from keymark.core.footage.camera import Camera  # noqa: E402
-from keymark.core.footage.reading import Reading  # noqa: E402
-from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
+from keymark.core.camera.camera import Camera  # noqa: E402
+from keymark.core.markers.reading import Reading  # noqa: E402
+from keymark.core.markers.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 
 

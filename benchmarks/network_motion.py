@@ -9,7 +9,7 @@ load_project()
 
 from keymark.core.arrays import Array, BoolArray  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
-from keymark.core.footage.keypoints.keypoints import Keypoints  # noqa: E402
+from keymark.core.detect.keypoints import Keypoints  # noqa: E402
 
 HEAD = ("ear.L", "ear.R")
 """Points whose middle is the head, for detectors that show none."""

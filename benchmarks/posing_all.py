@@ -21,9 +21,9 @@ from keymark.core.body.actor import Actor  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
 from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.body.rotations import exponential  # noqa: E402
+from keymark.core.detect.keypoints import People  # noqa: E402
 from keymark.core.errors import InputError  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
-from keymark.core.footage.keypoints.keypoints import People  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses, with_found  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402

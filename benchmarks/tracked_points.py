@@ -9,7 +9,7 @@ load_project()
 
 from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
-from keymark.core.footage.keypoints.keypoints import People, SeenPeople  # noqa: E402
+from keymark.core.detect.keypoints import People, SeenPeople  # noqa: E402
 
 TRACKED = ("head", "wrist.L", "wrist.R", "hip.L", "ankle.L", "ankle.R")
 OFF_M = 0.03

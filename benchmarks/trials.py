@@ -11,10 +11,10 @@ load_project()
 
 from auto_clamped import interpolate_auto_clamped  # noqa: E402
 from keymark.core.arrays import Array  # noqa: E402
+from keymark.core.detect.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
-from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
-from keymark.core.footage.reading import Reading  # noqa: E402
-from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
+from keymark.core.markers.reading import Reading  # noqa: E402
+from keymark.core.markers.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.prior.keyframes import interpolate, interpolate_linearly  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score, read_truth, score_points  # noqa: E402

@@ -176,7 +176,7 @@ def _character(folder: Path) -> Any:
 def _put_reading(bpy: Any, folder: Path) -> None:
     """Keep a take's reading in the session, as if the clip had been read in it."""
     from keymark.core.files.digest import ArrayCache
-    from keymark.core.footage.reading import reading_from_arrays
+    from keymark.core.markers.reading import reading_from_arrays
     from keymark.operators.shell.results import keep_reading
 
     arrays = ArrayCache(folder / READ).load(READ)
@@ -186,7 +186,7 @@ def _put_reading(bpy: Any, folder: Path) -> None:
 
 def _keep_reading(bpy: Any, folder: Path) -> None:
     from keymark.core.files.digest import ArrayCache
-    from keymark.core.footage.reading import reading_arrays
+    from keymark.core.markers.reading import reading_arrays
     from keymark.operators.shell.results import reading_of
 
     reading = reading_of(_take(bpy))

@@ -9,11 +9,7 @@ from takes import load_project
 load_project()
 
 from keymark.core.arrays import Array  # noqa: E402
-from keymark.core.footage.keypoints.keypoints import (  # noqa: E402
-    People,
-    SeenPeople,
-    mirrored_point,  # noqa: E402
-)
+from keymark.core.detect.keypoints import People, SeenPeople, mirrored_point  # noqa: E402
 
 SEED = 15
 RANDOM_SHARE = 0.3

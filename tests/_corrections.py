@@ -6,7 +6,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 
 BODY = Body(Actor.from_stature(1.75))
 COLUMN = {name: i for i, name in enumerate(HUMAN.dof_names)}

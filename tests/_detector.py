@@ -4,8 +4,8 @@ import numpy as np
 from _scene import BODY, CAMERA
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.keypoints.keypoints import Keypoints, mirrored_point
+from keymark.core.camera.camera import Camera
+from keymark.core.detect.keypoints import Keypoints, mirrored_point
 from keymark.core.terms.keypoints import KeypointModel
 
 LAYOUT = (

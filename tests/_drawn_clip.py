@@ -8,10 +8,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.ignored_regions import IgnoredRegion
-from keymark.core.footage.markers import track_markers
-from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle, RegionTracks
+from keymark.core.markers.ignored_regions import IgnoredRegion
+from keymark.core.markers.markers import track_markers
+from keymark.core.markers.region_tracks import ExpectedRegions, MarkerStyle, RegionTracks
+from keymark.core.video.clip import Clip
 
 SIZE = (320, 240)
 RED, BLUE = (200, 45, 50), (55, 90, 215)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 from keymark.core.arrays import Image
-from keymark.core.footage.pose_network import CIRCLE, LAYOUT, Crop, Pose
+from keymark.core.detect.pose_network import CIRCLE, LAYOUT, Crop, Pose
 
 COUNT = len(LAYOUT.names)
 BRIGHT = 100

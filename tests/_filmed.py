@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 from _scene import BODY, CAMERA, exercise
 from keymark.core.body.posture import Posture
-from keymark.core.footage.clips.album import Album
 from keymark.core.terms.contours import ContourModel, part_map
+from keymark.core.video.album import Album
 from numpy.typing import ArrayLike
 
 FRAMES = 46

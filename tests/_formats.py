@@ -12,7 +12,7 @@ from _character_maps import full_map, full_record
 from _libraries import small_library
 from _synthetic_take import BODY, SIZE, true_postures, write_json, write_keypoints, write_synthetic_take
 from keymark.core.body.posture import posture_to_json
-from keymark.core.footage.keypoints.keypoint_file import read_keypoints
+from keymark.core.detect.keypoint_file import read_keypoints
 from keymark.core.prior.library import read_library
 from keymark.core.retarget.maps.character_map import read_character_map
 from keymark.core.retarget.retarget_record import read_retarget_record

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from keymark.core.arrays import Array
-from keymark.core.footage.keypoints.layouts import LAYOUTS, Layout
+from keymark.core.detect.layouts import LAYOUTS, Layout
 
 SIZE = (320, 240)
 FRAMES = 12

@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 
 import cv2
-from keymark.core.footage.clips.clip import Clip
+from keymark.core.video.clip import Clip
 
 PANEL = (8, 60, 60, 150)
 """Left, top, right, bottom in pixels of the demonstration, beside the performer."""

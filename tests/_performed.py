@@ -7,10 +7,10 @@ import numpy as np
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture, yawed_at
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.keypoints.keypoints import People, SeenPeople, mirrored_point
-from keymark.core.footage.reading import Reading
-from keymark.core.footage.region_tracks import MarkerStyle, RegionTracks
+from keymark.core.camera.camera import Camera
+from keymark.core.detect.keypoints import People, SeenPeople, mirrored_point
+from keymark.core.markers.reading import Reading
+from keymark.core.markers.region_tracks import MarkerStyle, RegionTracks
 from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.prior.library import Library
 from keymark.core.prior.motion_playback import sample_motion

@@ -7,7 +7,7 @@ from typing import Any
 import cv2
 import numpy as np
 from keymark.core.body.human import HUMAN
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 
 TURNED_DEG = 80.0
 """The demonstration begins facing the camera; about as far as this a performer is called in profile."""

@@ -5,8 +5,8 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.camera.camera import Camera
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.terms.region_model import MarkerPlacement, RegionModel
 
 SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")

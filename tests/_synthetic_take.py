@@ -11,7 +11,7 @@ import numpy as np
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 
 SIZE = (160, 120)
 COLORS = {

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 from keymark.core.arrays import Array, BoolArray
-from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.markers import track_markers
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.markers import track_markers
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.progress import run, within
 from keymark.core.take.take_file import read_take
+from keymark.core.video.clip import Clip
 
 STEP = 6
 """Every sixth frame is rendered; keyframes are among them by chance only."""

@@ -14,11 +14,11 @@ from _boot import load_package  # noqa: E402
 load_package()
 
 from keymark.core.body.actor import REQUIRED  # noqa: E402
+from keymark.core.camera.camera_fields import CameraFields  # noqa: E402
+from keymark.core.detect.keypoint_file import NAMES, OwnFile  # noqa: E402
 from keymark.core.files.json_file import format_json  # noqa: E402
 from keymark.core.files.kinds import relative_path  # noqa: E402
 from keymark.core.files.records import Record, declared  # noqa: E402
-from keymark.core.footage.camera_fields import CameraFields  # noqa: E402
-from keymark.core.footage.keypoints.keypoint_file import NAMES, OwnFile  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.retarget.maps.character_map import CharacterMap  # noqa: E402

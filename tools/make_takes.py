@@ -24,9 +24,9 @@ load_package()
 
 from keymark.core.arrays import Array, BoolArray  # noqa: E402
 from keymark.core.body.posture import rounded  # noqa: E402
+from keymark.core.detect.keypoint_file import write_keypoints  # noqa: E402
 from keymark.core.files.json_file import write_json  # noqa: E402
-from keymark.core.footage.keypoints.keypoint_file import write_keypoints  # noqa: E402
-from keymark.core.footage.region_tracks import MarkerStyle  # noqa: E402
+from keymark.core.markers.region_tracks import MarkerStyle  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.take import evidence  # noqa: E402
 from keymark.core.take.description import KEYPOINT_FILE  # noqa: E402

@@ -21,9 +21,9 @@ from ..body.human import HUMAN
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture, facing_rad
 from ..body.skeleton import SIDES
-from ..footage.camera import Camera
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.region_tracks import RegionTracks
+from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints
+from ..markers.region_tracks import RegionTracks
 from ..numerics.robust import DEGREES, student_cost, student_weight
 from ..terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, USUAL_PLACES, KeypointModel, ObservedKeypoints
 from ..terms.region_model import MarkerPlacement, RegionModel

@@ -7,9 +7,9 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.camera import Camera
-from ..footage.ignored_regions import IgnoredPixels
-from ..footage.keypoints.keypoints import Keypoints
+from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints
+from ..markers.ignored_regions import IgnoredPixels
 from ..prior.keyframes import with_turns
 from ..terms.keypoints import ObservedKeypoints
 from ..terms.reference import ExpectedPoints

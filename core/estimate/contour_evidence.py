@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from ..arrays import Array, BoolArray, Image, IndexArray, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.appearance import Appearance, learn_appearance
-from ..footage.camera import Camera
-from ..footage.clips.album import Album
-from ..footage.surface_colors import BandColors
+from ..camera.camera import Camera
+from ..markers.appearance import Appearance, learn_appearance
+from ..markers.surface_colors import BandColors
 from ..numerics.robust import DEGREES, student_weight
 from ..terms.contours import (
     PIXEL_STD,
@@ -31,6 +30,7 @@ from ..terms.contours import (
     LimbAxes,
     part_map,
 )
+from ..video.album import Album
 from .axial_search import find_shifts, learn_along
 from .contour_search import BY_MARKERS, NARROW, Edges, Schedule, SearchRange, find_edges
 from .keyframe_rows import UNUSED, EvidenceRows

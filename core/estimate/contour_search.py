@@ -14,9 +14,9 @@ from ..arrays import Array, BoolArray, Image, IndexArray
 from ..body.body_volume import TRUNK
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
-from ..footage.appearance import Appearance
-from ..footage.camera import Camera
-from ..footage.keypoints.keypoints import Keypoints
+from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints
+from ..markers.appearance import Appearance
 from ..terms.contours import ContourModel, ContourPrediction
 from ..terms.occlusion import HIDDEN_DEPTH_M, PartOutlines, outline_depth
 

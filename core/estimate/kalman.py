@@ -13,8 +13,8 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body import rotations
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
-from ..footage.camera import Camera
-from ..footage.region_tracks import RegionTracks
+from ..camera.camera import Camera
+from ..markers.region_tracks import RegionTracks
 from ..progress import Part, Preview
 from ..terms.depths import DEPTH_STD_M, depths_jacobian, point_depths
 from . import fuzzy

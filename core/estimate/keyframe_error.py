@@ -16,7 +16,7 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from ..terms.depths import DEPTH_STD_M
 
 # --- Posed

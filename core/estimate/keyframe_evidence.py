@@ -16,7 +16,7 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from ..numerics.robust import DEGREES, student_weight
 from ..terms.keypoints import ObservedKeypoints
 from ..terms.region_model import MarkerPlacement, RegionModel

@@ -12,9 +12,9 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, chunks
 from ..body.posture import Posture
-from ..footage.keypoints.keypoints import Keypoints, mirrored_point
-from ..footage.keypoints.performer import principal_keypoints
-from ..footage.region_tracks import RegionTracks
+from ..detect.keypoints import Keypoints, mirrored_point
+from ..detect.performer import principal_keypoints
+from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import columns_at
 from ..prior.keyframes import Keyframe, interpolate, leave_one_out_residuals
 from ..terms.region_model import RegionModel

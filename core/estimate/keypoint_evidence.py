@@ -11,8 +11,8 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
-from ..footage.camera import Camera
-from ..footage.keypoints.keypoints import mirrored_point
+from ..camera.camera import Camera
+from ..detect.keypoints import mirrored_point
 from ..terms.depths import DepthLinks
 from ..terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, USUAL_PLACES, KeypointModel, ObservedKeypoints
 from .keyframe_rows import UNUSED, EvidenceRows

@@ -9,9 +9,9 @@ import numpy as np
 from ..arrays import Array, BoolArray
 from ..body.body_volume import TRUNK
 from ..body.posture import Posture
+from ..detect.keypoints import Keypoints
 from ..errors import pluralize
 from ..files.fields import listed
-from ..footage.keypoints.keypoints import Keypoints
 from ..numerics.robust import DEGREES, student_weight
 from ..terms.keypoints import USUAL_PLACES, KeypointTerm, ObservedKeypoints
 from .keypoint_evidence import KeypointEvidence

@@ -15,9 +15,9 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN, mass_weights
 from ..body.kinematics import Pose
 from ..body.skeleton import SIDES
-from ..footage.camera import Camera
-from ..footage.keypoints.keypoints import Keypoints, People, mirror_images
-from ..footage.keypoints.performer import FITS, person_size, principal_keypoints
+from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints, People, mirror_images
+from ..detect.performer import FITS, person_size, principal_keypoints
 from ..numerics.markov_chain import cheapest_path
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..numerics.vectors import runs

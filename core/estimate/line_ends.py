@@ -16,10 +16,10 @@ from ..arrays import Array, IndexArray
 from ..body.body_volume import TRUNK, marker_parts, marker_segments, segment_piece
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross_matrix
+from ..camera.camera import Camera
 from ..errors import InputError
-from ..footage.camera import Camera
-from ..footage.region_tracks import RegionTracks
-from ..footage.segmentation.moments import axis_angle_difference, characteristics
+from ..markers.moments import axis_angle_difference, characteristics
+from ..markers.region_tracks import RegionTracks
 
 X, Y, ANGLE, LOG_RATIO = range(4)  # columns: S_x, S_y [px], S_θ [rad, modulo π], log S_λ
 

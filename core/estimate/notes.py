@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ..arrays import BoolArray
 from ..files.fields import listed
-from ..footage.region_tracks import RegionTracks
+from ..markers.region_tracks import RegionTracks
 from ..prior.keyframes import Matched
 from ..take.clip_check import VARIABLE_RATE
 from ..take.take import Take

@@ -16,11 +16,11 @@ from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..body.posture import Posture, facing_rad
 from ..body.skeleton import SIDES
+from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints
+from ..detect.performer import principal_keypoints
 from ..errors import InputError
-from ..footage.camera import Camera
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.keypoints.performer import principal_keypoints
-from ..footage.region_tracks import RegionTracks
+from ..markers.region_tracks import RegionTracks
 from ..terms.region_model import MarkerPlacement, RegionModel
 
 TOUCHING_PERCENT = 30.0  # of the lowest soles, the floor: more than half touch it, but for runners

@@ -12,11 +12,11 @@ from ..body.body_volume import limb_dofs, rested
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
+from ..detect.keypoints import Keypoints
 from ..errors import InputError
-from ..footage.ignored_regions import IgnoredPixels
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.reading import Reading, of_same_footage
-from ..footage.region_tracks import RegionTracks
+from ..markers.ignored_regions import IgnoredPixels
+from ..markers.reading import Reading, of_same_footage
+from ..markers.region_tracks import RegionTracks
 from ..prior.keyframe_proposals import evidence_speed
 from ..prior.keyframes import interpolate, with_offset
 from ..progress import Job, Progress, stretch, within

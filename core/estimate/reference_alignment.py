@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from ..arrays import Array, BoolArray
 from ..body.kinematics import Body
-from ..footage.keypoints.keypoints import mirrored_point
+from ..detect.keypoints import mirrored_point
 from ..numerics.markov_chain import cheapest_path
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..take.reference import ReferenceMotion

@@ -15,10 +15,10 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
 from ..body.posture import Posture
 from ..body.posture_fit import fit_posture
+from ..detect.keypoints import Keypoints
+from ..detect.performer import principal_keypoints
 from ..errors import pluralize
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.keypoints.performer import principal_keypoints
-from ..footage.region_tracks import RegionTracks
+from ..markers.region_tracks import RegionTracks
 from ..numerics.robust import DEGREES
 from ..numerics.vectors import gaussian, usual_step
 from ..prior.keyframes import Keyframe, Matched

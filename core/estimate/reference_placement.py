@@ -11,10 +11,10 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
-from ..footage.camera import Camera
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.keypoints.performer import principal_keypoints
-from ..footage.region_tracks import RegionTracks
+from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints
+from ..detect.performer import principal_keypoints
+from ..markers.region_tracks import RegionTracks
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..numerics.vectors import gaussian
 

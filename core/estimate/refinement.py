@@ -15,11 +15,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, BoolArray
-from ..footage.clips.album import Album
 from ..prior.frame_prior import REFERENCE_STEP_S
 from ..progress import Part, scaled
 from ..terms.depths import DEPTH_STD_M
 from ..terms.state import ClipState
+from ..video.album import Album
 from .assembly import stillness_term
 from .clip_problem import ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours

@@ -10,11 +10,11 @@ from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.body_volume import body_pieces
 from ..body.human import limb_of
 from ..body.posture import Posture
-from ..footage.ignored_regions import is_ignored
-from ..footage.region_tracks import RegionTracks
-from ..footage.segmentation.moments import centroid_and_second_moment
-from ..footage.segmentation.unmixing import Palette, Traces, traces
-from ..footage.surface_colors import bare_surfaces, common_colors, is_alike, marker_surfaces, usual_background
+from ..markers.ignored_regions import is_ignored
+from ..markers.moments import centroid_and_second_moment
+from ..markers.region_tracks import RegionTracks
+from ..markers.surface_colors import bare_surfaces, common_colors, is_alike, marker_surfaces, usual_background
+from ..markers.unmixing import Palette, Traces, traces
 from ..progress import Part, scaled
 from ..terms.regions import FEATURES, SMALLEST_DEVIATION_PX, ObservedRegions
 from ..terms.state import ClipState

@@ -7,8 +7,8 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
-from ..footage.keypoints.keypoints import mirror_images
-from ..footage.region_tracks import ExpectedRegions
+from ..detect.keypoints import mirror_images
+from ..markers.region_tracks import ExpectedRegions
 from ..prior.frame_prior import FramePrior
 from ..progress import run
 from ..terms.depths import depths_jacobian

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 
 from ..arrays import Array, BoolArray
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from ..numerics.vectors import runs
 from ..terms.keypoints import ObservedKeypoints
 from ..terms.regions import ObservedRegions

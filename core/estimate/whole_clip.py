@@ -15,11 +15,10 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.camera import Camera
-from ..footage.clips.album import Album
-from ..footage.ignored_regions import IgnoredPixels
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.region_tracks import RegionTracks
+from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints
+from ..markers.ignored_regions import IgnoredPixels
+from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import runs
 from ..prior.frame_prior import REFERENCE_STEP_S, process_noise_factor
 from ..progress import Part, scaled
@@ -27,6 +26,7 @@ from ..terms.keypoints import KeypointModel, ObservedKeypoints
 from ..terms.reference import ExpectedPoints
 from ..terms.region_model import MarkerPlacement, RegionModel
 from ..terms.regions import ObservedRegions, RegionNoise, limb_widths
+from ..video.album import Album
 from .clip_problem import ClipProblem, KeyframeEvidence
 from .contour_evidence import ContourEvidence, contour_rows, learn_contours
 from .contour_search import all_located, contour_schedule

@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ..detect.keypoints import People
 from ..errors import pluralize
 from ..estimate.reconstruct import Reconstruction, check_method, reconstruct
 from ..estimate.reference_evidence import ReferenceEvidence, reference_evidence, with_reference
-from ..footage.keypoints.keypoints import People
 from ..posing.found_poses import FoundPoses, referred_poses, with_found
 from ..posing.pose_clip import pose_clip
 from ..prior.library import Library

@@ -11,23 +11,16 @@ from pathlib import Path
 
 import numpy as np
 
+from ..camera.camera import EYE_HEIGHT_M, Camera, default_camera_pose, guess_lens, lens_of_equivalent
+from ..camera.camera_evidence import CameraEvidence, Uprights
+from ..camera.camera_fields import MATRICES
+from ..camera.camera_fit import LENS, PARAMETERS, CameraFit, fit_camera
+from ..detect.keypoints import People
+from ..detect.pose_network import PoseNetwork
+from ..detect.pose_tracking import find_people, refuse_picture
+from ..detect.standing_moments import standing_keypoints
 from ..errors import pluralize
 from ..files.fields import PLACED, Fields, InheritedFields, listed
-from ..footage.camera import (
-    EYE_HEIGHT_M,
-    Camera,
-    default_camera_pose,
-    guess_lens,
-    lens_of_equivalent,
-)
-from ..footage.camera_evidence import CameraEvidence, Uprights
-from ..footage.camera_fields import MATRICES
-from ..footage.camera_fit import LENS, PARAMETERS, CameraFit, fit_camera
-from ..footage.clips.stated_lens import stated_lens_mm
-from ..footage.keypoints.keypoints import People
-from ..footage.pose_network import PoseNetwork
-from ..footage.pose_tracking import find_people, refuse_picture
-from ..footage.standing_moments import standing_keypoints
 from ..progress import Job, Progress, stretch
 from ..take.clip_check import open_footage
 from ..take.conversion_settings import ConversionSettings
@@ -36,6 +29,7 @@ from ..take.evidence import KEYPOINTS
 from ..take.performer_keypoints import performer_keypoints
 from ..take.take import Take, with_evidence
 from ..take.take_file import read_described
+from ..video.stated_lens import stated_lens_mm
 
 FEWEST_MOMENTS = 2
 """Upright moments that tell a camera; one is the same from a camera high above and from a low one."""

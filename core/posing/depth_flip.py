@@ -10,7 +10,7 @@ from ..body import rotations
 from ..body.human import LIMBS, TRUNK
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from .dragged import planted
 from .inverse_kinematics import Pull, SightLine, pulled
 from .limb_chain import (

@@ -10,13 +10,13 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints
 from ..estimate.assembly import free_frame_terms
 from ..estimate.clip_problem import KeyframeEvidence
 from ..estimate.performer_placement import place_standing
 from ..estimate.single_frame import descend, exchanged
-from ..footage.camera import Camera
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.region_tracks import RegionTracks
+from ..markers.region_tracks import RegionTracks
 from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
 from ..prior.library import Library
 from ..terms.keypoints import ObservedKeypoints

@@ -12,7 +12,7 @@ from ..arrays import Array
 from ..body import rotations
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from ..numerics.robust import Equations, levenberg_marquardt
 
 

@@ -15,7 +15,7 @@ from ..body import rotations
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from ..numerics.vectors import across as any_across
 from ..numerics.vectors import unit
 from .inverse_kinematics import SightLine

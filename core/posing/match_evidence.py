@@ -16,10 +16,10 @@ from ..body.body_volume import PieceStack
 from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.camera import Camera
-from ..footage.keypoints.keypoints import Keypoints, mirrored_point
-from ..footage.keypoints.performer import principal_keypoints
-from ..footage.region_tracks import RegionTracks
+from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints, mirrored_point
+from ..detect.performer import principal_keypoints
+from ..markers.region_tracks import RegionTracks
 from ..terms.region_model import MarkerPlacement
 
 CENTROID_STD_M = {"trunk": 0.05, "pelvis": 0.04, "chest": 0.06, "head": 0.07, "girdle": 0.06}

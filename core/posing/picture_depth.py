@@ -14,12 +14,12 @@ import numpy as np
 from ..arrays import Array
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints
 from ..estimate.clip_problem import uncalibrated
 from ..estimate.keyframe_error import JOINT_STD_DEG, found_std_m, picture_std_m
 from ..estimate.keypoint_evidence import KeypointEvidence
-from ..footage.camera import Camera
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.region_tracks import RegionTracks
+from ..markers.region_tracks import RegionTracks
 from ..prior.library import Library
 from ..terms.keypoints import ObservedKeypoints
 from ..terms.region_model import RegionModel

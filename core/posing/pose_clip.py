@@ -22,7 +22,7 @@ from ..estimate.whole_clip import (
     WholeClipResult,
     estimate_whole_clip,
 )
-from ..footage.reading import Reading
+from ..markers.reading import Reading
 from ..prior.keyframes import Keyframe, interpolate
 from ..prior.library import Library
 from ..prior.texts import COMPOSED

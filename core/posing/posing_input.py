@@ -10,12 +10,12 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.body_volume import sole_heights_m
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints
 from ..errors import InputError
 from ..estimate.keypoint_trust import sided_by_pictures, upright
-from ..footage.camera import Camera
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.reading import Reading
-from ..footage.region_tracks import RegionTracks
+from ..markers.reading import Reading
+from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import runs
 from ..prior.keyframe_proposals import evidence_speed, propose_keyframes
 from ..prior.keyframes import Keyframe

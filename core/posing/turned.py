@@ -16,7 +16,7 @@ from ..body.human import LIMBS
 from ..body.kinematics import Body
 from ..body.mirror import mirrored, other_side
 from ..body.posture import Posture, facing_rad, headings_rad, yaw_rotation, yawed_in_place
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from ..prior.keyframes import Keyframe
 from ..take.take import Take
 from .inverse_kinematics import Pull, SightLine, pulled

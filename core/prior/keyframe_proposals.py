@@ -9,12 +9,12 @@ from scipy.ndimage import median_filter
 
 from ..arrays import Array, IndexArray
 from ..body.human import limb_of
+from ..detect.keypoints import Keypoints
 from ..errors import InputError
-from ..footage.clips.album import Album, picture_motion
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.region_tracks import RegionTracks
+from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import columns_at, gaussian, usual_step
 from ..progress import Part
+from ..video.album import Album, picture_motion
 
 SMOOTHING_FRAMES = 1.0
 

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array, Image
 from ..body.human import STRONG
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from ..numerics.vectors import unit
 
 Color = tuple[int, int, int]

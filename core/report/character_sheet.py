@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..arrays import Array, Image
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from .canvas import GRAY, INK, PAPER, Canvas, ascii_text, draw_grid, side_directions
 from .mannequin import CharacterFigure, draw_character
 from .overlay_sheet import FOOT, GAP, MARGIN, TITLE, Cell, frame_label

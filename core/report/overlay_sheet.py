@@ -9,8 +9,8 @@ import numpy as np
 from ..arrays import Array, Image
 from ..body.kinematics import Pose
 from ..estimate.reconstruct import Reconstruction
-from ..footage.region_tracks import RegionTracks
-from ..footage.segmentation.regions import ellipse_outline
+from ..markers.region_tracks import RegionTracks
+from ..markers.regions import ellipse_outline
 from ..review.compared_keypoints import ComparedKeypoints
 from ..take.motion import Motion
 from ..take.take import Take

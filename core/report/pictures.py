@@ -7,17 +7,17 @@ import cv2
 import numpy as np
 
 from ..arrays import Array, Image
+from ..camera.camera import Camera
 from ..errors import InputError
-from ..footage.camera import Camera
-from ..footage.clips.clip import Clip
-from ..footage.reading import Reading
-from ..footage.region_tracks import RegionTracks
+from ..markers.reading import Reading
+from ..markers.region_tracks import RegionTracks
 from ..review.compared_keypoints import ComparedKeypoints
 from ..take.conversion_record import PICTURES
 from ..take.motion import Motion
 from ..take.steady_camera import steadied_picture
 from ..take.take import Take
 from ..terms.contours import ContourModel
+from ..video.clip import Clip
 from .canvas import PAPER, SCALE, Canvas, draw_grid, side_directions, write_png
 from .overlay_sheet import CELL_WIDTH, LABEL, MARGIN, evenly_spaced_frames, frame_label, overlay_sheet, sheet
 from .stick_figure import draw_figure, legend, stick_figure

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, BoolArray
-from ..footage.keypoints.keypoints import FACE
+from ..detect.keypoints import FACE
 from .confidence import misfits
 
 PREFIX = "keypoint_"  # of the names of the arrays in a cache

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Pose
 from ..estimate.reconstruct import Reconstruction
-from ..footage.segmentation.regions import CORNERS, ellipse_outline
+from ..markers.regions import CORNERS, ellipse_outline
 from ..progress import Job, Part, within
 from ..take.take import Take
 from ..terms.region_model import RegionModel

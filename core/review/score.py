@@ -14,11 +14,11 @@ import numpy as np
 from ..arrays import Array
 from ..body.human import HUMAN
 from ..body.posture import FARTHEST_M
+from ..camera.camera import Camera
 from ..errors import InputError, shown
 from ..files.json_file import read_json
 from ..files.kinds import ByName, Items, NumberArray, Whole
 from ..files.records import Record
-from ..footage.camera import Camera
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,6 @@ from ..files.fields import COMMENT_PREFIX, Fields
 from ..files.json_file import parse_json
 from ..files.kinds import safe_path
 from ..files.paths import check_symlinks, regular_file_size
-from ..footage.clips.image_sequence import is_image, stem_of_number
 from ..take.conversion_record import RECORD_FILE, find_record
 from ..take.conversion_settings import NO_SETTINGS, ConversionSettings
 from ..take.description import (
@@ -27,6 +26,7 @@ from ..take.description import (
     effective_settings,
     find_shoot_files,
 )
+from ..video.image_sequence import is_image, stem_of_number
 
 MOST_TAKES = 100_000
 

@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ..arrays import Image
+from ..camera.camera import EYE_HEIGHT_M, default_camera_pose, guess_lens
 from ..errors import InputError, pluralize
 from ..files.fields import listed
-from ..footage.camera import EYE_HEIGHT_M, default_camera_pose, guess_lens
-from ..footage.clips.clip import Clip, sample_spread_frames
-from ..footage.colors.strong_colors import StrongColor, strong_colors
+from ..markers.strong_colors import StrongColor, strong_colors
 from ..prior.texts import EVERY_LIBRARY
 from ..progress import run
 from ..take.description import KEYFRAME_FILE, KEYPOINT_FILE, SCHEMA_VERSION, TAKE_FILE, sidecar_file
 from ..take.evidence import KEYPOINTS, MARKERS
+from ..video.clip import Clip, sample_spread_frames
 from .discovery import Shoot, ShootTake
 
 COLORED_CLIPS = 48

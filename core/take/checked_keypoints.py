@@ -3,14 +3,14 @@
 from dataclasses import replace
 from functools import lru_cache
 
+from ..detect.keypoints import People, SeenPeople
+from ..detect.picture_check import PictureFinding, applied, check_by_pictures
+from ..detect.pose_network import NAME, PoseNetwork
 from ..errors import InputError
 from ..files.digest import digest
-from ..footage.clips.frame_checks import FrameFindings
-from ..footage.keypoints.keypoints import People, SeenPeople
-from ..footage.picture_check import PictureFinding, applied, check_by_pictures
-from ..footage.pose_network import NAME, PoseNetwork
-from ..footage.reading import Reading
+from ..markers.reading import Reading
 from ..progress import Job, within
+from ..video.frame_checks import FrameFindings
 from .performer_keypoints import FEWEST_KEYFRAMES
 from .take import Take
 

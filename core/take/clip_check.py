@@ -5,13 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ..detect.frame_folder import tolerance
 from ..errors import InputError
-from ..footage.clips.clip import Clip
-from ..footage.clips.container import read_packets
-from ..footage.clips.video_file import VideoFile
-from ..footage.keypoints.frame_folder import tolerance
-from ..footage.reading import Reading
-from ..footage.region_tracks import RegionTracks
+from ..markers.reading import Reading
+from ..markers.region_tracks import RegionTracks
+from ..video.clip import Clip
+from ..video.container import read_packets
+from ..video.video_file import VideoFile
 from .take import Take
 
 LONGEST_FRAMES = 40_000

@@ -9,8 +9,8 @@ from typing import Any
 from ..errors import InputError
 from ..files.digest import content_digest, digest
 from ..files.json_file import read_json
-from ..footage.clips.image_sequence import find_images
 from ..prior.texts import COMPOSED, EVERY_LIBRARY
+from ..video.image_sequence import find_images
 from .conversion_settings import METHODS, CharacterSettings, ConversionSettings
 from .description import FILE_FIELDS, SETTING_FIELDS, Description, keypoint_files
 

@@ -13,8 +13,8 @@ from ..files.json_file import read_json
 from ..files.kinds import safe_path
 from ..files.paths import absolute_path, check_symlinks
 from ..files.records import check_version
-from ..footage.clips.image_sequence import is_image
 from ..prior.texts import EVERY_LIBRARY
+from ..video.image_sequence import is_image
 from .conversion_settings import NO_SETTINGS, ConversionSettings, read_settings, with_auto_as_library
 from .evidence import KEYPOINTS
 

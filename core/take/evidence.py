@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
+from ..detect.keypoints import BODY_POINTS
 from ..errors import pluralize
 from ..files.kinds import ByName, Choice, Items, Number, Text, Whole, relative_path
 from ..files.records import Record
-from ..footage.keypoints.keypoints import BODY_POINTS
 
 MARKERS, KEYPOINTS, DEPTH_HINTS, CONTOURS = "markers", "keypoints", "depth_hints", "contours"
 EVIDENCE = (MARKERS, KEYPOINTS, DEPTH_HINTS, CONTOURS)

@@ -10,11 +10,11 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
+from ..detect.continuity import same_person
+from ..detect.keypoints import FACE, Keypoints, People, SeenPeople
+from ..detect.performer import NOBODY, Expected, Sightings, choose_performer, person_size
 from ..errors import pluralize
-from ..footage.keypoints.continuity import same_person
-from ..footage.keypoints.keypoints import FACE, Keypoints, People, SeenPeople
-from ..footage.keypoints.performer import NOBODY, Expected, Sightings, choose_performer, person_size
-from ..footage.region_tracks import RegionTracks
+from ..markers.region_tracks import RegionTracks
 from ..prior.frame_prior import SPEED_M_PER_S
 from .take import Take
 

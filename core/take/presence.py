@@ -9,12 +9,12 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import LIMBS, limb_of
+from ..detect.keypoints import Keypoints
 from ..files.fields import listed
-from ..footage.clips.album import Album, changed_pixels
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.reading import Reading
-from ..footage.region_tracks import RegionTracks
+from ..markers.reading import Reading
+from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import runs, usual_step
+from ..video.album import Album, changed_pixels
 from .take import Take
 
 BRIDGED_S = 0.5

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import chunks
-from ..footage.reading import Reading, read_clip
-from ..footage.region_tracks import ExpectedRegions
+from ..markers.reading import Reading, read_clip
+from ..markers.region_tracks import ExpectedRegions
 from ..prior.keyframes import interpolate
 from ..progress import Job, Progress, within
 from ..terms.region_model import MarkerPlacement, RegionModel

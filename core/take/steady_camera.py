@@ -10,11 +10,11 @@ import cv2
 import numpy as np
 
 from ..arrays import Array, Image
-from ..footage.camera import Camera
-from ..footage.camera_motion import ZOOMING, CameraMotion, camera_motion, moved
-from ..footage.keypoints.keypoints import People
-from ..footage.reading import Reading
-from ..footage.region_tracks import RegionTracks
+from ..camera.camera import Camera
+from ..camera.camera_motion import ZOOMING, CameraMotion, camera_motion, moved
+from ..detect.keypoints import People
+from ..markers.reading import Reading
+from ..markers.region_tracks import RegionTracks
 from ..progress import Job, Progress
 from .performer_keypoints import performer_keypoints
 from .take import Take

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 
 from ..body.kinematics import Body
+from ..camera.camera import Camera
+from ..detect.keypoints import People
 from ..errors import InputError
 from ..files.fields import listed
-from ..footage.camera import Camera
-from ..footage.ignored_regions import IgnoredRegion
-from ..footage.keypoints.keypoints import People
-from ..footage.region_tracks import MarkerStyle
+from ..markers.ignored_regions import IgnoredRegion
+from ..markers.region_tracks import MarkerStyle
 from ..prior.keyframes import Keyframe
 from .description import TAKE_FILE
 from .evidence import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS

@@ -13,23 +13,23 @@ from ..body.actor import Actor, Segments
 from ..body.body_volume import TRUNK
 from ..body.human import HUMAN
 from ..body.kinematics import Body
+from ..camera.camera import Camera
+from ..camera.camera_fields import CameraFields
+from ..detect.keypoint_file import read_keypoints, write_keypoints
+from ..detect.keypoints import People
 from ..errors import InputError, shown
 from ..files.fields import Fields, InheritedFields, child_location, listed
 from ..files.json_file import write_atomically, write_json
 from ..files.kinds import ByName, Choice, Items, Kind, Number, Text, Whole, refuse
 from ..files.records import Object, Record, read_record
-from ..footage.camera import Camera
-from ..footage.camera_fields import CameraFields
-from ..footage.ignored_regions import (
+from ..markers.ignored_regions import (
     IGNORED_REGIONS,
     MOST_REGIONS,
     RegionFields,
     ignored_region_fields,
     ignored_regions,
 )
-from ..footage.keypoints.keypoint_file import read_keypoints, write_keypoints
-from ..footage.keypoints.keypoints import People
-from ..footage.region_tracks import MarkerStyle
+from ..markers.region_tracks import MarkerStyle
 from .clip_check import open_footage, picture_count
 from .conversion_settings import ConversionSettings
 from .description import KEYPOINT_FILE, Description, describe, keypoint_files

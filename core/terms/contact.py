@@ -18,7 +18,7 @@ from ..body.body_volume import sole_places
 from ..body.human import mass_weights
 from ..body.kinematics import Body
 from ..body.skeleton import SIDES
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from ..numerics.robust import student_cost, student_weight
 from .state import ClipState
 from .term import NormalEquations

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.body_volume import PieceStack, body_pieces
 from ..body.kinematics import Body, Pose
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from ..numerics.robust import DEGREES, student_cost, student_weight
 from .occlusion import PartOutlines, View, part_outlines, view_pieces
 from .state import ClipState

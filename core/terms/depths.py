@@ -11,7 +11,7 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from .keypoints import KeypointModel
 from .state import ClipState
 from .term import NormalEquations, add_errors, errors_cost

@@ -19,8 +19,8 @@ from ..body.human import HUMAN, WAIST_HEIGHT
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..body.skeleton import SIDES, Placement
-from ..footage.camera import Camera
-from ..footage.keypoints.keypoints import Keypoints
+from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints
 from .state import ClipState
 from .term import NormalEquations, add_errors, errors_cost
 

@@ -16,7 +16,7 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.body_volume import PieceStack
 from ..body.kinematics import Pose
 from ..body.rotations import cross
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 
 ALONG, ACROSS = 8, 4
 RINGS, SPOKES = 2, 5

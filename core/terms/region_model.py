@@ -11,7 +11,7 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.body_volume import Piece, PieceStack, body_pieces, marker_parts, segment_piece
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
-from ..footage.camera import Camera
+from ..camera.camera import Camera
 from .occlusion import (
     TINY,
     Silhouette,

@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..footage.region_tracks import RegionTracks
+from ..markers.region_tracks import RegionTracks
 from ..numerics.robust import DEGREES, student_cost, student_weight
 from .region_model import MOMENTS, RegionModel, RegionPrediction
 from .state import ClipState

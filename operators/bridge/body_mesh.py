@@ -13,7 +13,7 @@ from ...core.body.human_mesh import HumanMesh
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import SIDES
-from ...core.footage.region_tracks import MarkerStyle
+from ...core.markers.region_tracks import MarkerStyle
 from .actor_lengths import skeleton_bones
 from .character.rigify_human import skinned
 

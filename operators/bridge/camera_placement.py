@@ -7,9 +7,9 @@ import numpy as np
 from mathutils import Matrix
 
 from ...core.arrays import Array
+from ...core.camera.camera import Camera
+from ...core.camera.camera_fields import CameraPlacement
 from ...core.errors import InputError
-from ...core.footage.camera import Camera
-from ...core.footage.camera_fields import CameraPlacement
 from .footage import Footage
 from .footage_camera import may_move
 from .object_space import evaluated

@@ -8,9 +8,9 @@ import bpy
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...core.camera.camera import Camera, default_camera_pose, guess_lens
+from ...core.camera.camera_fields import CameraPlacement
 from ...core.errors import InputError
-from ...core.footage.camera import Camera, default_camera_pose, guess_lens
-from ...core.footage.camera_fields import CameraPlacement
 from .footage_camera import (
     clip_lens,
     follow_solution,
@@ -24,7 +24,7 @@ from .footage_camera import (
 )
 
 if TYPE_CHECKING:
-    from ...core.footage.clips.clip import Clip
+    from ...core.video.clip import Clip
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ class Footage:
     def open(self) -> "Clip":
         """Open the clip's file."""
         # This module is imported while the extension registers, when OpenCV may be missing.
-        from ...core.footage.clips.clip import Clip
+        from ...core.video.clip import Clip
 
         return Clip.open(self.path, fps=self.rate)
 
@@ -131,7 +131,7 @@ def footage_color(footage: Footage, pixel: ArrayLike, scene_frame: int | None = 
     Raises:
         InputError: There is no footage, no frame of it at the scene's, or the pixel lies outside.
     """
-    from ...core.footage.clips.clip import FrameReader
+    from ...core.video.clip import FrameReader
 
     width, height = footage.clip.size
     x, y = np.floor(np.asarray(pixel, dtype=np.float64)).astype(int)

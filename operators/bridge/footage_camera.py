@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ...core.footage.camera import Camera
+from ...core.camera.camera import Camera
 
 CAMERA_NAME = "Footage Camera"
 

@@ -7,10 +7,10 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.rotations import continuous_quaternions, to_quaternions
+from ...core.camera.camera import Camera
 from ...core.errors import InputError
 from ...core.files.paths import real_path
-from ...core.footage.camera import Camera
-from ...core.footage.clips.image_sequence import find_images
+from ...core.video.image_sequence import find_images
 from .actions import assign_action, channelbag_for
 from .footage import clip_rate, set_scene_range
 from .footage_camera import new_camera, set_background, set_clip_lens, set_lens, set_still_pose

@@ -13,15 +13,15 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.detect.keypoints import People, SeenPeople
 from ...core.errors import InputError
 from ...core.files.digest import digest
-from ...core.footage.keypoints.keypoints import People, SeenPeople
 from .footage import Footage
 from .scene_frames import shown_index
 
 if TYPE_CHECKING:
-    from ...core.footage.ignored_regions import IgnoredRegion
-    from ...core.footage.region_tracks import MarkerStyle
+    from ...core.markers.ignored_regions import IgnoredRegion
+    from ...core.markers.region_tracks import MarkerStyle
     from ...core.take.reference import ReferenceMotion
 
 
@@ -58,7 +58,7 @@ def file_state(path: Path) -> str | None:
 def _read(
     path: Path, state: str, frame_count: int | None, size: tuple[int, int], fps: float, frame_start: int
 ) -> People:
-    from ...core.footage.keypoints.keypoint_file import read_keypoints
+    from ...core.detect.keypoint_file import read_keypoints
 
     return read_keypoints(path, frame_count, size, fps, frame_start)
 

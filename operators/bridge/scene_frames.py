@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...core.arrays import Array, IndexArray
-from ...core.footage.region_tracks import is_variable_frame_rate
+from ...core.markers.region_tracks import is_variable_frame_rate
 from .actions import assign_action
 from .object_space import evaluated
 

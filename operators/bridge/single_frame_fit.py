@@ -11,16 +11,16 @@ from ...core.body.actor import Actor
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
+from ...core.detect.keypoints import Keypoints
 from ...core.errors import InputError
 from ...core.estimate.actor_measure import MeasuredActor, measure_standing
 from ...core.estimate.clip_problem import uncalibrated
 from ...core.estimate.keypoint_evidence import KeypointEvidence
 from ...core.estimate.performer_placement import place_standing
 from ...core.estimate.single_frame import calibrated, expected_in_frame, frame_residuals
-from ...core.footage.keypoints.keypoints import Keypoints
-from ...core.footage.markers import regions_of_frame
-from ...core.footage.reading import Reading, of_same_footage, reading_key
-from ...core.footage.region_tracks import ExpectedRegions, MarkerStyle, RegionTracks
+from ...core.markers.markers import regions_of_frame
+from ...core.markers.reading import Reading, of_same_footage, reading_key
+from ...core.markers.region_tracks import ExpectedRegions, MarkerStyle, RegionTracks
 from ...core.posing.candidates import Candidate
 from ...core.posing.frame_poses import find_frame_poses, near_pose
 from ...core.posing.frame_search import FrameShown

@@ -9,9 +9,9 @@ from ...core.arrays import Array
 from ...core.body.actor import Actor
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
-from ...core.footage.keypoints.keypoints import Keypoints
-from ...core.footage.reading import Reading, clip_times
-from ...core.footage.region_tracks import RegionTracks
+from ...core.detect.keypoints import Keypoints
+from ...core.markers.reading import Reading, clip_times
+from ...core.markers.region_tracks import RegionTracks
 from ...core.prior.keyframes import Keyframe, interpolate
 from ...core.progress import Job, within
 from ...core.take.performer_keypoints import performer_keypoints

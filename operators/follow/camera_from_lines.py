@@ -38,17 +38,17 @@ from ..shell.takes import active_take, footage_of, redraw_sidebars_soon
 from .evidence import has_keypoints, scene_evidence
 
 if TYPE_CHECKING:
-    from ...core.footage.camera_evidence import Uprights
-    from ...core.footage.camera_fit import CameraFit
+    from ...core.camera.camera_evidence import Uprights
+    from ...core.camera.camera_fit import CameraFit
 
 
 def standing_performer(take: bpy.types.PropertyGroup, stature_m: float) -> "Uprights":
     """Moments in which somebody of that stature is upright; none without keypoints of this clip."""
     from ...core.body.actor import Actor
     from ...core.body.kinematics import Body
-    from ...core.footage.camera_evidence import Uprights
-    from ...core.footage.region_tracks import RegionTracks
-    from ...core.footage.standing_moments import standing_keypoints
+    from ...core.camera.camera_evidence import Uprights
+    from ...core.detect.standing_moments import standing_keypoints
+    from ...core.markers.region_tracks import RegionTracks
     from ..bridge.take_from_scene import keypoints_without_keyframes
 
     if not has_keypoints(take):

@@ -7,8 +7,8 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
+from ...core.detect.keypoints import BODY_POINTS
 from ...core.errors import InputError
-from ...core.footage.keypoints.keypoints import BODY_POINTS
 from ..shell.base_operator import BaseOperator
 from ..shell.footage_clicks import ClickSequence
 from ..shell.footage_view import FootageRequest, side_of, stop_asking

@@ -14,7 +14,7 @@ from .marker_styles import marker_styles
 from .tracks import assigned_tracks
 
 if TYPE_CHECKING:
-    from ...core.footage.region_tracks import MarkerStyle
+    from ...core.markers.region_tracks import MarkerStyle
 
 
 def scene_evidence(take: bpy.types.PropertyGroup) -> SceneEvidence:

@@ -9,8 +9,8 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.detect.keypoints import People
 from ...core.errors import InputError
-from ...core.footage.keypoints.keypoints import People
 from ..bridge.footage_camera import may_move
 from ..bridge.scene_evidence import CLICKS, TRACKS, read_keypoint_file, tracks_at
 from ..shell.footage_view import clip_index

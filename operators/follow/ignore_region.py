@@ -18,7 +18,7 @@ from .marker_styles import MarkerSearch, search_markers, write_search
 from .mask_previews import preview_of, show_masks, update_masks
 
 if TYPE_CHECKING:
-    from ...core.footage.ignored_regions import IgnoredRegion
+    from ...core.markers.ignored_regions import IgnoredRegion
     from ...core.progress import Job
 
 
@@ -58,7 +58,7 @@ class Brush:
         self.radius_px = float(np.clip(self.radius_px * 1.25**steps, SMALLEST_PX, 0.5 * self.width))
 
     def regions(self) -> "tuple[IgnoredRegion, ...]":
-        from ...core.footage.ignored_regions import IgnoredRegion
+        from ...core.markers.ignored_regions import IgnoredRegion
 
         return tuple(IgnoredRegion(stroke=tuple(points), radius_px=radius) for radius, points in self.strokes)
 
@@ -205,7 +205,7 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
         self.report({"INFO"}, f"Brushed regions are never a marker: {len(result.more)} more")
 
     def _move(self, context: bpy.types.Context, brush: Brush, event: bpy.types.Event) -> None:
-        from ...core.footage.ignored_regions import MOST_POINTS
+        from ...core.markers.ignored_regions import MOST_POINTS
 
         pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
         if pixel is not None:
@@ -242,7 +242,7 @@ class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
     requirements = (footage, markers, still_areas, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
-        from ...core.footage.ignored_regions import IgnoredRegion
+        from ...core.markers.ignored_regions import IgnoredRegion
 
         take = active_take(scene)
         boxes = [

@@ -8,7 +8,7 @@ import bpy
 from ..shell.takes import unique_name
 
 if TYPE_CHECKING:
-    from ...core.footage.ignored_regions import IgnoredRegion
+    from ...core.markers.ignored_regions import IgnoredRegion
 
 
 PLACES = 2  # Decimals of a pixel that files keep: Blender's own numbers are of single precision
@@ -44,7 +44,7 @@ def ignored_pixels_key(take: bpy.types.PropertyGroup) -> tuple[object, ...]:
 
 
 def _to_core(region: bpy.types.PropertyGroup) -> "IgnoredRegion":
-    from ...core.footage.ignored_regions import IgnoredRegion
+    from ...core.markers.ignored_regions import IgnoredRegion
 
     frames = (int(region.first), int(region.last)) if region.some_frames else None
     if not len(region.stroke):

@@ -18,7 +18,7 @@ from .evidence import add_keypoint_file, keypoint_files, keypoint_path, scene_ev
 from .frame_keypoints import clear_readings
 
 if TYPE_CHECKING:
-    from ...core.footage.keypoints.keypoints import People
+    from ...core.detect.keypoints import People
     from ...core.progress import Job
 
 
@@ -81,9 +81,9 @@ def _read(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, path: Path) -> 
 
 def _whole(path: Path) -> Path:
     """The folder of a detector that writes a file a frame, where one of its files was chosen."""
+    from ...core.detect.frame_folder import is_one_frame
+    from ...core.detect.keypoint_file import LARGEST_BYTES
     from ...core.files.json_file import read_json_value
-    from ...core.footage.keypoints.frame_folder import is_one_frame
-    from ...core.footage.keypoints.keypoint_file import LARGEST_BYTES
 
     if path.is_dir():
         return path
@@ -124,8 +124,8 @@ class Detected:
 
 def detect(scene: bpy.types.Scene) -> "Job[Detected]":
     """Find everybody in the active take's clip; the scene stays as it is."""
-    from ...core.footage.pose_network import PoseNetwork
-    from ...core.footage.pose_tracking import find_people
+    from ...core.detect.pose_network import PoseNetwork
+    from ...core.detect.pose_tracking import find_people
     from ...core.take.clip_check import open_footage
 
     take = active_take(scene)
@@ -138,7 +138,7 @@ def detect(scene: bpy.types.Scene) -> "Job[Detected]":
 
 def keep_detected(scene: bpy.types.Scene, found: Detected) -> str:
     """Write the keypoints beside the clip and let the take follow them; returns a sentence on them."""
-    from ...core.footage.keypoints.keypoint_file import write_keypoints
+    from ...core.detect.keypoint_file import write_keypoints
 
     take, people = take_by_identifier(scene, found.take), found.people
     write_keypoints(found.output, people, found.frame_start, found.fps)

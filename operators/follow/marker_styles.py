@@ -20,11 +20,11 @@ from .marker_properties import segment_title
 from .mask_previews import keep_preview, show_masks, update_shown_masks
 
 if TYPE_CHECKING:
-    from ...core.footage.clips.clip import ClipSamples
-    from ...core.footage.ignored_regions import IgnoredRegion
-    from ...core.footage.marker_check import MarkerCheck
-    from ...core.footage.region_tracks import MarkerStyle
+    from ...core.markers.ignored_regions import IgnoredRegion
+    from ...core.markers.marker_check import MarkerCheck
+    from ...core.markers.region_tracks import MarkerStyle
     from ...core.progress import Job
+    from ...core.video.clip import ClipSamples
 
 
 def request_for(segment: str) -> FootageRequest:
@@ -41,7 +41,7 @@ def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
     Raises:
         InputError: Two markers have one name or one segment.
     """
-    from ...core.footage.region_tracks import MarkerStyle
+    from ...core.markers.region_tracks import MarkerStyle
 
     styles = []
     for marker in take.markers:
@@ -62,7 +62,7 @@ def styles_with_colors(take: bpy.types.PropertyGroup, colors: Mapping[str, Rgb])
     Raises:
         InputError: Two markers have one name or one segment, or there is no marker of a name.
     """
-    from ...core.footage.region_tracks import MarkerStyle
+    from ...core.markers.region_tracks import MarkerStyle
 
     styles, picked = marker_styles(take), {marker.name for marker in take.markers if marker.is_picked}
     if not styles:
@@ -104,9 +104,9 @@ def find_markers(
     footage: Footage, styles: "tuple[MarkerStyle, ...]", ignored: "tuple[IgnoredRegion, ...]"
 ) -> "Job[MarkerCheck]":
     """Find markers in frames sampled over a clip, which are decoded once a session."""
-    from ...core.footage.clips.clip import sample_clip
-    from ...core.footage.marker_check import check_markers
-    from ...core.footage.reading import footage_digest
+    from ...core.markers.marker_check import check_markers
+    from ...core.markers.reading import footage_digest
+    from ...core.video.clip import sample_clip
 
     key = footage_digest(footage.path)
     samples = _samples.pop(key, None)

@@ -15,10 +15,10 @@ from ..shell.takes import find_take, footage_of, redraw_footage
 from .ignored_regions import ignored_pixels_key, ignored_regions
 
 if TYPE_CHECKING:
-    from ...core.footage.clips.clip import FrameReader
-    from ...core.footage.ignored_regions import IgnoredRegion
-    from ...core.footage.marker_check import MarkerCheck
-    from ...core.footage.region_tracks import MarkerStyle
+    from ...core.markers.ignored_regions import IgnoredRegion
+    from ...core.markers.marker_check import MarkerCheck
+    from ...core.markers.region_tracks import MarkerStyle
+    from ...core.video.clip import FrameReader
 
 
 Key = tuple[str, tuple[tuple[str, tuple[float, ...]], ...], tuple[object, ...]]
@@ -123,7 +123,7 @@ def is_of_frame(preview: Preview, scene: bpy.types.Scene) -> bool:
 
 def ignored_mask(take: bpy.types.PropertyGroup, more: "tuple[IgnoredRegion, ...]" = ()) -> Image | None:
     """The mask (rows, columns) of what is ignored in the current frame, and of more; None if nothing is."""
-    from ...core.footage.ignored_regions import IgnoredPixels
+    from ...core.markers.ignored_regions import IgnoredPixels
 
     scene = take.id_data
     pixels = IgnoredPixels((*ignored_regions(take), *more), (take.clip.size[0], take.clip.size[1]))
@@ -131,8 +131,8 @@ def ignored_mask(take: bpy.types.PropertyGroup, more: "tuple[IgnoredRegion, ...]
 
 
 def _masks(preview: Preview, footage: Footage, ignored: Image | None) -> tuple[ColorMask, ...]:
-    from ...core.footage.clips.clip import FrameReader
-    from ...core.footage.segmentation.regions import color_masks, mask_outlines
+    from ...core.markers.regions import color_masks, mask_outlines
+    from ...core.video.clip import FrameReader
 
     if preview.reader is None:
         preview.reader = FrameReader(footage.open())

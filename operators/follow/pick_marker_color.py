@@ -26,8 +26,8 @@ from .marker_styles import (
 from .mask_previews import end_picked, show_masks, show_picked, update_masks
 
 if TYPE_CHECKING:
-    from ...core.footage.marker_check import MarkerCheck
-    from ...core.footage.region_tracks import MarkerStyle
+    from ...core.markers.marker_check import MarkerCheck
+    from ...core.markers.region_tracks import MarkerStyle
     from ...core.progress import Job
 
 

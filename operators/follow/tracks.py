@@ -3,9 +3,9 @@
 import bpy
 
 from ...core.body.human import HUMAN
+from ...core.detect.keypoints import FACE, FEET, HANDS, SPINE
+from ...core.detect.layouts import named_point
 from ...core.errors import InputError
-from ...core.footage.keypoints.keypoints import FACE, FEET, HANDS, SPINE
-from ...core.footage.keypoints.layouts import named_point
 from ..bridge.scene_evidence import AssignedTrack, clip_tracks
 from ..shell.base_operator import BaseOperator
 from ..shell.requirements import footage, idle

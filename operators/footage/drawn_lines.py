@@ -11,9 +11,9 @@ from ...core.arrays import Array
 if TYPE_CHECKING:
     import bpy
 
-    from ...core.footage.camera import Camera
-    from ...core.footage.camera_evidence import CameraEvidence
-    from ...core.footage.camera_fit import CameraFit
+    from ...core.camera.camera import Camera
+    from ...core.camera.camera_evidence import CameraEvidence
+    from ...core.camera.camera_fit import CameraFit
 
 VERTICAL, LEVEL, ACROSS, HEIGHT = KINDS = ("VERTICAL", "LEVEL", "ACROSS", "HEIGHT")
 NEAR_PX = 12.0  # Distance in the region within which an end is taken [px at a UI scale of 1]
@@ -152,7 +152,7 @@ def store_lines(take: "bpy.types.PropertyGroup", lines: list[DrawnLine]) -> None
 
 def evidence_of(lines: list[DrawnLine], stature_m: float) -> "CameraEvidence":
     """What lines tell of the camera; the upper end of a known height is the higher one in the picture."""
-    from ...core.footage.camera_evidence import CameraEvidence, Uprights
+    from ...core.camera.camera_evidence import CameraEvidence, Uprights
 
     def ends(kind: str) -> Array:
         return np.array([line.ends for line in lines if line.kind == kind]).reshape(-1, 2, 2)

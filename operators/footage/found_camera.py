@@ -11,8 +11,8 @@ from .properties import confirm_placement
 from .take_footage import lens_is_guess
 
 if TYPE_CHECKING:
-    from ...core.footage.camera_evidence import CameraEvidence
-    from ...core.footage.camera_fit import CameraFit
+    from ...core.camera.camera_evidence import CameraEvidence
+    from ...core.camera.camera_fit import CameraFit
 
 HINTS = {
     "height": "Height is kept: draw something of known height, or the performer nearer and farther away",
@@ -32,7 +32,7 @@ CONTRADICTION = "The lines are {px:.1f} px off: one of them is not what it is sa
 
 def fit_take(take: bpy.types.PropertyGroup, evidence: "CameraEvidence") -> "CameraFit":
     """Find a take's camera from what its picture shows; a lens that nobody guessed is kept."""
-    from ...core.footage.camera_fit import fit_camera
+    from ...core.camera.camera_fit import fit_camera
 
     camera = still_camera(footage_of(take.id_data, take))
     return fit_camera(camera, evidence, lens_is_known=not lens_is_guess(take))
@@ -66,7 +66,7 @@ def values(fit: "CameraFit") -> str:
 
 def deviations(fit: "CameraFit") -> str:
     """The deviations alone, of what the picture determines."""
-    from ...core.footage.camera_fit import UNITS
+    from ...core.camera.camera_fit import UNITS
 
     found = (f"{name} ± {fit.spread(name)}{UNITS[name][1]}" for name in UNITS if name not in fit.kept)
     return f"Found: {', '.join(found)}"

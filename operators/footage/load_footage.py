@@ -197,7 +197,7 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Check the file, and only then set the clip's path."""
-        from ...core.footage.clips.clip import Clip
+        from ...core.video.clip import Clip
         from ..bridge.footage_to_scene import clip_file, stored_path
 
         take = active_take(context.scene)

@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import InputError
-from ...core.footage.region_tracks import is_variable_frame_rate
+from ...core.markers.region_tracks import is_variable_frame_rate
 from ..bridge.footage import attach_footage, clip_path, is_guess
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
 from ..shell.results import clear_review
@@ -77,7 +77,7 @@ def update_clip_state(take: bpy.types.PropertyGroup) -> None:
 def update_clip_digest(take: bpy.types.PropertyGroup) -> None:
     """Store the digest of a take's clip as it is on disk now; if it is missing, the stored one stays."""
     try:
-        from ...core.footage.reading import footage_digest
+        from ...core.markers.reading import footage_digest
 
         take.clip_state.contents = footage_digest(footage_of(take.id_data, take).path)
     except (InputError, ModuleNotFoundError):  # reported when the clip is read

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ...core.arrays import Array
     from ...core.body.kinematics import Body
     from ...core.body.posture import Posture
-    from ...core.footage.camera import Camera
+    from ...core.camera.camera import Camera
     from ...core.posing.turned import Turned
 
 

@@ -12,7 +12,7 @@ from ..shell.takes import find_take
 if TYPE_CHECKING:
     from ...core.body.kinematics import Body
     from ...core.body.posture import Posture
-    from ...core.footage.camera import Camera
+    from ...core.camera.camera import Camera
 
 
 TITLES = {

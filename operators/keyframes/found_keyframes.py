@@ -14,7 +14,7 @@ from ..shell.results import reading_of
 from ..shell.takes import footage_of
 
 if TYPE_CHECKING:
-    from ...core.footage.reading import Reading
+    from ...core.markers.reading import Reading
     from ...core.prior.keyframes import Matched
     from ...core.progress import Job
     from ...core.take.take import Take

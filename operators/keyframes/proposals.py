@@ -18,7 +18,7 @@ from ..shell.takes import active_take, find_take, footage_of, take_by_identifier
 
 if TYPE_CHECKING:
     from ...core.arrays import Array
-    from ...core.footage.reading import Reading
+    from ...core.markers.reading import Reading
     from ...core.progress import Job
 
 
@@ -48,7 +48,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Return the job; a clip that was read for these markers before is not read again."""
-        from ...core.footage.reading import of_same_footage, read_clip, reading_key
+        from ...core.markers.reading import of_same_footage, read_clip, reading_key
         from ...core.prior.keyframe_proposals import evidence_speed, propose_keyframes
         from ..bridge.take_from_scene import keypoints_without_keyframes
 

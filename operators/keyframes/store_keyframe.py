@@ -35,7 +35,7 @@ from .found_keyframes import SceneClip, known_matches, read_known_take, undecide
 if TYPE_CHECKING:
     from ...core.body.kinematics import Body
     from ...core.body.posture import Posture
-    from ...core.footage.reading import Reading
+    from ...core.markers.reading import Reading
 
 
 SAME_POSE = 1e-3  # change of a pose below which nobody changed it [m, rad]
@@ -58,7 +58,7 @@ def improve_neighbors(context: bpy.types.Context, take: bpy.types.PropertyGroup,
 
 def _reading(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Reading | None":
     """The kept reading, if it is of this footage, these markers and these ignored regions."""
-    from ...core.footage.reading import of_same_footage, reading_key
+    from ...core.markers.reading import of_same_footage, reading_key
 
     reading = reading_of(take)
     if reading is None or take.clip_state.missing:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core.arrays import Array, BoolArray
-from ...core.footage.keypoints.keypoints import mirrored_point
+from ...core.detect.keypoints import mirrored_point
 from .drawing import SOURCES, THROWN_OUT, Item, Stroke, Style
 from .figures import SLANTING, UPRIGHT, circles, segments, squares
 

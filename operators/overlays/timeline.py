@@ -17,7 +17,7 @@ from .drawing import Color, Fill, Item, Label, Stroke, faded, paint
 from .figures import diamonds, segments, squares
 
 if TYPE_CHECKING:
-    from ...core.footage.reading import Reading
+    from ...core.markers.reading import Reading
 
 
 CONFIDENCE_COLORS = np.array([[0.90, 0.42, 0.10], [0.93, 0.83, 0.35], [0.22, 0.55, 0.90]])

@@ -23,8 +23,8 @@ from .drawing import side_color
 from .figures import circles, segments
 
 if TYPE_CHECKING:
-    from ...core.footage.camera import Camera
-    from ...core.footage.camera_evidence import FloorGrid
+    from ...core.camera.camera import Camera
+    from ...core.camera.camera_evidence import FloorGrid
 
 
 # --- Joints that can be dragged
@@ -181,8 +181,8 @@ def _key(camera: "Camera") -> tuple[float | int, ...]:
 @lru_cache(maxsize=4)
 def _grid(key: tuple[float | int, ...]) -> "FloorGrid":
     """The grid of a camera; the same from one redraw to the next."""
-    from ...core.footage.camera import Camera
-    from ...core.footage.camera_evidence import floor_grid
+    from ...core.camera.camera import Camera
+    from ...core.camera.camera_evidence import floor_grid
 
     lens_mm, sensor_width_mm, width, height, shift_x, shift_y, k1, k2, k3, *pose = key
     size = (int(width), int(height))

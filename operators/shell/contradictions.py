@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import bpy
 
-from ...core.footage.keypoints.keypoints import BODY_POINTS
+from ...core.detect.keypoints import BODY_POINTS
 
 SAME_FRAME = 0.5  # a note nearer to a frame than this [frames] is of that frame
 SEPARATOR = "\n"  # between names, which are of one line each

@@ -12,7 +12,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from numpy.typing import ArrayLike
 
 from ...core.arrays import Array
-from ...core.footage.camera import Camera
+from ...core.camera.camera import Camera
 from ..bridge.camera_placement import read_lens
 from ..bridge.scene_frames import scene_frames, shown_index
 from .results import reading_of

@@ -15,7 +15,7 @@ from ...core.files.digest import ArrayCache, Arrays, digest
 if TYPE_CHECKING:
     from ...core.arrays import Array
     from ...core.estimate.reconstruct import Reconstruction
-    from ...core.footage.reading import Reading
+    from ...core.markers.reading import Reading
     from ...core.review.review import Review
 
 
@@ -75,14 +75,14 @@ def reading_of(take: bpy.types.PropertyGroup) -> "Reading | None":
 
     It is for display: only `read_footage` checks whether it still holds.
     """
-    from ...core.footage.reading import reading_from_arrays  # late: registering must not need OpenCV
+    from ...core.markers.reading import reading_from_arrays  # late: registering must not need OpenCV
 
     return _load(_readings, take.reading_key, reading_from_arrays)
 
 
 def keep_reading(take: bpy.types.PropertyGroup, reading: "Reading") -> None:
     """Keep the reading of a take's clip, in memory and on disk."""
-    from ...core.footage.reading import reading_arrays
+    from ...core.markers.reading import reading_arrays
 
     known = take.reading_key == reading.key and reading_of(take) is not None
     _readings.put(reading.key, reading)

@@ -13,7 +13,7 @@ from ..bridge.footage import Footage, set_scene_range
 from ..bridge.footage_camera import may_move
 
 if TYPE_CHECKING:
-    from ...core.footage.camera_fields import CameraPlacement
+    from ...core.camera.camera_fields import CameraPlacement
 
 
 VERSION = 1  # version of Keymark's properties; each scene holds the version that wrote it

@@ -165,7 +165,7 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
 
     def _delegate(self, execution_context: str) -> set[str]:
         """Call the operator for the file's content, and return its result."""
-        from ...core.footage.keypoints.keypoint_file import LARGEST_BYTES
+        from ...core.detect.keypoint_file import LARGEST_BYTES
 
         path = Path(bpy.path.abspath(self.filepath))
         value = read_json_value(path, LARGEST_BYTES)

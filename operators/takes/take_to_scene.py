@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 
 from ...core.arrays import Array
-from ...core.footage.reading import clip_times
+from ...core.markers.reading import clip_times
 from ...core.progress import run
 from ...core.take.clip_check import check_frame_count, open_clip, rate_note
 from ...core.take.description import KEYFRAME_FILE, describe

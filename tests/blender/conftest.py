@@ -15,8 +15,8 @@ from keymark.core.body.body_volume import body_pieces
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.region_tracks import MarkerStyle
+from keymark.core.camera.camera import Camera
+from keymark.core.markers.region_tracks import MarkerStyle
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take

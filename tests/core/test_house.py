@@ -20,7 +20,9 @@ ROOMS = (
     ("core.errors",),
     ("core.progress", "core.files"),
     ("core.body",),
-    ("core.footage",),
+    ("core.video",),
+    ("core.camera",),
+    ("core.detect", "core.markers"),
     ("core.terms",),
     ("core.prior",),
     ("core.take",),
@@ -144,8 +146,8 @@ def relative_imports(file: Path, name: str, known: set[str]) -> Iterator[str]:
         ("core.body.skeleton", "def late():\n    from mathutils import Matrix"),
         ("core.body.skeleton", "from ...operators import bridge"),
         ("core.review.score", "from ...operators import bridge"),
-        ("core.body.skeleton", "from ..footage import camera"),
-        ("core.footage.clips.clip", "from ...take.take import Take"),
+        ("core.body.skeleton", "from ..camera import camera"),
+        ("core.video.clip", "from ..take.take import Take"),
         ("core.errors", "from .body import skeleton"),
         ("core.estimate.kalman", "from ..review.score import score"),
         ("core.estimate.reconstruct", "from ..report import pictures"),
@@ -158,7 +160,7 @@ def relative_imports(file: Path, name: str, known: set[str]) -> Iterator[str]:
     ],
 )
 def test_a_wrong_import_is_found(name: str, source: str) -> None:
-    known = {"core.report", "core.body.skeleton", "core.footage.camera", "operators.bridge", "core.errors"}
+    known = {"core.report", "core.body.skeleton", "core.camera.camera", "operators.bridge", "core.errors"}
     assert len(wrong_imports(name, False, source, known)) == 1
 
 
@@ -169,7 +171,7 @@ def test_a_wrong_import_is_found(name: str, source: str) -> None:
             "core.body.skeleton",
             "import numpy as np\nfrom . import rotations\nfrom ..errors import InputError",
         ),
-        ("core.terms.regions", "from ..body.kinematics import Body\nfrom ..footage import camera"),
+        ("core.terms.regions", "from ..body.kinematics import Body\nfrom ..camera import camera"),
         ("core.estimate.reconstruct", "from ..take.take import Take\nfrom . import kalman"),
         ("operators.bridge.fcurves", "import bpy\nfrom ...core.body import skeleton"),
         (
@@ -179,7 +181,7 @@ def test_a_wrong_import_is_found(name: str, source: str) -> None:
     ],
 )
 def test_a_right_import_passes(name: str, source: str) -> None:
-    known = {"core.footage.camera", "core.body.skeleton", "core.body.rotations", "core.take.motion"}
+    known = {"core.camera.camera", "core.body.skeleton", "core.body.rotations", "core.take.motion"}
     assert wrong_imports(name, False, source, known) == []
 
 

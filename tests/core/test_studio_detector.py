@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from keymark.core.arrays import Array
-from keymark.core.footage.keypoints.keypoint_file import read_keypoints, write_keypoints
-from keymark.core.footage.keypoints.keypoints import People
+from keymark.core.detect.keypoint_file import read_keypoints, write_keypoints
+from keymark.core.detect.keypoints import People
 from keymark.core.take.take import evidence_of
 from keymark.core.take.take_file import read_take
 

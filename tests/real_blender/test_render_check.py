@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 import render_check
 from installed_blender import Blender
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 
 
 @pytest.fixture(scope="module")

@@ -7,15 +7,15 @@ import json
 
 import numpy as np
 from keymark.core.arrays import Image
+from keymark.core.camera.camera import Camera
 from keymark.core.estimate.reconstruct import reconstruct
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.clips.clip import Clip
 from keymark.core.progress import run
 from keymark.core.report.canvas import INK, Canvas
 from keymark.core.report.stick_figure import draw_figure, stick_figure
 from keymark.core.take.conversion_settings import METHODS
 from keymark.core.take.motion import Motion
 from keymark.core.take.take_file import read_take
+from keymark.core.video.clip import Clip
 
 from .results import DEMO, KEYFRAMES
 

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 from keymark.core.arrays import Array, Image
 from keymark.core.estimate.reconstruct import reconstruct
-from keymark.core.footage.clips.clip import Clip
 from keymark.core.progress import run
 from keymark.core.report.canvas import INK, WHITE, Canvas, Color, write_png
 from keymark.core.report.mannequin import TILT_RAD, View, backdrop, draw_mannequin, mannequin, view_axes
 from keymark.core.report.stick_figure import draw_figure, stick_figure
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
+from keymark.core.video.clip import Clip
 
 from .results import Results
 from .writing import write_picture

@@ -6,18 +6,18 @@ from pathlib import Path
 import cv2
 import numpy as np
 from keymark.core.arrays import Array, Image
+from keymark.core.camera.camera import Camera
 from keymark.core.estimate.reconstruct import reconstruct
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.clips.clip import Clip, sample_clip
-from keymark.core.footage.colors.color_model import ColorModel
-from keymark.core.footage.marker_check import check_markers
-from keymark.core.footage.segmentation.regions import color_masks, mask_outlines
+from keymark.core.markers.color_model import ColorModel
+from keymark.core.markers.marker_check import check_markers
+from keymark.core.markers.regions import color_masks, mask_outlines
 from keymark.core.progress import run
 from keymark.core.report.canvas import WHITE, Canvas, Color
 from keymark.core.report.overlay_sheet import paler
 from keymark.core.report.stick_figure import StickFigure, draw_figure, stick_figure
 from keymark.core.review.review import Review, review
 from keymark.core.take.take import Take
+from keymark.core.video.clip import Clip, sample_clip
 from studio.viewpoint import look_from
 
 from .results import BLEND, CHARACTER, Results

@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 from keymark.core.arrays import Image
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 from keymark.operators.cli.blender_silence import blender_silence
 from mathutils import Vector
 from studio.filming import place_camera, prepare_cycles, render

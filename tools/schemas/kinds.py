@@ -7,15 +7,15 @@ from functools import cache, singledispatch
 from typing import Any
 
 from keymark.core.body.posture import PostureValues
+from keymark.core.camera.camera_fields import FARTHEST_M, MOST_DISTORTION, CameraFields, Distortion, Pose
+from keymark.core.detect.detected_frames import FARTHEST_M as FARTHEST_GUESS_M
+from keymark.core.detect.detected_frames import FARTHEST_PX, MOST_PEOPLE
+from keymark.core.detect.keypoint_file import OwnFile
+from keymark.core.detect.layouts import OWN
 from keymark.core.files import kinds, records
 from keymark.core.files.kinds import Kind, NumberArray
 from keymark.core.files.records import Record, declared
-from keymark.core.footage.camera_fields import FARTHEST_M, MOST_DISTORTION, CameraFields, Distortion, Pose
-from keymark.core.footage.ignored_regions import RegionFields
-from keymark.core.footage.keypoints.detected_frames import FARTHEST_M as FARTHEST_GUESS_M
-from keymark.core.footage.keypoints.detected_frames import FARTHEST_PX, MOST_PEOPLE
-from keymark.core.footage.keypoints.keypoint_file import OwnFile
-from keymark.core.footage.keypoints.layouts import OWN
+from keymark.core.markers.ignored_regions import RegionFields
 from keymark.core.prior.library import LibraryMotion, TravelKind
 from keymark.core.retarget.maps.character_map import PropertyValue, Turn
 from keymark.core.take.conversion_settings import (

@@ -7,7 +7,7 @@ import numpy as np
 from keymark.core.arrays import Array
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 
 from .build import Build
 from .look import Look

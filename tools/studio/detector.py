@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from keymark.core.arrays import Array, BoolArray
 from keymark.core.body.body_volume import sole_offsets
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.keypoints.keypoints import People, SeenPeople, mirrored_point
+from keymark.core.camera.camera import Camera
+from keymark.core.detect.keypoints import People, SeenPeople, mirrored_point
 from scipy.signal import lfilter
 
 from .performance import Performance, principal_points

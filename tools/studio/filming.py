@@ -9,7 +9,7 @@ import bpy
 import cv2
 import numpy as np
 from keymark.core.arrays import Array, BoolArray, Image
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 from mathutils import Matrix
 
 from .look import MARKERS

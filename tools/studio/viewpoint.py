@@ -1,7 +1,7 @@
 """Camera poses by viewpoint and target."""
 
 import numpy as np
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 
 
 def look_at(

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from ...arrays import Array
+from ...detect.keypoints import Keypoints, People, mirrored_point
 from ...errors import KeymarkError
-from ...footage.keypoints.keypoints import Keypoints, People, mirrored_point
 from ...prior.keyframes import interpolate
 from ...take.clip_check import check_frame_count, check_in_front
 from ...take.performer_keypoints import performer_keypoints

@@ -4,17 +4,17 @@ import json
 
 import numpy as np
 
-from ...footage.clips.clip import SAMPLED_FRAMES, Clip, ClipSamples, sample_spread_frames
-from ...footage.clips.container import read_packets
-from ...footage.clips.image_sequence import ImageSequence
-from ...footage.clips.video_file import VideoFile
-from ...footage.ignored_regions import IGNORED_REGIONS, IgnoredRegion, ignored_region_fields
-from ...footage.marker_check import MarkerCheck, MarkerReadout, check_markers
-from ...footage.region_tracks import is_variable_frame_rate
+from ...markers.ignored_regions import IGNORED_REGIONS, IgnoredRegion, ignored_region_fields
+from ...markers.marker_check import MarkerCheck, MarkerReadout, check_markers
+from ...markers.region_tracks import is_variable_frame_rate
 from ...progress import run
 from ...take.clip_check import VARIABLE_RATE, check_size, rate_note
 from ...take.read_footage import expected_regions
 from ...take.take import Take
+from ...video.clip import SAMPLED_FRAMES, Clip, ClipSamples, sample_spread_frames
+from ...video.container import read_packets
+from ...video.image_sequence import ImageSequence
+from ...video.video_file import VideoFile
 from .evidence_check import Findings
 
 ENOUGH_FRAMES = SAMPLED_FRAMES // 2

@@ -5,11 +5,10 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ...detect.pose_network import PoseNetwork
 from ...estimate.reconstruct import check_method
 from ...files.fields import PLACED, Fields, child_location
-from ...footage.clips.clip import Clip
-from ...footage.marker_check import MarkerReadout
-from ...footage.pose_network import PoseNetwork
+from ...markers.marker_check import MarkerReadout
 from ...pipeline.convert import take_to_convert
 from ...pipeline.place import is_detected, is_unplaced, take_to_place
 from ...posing.posing_input import check_followed
@@ -19,6 +18,7 @@ from ...take.description import Description
 from ...take.evidence import CONTOURS, KEYPOINTS, MARKERS, in_order
 from ...take.take import Take, evidence_of
 from ...take.take_file import read_described
+from ...video.clip import Clip
 from ..discovery import ShootTake
 from .evidence_check import Findings, KeypointReadout, check_keyframes, check_keypoints
 from .footage_check import check_footage, count_frames

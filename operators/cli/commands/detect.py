@@ -7,19 +7,19 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ....core.detect.keypoint_file import write_keypoints
+from ....core.detect.keypoints import People
+from ....core.detect.pose_network import PoseNetwork
+from ....core.detect.pose_tracking import find_people
 from ....core.errors import ConversionError, InputError, KeymarkError, describe_unexpected, pluralize
 from ....core.files.fields import listed
 from ....core.files.kinds import read_field
-from ....core.footage.clips.image_sequence import find_images
-from ....core.footage.keypoints.keypoint_file import write_keypoints
-from ....core.footage.keypoints.keypoints import People
-from ....core.footage.pose_network import PoseNetwork
-from ....core.footage.pose_tracking import find_people
 from ....core.progress import run, stretch
 from ....core.shoot.discovery import VIDEOS, ShootTake, find_takes, open_shoot
 from ....core.take.clip_check import open_footage
 from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, Description, find_shoot_files, sidecar_file
 from ....core.take.take_file import FRAME_RATE, FRAME_START
+from ....core.video.image_sequence import find_images
 from ..console import Console, arguments_console
 from ..options import output
 from ..parser import Command, UsageError, argument, refuse_existing

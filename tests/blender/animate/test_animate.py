@@ -10,7 +10,7 @@ from _characters import plain_character
 from _shoot import gliding, write_video
 from _synthetic_take import BODY, true_postures, write_keypoints
 from bpy.types import Object, PropertyGroup
-from keymark.core.footage.camera_fields import CameraPlacement
+from keymark.core.camera.camera_fields import CameraPlacement
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.operators.animate import NOTHING
 from keymark.operators.animate.stages import animate, follow_found_file

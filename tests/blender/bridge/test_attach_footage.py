@@ -5,7 +5,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 from keymark.core.take.take import Take
 from keymark.operators.bridge.camera_placement import read_camera
 from keymark.operators.bridge.footage import Footage, attach_footage

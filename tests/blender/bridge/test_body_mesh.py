@@ -11,7 +11,7 @@ from keymark.core.body.body_volume import segment_piece, sole_offsets
 from keymark.core.body.human_mesh import FILE
 from keymark.core.body.kinematics import Body, Pose
 from keymark.core.body.posture import Posture
-from keymark.core.footage.region_tracks import MarkerStyle
+from keymark.core.markers.region_tracks import MarkerStyle
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.body_mesh import build_body_mesh
 from keymark.operators.bridge.pose import write_posture

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 from _footage import FRAMES, H264, encode, ffmpeg, number_of, overwritten, write_numbered_take
-from keymark.core.footage.clips.clip import Clip
+from keymark.core.video.clip import Clip
 from keymark.operators.bridge.footage_to_scene import load_footage
 
 LOOKED_AT = (1, 5, 12, 20, 24)

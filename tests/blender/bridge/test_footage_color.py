@@ -2,7 +2,7 @@
 
 import bpy
 import numpy as np
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 from keymark.core.take.take import Take
 from keymark.operators.bridge.footage import Footage, footage_color
 from keymark.operators.bridge.footage_to_scene import show_footage

@@ -6,8 +6,8 @@ import bpy
 import numpy as np
 import pytest
 from bpy_extras.object_utils import world_to_camera_view
+from keymark.core.camera.camera import Camera
 from keymark.core.errors import InputError
-from keymark.core.footage.camera import Camera
 from keymark.core.take.take import Take
 from keymark.operators.bridge.camera_placement import read_camera
 from keymark.operators.bridge.footage import Footage

@@ -6,7 +6,7 @@ import bpy
 import pytest
 import render_check
 import render_motion
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.operators.cli.main import main
 
 pytestmark = pytest.mark.slow

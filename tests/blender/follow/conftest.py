@@ -7,8 +7,8 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from keymark.core.footage.keypoints.keypoint_file import write_keypoints
-from keymark.core.footage.keypoints.keypoints import People, SeenPeople
+from keymark.core.detect.keypoint_file import write_keypoints
+from keymark.core.detect.keypoints import People, SeenPeople
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import write_take

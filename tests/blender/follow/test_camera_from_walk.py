@@ -10,9 +10,9 @@ import pytest
 from keymark.core.arrays import Array
 from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.posture import Posture
-from keymark.core.footage.camera_fields import CameraPlacement
-from keymark.core.footage.keypoints.keypoint_file import write_keypoints
-from keymark.core.footage.keypoints.keypoints import People, SeenPeople
+from keymark.core.camera.camera_fields import CameraPlacement
+from keymark.core.detect.keypoint_file import write_keypoints
+from keymark.core.detect.keypoints import People, SeenPeople
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.shell.takes import active_take

@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from keymark.core.footage.keypoints.keypoint_file import write_keypoints
+from keymark.core.detect.keypoint_file import write_keypoints
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.follow.evidence import clicked_here, scene_evidence

@@ -7,7 +7,7 @@ import bpy
 import cv2
 import numpy as np
 import pytest
-from keymark.core.footage.ignored_regions import IgnoredRegion
+from keymark.core.markers.ignored_regions import IgnoredRegion
 from keymark.core.progress import run
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take

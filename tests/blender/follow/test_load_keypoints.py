@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 import pytest
 from _fake_network import MiddleNetwork
-from keymark.core.footage.keypoints.keypoint_file import write_keypoints
+from keymark.core.detect.keypoint_file import write_keypoints
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.follow.evidence import keypoint_path
@@ -243,7 +243,7 @@ def test_a_dropped_file_of_keypoints_is_loaded(plain: bpy.types.Scene, keypoint_
 
 @pytest.fixture(autouse=True)
 def network(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("keymark.core.footage.pose_network.PoseNetwork", MiddleNetwork)
+    monkeypatch.setattr("keymark.core.detect.pose_network.PoseNetwork", MiddleNetwork)
 
 
 def test_what_is_found_is_written_beside_the_clip_and_listed(

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 import pytest
-from keymark.core.footage.keypoints.keypoints import People
+from keymark.core.detect.keypoints import People
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.scene_evidence import AssignedTrack, people_of_tracks

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from keymark.core.footage.camera_fields import CameraPlacement, heading_rad
+from keymark.core.camera.camera_fields import CameraPlacement, heading_rad
 from keymark.operators.bridge.camera_placement import fixed_reason
 from keymark.operators.shell.takes import active_take, placement_is_guess
 from keymark.operators.takes.panel import next_step

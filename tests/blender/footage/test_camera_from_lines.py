@@ -5,8 +5,8 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.camera_fields import CameraPlacement
+from keymark.core.camera.camera import Camera
+from keymark.core.camera.camera_fields import CameraPlacement
 from keymark.operators.footage.drawn_lines import (
     ACROSS,
     HEIGHT,

@@ -123,7 +123,7 @@ def test_a_dropped_take_is_opened() -> None:
 
 
 def test_a_varying_rate_is_noticed(loaded: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch) -> None:
-    from keymark.core.footage.clips.video_file import VideoFile
+    from keymark.core.video.video_file import VideoFile
 
     assert loaded.clip_state.rate == pytest.approx(25.0)
     assert not loaded.clip_state.variable_rate

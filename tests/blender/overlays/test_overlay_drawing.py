@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import gpu
 import numpy as np
 import pytest
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.segmentation.regions import mask_outlines
+from keymark.core.camera.camera import Camera
+from keymark.core.markers.regions import mask_outlines
 from keymark.operators.follow.mask_previews import ColorMask, Preview
 from keymark.operators.overlays import drawing
 from keymark.operators.overlays import mask as mask_overlay

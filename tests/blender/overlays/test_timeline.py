@@ -6,8 +6,8 @@ import bpy
 import numpy as np
 import pytest
 from _review import made_up_review
-from keymark.core.footage.reading import Reading
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.reading import Reading
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.take.take import Take
 from keymark.operators.overlays.drawing import Fill, Label, Stroke
 from keymark.operators.overlays.timeline import (

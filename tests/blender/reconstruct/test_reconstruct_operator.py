@@ -21,7 +21,7 @@ def take(tiny_take: Take, monkeypatch: pytest.MonkeyPatch) -> bpy.types.Property
 
 @pytest.fixture
 def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    from keymark.core.footage import reading as read_clip
+    from keymark.core.markers import reading as read_clip
 
     counted: list[int] = []
     original = read_clip.detect_markers

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 from keymark.operators.shell.footage_view import FootageView, footage_view
 
 PIXELS = np.array([[0.0, 0.0], [160.0, 0.0], [80.5, 31.25]])

@@ -7,7 +7,7 @@ import bpy
 import keymark
 import pytest
 from keymark.core.files.digest import ArrayCache
-from keymark.core.footage.reading import Reading
+from keymark.core.markers.reading import Reading
 from keymark.core.progress import run
 from keymark.core.take.read_footage import read_footage
 from keymark.core.take.take import Take

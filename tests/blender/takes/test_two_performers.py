@@ -11,7 +11,7 @@ import pytest
 from keymark.core.body.body_volume import body_pieces, marker_parts
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.shell.takes import active_take
 

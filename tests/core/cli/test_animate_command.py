@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from _shoot import gliding, write_frames, write_video
 from _synthetic_take import BODY, drawn_frames, true_postures, write_json, write_keypoints
-from keymark.core.footage.keypoints.keypoint_file import read_keypoints
+from keymark.core.detect.keypoint_file import read_keypoints
 from keymark.core.pipeline import place
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.prior.library import write_library

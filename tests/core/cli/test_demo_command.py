@@ -13,9 +13,9 @@ from _characters import plain_character
 from _shoot import gliding, write_video
 from _synthetic_take import BODY, SIZE, true_postures, write_synthetic_take
 from _synthetic_take import write_keypoints as write_keypoints_of
+from keymark.core.detect.keypoint_file import read_keypoints, write_keypoints
+from keymark.core.detect.keypoints import People, SeenPeople
 from keymark.core.errors import ConversionError
-from keymark.core.footage.keypoints.keypoint_file import read_keypoints, write_keypoints
-from keymark.core.footage.keypoints.keypoints import People, SeenPeople
 from keymark.core.pipeline import place
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.progress import Job, Progress

@@ -11,7 +11,7 @@ from _command_line import one_line, tree
 from _fake_network import MiddleNetwork
 from _shoot import write_shoot, write_video
 from _synthetic_take import SIZE, true_postures, write_synthetic_take
-from keymark.core.footage.keypoints.keypoint_file import read_keypoints
+from keymark.core.detect.keypoint_file import read_keypoints
 from keymark.core.take.take_file import read_take
 from keymark.operators.cli.main import main
 
@@ -96,7 +96,7 @@ def test_what_fails_is_one_sentence_and_changes_nothing(
     monkeypatch.setattr(MiddleNetwork, "presence", 0.0)
     fails(clip, "walk.mp4: nobody is seen in any of its 8 frames")
     monkeypatch.undo()
-    monkeypatch.setattr("keymark.core.footage.pose_network.PoseNetwork.__init__.__defaults__", (clip,))
+    monkeypatch.setattr("keymark.core.detect.pose_network.PoseNetwork.__init__.__defaults__", (clip,))
     fails(clip, "is damaged or another one")
     assert clip.read_bytes() == before and not list(clip.parent.glob("*.json"))
 

@@ -7,9 +7,9 @@ import pytest
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
+from keymark.core.camera.camera import Camera
 from keymark.core.estimate.line_ends import LineEnds
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 
 
 @pytest.fixture(scope="session")

@@ -7,8 +7,8 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.body_volume import standing_height_m, standing_posture
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
+from keymark.core.detect.keypoints import Keypoints
 from keymark.core.estimate.actor_measure import MEASURED, MeasuredActor, measure_standing
-from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.terms.keypoints import KeypointModel
 from keymark.core.terms.region_model import MarkerPlacement, RegionModel
 

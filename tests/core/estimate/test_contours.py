@@ -9,15 +9,15 @@ from _filmed import FRAME, FRAMES, POSED, TRUTH, album, photograph
 from _scene import BODY, CAMERA, SEGMENTS, film, point_error_m
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
+from keymark.core.detect.keypoints import Keypoints
 from keymark.core.estimate.contour_evidence import ROWS, ContourEvidence, contour_rows, learn_contours
 from keymark.core.estimate.contour_search import BY_MARKERS, NARROW, all_located, contour_schedule
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
-from keymark.core.footage.clips.album import Album
-from keymark.core.footage.keypoints.keypoints import Keypoints
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
 from keymark.core.terms.contours import ContourTerm
+from keymark.core.video.album import Album
 
 
 def measure(posture: Posture, keyframes: np.ndarray) -> ContourTerm:

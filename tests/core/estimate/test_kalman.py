@@ -10,6 +10,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.skeleton import Joint, JointKind, PrincipalPoint, Segment, Skeleton
+from keymark.core.camera.camera import Camera
 from keymark.core.errors import InputError
 from keymark.core.estimate.fuzzy import Memberships
 from keymark.core.estimate.kalman import (
@@ -22,8 +23,7 @@ from keymark.core.estimate.kalman import (
     update,
 )
 from keymark.core.estimate.line_ends import LineEnds, observed_characteristics
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.progress import run
 from keymark.core.terms.depths import point_depths
 

@@ -9,7 +9,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_problem import KeyframeEvidence
 from keymark.core.estimate.keyframe_error import posing_covariance
 from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes, read_keyframes
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.progress import run
 from keymark.core.terms.region_model import MarkerPlacement, RegionModel
 from keymark.core.terms.regions import ObservedRegions, RegionNoise, limb_widths

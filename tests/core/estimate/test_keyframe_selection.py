@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from _scene import BODY, MODEL, exercise, film
 from keymark.core.body.posture import Posture
+from keymark.core.detect.keypoints import Keypoints, mirrored_point
 from keymark.core.estimate.keyframe_trust import select_keyframes
-from keymark.core.footage.keypoints.keypoints import Keypoints, mirrored_point
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.prior.texts import COMPOSED
 from keymark.core.terms.region_model import RegionModel

@@ -9,6 +9,9 @@ from _detector import LAYOUT, SOURCE, changed, detect, in_order, lasting, sides_
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
+from keymark.core.camera.camera import Camera
+from keymark.core.detect.keypoints import Keypoints, People, mirror_images
+from keymark.core.detect.performer import person_size
 from keymark.core.estimate.keypoint_fit import keypoint_notes, observed_joints
 from keymark.core.estimate.keypoint_trust import (
     HINTS_SHARE,
@@ -19,10 +22,7 @@ from keymark.core.estimate.keypoint_trust import (
     upright,
 )
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.keypoints.keypoints import Keypoints, People, mirror_images
-from keymark.core.footage.keypoints.performer import person_size
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.numerics.block_banded import BlockBanded
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run

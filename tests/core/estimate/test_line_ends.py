@@ -6,6 +6,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
+from keymark.core.camera.camera import Camera
 from keymark.core.errors import InputError
 from keymark.core.estimate.line_ends import (
     ANGLE,
@@ -17,8 +18,7 @@ from keymark.core.estimate.line_ends import (
     observed_characteristics,
     residual,
 )
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 
 BODY = Body(Actor.from_stature(1.75))
 MARKED = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")

@@ -7,10 +7,10 @@ import pytest
 from _scene import BODY, CAMERA, SEGMENTS, film
 from keymark.core.body.body_volume import hip_height_m, standing_height_m, standing_posture
 from keymark.core.body.posture import Posture
+from keymark.core.camera.camera import Camera
 from keymark.core.errors import InputError
 from keymark.core.estimate.performer_placement import ground_place, place_standing
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 
 
 def looking_down(angle_rad: float, place: tuple[float, float, float]) -> Camera:

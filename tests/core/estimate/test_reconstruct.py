@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from _recorded import assert_recorded
 from _synthetic_take import BODY, SIZE, true_postures, write_synthetic_take
+from keymark.core.detect.keypoints import People
 from keymark.core.errors import InputError
 from keymark.core.estimate.notes import evidence_notes
 from keymark.core.estimate.reconstruct import METHODS, Reconstruction, reconstruct
-from keymark.core.footage.keypoints.keypoints import People
 from keymark.core.prior.keyframes import interpolate_linearly
 from keymark.core.progress import Progress, run
 from keymark.core.review.score import read_truth, score_points

@@ -20,7 +20,7 @@ from keymark.core.estimate.reference_evidence import STD_M, error_factor, own_an
 from keymark.core.estimate.reference_placement import SeenPoints
 from keymark.core.estimate.single_frame import fit_frame, frame_residuals
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.frame_prior import prior_from_keyframes
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run

@@ -11,6 +11,7 @@ from _recorded import assert_recorded
 from _scene import BODY, CAMERA, exercise
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
+from keymark.core.detect.keypoints import Keypoints, People, SeenPeople
 from keymark.core.errors import InputError
 from keymark.core.estimate.reconstruct import check_reconstructible, reconstruct
 from keymark.core.estimate.reference_alignment import MIRRORED, AlignedReference, about_hips, align
@@ -24,9 +25,8 @@ from keymark.core.estimate.reference_evidence import (
     with_reference,
 )
 from keymark.core.estimate.reference_placement import SeenPoints, place
-from keymark.core.footage.keypoints.keypoints import Keypoints, People, SeenPeople
-from keymark.core.footage.reading import Reading
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.reading import Reading
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.frame_prior import process_noise_factor
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import run

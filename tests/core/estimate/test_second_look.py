@@ -10,11 +10,11 @@ from _scene import BODY, CAMERA, MODEL, SEGMENTS, film
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.second_look import seen_tracks
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
-from keymark.core.footage.clips.album import Album
-from keymark.core.footage.ignored_regions import IgnoredPixels, IgnoredRegion
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.ignored_regions import IgnoredPixels, IgnoredRegion
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
+from keymark.core.video.album import Album
 
 MARKER = SEGMENTS.index("forearm.R")
 LOST = np.arange(20, 25)

@@ -7,12 +7,12 @@ import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film, point_error_m
 from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.posture import Posture
+from keymark.core.detect.keypoints import Keypoints, mirrored_point
 from keymark.core.estimate.clip_problem import KeyframeEvidence, uncalibrated
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence
 from keymark.core.estimate.performer_placement import place_standing
 from keymark.core.estimate.single_frame import FrameFit, fit_frame, frame_residuals
-from keymark.core.footage.keypoints.keypoints import Keypoints, mirrored_point
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.frame_prior import FramePrior, prior_from_keyframes, prior_from_pose
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.terms.keypoints import KeypointModel, ObservedKeypoints

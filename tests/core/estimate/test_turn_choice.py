@@ -9,7 +9,7 @@ from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture, yawed_at
 from keymark.core.estimate.turn_choice import doubted_turns
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import Preview
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
+from keymark.core.camera.camera import Camera
 from keymark.core.estimate.warm_start import blend_weight, revised_windows
 from keymark.core.estimate.whole_clip import (
     Believed,
@@ -15,8 +16,7 @@ from keymark.core.estimate.whole_clip import (
     WholeClipResult,
     estimate_whole_clip,
 )
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import Preview
 

@@ -12,12 +12,12 @@ from _sentences import all_sentences, sentences, without_names
 from _synthetic_take import write_synthetic_take
 from keymark.core import MOST_PIXELS
 from keymark.core.body import posture
+from keymark.core.camera import camera_fields
+from keymark.core.detect import detected_frames, frame_folder, keypoint_file
+from keymark.core.detect.keypoints import BODY_POINTS
+from keymark.core.detect.layouts import LAYOUTS
 from keymark.core.files import json_file, kinds
-from keymark.core.footage import camera_fields, ignored_regions
-from keymark.core.footage.clips import image_sequence
-from keymark.core.footage.keypoints import detected_frames, frame_folder, keypoint_file
-from keymark.core.footage.keypoints.keypoints import BODY_POINTS
-from keymark.core.footage.keypoints.layouts import LAYOUTS
+from keymark.core.markers import ignored_regions
 from keymark.core.prior import library, texts
 from keymark.core.retarget import retarget_record
 from keymark.core.retarget.character import LIMBS, ROLES, SOURCES
@@ -31,6 +31,7 @@ from keymark.core.take import (
     motion,
     take_file,
 )
+from keymark.core.video import image_sequence
 from keymark.operators.cli.commands.character import CHARACTER
 from keymark.operators.cli.commands.retarget import RETARGET
 

@@ -9,14 +9,14 @@ import pytest
 from _synthetic_take import BODY, SIZE, write_json
 from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.posture import Posture
-from keymark.core.footage.camera import Camera, lens_of_equivalent
-from keymark.core.footage.camera_fields import CameraPlacement
-from keymark.core.footage.clips.stated_lens import FOCAL_LENGTH, stated_lens_mm
-from keymark.core.footage.keypoints.keypoints import Keypoints
-from keymark.core.footage.standing_moments import standing_keypoints
+from keymark.core.camera.camera import Camera, lens_of_equivalent
+from keymark.core.camera.camera_fields import CameraPlacement
+from keymark.core.detect.keypoints import Keypoints
+from keymark.core.detect.standing_moments import standing_keypoints
 from keymark.core.pipeline.place import Lens, camera_by_performer, camera_in_words, is_unplaced, lens_of
 from keymark.core.take.conversion_settings import ConversionSettings
 from keymark.core.take.description import describe, keypoints_beside
+from keymark.core.video.stated_lens import FOCAL_LENGTH, stated_lens_mm
 
 FPS = 30.0
 AUTO = ConversionSettings(library="auto")

@@ -20,7 +20,7 @@ from keymark.core.arrays import Array
 from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.human import HUMAN, LIMBS, TRUNK
 from keymark.core.body.posture import Posture
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 from keymark.core.posing.depth_flip import FLIPPABLE, FlippedPart, flipped
 from keymark.core.posing.limb_chain import DISTINCT_M, limb_chain, limb_excess_rad, sight_lines, ways_in_sight
 

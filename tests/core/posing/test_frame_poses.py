@@ -10,11 +10,11 @@ from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.body_volume import lower_sole_m
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture, yawed_at
+from keymark.core.detect.keypoints import Keypoints
 from keymark.core.errors import InputError
 from keymark.core.estimate.clip_problem import uncalibrated
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence
-from keymark.core.footage.keypoints.keypoints import Keypoints
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.posing.frame_poses import FramePoses, find_frame_poses
 from keymark.core.posing.frame_search import FrameShown, knowledge
 from keymark.core.prior.frame_prior import prior_from_keyframes

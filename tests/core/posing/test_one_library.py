@@ -9,7 +9,7 @@ from _recorded import assert_recorded
 from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.core.footage.reading import Reading
+from keymark.core.markers.reading import Reading
 from keymark.core.posing.found_poses import with_found
 from keymark.core.posing.pose_clip import pose_clip
 from keymark.core.prior.keyframes import Keyframe

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _performed import FRAMES, NAMES, camera, detected, errors_m, exchanged, filmed, performed, unmarked
+from keymark.core.detect.keypoints import SeenPeople
 from keymark.core.errors import InputError
-from keymark.core.footage.keypoints.keypoints import SeenPeople
-from keymark.core.footage.reading import Reading
+from keymark.core.markers.reading import Reading
 from keymark.core.posing.pose_clip import pose_clip
 from keymark.core.prior.library import Library
 from keymark.core.progress import run

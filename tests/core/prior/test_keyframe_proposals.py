@@ -5,10 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from keymark.core.arrays import Array
+from keymark.core.detect.keypoints import Keypoints
 from keymark.core.errors import InputError
-from keymark.core.footage.clips.album import Album
-from keymark.core.footage.keypoints.keypoints import Keypoints
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframe_proposals import (
     EvidenceSpeed,
     evidence_speed,
@@ -16,6 +15,7 @@ from keymark.core.prior.keyframe_proposals import (
     propose_keyframes,
 )
 from keymark.core.progress import run
+from keymark.core.video.album import Album
 
 
 def test_keyframes_move_to_the_minima_nearby() -> None:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from _review import made_up_keypoints
 from _synthetic_take import BODY, CAMERA, SIZE, true_postures, write_synthetic_take
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.camera.camera import Camera
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.report.canvas import INK, LEFT, RIGHT, Canvas, write_png
 from keymark.core.report.overlay_sheet import (
     CELL_WIDTH,

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from _synthetic_take import BODY, CAMERA, named, true_postures, write_json
+from keymark.core.camera.camera import Camera
 from keymark.core.errors import InputError
-from keymark.core.footage.camera import Camera
 from keymark.core.review.score import read_truth, score_points
 
 FRAMES = 12

@@ -12,11 +12,10 @@ from _drawn_clip import SIZE, Drawn
 from _fake_network import SHAPE, FakeNetwork
 from _synthetic_take import write_synthetic_take
 from keymark.core.arrays import Array
+from keymark.core.detect.keypoints import Keypoints, People, SeenPeople
+from keymark.core.detect.pose_network import LAYOUT, MODEL, NAME
 from keymark.core.errors import InputError
-from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.keypoints.keypoints import Keypoints, People, SeenPeople
-from keymark.core.footage.pose_network import LAYOUT, MODEL, NAME
-from keymark.core.footage.reading import read_clip, reading_arrays, reading_from_arrays
+from keymark.core.markers.reading import read_clip, reading_arrays, reading_from_arrays
 from keymark.core.progress import run
 from keymark.core.take import checked_keypoints
 from keymark.core.take.checked_keypoints import with_checked_keypoints
@@ -26,6 +25,7 @@ from keymark.core.take.performer_keypoints import performer_keypoints
 from keymark.core.take.read_footage import read_footage
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_described, read_take
+from keymark.core.video.clip import Clip
 
 FRAMES = 40
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 from keymark.core.review.score import read_truth
 from keymark.core.take.clip_check import open_clip
 from keymark.core.take.take import Take, evidence_of

@@ -10,7 +10,7 @@ import pytest
 from _shoot import write_shoot
 from _synthetic_take import SIZE, write_json, write_synthetic_take
 from keymark.core.errors import InputError
-from keymark.core.footage.ignored_regions import MOST_POINTS, MOST_REGIONS, IgnoredRegion
+from keymark.core.markers.ignored_regions import MOST_POINTS, MOST_REGIONS, IgnoredRegion
 from keymark.core.prior.keyframes import interpolate
 from keymark.core.progress import run
 from keymark.core.take.read_footage import average_model, expected_regions, read_footage

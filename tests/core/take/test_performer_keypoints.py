@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from _synthetic_take import write_synthetic_take
 from keymark.core.arrays import Array
-from keymark.core.footage.keypoints.keypoints import Keypoints, People, SeenPeople
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.detect.keypoints import Keypoints, People, SeenPeople
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Matched, interpolate
 from keymark.core.take.performer_keypoints import performer_keypoints
 from keymark.core.take.take import Take

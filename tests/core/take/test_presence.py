@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 from keymark.core.body.body_volume import rested
 from keymark.core.body.posture import Posture
+from keymark.core.detect.keypoints import Keypoints
 from keymark.core.errors import InputError
 from keymark.core.estimate.reconstruct import reconstruct
-from keymark.core.footage.clips.album import Album
-from keymark.core.footage.keypoints.keypoints import Keypoints
-from keymark.core.footage.reading import Reading
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.markers.reading import Reading
+from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.pipeline.convert import find_and_reconstruct
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.registry import SHIPPED, find_libraries
@@ -26,6 +25,7 @@ from keymark.core.take.motion import read_motion, write_motion
 from keymark.core.take.presence import absence_notes, presence, unseen_limbs, unseen_line, unseen_notes
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
+from keymark.core.video.album import Album
 
 from tests._synthetic_take import BODY, write_synthetic_take
 

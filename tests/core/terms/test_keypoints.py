@@ -7,8 +7,8 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.keypoints.keypoints import BODY_POINTS, mirrored_point
+from keymark.core.camera.camera import Camera
+from keymark.core.detect.keypoints import BODY_POINTS, mirrored_point
 from keymark.core.terms.depths import DepthLinks, depths_jacobian, point_depths
 from keymark.core.terms.keypoints import USUAL_PLACES, KeypointModel
 

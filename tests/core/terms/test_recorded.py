@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from _recorded import assert_recorded
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film
+from keymark.core.camera.camera import Camera
+from keymark.core.detect.keypoints import BODY_POINTS
 from keymark.core.estimate.line_ends import LineEnds, angle_weight, observed_characteristics, residual
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.keypoints.keypoints import BODY_POINTS
 from keymark.core.terms.contours import ContourModel, LimbAxes, part_map
 from keymark.core.terms.depths import DepthLinks, depths_jacobian, point_depths
 from keymark.core.terms.keypoints import KeypointModel

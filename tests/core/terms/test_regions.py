@@ -8,7 +8,7 @@ from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise
 from keymark.core.body.body_volume import Piece, PieceStack
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.footage.camera import Camera
+from keymark.core.camera.camera import Camera
 from keymark.core.terms import region_model
 from keymark.core.terms.occlusion import sample_silhouette, view_pieces
 from keymark.core.terms.region_model import MOMENTS, MarkerPlacement, RegionModel

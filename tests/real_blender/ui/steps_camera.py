@@ -48,7 +48,7 @@ def _draw(person: Person, key: str) -> Steps[None]:
 def _lines(person: Person) -> list[NDArray[np.float64]]:
     """Ends (2, 2) of five lines in the footage [px] that lie about the performer as the person knows."""
     known = person.known
-    heading = keymark("core.footage.camera_fields").heading_rad(known.camera.matrix_world)
+    heading = keymark("core.camera.camera_fields").heading_rad(known.camera.matrix_world)
     ahead = np.array([-np.sin(heading), np.cos(heading), 0.0])
     right, up = np.array([ahead[1], -ahead[0], 0.0]), np.array([0.0, 0.0, 1.0])
     foot = known.keyframes[0].posture.translation * [1.0, 1.0, 0.0]
@@ -88,7 +88,7 @@ def _place(person: Person, pixel: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def _expect_near(person: Person) -> None:
-    placement = keymark("core.footage.camera_fields").CameraPlacement
+    placement = keymark("core.camera.camera_fields").CameraPlacement
     known, take = placement.of(person.known.camera.matrix_world), person.take
     apart = np.degrees(take.camera_tilt - known.tilt_rad), take.camera_height - known.height_m
     expect(

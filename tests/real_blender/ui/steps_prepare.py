@@ -221,7 +221,7 @@ def sleeve_pixel(person: Person, number: int) -> NDArray[np.float64]:
     )
     middle = np.mean([points[name] for name in _ends(style.segment)], axis=0)
     (center,), _ = known.camera.project(middle[None])
-    clip = keymark("core.footage.clips.clip").Clip.open(known.clip, fps=known.fps)
+    clip = keymark("core.video.clip").Clip.open(known.clip, fps=known.fps)
     _, _, image = next(iter(clip.frames()))
     rows, columns = np.mgrid[: image.shape[0], : image.shape[1]]
     pixels = np.stack([columns, rows], axis=-1) + 0.5

@@ -1,0 +1,1 @@
+"""The camera: lens, place, and how it moves."""

@@ -1,0 +1,1 @@
+"""Points of the body seen in the picture: the pose network, detectors' files, and who the performer is."""

@@ -1,0 +1,165 @@
+"""MediaPipe's landmark network, which sees one person in a square crop (BlazePose, Bazarevsky et al. 2020).
+
+onnxruntime runs it on the processor. It has learned crops about the hips with the person upright, so that the
+crop must move and turn with the person: `Pose.crop` is where to look next.
+"""
+
+import hashlib
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+
+from ..arrays import Array, Image, SingleArray
+from ..errors import InputError
+from .layouts import LAYOUTS
+
+FOLDER = Path(__file__).resolve().parents[2] / "presets" / "models"
+MODEL = FOLDER / "pose_landmark.onnx"
+"""The weights, which are no part of the source: `tools/fetch_model.py` puts them here."""
+CHECKSUMS = FOLDER / "SHA256SUMS"
+NAME = "BlazePose"
+LAYOUT = LAYOUTS["blazepose33"]
+SIDE, CELLS = 256, 64  # of the network's input and of its heat maps
+POINTS, CENTER, ABOVE = 39, 33, 34
+"""Point 33 is between the hips, 34 above it on the circle about the whole person."""
+CIRCLE = 2.5  # side of a crop by the circle's radius
+NEIGHBORS = 3  # a point goes to the middle of its heat map within so many cells
+MOST_AT_ONCE = 2  # looks: one person is followed two ways
+OUTPUTS = ("Identity", "Identity_1", "Identity_3", "Identity_4")  # as `tools/fetch_model.py` keeps them
+
+
+@dataclass(frozen=True, eq=False)
+class Crop:
+    """A square of a picture, which may reach beyond it."""
+
+    center: Array  # (2,) [px]
+    side: float  # [px]
+    angle: float = 0.0  # clockwise turn of the person within the picture [rad]
+
+    @property
+    def matrix(self) -> Array:
+        """(2, 3) from the network's pixels to the picture's, origin at outer corners."""
+        turn = self.side / SIDE * self.turn
+        return np.column_stack([turn, self.center - turn @ np.full(2, SIDE / 2)])
+
+    @property
+    def turn(self) -> Array:
+        """(2, 2) rotation from the crop to the picture."""
+        cos, sin = np.cos(self.angle), np.sin(self.angle)
+        return np.array([[cos, -sin], [sin, cos]])
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """A person as the network sees one, N points of `LAYOUT`."""
+
+    pixel: Array  # (N, 2) [px]
+    score: Array  # (N,) 0 to 1
+    hint_m: Array  # (N, 3) as in `Keypoints`
+    presence: float  # how sure it is that the crop shows anybody, 0 to 1
+    crop: Crop  # about this person
+
+
+class PoseNetwork:
+    """The network with its weights."""
+
+    def __init__(self, model: Path = MODEL) -> None:
+        again = "install Keymark's zip again, or run tools/fetch_model.py in a copy of its source"
+        try:
+            weights = model.read_bytes()
+        except OSError as error:
+            raise InputError(
+                f"{model}: the network that finds keypoints cannot be read ({error.strerror}); {again}"
+            ) from error
+        known = [line.split()[0] for line in CHECKSUMS.read_text(encoding="utf-8").splitlines()]
+        if hashlib.sha256(weights).hexdigest() not in known:
+            raise InputError(f"{model}: the network that finds keypoints is damaged or another one; {again}")
+        self._session = _session(weights)
+
+    def __call__(self, picture: Image, crop: Crop) -> Pose:
+        """The person in a crop of a picture (height, width, 3), blue first."""
+        return self.each([(picture, crop)])[0]
+
+    def each(self, looks: Sequence[tuple[Image, Crop]]) -> list[Pose]:
+        """The persons in crops of pictures.
+
+        Two looks at a time with one thread each are faster than several threads for one look.
+        """
+        with ThreadPoolExecutor(max(1, min(len(looks), cv2.getNumThreads(), MOST_AT_ONCE))) as pool:
+            return list(pool.map(lambda look: self._look(*look), looks))
+
+    def _look(self, picture: Image, crop: Crop) -> Pose:
+        return self.postprocess(self.infer(self.preprocess(picture, crop)), crop)
+
+    def preprocess(self, picture: Image, crop: Crop) -> SingleArray:
+        """The network's input (1, 3, 256, 256), red first, 0 to 1."""
+        matrix = crop.matrix
+        matrix[:, 2] += matrix[:, :2] @ np.full(2, 0.5) - 0.5  # OpenCV counts from the middle of a pixel
+        flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+        size = (SIDE, SIDE)
+        seen = cv2.warpAffine(picture, matrix, size, flags=flags, borderMode=cv2.BORDER_REPLICATE)
+        return np.asarray(cv2.dnn.blobFromImage(seen, 1.0 / 255.0, swapRB=True), dtype=np.float32)
+
+    def infer(self, blob: SingleArray) -> tuple[SingleArray, float, SingleArray, SingleArray]:
+        """Points (39, 5), presence, heat maps (39, 64, 64) and points in space (39, 3)."""
+        (name,) = (one.name for one in self._session.get_inputs())
+        points, presence, heat, world = self._session.run(OUTPUTS, {name: blob})
+        return (
+            points.reshape(POINTS, 5),
+            float(presence[0, 0]),
+            heat.reshape(POINTS, CELLS, CELLS),
+            world.reshape(POINTS, 3),
+        )
+
+    def postprocess(self, out: tuple[SingleArray, float, SingleArray, SingleArray], crop: Crop) -> Pose:
+        """The pose in the picture."""
+        points, presence, heat, world = out
+        place = np.array([_refined(point[:2], map_) for point, map_ in zip(points, heat, strict=True)])
+        matrix = crop.matrix
+        pixel = place @ matrix[:, :2].T + matrix[:, 2]
+        up = pixel[ABOVE] - pixel[CENTER]
+        around = Crop(pixel[CENTER], CIRCLE * float(np.hypot(*up)), float(np.arctan2(up[0], -up[1])))
+        hint = world.astype(np.float64)
+        hint[:, :2] = hint[:, :2] @ crop.turn.T
+        used = LAYOUT.numbers
+        return Pose(pixel[used], _sigmoid(points[used, 3]), hint[used], float(presence), around)
+
+
+def _session(weights: bytes) -> Any:
+    """An onnxruntime session on one thread, for several looks at once."""
+    try:
+        import onnxruntime
+    except ImportError as error:
+        raise InputError(
+            f"onnxruntime, which runs the network that finds keypoints, cannot be loaded ({error}); install "
+            "Keymark's zip for this Blender again"
+        ) from error
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    options.log_severity_level = 4
+    options.enable_cpu_mem_arena = False
+    return onnxruntime.InferenceSession(weights, options, providers=["CPUExecutionProvider"])
+
+
+def _refined(place: SingleArray, heat: SingleArray) -> Array:
+    """(2,) a point [px of the crop] moved to the peak that its heat map has about it, if any."""
+    size = SIDE / CELLS
+    column, row = (int(value) for value in np.floor(place / size))
+    if not (0 <= column < CELLS and 0 <= row < CELLS):
+        return place.astype(np.float64)
+    first = np.maximum([column - NEIGHBORS, row - NEIGHBORS], 0)
+    part = _sigmoid(heat[first[1] : row + NEIGHBORS + 1, first[0] : column + NEIGHBORS + 1])
+    if part.max() < 0.5:  # no peak
+        return place.astype(np.float64)
+    rows, columns = np.indices(part.shape)
+    middle = np.array([(columns * part).sum(), (rows * part).sum()]) / part.sum()
+    return np.asarray((first + middle) * size)
+
+
+def _sigmoid(value: SingleArray) -> Array:
+    return np.asarray(1.0 / (1.0 + np.exp(-np.clip(value, -60.0, 60.0).astype(np.float64))))

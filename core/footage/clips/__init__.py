@@ -1,1 +1,0 @@
-"""Footage on disk: clips of every kind, their frames and when they were taken."""

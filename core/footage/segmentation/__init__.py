@@ -1,1 +1,0 @@
-"""Segmentation: the regions of the markers' colors in an image, and their moments."""

@@ -1,0 +1,1 @@
+"""Colored markers: their colors, their regions in the picture, and their tracks through a clip."""

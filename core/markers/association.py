@@ -1,0 +1,259 @@
+"""Data association: the Viterbi path of a marker through the detected regions of a clip, and its costs.
+
+The path is the cheapest one through all regions of the marker's color: it pays for jumps, for regions unlike
+the marker, and for frames in which it is hidden. Costs are negative logarithms of likelihood ratios.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.ndimage import percentile_filter
+
+from ..arrays import Array, BoolArray, IntArray
+from .moments import MOMENT_POWERS
+from .region_tracks import ExpectedRegions, Regions
+
+HIDDEN_COST = 2.5  # cost of each hidden frame: once hidden, a marker stays so for a while
+RESTART_COST = 10.0
+STEP_TAIL = 1.0  # scale of Student's t of the steps: a swung arm takes several large ones in a row
+STILL_STEP_PX = 1.5
+TAKEN_COST = 20.0
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """The detected regions of one color over a clip, N in all."""
+
+    frame: IntArray  # (N,) frame index of each region, ascending
+    moments: Array  # (N, 6) raw moments
+    box: Array  # (N, 4) left, top, right, bottom in px
+    certainty: Array  # (N,) color certainty in 0..1
+    clipped: BoolArray  # (N,) whether the region touches the image's border
+    start: IntArray  # (F + 1,) index of each frame's first region
+
+    @property
+    def centroid(self) -> Array:
+        """Centroids, (N, 2) px."""
+        return np.asarray(self.moments[:, 1:3] / self.moments[:, :1])
+
+    @property
+    def area(self) -> Array:
+        """Areas, (N,) px."""
+        return np.asarray(self.moments[:, 0])
+
+
+def gather_candidates(regions: Sequence[Regions], color: int, scale: float) -> Candidates:
+    """The regions of one color, in pixels of the image; `scale` are those to one of the measuring grid."""
+    frame = np.repeat(np.arange(len(regions)), [len(found.color) for found in regions])
+    own = np.concatenate([found.color for found in regions]) == color
+    frame = frame[own]
+    return Candidates(
+        frame=frame,
+        moments=np.concatenate([found.moments for found in regions])[own] * scale**MOMENT_POWERS,
+        box=np.concatenate([found.box for found in regions])[own] * scale,
+        certainty=np.concatenate([found.certainty for found in regions])[own],
+        clipped=np.concatenate([found.clipped for found in regions])[own],
+        start=np.searchsorted(frame, np.arange(len(regions) + 1)),
+    )
+
+
+def typical_area(found: Candidates, clutter: BoolArray) -> float:
+    """Median area in px of each frame's largest region that is not clutter; 0 without any."""
+    largest = np.zeros(len(found.start) - 1)
+    np.maximum.at(largest, found.frame, np.where(clutter, 0.0, found.area))
+    return float(np.median(largest[largest > 0.0])) if np.any(largest > 0.0) else 0.0
+
+
+def static_clutter(found: Candidates) -> BoolArray:
+    """Mark static clutter (N,): regions that rest for most of the clip while others of their color move.
+
+    A resting marker is not marked: no other region of its color is visible at the same time.
+    """
+    frames = len(found.start) - 1
+    still = _still(found, frames)
+    if not still.any():
+        return still
+    rest = float(np.median(found.area[still]))
+    with_still = np.zeros(frames, dtype=np.bool_)
+    with_still[found.frame[still]] = True
+    rival = ~still & with_still[found.frame] & (found.area >= 0.1 * rest)  # less is noise
+    rivals = len(np.unique(found.frame[rival]))
+    return still if rivals >= 0.25 * frames else np.zeros_like(still)
+
+
+def _still(found: Candidates, frames: int) -> BoolArray:
+    """Mark regions with similar ones at the same position in most frames.
+
+    Positions and sizes are counted in cells; regions in the same or a neighboring cell are similar.
+    """
+    if not len(found.frame):
+        return np.zeros(0, dtype=np.bool_)
+    # A cell and its neighbors reach one step on average.
+    steps = np.array([STILL_STEP_PX, STILL_STEP_PX, 0.4]) * (2.0 / 3.0)
+    cells = np.column_stack([found.centroid, np.log(found.area)]) / steps
+    cells = np.floor(cells - cells.min(axis=0)).astype(np.int64) + 1
+    sides = cells.max(axis=0) + 2
+    cell, index, count = np.unique(
+        np.ravel_multi_index(tuple(cells.T), tuple(sides)), return_inverse=True, return_counts=True
+    )
+    around = np.zeros(len(cell), dtype=np.int64)
+    for offset in np.ndindex(3, 3, 3):
+        neighbor = (
+            cell + np.ravel_multi_index(offset, tuple(sides)) - np.ravel_multi_index((1, 1, 1), tuple(sides))
+        )
+        where = np.minimum(np.searchsorted(cell, neighbor), len(cell) - 1)
+        around += np.where(cell[where] == neighbor, count[where], 0)
+    return np.asarray(around[index] >= 0.5 * frames)
+
+
+def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
+    """The Viterbi path: index of the marker's main region in each frame (F,), -1 where it is hidden.
+
+    `unary` is the cost (N,) of each region as the marker, whose length in px measures its steps.
+    """
+    # Most frames hold one region: numbers of Python's own are quicker here than short arrays.
+    frame, start = found.frame.tolist(), found.start.tolist()
+    position = (found.centroid / (0.35 * size_px)).tolist()  # limbs move their own size in 0.1 s
+    own = unary.tolist()
+    total: list[float] = []
+    previous: list[int] = []
+    best_before, best_index = 0.0, -1  # the cheapest path so far plus its hidden frames, and where it ended
+    for now in range(len(start) - 1):
+        first = start[max(now - 12, 0)]  # hidden frames over which the speed bounds a path
+        restart = best_before + (RESTART_COST if best_index >= 0 else 0.0)
+        for here in range(start[now], start[now + 1]):
+            least, source = restart, best_index
+            x, y = position[here]
+            for before in range(start[now] - 1, first - 1, -1):
+                gap = now - frame[before]
+                # A visible marker is visible in the next frame in 98 of 100 cases.
+                through = total[before] + (4.0 + HIDDEN_COST * (gap - 1) if gap > 1 else 0.0)
+                if through < least:
+                    across, down = position[before]
+                    squared = ((x - across) ** 2 + (y - down) ** 2) / gap**2
+                    through += STEP_TAIL * math.log1p(0.5 * squared / STEP_TAIL)
+                    if through < least:
+                        least, source = through, before
+            total.append(least + own[here])
+            previous.append(source)
+        best_before += HIDDEN_COST
+        for here in range(start[now], start[now + 1]):
+            if total[here] < best_before:
+                best_before, best_index = total[here], here
+    path = np.full(len(start) - 1, -1, dtype=np.int64)
+    while best_index >= 0:
+        path[frame[best_index]] = best_index
+        best_index = previous[best_index]
+    return path
+
+
+def region_costs(
+    found: Candidates, clutter: BoolArray, usual_area: float, expected: ExpectedRegions | None, marker: int
+) -> Array:
+    """Unary cost (N,) of each region as the marker, by area, color, clutter and expected position.
+
+    Args:
+        found: The regions.
+        clutter: (N,) whether a region is static clutter.
+        usual_area: Area of the marker in px.
+        expected: Expected regions of the markers.
+        marker: Index of the marker.
+    """
+    if not len(found.frame):
+        return np.zeros(0)
+    # Foreshortening and occlusion change areas by a factor of three.
+    cost = 0.5 * (np.log(found.area / usual_area) / 1.2) ** 2
+    cost -= 3.0 * np.log(np.clip(found.certainty, 1e-3, 1.0))  # as many pixels err independently
+    cost += np.where(clutter, 20.0, 0.0)
+    far = 0.5 * (2.0 * _relative_offset(found, expected, marker)) ** 2
+    return np.asarray(cost + np.nan_to_num(np.minimum(far, 2.0 * RESTART_COST)))
+
+
+def rival_costs(
+    found: Candidates, taken: BoolArray, expected: ExpectedRegions | None, marker: int, rivals: Sequence[int]
+) -> Array:
+    """Additional cost (N,) of each region because it may be another marker of the same color.
+
+    `taken` says (N,) whether a region is a rival's already; `rivals` are the other markers of its color.
+    """
+    cost = np.where(taken, TAKEN_COST, 0.0)
+    own = _relative_offset(found, expected, marker)
+    for rival in rivals:
+        nearer = own**2 - _relative_offset(found, expected, rival) ** 2
+        # In units of the generous radius.
+        cost += np.clip(np.nan_to_num(0.5 * nearer / 0.2**2), 0.0, TAKEN_COST)
+    return np.asarray(cost)
+
+
+def _relative_offset(found: Candidates, expected: ExpectedRegions | None, marker: int) -> Array:
+    """Distance (N,) of each region from the marker's expected position, in radii; NaN where unknown."""
+    relative = np.full(len(found.frame), np.nan)
+    if expected is not None:
+        # A container's claimed frame count may fall short: frames beyond it have no expectation.
+        known = np.flatnonzero(found.frame < len(expected.center))
+        frame = found.frame[known]
+        offset = np.linalg.norm(found.centroid[known] - expected.center[frame, marker], axis=1)
+        relative[known] = offset / np.maximum(expected.radius[frame, marker], 1.0)
+    return relative
+
+
+class MarkerRegion(NamedTuple):
+    """A marker's joined region in each of F frames."""
+
+    moments: Array  # (F, 6) raw moments, zero where hidden
+    clipped: BoolArray  # (F,) whether it touches the image's border
+    certainty: Array  # (F,) certainty of its color, in 0..1
+    share: Array  # (F,) share of its main fragment in its area
+
+
+def join_fragments(
+    found: Candidates, path: IntArray, cost: Array, reach_px: float, most_cost: float
+) -> MarkerRegion:
+    """Join each frame's main region with the fragments that an occluding limb cut off from it.
+
+    `path` (F,) is the main region of each frame, -1 where hidden. Fragments lie within `reach_px` of it and
+    cost (N,) no more than `most_cost`; others are clutter.
+    """
+    frames = len(path)
+    main = path[found.frame]  # (N,) of each region, the main one of its frame
+    gap = np.where(main >= 0, _box_gap(found.box, found.box[main]), np.inf)
+    taken = np.flatnonzero((main == np.arange(len(main))) | ((gap <= reach_px) & (cost <= most_cost)))
+    frame = found.frame[taken]
+    moments, clipped = np.zeros((frames, 6)), np.zeros(frames, dtype=np.bool_)
+    np.add.at(moments, frame, found.moments[taken])
+    np.logical_or.at(clipped, frame, found.clipped[taken])
+    area = np.where(moments[:, 0] > 0.0, moments[:, 0], 1.0)
+    certainty = np.bincount(frame, found.certainty[taken] * found.area[taken], minlength=frames) / area
+    share = np.zeros(frames)
+    seen = np.flatnonzero(path >= 0)
+    share[seen] = found.area[path[seen]] / area[seen]
+    return MarkerRegion(moments, clipped, certainty, share)
+
+
+def region_quality(own: MarkerRegion) -> Array:
+    """Quality of each region as the whole marker, (F,) in 0..1; 0 where hidden.
+
+    The product of four factors: area relative to the full area in the frames around, clipping by the image's
+    border, certainty of the color, and fragmentation.
+    """
+    area = own.moments[:, 0]
+    if not np.any(area > 0.0):
+        return np.zeros(len(area))
+    seen = area > 0.0
+    full = np.zeros(len(area))
+    # Frames; a marker turns more slowly.
+    full[seen] = percentile_filter(area[seen], 80, size=min(31, int(seen.sum())), mode="nearest")
+    ratio = np.where(seen, area, 1.0) / np.where(seen, full, 1.0)
+    whole = np.minimum(np.minimum(ratio, 1.5 / ratio), 1.0)
+    quality = whole * own.certainty * (0.5 + 0.5 * own.share) * np.where(own.clipped, 0.4, 1.0)
+    return np.where(seen, np.clip(quality, 0.0, 1.0), 0.0)
+
+
+def _box_gap(box: Array, other: Array) -> Array:
+    """Distances between boxes (N, 4) and others (N, 4)."""
+    across = np.maximum(other[:, 0] - box[:, 2], box[:, 0] - other[:, 2])
+    down = np.maximum(other[:, 1] - box[:, 3], box[:, 1] - other[:, 3])
+    return np.asarray(np.hypot(np.maximum(across, 0.0), np.maximum(down, 0.0)))

@@ -1,0 +1,247 @@
+"""Color space: chromaticity, which is free of shading, and the cells of color histograms.
+
+A surface in shadow keeps the ratios of its channels, and both gamma-encoded luma and chroma scale with the
+light to a good approximation; chroma over luma therefore describes the surface, and luma the light on it. A
+small offset keeps dark pixels, whose ratios are noise, near gray.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import Array, Image, IndexArray, Int32Array, SingleArray
+
+CELL_BITS = 6  # of each channel: 64³ cells hold a color to two levels, less than compression noise
+CELLS_PER_CHANNEL = 1 << CELL_BITS
+CELL_COUNT = CELLS_PER_CHANNEL**3
+CELL_WIDTH = 256 // CELLS_PER_CHANNEL
+
+LUMA_OFFSET = 16.0  # levels added before dividing by luma: five times the noise of a dark pixel
+
+# Recommendation ITU-R BT.601, full range, as video decoders' 4:2:0 chroma is split.
+LUMA_BGR = np.array([0.114, 0.587, 0.299])
+BLUE_SCALE = 0.564
+RED_SCALE = 0.713
+
+
+def chromaticity(bgr: ArrayLike) -> tuple[Array, Array]:
+    """Split gamma-encoded colors (..., 3), blue, green, red in 0..255, into chromaticity and luma.
+
+    Returns blue and red difference over offset luma (..., 2), without unit, and offset luma (...) in levels.
+    """
+    color = np.asarray(bgr, dtype=np.float64)
+    # Written out: for so short a product, linear algebra libraries start threads that only wait.
+    luma = color[..., 0] * LUMA_BGR[0] + color[..., 1] * LUMA_BGR[1] + color[..., 2] * LUMA_BGR[2]
+    offset_luma = luma + LUMA_OFFSET
+    differences = np.stack([(color[..., 0] - luma) * BLUE_SCALE, (color[..., 2] - luma) * RED_SCALE], axis=-1)
+    return differences / offset_luma[..., None], offset_luma
+
+
+def cell_volume(offset_luma: ArrayLike) -> Array:
+    """The volume of a cell in (chromaticity, log luma), for densities counted by cells."""
+    luma = np.asarray(offset_luma)
+    # d(blue, red difference, luma) / d(b, g, r) has the determinant 0.564 · 0.713 · 0.587; the division
+    # scales it.
+    return np.asarray(CELL_WIDTH**3 * BLUE_SCALE * RED_SCALE * LUMA_BGR[1] / luma**3)
+
+
+def cell_index(image: Image) -> IndexArray:
+    """The cell of every pixel, (rows, columns) in 0..CELL_COUNT-1, of a (rows, columns, 3) image."""
+    packed = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2BGRA)).view("<u4")[..., 0]
+    cut, last = 8 - CELL_BITS, CELLS_PER_CHANNEL - 1
+    index = (packed >> cut) & last
+    index |= (packed >> 2 * cut) & (last << CELL_BITS)
+    index |= (packed >> 3 * cut) & (last << 2 * CELL_BITS)
+    return index.astype(np.intp)
+
+
+def cell_colors(cells: Int32Array | None = None) -> Array:
+    """Centers of cells, (..., 3) blue, green, red in levels; of all cells by default."""
+    index = np.arange(CELL_COUNT, dtype=np.int32) if cells is None else cells
+    last = CELLS_PER_CHANNEL - 1
+    levels = np.stack([index & last, index >> CELL_BITS & last, index >> 2 * CELL_BITS], axis=-1)
+    return np.asarray(levels * float(CELL_WIDTH) + (CELL_WIDTH - 1) / 2.0)
+
+
+def cell_chromaticity(cells: Int32Array) -> tuple[SingleArray, SingleArray]:
+    """Chromaticity (N, 2) and offset luma (N,) of the centers of cells.
+
+    Single precision is plenty for a color and takes half the time.
+    """
+    levels = np.arange(CELLS_PER_CHANNEL, dtype=np.float32) * CELL_WIDTH + (CELL_WIDTH - 1) / 2
+    last = CELLS_PER_CHANNEL - 1
+    blue, red = levels.take(cells & last), levels.take(cells >> 2 * CELL_BITS)
+    luma = levels.take(cells >> CELL_BITS & last) * np.float32(LUMA_BGR[1])
+    luma += blue * np.float32(LUMA_BGR[0]) + red * np.float32(LUMA_BGR[2])
+    offset_luma = luma + np.float32(LUMA_OFFSET)
+    chroma = np.empty((len(cells), 2), dtype=np.float32)
+    chroma[:, 0] = (blue - luma) * np.float32(BLUE_SCALE) / offset_luma
+    chroma[:, 1] = (red - luma) * np.float32(RED_SCALE) / offset_luma
+    return chroma, offset_luma
+
+
+ColorArray = Array | SingleArray
+
+NOISE_LEVELS = 5.0  # deviation of a decoded, smoothed color difference: sensor and compression
+OUTLIER_DISTANCE = 16.0  # squared distance past which no color is a marker's: 99.9 % of χ²
+BACKGROUND = 255  # label of pixels that are no marker's
+
+
+@dataclass(frozen=True, eq=False)
+class ColorDistribution:
+    """Color of one surface under changing light: log luma is normal, and so is chromaticity given it.
+
+    Chromaticity may drift with luma (tone mapping takes color from bright pixels), so its mean is a line in
+    it.
+    """
+
+    log_luma: float  # mean logarithm of offset luma
+    log_luma_deviation: float  # its standard deviation
+    mean: Array  # (2,) chromaticity at the mean luma
+    slope: Array  # (2,) change of chromaticity per unit of log luma
+    covariance: Array  # (2, 2) of the chromaticity, without the pixel noise of dark colors
+
+    def distance(
+        self, chroma: ColorArray, luma: ColorArray, noise_levels: float = NOISE_LEVELS
+    ) -> tuple[Array, Array]:
+        """The squared Mahalanobis distance and log density over (chromaticity, log luma), (...) each."""
+        light = np.log(luma) - self.log_luma
+        noise = (noise_levels / luma) ** 2
+        first = float(self.covariance[0, 0]) + noise
+        second = float(self.covariance[1, 1]) + noise
+        cross = float(self.covariance[0, 1])
+        determinant = first * second - cross**2
+        x = chroma[..., 0] - float(self.mean[0]) - float(self.slope[0]) * light
+        y = chroma[..., 1] - float(self.mean[1]) - float(self.slope[1]) * light
+        squared = (second * x * x - 2.0 * cross * x * y + first * y * y) / determinant
+        squared += (light / self.log_luma_deviation) ** 2
+        normalizer = 3.0 * np.log(2.0 * np.pi) + np.log(determinant) + 2.0 * np.log(self.log_luma_deviation)
+        return squared, -0.5 * (squared + normalizer)
+
+    def within_reach(self, chroma: ColorArray, luma: ColorArray) -> IndexArray:
+        """Indices of all of N colors nearer than OUTLIER_DISTANCE, and of some beyond.
+
+        A fast bound: no component of a distance exceeds the whole.
+        """
+        light = np.log(luma) - self.log_luma
+        widest = OUTLIER_DISTANCE * (float(self.covariance[0, 0]) + (NOISE_LEVELS / luma) ** 2)
+        offset = chroma[..., 0] - float(self.mean[0]) - float(self.slope[0]) * light
+        limit = float(np.sqrt(OUTLIER_DISTANCE)) * self.log_luma_deviation
+        return np.flatnonzero((offset * offset <= widest) & (np.abs(light) <= limit))
+
+
+@dataclass(frozen=True, eq=False)
+class ColorModel:
+    """Classifier of colors as markers or background, learned for one clip."""
+
+    distributions: tuple[ColorDistribution, ...]  # one a color
+    label: Image  # (CELL_COUNT,) uint8, index of the likeliest color of each cell, or BACKGROUND
+    probability: Image  # (CELL_COUNT,) uint8, posterior probability in 1/255
+
+    def classify(self, image: Image) -> tuple[Image, Image]:
+        """Label and probability in 1/255, (rows, columns), of every pixel of an image."""
+        cells = cell_index(image)
+        return np.take(self.label, cells), np.take(self.probability, cells)
+
+    def labels(self, image: Image) -> Image:
+        """The label, (rows, columns), of every pixel of an image."""
+        return np.take(self.label, cell_index(image))
+
+
+def color_model(
+    distributions: Sequence[ColorDistribution], pixel_counts: ArrayLike, background_counts: ArrayLike
+) -> ColorModel:
+    """Classify every color cell as a marker's, the background's or unknown, by posterior probability.
+
+    `pixel_counts` (M,) are the markers' in the frames in which `background_counts` (CELL_COUNT,) were
+    counted.
+    """
+    near = _cells_near(distributions)
+    chroma, luma = cell_chromaticity(near)
+    counts = np.asarray(background_counts, dtype=np.float64)[near]
+    likeliest, sureness = weigh(distributions, pixel_counts, counts, chroma, luma)
+    label = np.full(CELL_COUNT, BACKGROUND, dtype=np.uint8)
+    probability = np.zeros(CELL_COUNT, dtype=np.uint8)
+    label[near] = np.where(sureness >= 0.5, likeliest, BACKGROUND)
+    probability[near] = np.round(255.0 * sureness)
+    return ColorModel(tuple(distributions), label, probability)
+
+
+def _cells_near(distributions: Sequence[ColorDistribution]) -> NDArray[np.int32]:
+    """Cells, ascending, near any of the distributions.
+
+    Tested by groups of two by two by two cells, within which colors change little.
+    """
+    side = CELLS_PER_CHANNEL // 2
+    group = np.arange(side**3, dtype=np.int32)
+    levels = np.stack([group % side, group // side % side, group // side**2], axis=-1)
+    chroma, luma = chromaticity(levels * (2.0 * CELL_WIDTH) + (2 * CELL_WIDTH - 1) / 2.0)
+    chroma, luma = chroma.astype(np.float32), luma.astype(np.float32)
+    near = np.zeros((side, side, side), dtype=np.bool_)
+    for distribution in distributions:
+        near |= (distribution.distance(chroma, luma)[0] < 2.0 * OUTLIER_DISTANCE).reshape(near.shape)
+    cells = near.repeat(2, axis=0).repeat(2, axis=1).repeat(2, axis=2)
+    return np.flatnonzero(cells).astype(np.int32)
+
+
+def weigh(
+    distributions: Sequence[ColorDistribution],
+    pixel_counts: ArrayLike,
+    background_counts: ArrayLike,
+    chroma: ColorArray,
+    luma: ColorArray,
+) -> tuple[IndexArray, Array]:
+    """The likeliest marker of each of N color cells, (N,), and its posterior probability, (N,).
+
+    Counts are as in `color_model`, those of the background by cell (N,), like chromaticity and luma.
+    """
+    counts = np.asarray(pixel_counts, dtype=np.float64)
+    best, total = np.zeros(len(luma)), np.asarray(background_counts, dtype=np.float64).copy()
+    label, distance = np.zeros(len(luma), dtype=np.intp), np.full(len(luma), np.inf)
+    for marker, distribution in enumerate(distributions):
+        near = distribution.within_reach(chroma, luma)
+        squared, log_density = distribution.distance(chroma.take(near, axis=0), luma.take(near))
+        evidence = counts[marker] * np.exp(log_density) * cell_volume(luma[near])
+        total[near] += evidence
+        better = evidence > best[near]
+        where = near[better]
+        best[where], label[where], distance[where] = evidence[better], marker, squared[better]
+    # The unknown: as likely as the marker itself at the outlier distance, everywhere.
+    with np.errstate(over="ignore", invalid="ignore"):
+        unknown = best * np.exp(0.5 * (distance - OUTLIER_DISTANCE))
+        return label, np.nan_to_num(best / (total + unknown))
+
+
+APART = 0.08  # least difference in chromaticity of two suggested colors
+
+
+def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list[tuple[int, int, int]]:
+    """Up to three colors (red, green, blue) found in the clip, the nearest to the sample first."""
+    count = np.asarray(counts, dtype=np.float64)
+    common = np.flatnonzero(count > max(2e-5 * count.sum(), 0.5))  # fewer are noise
+    colors = cell_colors()[common]
+    wanted, wanted_luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
+    chroma, luma = chromaticity(colors)
+    distance = np.linalg.norm(chroma - wanted, axis=1) + 0.1 * np.abs(np.log(luma / wanted_luma))
+    chosen: list[int] = []
+    for index in np.argsort(distance):
+        if all(np.linalg.norm(chroma[index] - chroma[other]) >= APART for other in chosen):
+            chosen.append(int(index))
+        if len(chosen) == 3:
+            break
+    return [(int(red), int(green), int(blue)) for blue, green, red in np.round(colors[chosen])]
+
+
+def share_of_color(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> float:
+    """The share of the clip's pixels, counted by color cell, that look like a color."""
+    count = np.asarray(counts, dtype=np.float64)
+    present = np.flatnonzero(count)
+    wanted, wanted_luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
+    chroma, luma = chromaticity(cell_colors(present.astype(np.int32)))
+    like = (np.linalg.norm(chroma - wanted, axis=1) < APART / 2.0) & (
+        np.abs(np.log(luma / wanted_luma)) < 0.25
+    )
+    return float(count[present[like]].sum() / max(count.sum(), 1.0))

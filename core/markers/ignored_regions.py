@@ -1,0 +1,198 @@
+"""Ignored regions: parts of the picture that are never a marker, whatever color they have.
+
+A box, or the stroke of a brush, in all frames of a clip or some. Their pixels are neither searched for
+markers, nor learned from, nor counted as background: a wall of a marker's very color says nothing of either.
+"""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Annotated, Any
+
+import cv2
+import numpy as np
+
+from ..arrays import Array, BoolArray, Image
+from ..camera.camera_fields import LARGEST_SIDE_PX
+from ..errors import InputError, shown
+from ..files.kinds import Items, Number, Whole, refuse
+from ..files.records import Record
+from ..video.working_image import halvings
+
+IGNORED = 255  # value of ignored pixels in a mask; of one made smaller, pixels from half of it on are ignored
+SUBPIXEL_BITS = 4
+SUBPIXELS = 1 << SUBPIXEL_BITS  # parts of a pixel in drawn coordinates
+
+Point = tuple[float, float]
+PixelBox = tuple[float, float, float, float]  # left, top, right, bottom in pixels of the footage
+
+
+@dataclass(frozen=True)
+class IgnoredRegion:
+    """One region of the picture that is never a marker, in pixels of the footage."""
+
+    box: PixelBox | None = None  # A box; None for a stroke
+    stroke: tuple[Point, ...] = ()
+    """Points of a brush's path, all pixels within the radius of which are ignored."""
+    radius_px: float = 0.0  # the brush's radius
+    frames: tuple[int, int] | None = None  # index of the first frame and of the last one; None for all
+
+    def holds_in(self, frame: int) -> bool:
+        """Whether it is ignored in a frame of the clip, by its index."""
+        return self.frames is None or self.frames[0] <= frame <= self.frames[1]
+
+
+@dataclass(frozen=True)
+class IgnoredPixels:
+    """The ignored pixels of a clip, frame by frame."""
+
+    regions: tuple[IgnoredRegion, ...]
+    size: tuple[int, int]  # width and height of the footage in px
+    sampled: tuple[int, ...] | None = None
+    """Index in the clip of each frame that is asked for; None where frames are the clip's own."""
+
+    def mask(self, frame: int) -> Image | None:
+        """Mask (rows, columns) of a frame on the measuring grid, IGNORED or 0; None if all is searched."""
+        if not self.regions:
+            return None
+        index = frame if self.sampled is None else self.sampled[frame]
+        here = tuple(region for region in self.regions if region.holds_in(index))
+        return _mask(here, self.size) if here else None
+
+
+def is_ignored(mask: Image) -> BoolArray:
+    """(rows, columns) which pixels of a mask, made smaller or not, are ignored."""
+    return np.asarray(2 * mask.astype(np.int64) > IGNORED)
+
+
+def without(label: Image, mask: Image, nothing: int) -> Image:
+    """Labels of an image's pixels, `nothing` where they are ignored."""
+    return np.where(is_ignored(mask), np.uint8(nothing), label)
+
+
+@lru_cache(16)  # a session's, some hundred kilobytes each
+def _mask(regions: tuple[IgnoredRegion, ...], size: tuple[int, int]) -> Image:
+    """The pixels of the measuring grid whose centers lie in any of the regions."""
+    times = halvings(size)
+    mask = np.zeros((size[1] >> times, size[0] >> times), dtype=np.uint8)
+    for region in regions:
+        _draw(mask, region, float(1 << times))
+    mask.setflags(write=False)
+    return mask
+
+
+def _draw(mask: Image, region: IgnoredRegion, step_px: float) -> None:
+    """Fill a region in a mask (rows, columns), whose pixels are `step_px` pixels of the footage wide."""
+    if region.box is not None:
+        left, top, right, bottom = (max(round(value / step_px), 0) for value in region.box)
+        mask[top:bottom, left:right] = IGNORED
+        return
+    # OpenCV counts from the center of the first pixel, Keymark from its corner.
+    path = np.round((np.array(region.stroke) / step_px - 0.5) * SUBPIXELS).astype(np.int32)
+    radius = max(round(region.radius_px / step_px * SUBPIXELS), SUBPIXELS // 2)
+    for x, y in path.tolist():
+        cv2.circle(mask, (x, y), radius, (float(IGNORED),), -1, shift=SUBPIXEL_BITS)
+    for one, other in itertools.pairwise(path.astype(np.float64)):
+        _draw_between(mask, one, other, float(radius))
+
+
+def _draw_between(mask: Image, one: Array, other: Array, radius: float) -> None:
+    """Fill what a disc sweeps on its way between two points, all in parts of a pixel."""
+    along = other - one
+    length = float(np.linalg.norm(along))
+    if length > 0.0:
+        across = radius / length * np.array([-along[1], along[0]])
+        corners = np.round([one + across, other + across, other - across, one - across]).astype(np.int32)
+        cv2.fillConvexPoly(mask, corners, (float(IGNORED),), shift=SUBPIXEL_BITS)
+
+
+IGNORED_REGIONS = "ignored_regions"
+MOST_REGIONS = 200
+MOST_POINTS = 1000  # points of one stroke
+VALID_BOX = "[left, top, right, bottom] in pixels of the footage, as in [10, 20, 60, 90]"
+VALID_STROKE = f"a list of 1 to {MOST_POINTS} points [x, y] in pixels of the footage"
+VALID_FRAMES = "[first, last], scene frames in order"
+
+SceneFrame = Annotated[int, Whole(-(10**7), 10**7)]
+Coordinate = Annotated[float, Number(-LARGEST_SIDE_PX, 2 * LARGEST_SIDE_PX)]
+PixelPoint = Annotated[tuple[Coordinate, ...], Items("numbers", 2, 2)]
+
+
+@dataclass(frozen=True)
+class RegionFields(Record):
+    """A region of the picture that is never a marker: a box, or the stroke of a brush."""
+
+    STRICT = True
+
+    box: Annotated[tuple[Coordinate, ...], Items("numbers", 4, 4, VALID_BOX)] | None = None
+    """Left, top, right, bottom [px]."""
+    stroke: Annotated[tuple[PixelPoint, ...], Items("points", 1, MOST_POINTS, VALID_STROKE)] | None = None
+    """Points [x, y] of a brush's path [px]."""
+    radius_px: Annotated[float, Number(0.5, LARGEST_SIDE_PX, "pixels of the footage")] | None = None
+    """Radius of the brush [px]."""
+    frames: Annotated[tuple[SceneFrame, ...], Items("frames", 2, 2, VALID_FRAMES)] | None = None
+    """First and last scene frame in which it is ignored; the default is all."""
+
+    def mistake(self) -> str:
+        """See `Record`."""
+        if self.frames is not None and self.frames[0] > self.frames[1]:
+            return f"frames is {shown(list(self.frames))}; it must be {VALID_FRAMES}"
+        if self.stroke is not None and self.box is not None:
+            return "has a box and a stroke; each region has one of them"
+        if self.stroke is not None and self.radius_px is None:
+            return "radius_px is missing; it must be a number of pixels of the footage, from 0.5"
+        if self.stroke is None and self.radius_px is not None:
+            return f"has a radius_px without a stroke, {VALID_STROKE}"
+        return "" if self.box or self.stroke else f"box is missing; it must be {VALID_BOX}"
+
+
+def ignored_regions(
+    regions: Sequence[RegionFields], size: tuple[int, int], frame_start: int, source: str
+) -> tuple[IgnoredRegion, ...]:
+    """Regions of a take, from the fields that `source` gives, for footage of (width, height).
+
+    Raises:
+        InputError: One lies beside the picture.
+    """
+    where = [f"{source}: {IGNORED_REGIONS}[{number}]" for number in range(len(regions))]
+    return tuple(_region(one, size, frame_start, at) for one, at in zip(regions, where, strict=True))
+
+
+def ignored_region_fields(regions: Sequence[IgnoredRegion], frame_start: int) -> list[dict[str, Any]]:
+    """Regions as the field `ignored_regions` of `take.json`."""
+    listed: list[dict[str, Any]] = []
+    for one in regions:
+        stroke = {"stroke": [list(point) for point in one.stroke], "radius_px": one.radius_px}
+        listed.append(stroke if one.box is None else {"box": list(one.box)})
+        if one.frames is not None:
+            listed[-1]["frames"] = [index + frame_start for index in one.frames]
+    return listed
+
+
+def _region(region: RegionFields, size: tuple[int, int], frame_start: int, where: str) -> IgnoredRegion:
+    frames = None
+    if region.frames is not None:
+        first, last = (frame - frame_start for frame in region.frames)
+        frames = (first, last)
+    farthest = max(size)
+    points = [*(region.box or ()), *(part for point in region.stroke or () for part in point)]
+    if any(not -farthest <= part <= 2 * farthest for part in points):
+        if region.box is not None:
+            refuse(where, "box", list(region.box), VALID_BOX)
+        refuse(where, "stroke", [list(point) for point in region.stroke or ()], VALID_STROKE)
+    if region.box is None:
+        if (region.radius_px or 0.0) > farthest:
+            valid = f"a number from 0.5 to {farthest} pixels of the footage"
+            refuse(where, "radius_px", region.radius_px, valid)
+        stroke = tuple((x, y) for x, y in region.stroke or ())
+        return IgnoredRegion(stroke=stroke, radius_px=region.radius_px or 0.0, frames=frames)
+    left, top, right, bottom = region.box
+    said = shown([int(part) if part.is_integer() else part for part in region.box])
+    if left >= right or top >= bottom:
+        raise InputError(f"{where}: box is {said}, which holds no pixel; it must be {VALID_BOX}")
+    if left >= size[0] or top >= size[1] or right <= 0.0 or bottom <= 0.0:
+        raise InputError(
+            f"{where}: box is {said}, which lies beside the picture of {size[0]} x {size[1]} pixels"
+        )
+    return IgnoredRegion(box=(left, top, right, bottom), frames=frames)

@@ -1,0 +1,156 @@
+"""Indexed frames: sampled frames of a clip as indices into a table of their colors, for color learning."""
+
+from collections.abc import Sequence
+from typing import NamedTuple, TypeVar
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array, Image, IndexArray, IntArray
+from ..video.working_image import smooth
+from .color_model import (
+    CELL_COUNT,
+    CELLS_PER_CHANNEL,
+    ColorDistribution,
+    cell_chromaticity,
+    cell_index,
+    weigh,
+)
+from .ignored_regions import is_ignored
+
+_Number = TypeVar("_Number", bound=np.generic)
+
+LEARNING_NOISE_LEVELS = 2.5  # less than in classification: pixels explained by noise alone teach nothing
+NO_MARKER = 255
+KERNEL = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
+# A Gaussian kernel of one cell's deviation, cut off after two.
+SPREAD = np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2) / np.sum(np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2))
+
+
+class CroppedMask(NamedTuple):
+    """A mask of an image, cropped to its bounding box."""
+
+    left: int  # first column of the box
+    top: int  # its first row
+    mask: Image  # (rows, columns) uint8, 0 or 1
+    area: int  # pixels that are 1
+
+    def within(self, whole: Image) -> "CroppedMask":
+        """The intersection with a mask of the whole image."""
+        return _cropped(self.left, self.top, self.mask & self.crop(whole))
+
+    def interior(self) -> Image:
+        """The mask without its blended border, if enough of it remains."""
+        inner = cv2.erode(self.mask, KERNEL, borderType=cv2.BORDER_CONSTANT, borderValue=(0.0,))
+        return np.asarray(inner if cv2.countNonZero(inner) >= 0.25 * self.area else self.mask, dtype=np.uint8)
+
+    def crop(self, image: NDArray[_Number]) -> NDArray[_Number]:
+        """An image cropped to the mask's box."""
+        rows, columns = self.mask.shape
+        return image[self.top : self.top + rows, self.left : self.left + columns]
+
+
+class IndexedFrames:
+    """The sampled frames as indices into the table of the colors that occur in them."""
+
+    def __init__(self, images: Sequence[Image], ignored: Sequence[Image | None] = ()) -> None:
+        """Count the colors of images (rows, columns, 3) uint8, each with the mask of its ignored pixels."""
+        cells = [cell_index(smooth(image)) for image in images]
+        present = np.zeros(CELL_COUNT, dtype=np.bool_)
+        for cell in cells:
+            present[cell] = True
+        self._table = np.flatnonzero(present).astype(np.int32)
+        self._chroma, self._luma = cell_chromaticity(self._table)
+        rank = np.zeros(CELL_COUNT, dtype=np.intp)
+        rank[self._table] = np.arange(len(self._table))
+        self._images = [rank.take(cell) for cell in cells]
+        self._ignored = [
+            None if mask is None else is_ignored(mask) for mask in ignored or [None] * len(cells)
+        ]
+
+    def near(self, distributions: Sequence[ColorDistribution]) -> Image:
+        """Label each color of the table by the distribution in whose core it lies; 255 for none."""
+        pairs = [
+            distribution.distance(self._chroma, self._luma, LEARNING_NOISE_LEVELS)
+            for distribution in distributions
+        ]
+        nearest = np.argmax([density for _, density in pairs], axis=0)
+        distance = np.array([squared for squared, _ in pairs])[nearest, np.arange(len(nearest))]
+        # 95 % of χ² with 3 degrees of freedom.
+        return np.where(distance < 7.8, nearest, NO_MARKER).astype(np.uint8)
+
+    def weighed(
+        self, distributions: Sequence[ColorDistribution], pixels: IntArray, background: Array
+    ) -> Image:
+        """Label each color of the table by its likeliest marker; 255 where the background is likelier."""
+        label, probability = weigh(distributions, pixels, background[self._table], self._chroma, self._luma)
+        return np.where(probability >= 0.5, label, NO_MARKER).astype(np.uint8)
+
+    def regions(self, labels: Image, core: Image, markers: int) -> list[list[CroppedMask]]:
+        """For each frame and marker, its connected regions with enough of its core color."""
+        result = []
+        for image, ignored in zip(self._images, self._ignored, strict=True):
+            label = labels.take(image)
+            if ignored is not None:
+                label[ignored] = NO_MARKER
+            result.append([_core_regions(label, image, core, marker) for marker in range(markers)])
+        return result
+
+    def colors(self, masks: Sequence[CroppedMask]) -> tuple[Array, Array]:
+        """Chromaticity (N, 2) and offset luma (N,) of the insides of masks, one a frame."""
+        inside = [
+            mask.crop(image)[mask.interior().view(np.bool_)]
+            for image, mask in zip(self._images, masks, strict=True)
+            if mask.area
+        ]
+        index = np.concatenate([*inside, np.zeros(0, dtype=np.intp)])
+        return self._chroma[index].astype(np.float64), self._luma[index].astype(np.float64)
+
+    def background_counts(self, masks: Sequence[Sequence[CroppedMask]]) -> Array:
+        """Smoothed histogram (CELL_COUNT,) of the colors at a distance from all masks and ignored pixels."""
+        total = np.zeros(len(self._table))
+        for image, ignored, placed in zip(self._images, self._ignored, masks, strict=True):
+            covered = np.zeros(image.shape, dtype=np.uint8)
+            if ignored is not None:
+                covered[ignored] = 1
+            for mask in placed:
+                mask.crop(covered)[:] |= mask.mask
+            near = cv2.dilate(covered, KERNEL, iterations=3)
+            total += np.bincount(image.ravel(), weights=1.0 - near.ravel(), minlength=len(self._table))
+        counts = np.zeros(CELL_COUNT)
+        counts[self._table] = total
+        return _spread(counts)
+
+
+def _spread(counts: Array) -> Array:
+    """Smooth a histogram (CELL_COUNT,) over neighboring cells."""
+    side = CELLS_PER_CHANNEL
+    # Two channels are rows and columns of an image with as many channels as cells in the third.
+    cube = cv2.sepFilter2D(
+        counts.reshape(side, side, side), -1, SPREAD, SPREAD, borderType=cv2.BORDER_REPLICATE
+    )
+    one = np.ones(1)
+    lines = cv2.sepFilter2D(cube.reshape(-1, side), -1, SPREAD, one, borderType=cv2.BORDER_REPLICATE)
+    return np.asarray(lines.ravel(), dtype=np.float64)
+
+
+def _core_regions(label: Image, image: IndexArray, core: Image, marker: int) -> CroppedMask:
+    """Keep regions with enough of the core color that are no wall or floor."""
+    mask = np.equal(label, marker).view(np.uint8)
+    left, top, columns, rows = cv2.boundingRect(mask)
+    part = np.ascontiguousarray(mask[top : top + rows, left : left + columns])
+    if not columns:
+        return CroppedMask(0, 0, part, 0)
+    count, number, stats, _ = cv2.connectedComponentsWithStats(part, connectivity=8, ltype=cv2.CV_16U)
+    pixel = np.flatnonzero(part)
+    color = image[top : top + rows, left : left + columns].take(pixel)
+    strong = np.bincount(np.asarray(number).take(pixel[core.take(color) == marker]), minlength=count)
+    area = stats[:, cv2.CC_STAT_AREA]
+    good = (strong >= np.maximum(4, 0.25 * area)) & (area <= 0.25 * label.size)
+    good[0] = False
+    return _cropped(left, top, good.astype(np.uint8).take(np.asarray(number)))
+
+
+def _cropped(left: int, top: int, mask: Image) -> CroppedMask:
+    return CroppedMask(left, top, mask, cv2.countNonZero(mask))

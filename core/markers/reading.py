@@ -1,0 +1,264 @@
+"""A reading: the result of one pass over a clip, for all later steps."""
+
+import itertools
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..errors import InputError
+from ..files.digest import digest, file_fingerprint
+from ..video.album import Album, Glimpses, watch_clip
+from ..video.clip import Clip
+from ..video.frame_checks import NO_FINDINGS, FrameChecks, FrameFindings
+from ..video.image_sequence import find_images
+from .ignored_regions import IgnoredRegion
+from .markers import assign_detections, detect_markers, still_valid
+from .region_tracks import Detections, ExpectedRegions, LearningRound, MarkerStyle, Regions, RegionTracks
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """Result of one pass over a clip."""
+
+    tracks: RegionTracks  # the markers' regions in every frame
+    album: Album | None = None  # a small picture of every frame; None where only markers are used
+    detections: Detections | None = None  # all regions of the markers' colors; None where they were not kept
+    notes: tuple[str, ...] = ()  # sentences on possible faults of the clip
+    key: str = ""  # cache key of the clip and the settings, see `reading_key`; empty where unknown
+    frame_findings: FrameFindings = NO_FINDINGS  # blank and repeated frames, cuts and interlacing
+    glimpses: Glimpses | None = None  # a few larger pictures; None where it was not read from a clip
+    steady: Array | None = None  # (F, 3, 3) from what it shows to the clip's pixels, see `steady_camera`
+
+
+Arrays = dict[str, NDArray[Any]]
+
+TRACKED = ("centroid", "second_moment", "area", "quality", "clipped", "time_s")
+
+
+def reading_arrays(reading: Reading) -> Arrays:
+    """A reading as arrays by name."""
+    tracks, findings = reading.tracks, reading.frame_findings
+    arrays: Arrays = {f"tracks.{name}": getattr(tracks, name) for name in TRACKED}
+    arrays |= {
+        "key": np.array(reading.key),
+        "notes": _text(reading.notes),
+        "noticed.blank": np.array(findings.blank, dtype=np.int64),
+        "noticed.cuts": np.array(findings.cuts, dtype=np.int64),
+        "noticed.repeated": np.array(findings.repeated, dtype=np.int64),
+        "noticed.rest": np.array([findings.frames, findings.interlaced], dtype=np.int64),
+        "tracks.names": _text(tracks.names),
+        "tracks.notes": _text(tracks.notes),
+        "tracks.size": np.array(tracks.size),
+    }
+    if reading.album is not None:
+        arrays |= {f"album.{name}": array for name, array in reading.album.to_arrays().items()}
+    if reading.glimpses is not None:
+        arrays |= {f"glimpses.{name}": array for name, array in reading.glimpses.to_arrays().items()}
+    if reading.detections is not None:
+        arrays |= {f"seen.{name}": array for name, array in _detections_arrays(reading.detections).items()}
+    return arrays
+
+
+def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
+    """The reading that `reading_arrays` gave; KeyError or ValueError where they are not of one."""
+    width, height = arrays["tracks.size"].tolist()
+    tracks = RegionTracks(
+        names=tuple(arrays["tracks.names"].tolist()),
+        size=(width, height),
+        notes=tuple(arrays["tracks.notes"].tolist()),
+        **{name: arrays[f"tracks.{name}"] for name in TRACKED},
+    )
+    album = Album.from_arrays(_under("album", arrays)) if "album.picture" in arrays else None
+    seen = _detections(_under("seen", arrays), tracks) if "seen.start" in arrays else None
+    frames, interlaced = arrays["noticed.rest"].tolist()
+    blank, cuts, repeated = (
+        tuple(arrays[f"noticed.{name}"].tolist()) for name in ("blank", "cuts", "repeated")
+    )
+    findings = FrameFindings(frames, blank, cuts, bool(interlaced), repeated)
+    glimpses = Glimpses.from_arrays(_under("glimpses", arrays)) if "glimpses.picture" in arrays else None
+    notes = tuple(arrays["notes"].tolist())
+    return Reading(tracks, album, seen, notes, str(arrays["key"]), findings, glimpses)
+
+
+def _under(name: str, arrays: Mapping[str, NDArray[Any]]) -> Arrays:
+    start = f"{name}."
+    return {key.removeprefix(start): array for key, array in arrays.items() if key.startswith(start)}
+
+
+def _text(lines: tuple[str, ...]) -> NDArray[Any]:
+    return np.array(lines, dtype=np.str_) if lines else np.zeros(0, dtype="<U1")
+
+
+def _detections_arrays(seen: Detections) -> Arrays:
+    """Concatenated regions with the index of each frame's first one; learning rounds likewise."""
+    counts = [len(found.color) for found in seen.regions]
+    learned = [len(one.frames) for one in seen.learning_rounds]
+    frames = sorted(seen.samples)
+    return {
+        "start": np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        **{name: np.concatenate([getattr(one, name) for one in seen.regions]) for name in Regions._fields},
+        "lesson_start": np.concatenate([[0], np.cumsum(learned)]).astype(np.int64),
+        "lesson_frames": np.array([f for one in seen.learning_rounds for f in one.frames], dtype=np.int64),
+        "taught": _text(tuple(one.model_digest for one in seen.learning_rounds)),
+        "sample_frames": np.array(frames, dtype=np.int64),
+        "samples": np.stack([seen.samples[frame] for frame in frames]),
+    }
+
+
+def _detections(arrays: Arrays, tracks: RegionTracks) -> Detections:
+    everything = Regions(*(arrays[name] for name in Regions._fields))
+    regions = tuple(everything.part(a, b) for a, b in itertools.pairwise(arrays["start"].tolist()))
+    frames, starts = arrays["lesson_frames"].tolist(), arrays["lesson_start"].tolist()
+    learning_rounds = tuple(
+        LearningRound(tuple(frames[a:b]), taught)
+        for (a, b), taught in zip(itertools.pairwise(starts), arrays["taught"].tolist(), strict=True)
+    )
+    samples = dict(zip(arrays["sample_frames"].tolist(), arrays["samples"], strict=True))
+    return Detections(regions, tracks.time_s, tracks.size, learning_rounds, samples)
+
+
+FORMAT = 3  # version of the reading's algorithm and arrays; raised whenever either changes
+
+
+def reading_key(
+    path: Path,
+    fps: float,
+    styles: Sequence[MarkerStyle],
+    expected: ExpectedRegions | None,
+    ignored: Sequence[IgnoredRegion] = (),
+) -> str:
+    """Cache key that changes with everything a reading depends on, of a clip as `Clip.open` takes it."""
+    wanted = tuple((style.name, style.segment, tuple(style.color_srgb)) for style in styles)
+    regions = None if expected is None else (expected.center, expected.radius)
+    left_out = [(one.box, one.stroke, one.radius_px, one.frames) for one in ignored] if wanted else []
+    return f"reading-{digest(FORMAT, _footage(path, fps), wanted, *left_out)}-{digest(regions)}"
+
+
+def of_same_footage(key: str, other: str) -> bool:
+    """Whether two keys differ at most in the markers' expected regions."""
+    return bool(key) and key.rpartition("-")[0] == other.rpartition("-")[0]
+
+
+def footage_digest(path: Path) -> str:
+    """Digest of a clip's file, or of the images of a sequence, independent of their folder."""
+    return digest(*_footage(path, 0.0))
+
+
+def _footage(path: Path, fps: float) -> tuple[object, ...]:
+    try:
+        images = find_images(path)
+        if images is None:
+            return (file_fingerprint(path),)
+        states = [(file.name, file.stat()) for file in images]
+        names = tuple((name, state.st_size, state.st_mtime_ns) for name, state in states)
+        some = images[:: max(1, len(images) // 24)]
+        return fps, names, tuple(file_fingerprint(file) for file in some)
+    except OSError as error:
+        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
+
+
+def read_clip(
+    clip: Clip,
+    styles: Sequence[MarkerStyle],
+    expected: ExpectedRegions | None = None,
+    with_album: bool = True,
+    kept: Reading | None = None,
+    ignored: Sequence[IgnoredRegion] = (),
+) -> Generator[float, None, Reading]:
+    """Track the markers through a clip, check its frames and keep a small picture of each.
+
+    A cached reading of any clip may be `kept`: it is returned without decoding the clip if its key is the
+    same; if only the expected regions differ and the colors would be learned alike, its detections are
+    assigned to the markers anew. The result is the same to the last digit. Yields the fraction done.
+
+    Raises:
+        InputError: The clip shows nothing, a marker's color matches nothing, or a frame cannot be read.
+    """
+    yield 0.0
+    key = reading_key(clip.path, clip.fps, styles, expected, ignored)
+    if kept is not None and (kept.album is not None or not with_album):
+        kept = kept if with_album else replace(kept, album=None)
+        if kept.key == key:
+            return kept
+        seen = kept.detections
+        same = seen is not None and of_same_footage(kept.key, key)
+        if seen is not None and same and still_valid(seen, styles, expected, ignored):
+            tracks = _each_once(assign_detections(seen, styles, expected), kept.frame_findings)
+            return replace(kept, tracks=tracks, key=key)
+    album, checks, glimpses = Album() if with_album else None, FrameChecks(), Glimpses.of(clip)
+    watched = watch_clip(clip, checks, album, glimpses)
+    if not styles:
+        time_s: list[float] = []
+        for _, stamp, _ in watched.frames():
+            time_s.append(stamp)
+            yield min(len(time_s) / clip.frame_count, 1.0)
+        tracks = RegionTracks.unmarked(np.array(time_s), clip.size)
+        findings = checks.findings()
+        if album is not None:
+            album.without(findings.repeated)
+        return Reading(tracks, album, key=key, frame_findings=findings, glimpses=glimpses)
+    try:
+        seen = yield from detect_markers(watched, styles, expected, ignored)
+    except InputError as error:
+        why = checks.nothing_seen()
+        if why is not None:
+            raise InputError(f"{clip.path}: {why}") from error
+        if clip.notes:
+            raise InputError("; ".join([str(error), *clip.notes])) from error
+        raise
+    yield 1.0
+    findings = checks.findings()
+    if album is not None:
+        album.without(findings.repeated)
+    tracks = _each_once(assign_detections(seen, styles, expected), findings)
+    return Reading(tracks, album, seen, key=key, frame_findings=findings, glimpses=glimpses)
+
+
+def _each_once(tracks: RegionTracks, findings: FrameFindings) -> RegionTracks:
+    """The tracks without those of repeated pictures, which show no other moment."""
+    if not findings.repeated:
+        return tracks
+    again = list(findings.repeated)
+    nothing = {"centroid": np.nan, "second_moment": np.nan, "area": np.nan, "quality": 0.0, "clipped": False}
+    arrays: dict[str, Any] = {name: np.array(getattr(tracks, name)) for name in nothing}
+    for name, value in nothing.items():
+        arrays[name][again] = value
+    return replace(tracks, **arrays)
+
+
+MOST_CLIPS = 8  # clips whose times are remembered: those of the takes at hand
+_known: dict[tuple[str, float], Array] = {}
+
+
+def clip_times(
+    clip: Clip,
+    kept: Reading | None = None,
+    styles: Sequence[MarkerStyle] = (),
+    ignored: Sequence[IgnoredRegion] = (),
+) -> Generator[float, None, Array]:
+    """The times (F,) [s] of all frames, by a pass over the clip unless its file is known and unchanged.
+
+    A cached reading knows them where it is one of this clip with these markers and ignored regions. Yields
+    the fraction done.
+    """
+    key = footage_digest(clip.path), clip.fps
+    if key not in _known:
+        own = "" if kept is None else reading_key(clip.path, clip.fps, styles, None, ignored)
+        if kept is not None and of_same_footage(kept.key, own):
+            time_s = kept.tracks.time_s.copy()
+        else:
+            stamps: list[float] = []
+            for stamp in clip.source.time_stamps():
+                stamps.append(stamp)
+                yield min(len(stamps) / clip.frame_count, 1.0)
+            time_s = np.array(stamps, dtype=np.float64)
+        time_s.setflags(write=False)
+        _known[key] = time_s
+        for oldest in list(_known)[:-MOST_CLIPS]:
+            del _known[oldest]
+    return _known[key]

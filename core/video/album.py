@@ -1,0 +1,224 @@
+"""Album: a small compressed picture of every frame, kept while the clip is read, to decode it only once.
+
+The estimate needs the pictures only after it knows roughly where the performer is, and then on a coarse grid.
+Compressed pictures of that grid take some kilobytes each: ten minutes fit in memory.
+"""
+
+from collections.abc import Collection, Generator, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array, BoolArray, Image, IndexArray
+from .clip import Clip
+from .frame_checks import FrameChecks
+from .working_image import halvings, learning_image, measuring_image, smooth
+
+
+@dataclass(eq=False)
+class Album:
+    """Small pictures of the frames read so far, on the grid that colors are learned on."""
+
+    factor: int = 1  # pixels of the clip to a pixel of the pictures, along either axis
+    _pictures: dict[int, Image] = field(default_factory=dict)
+    _room: int = 0  # bytes of pictures that may be kept as they are
+    _opened: dict[int, Image] = field(default_factory=dict)
+
+    def add(self, index: int, image: Image) -> None:
+        """Keep a frame (rows, columns, 3)."""
+        small = learning_image(measuring_image(image, halvings((image.shape[1], image.shape[0]))))
+        self.factor = image.shape[1] // small.shape[1]
+        # Errs less than the video's compression.
+        _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 90])
+        self._pictures[index] = packed
+
+    def without(self, indices: Collection[int]) -> None:
+        """Drop the pictures of some frames."""
+        for index in indices:
+            self._pictures.pop(index, None)
+
+    def every(self, step: int) -> "Album":
+        """The album of a clip that consists of every `step`-th frame, with indices of its own."""
+        kept = {index // step: packed for index, packed in self._pictures.items() if index % step == 0}
+        return Album(self.factor, kept)
+
+    def warped(self, homography: Array) -> "Album":
+        """The album with each picture mapped by one of the clip's homographies (F, 3, 3), edges repeated."""
+        scale = np.diag([self.factor, self.factor, 1.0])
+        kept = {}
+        for index, packed in self._pictures.items():
+            image = cv2.imdecode(packed, cv2.IMREAD_COLOR)
+            own = np.linalg.inv(scale) @ homography[index] @ scale
+            size = image.shape[1], image.shape[0]
+            image = cv2.warpPerspective(image, own, size, borderMode=cv2.BORDER_REPLICATE)
+            _, kept[index] = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, 90])
+        return Album(self.factor, kept)
+
+    def opened(self, room: int) -> "Album":
+        """The same album for many looks at the same frames: it keeps `room` bytes of what it has unpacked."""
+        return Album(self.factor, self._pictures, room)
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """The concatenated compressed pictures, with their frames and end offsets."""
+        return {"factor": np.array(self.factor), **_packed(self._pictures)}
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Album":
+        """The album that `to_arrays` gave."""
+        return cls(int(arrays["factor"]), _unpacked(arrays))
+
+    def __contains__(self, index: int) -> bool:
+        return index in self._pictures
+
+    def pictures(self, indices: Sequence[int] | IndexArray) -> tuple[Image, BoolArray]:
+        """The small pictures (F, rows, columns, 3) of F frames, and (F,) which exist; others are black.
+
+        Raises:
+            KeyError: The album is empty.
+        """
+        known = np.array([int(index) in self for index in indices], dtype=np.bool_)
+        if not self._pictures:
+            raise KeyError("the album is empty")
+        blank = np.zeros_like(self.picture(next(iter(self._pictures))))
+        seen = [
+            self.picture(int(index)) if there else blank for index, there in zip(indices, known, strict=True)
+        ]
+        return np.stack(seen), known
+
+    def picture(self, index: int) -> Image:
+        """A frame's small picture (rows, columns, 3), smoothed like all images that colors are read from.
+
+        Raises:
+            KeyError: The frame was never read, or is blank.
+        """
+        if index in self._opened:
+            return self._opened[index]
+        packed = self._pictures[index]
+        image = smooth(np.asarray(cv2.imdecode(packed, cv2.IMREAD_COLOR), dtype=np.uint8))
+        if image.nbytes <= self._room:
+            self._room -= image.nbytes
+            self._opened[index] = image
+        return image
+
+
+GLIMPSES, GLIMPSE_SIDE_PX = 8, 640
+"""Pictures that are kept, and their longer side: the pose network sees 256 pixels of a person."""
+
+
+@dataclass(eq=False)
+class Glimpses:
+    """Some pictures of a clip, evenly spread, in which people are to be recognized."""
+
+    width: int  # of the clip's pictures [px]
+    _pictures: dict[int, Image]
+
+    @classmethod
+    def of(cls, clip: Clip) -> "Glimpses":
+        """Those of a clip that is about to be read."""
+        count = min(GLIMPSES, clip.frame_count)
+        middles = (np.arange(count) + 0.5) * clip.frame_count / count  # not the ends, which may be empty
+        return cls(clip.size[0], {int(frame): np.zeros(0, dtype=np.uint8) for frame in middles})
+
+    def add(self, index: int, image: Image) -> None:
+        """Keep a frame (rows, columns, 3) if it is one of them."""
+        if index not in self._pictures:
+            return
+        scale = min(1.0, GLIMPSE_SIDE_PX / max(image.shape[:2]))
+        small = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+        self._pictures[index] = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 90])[1].ravel()
+
+    @property
+    def frames(self) -> list[int]:
+        """The frames that were kept."""
+        return sorted(index for index, packed in self._pictures.items() if len(packed))
+
+    def picture(self, index: int) -> tuple[Image, float]:
+        """A picture (rows, columns, 3), and how many pixels of the clip one of its is along either axis."""
+        image = np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8)
+        return image, self.width / image.shape[1]
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """The concatenated compressed pictures, with their frames and end offsets."""
+        return {"width": np.array(self.width), **_packed(self._pictures)}
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Glimpses":
+        """Those that `to_arrays` gave."""
+        return cls(int(arrays["width"]), _unpacked(arrays))
+
+
+def _packed(pictures: Mapping[int, Image]) -> dict[str, NDArray[Any]]:
+    frames = sorted(pictures)
+    packed = [pictures[frame].ravel() for frame in frames]
+    return {
+        "frame": np.array(frames, dtype=np.int64),
+        "end": np.cumsum([len(one) for one in packed], dtype=np.int64),
+        "picture": np.concatenate([np.zeros(0, dtype=np.uint8), *packed]),
+    }
+
+
+def _unpacked(arrays: Mapping[str, NDArray[Any]]) -> dict[int, Image]:
+    pictures = np.split(arrays["picture"], arrays["end"])
+    return dict(zip(arrays["frame"].tolist(), pictures, strict=False))  # after the last end is nothing
+
+
+@dataclass(frozen=True, kw_only=True)
+class _WatchedClip(Clip):
+    """A clip that passes every frame to checks, album and glimpses before yielding it."""
+
+    checks: FrameChecks
+    album: Album | None
+    glimpses: Glimpses
+
+    def frames(self) -> Iterator[tuple[int, float, Image]]:
+        """See `Clip.frames`; blank ones are not kept in the album."""
+        for index, time_s, image in self.source.frames():
+            if self.checks.add(index, image):
+                self.glimpses.add(index, image)
+                if self.album is not None:
+                    self.album.add(index, image)
+            yield index, time_s, image
+
+
+def watch_clip(clip: Clip, checks: FrameChecks, album: Album | None, glimpses: Glimpses) -> Clip:
+    """The clip with checks, an album and glimpses to fill, that run while its frames are read in order."""
+    return _WatchedClip(clip.path, clip.source, checks=checks, album=album, glimpses=glimpses)
+
+
+TAIL_PERCENT = 2.0  # share of the changes at either edge that are not the performer's
+
+
+def picture_motion(album: Album, frames: int) -> Generator[float, None, Array]:
+    """Roughly the speed (F,) [px per frame] of whatever moves in front of a camera that stands still.
+
+    Zero where nothing changes. Missing pictures repeat the one before. Yields the fraction done.
+    """
+    swept = np.zeros(max(frames - 1, 0))
+    rows: Array | None = None
+    before: Array | None = None
+    for index in range(frames):
+        if index in album:
+            now = cv2.cvtColor(album.picture(index), cv2.COLOR_BGR2GRAY).astype(np.float64)
+            if before is not None:
+                changed = changed_pixels(now - before)
+                swept[index - 1] = changed.sum()
+                rows = changed.sum(axis=1) + (0.0 if rows is None else rows)
+            before = now
+        yield (index + 1) / frames
+    if rows is None or not swept.any():
+        return np.zeros(frames)
+    share = np.cumsum(rows) / rows.sum()
+    low, high = np.searchsorted(share, [0.01 * TAIL_PERCENT, 1.0 - 0.01 * TAIL_PERCENT])
+    step = 0.5 * album.factor * swept / (high - low + 1)
+    padded = np.concatenate([step[:1], step, step[-1:]])
+    return np.asarray(0.5 * (padded[:-1] + padded[1:]))
+
+
+def changed_pixels(difference: Array) -> BoolArray:
+    """Pixels that change, beside noise and the light of the whole picture."""
+    difference = np.abs(difference - np.median(difference))
+    usual = 1.4826 * float(np.median(difference))
+    return np.asarray(difference > max(4.0 * usual, 6.0))
