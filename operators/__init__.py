@@ -1,8 +1,9 @@
 """Keymark in Blender's user interface and on its command line: one folder for each step of the work.
 
 A folder has one operator a file, named after it, its properties, and its panels in `panel.py`. Its `__init__`
-lists the modules to register: `PROPERTIES` and `MODULES`. Modules that need SciPy or OpenCV are imported in
-functions, so that registering does not wait for them and works without them.
+lists the modules to register: `PROPERTIES` and `MODULES`. Of each its classes are registered in their order,
+unless it has a `register` of its own. Modules that need SciPy or OpenCV are imported in functions, so that
+registering does not wait for them and works without them.
 
 Nothing is imported before `register()`: the command line of an ordinary Python shares this folder.
 """
@@ -46,18 +47,31 @@ def register() -> None:
     try:
         for name in modules():
             module = import_module(f".{name}", __package__)
-            module.register()
+            _do("register", module)
             done.append(module)
     except Exception:
         for module in reversed(done):
-            module.unregister()
+            _do("unregister", module)
         raise
 
 
 def unregister() -> None:
     """Unregister every module, in the reverse order."""
     for name in reversed(list(modules())):
-        import_module(f".{name}", __package__).unregister()
+        _do("unregister", import_module(f".{name}", __package__))
+
+
+def _do(way: str, module: ModuleType) -> None:
+    """Register or unregister a module: by its own function, or else Blender's classes in it."""
+    from bpy.utils import register_classes_factory
+
+    classes = [
+        each
+        for name, each in vars(module).items()
+        if name.startswith("KEYMARK_") and each.__module__ == module.__name__
+    ]
+    by_classes = dict(zip(("register", "unregister"), register_classes_factory(classes), strict=True))
+    getattr(module, way, by_classes[way])()
 
 
 def _listed(folder: str, names: str) -> tuple[str, ...]:

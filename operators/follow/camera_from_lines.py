@@ -23,6 +23,7 @@ from ..footage.drawn_lines import (
 from ..footage.found_camera import fit_take, values, write_fit
 from ..footage.properties import KINDS, still_camera
 from ..shell.base_operator import BaseOperator, warn
+from ..shell.fields import SKIP_SAVE, Choice
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import (
     FootageRequest,
@@ -79,14 +80,10 @@ KEYS = "Tab: Other Lines   |   X: Remove   |   Enter: Take   |   Esc: Cancel"
 class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
     """Find the camera from lines that you draw over the picture; the floor's grid shows the result"""
 
-    bl_idname = "keymark.camera_from_lines"
     bl_label = "Camera from Lines"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, camera, still_camera, idle)
 
-    kind: bpy.props.EnumProperty(
-        name="Begin with", description="The lines that are drawn first", items=KINDS, options={"SKIP_SAVE"}
-    )
+    kind: Choice("Begin with", "The lines that are drawn first", items=KINDS, options=SKIP_SAVE)
 
     _drawing: Any = None
     _upright: Any = None  # Body height, and moments in which keypoints show somebody of that height upright
@@ -246,6 +243,3 @@ def _apart(view: FootageView, one: Pixel, other: Pixel) -> float:
 
 def _scale(context: bpy.types.Context) -> float:
     return float(context.preferences.system.ui_scale) or 1.0
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_camera_from_lines,))

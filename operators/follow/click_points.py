@@ -10,6 +10,7 @@ from ...core.body.human import HUMAN
 from ...core.detect.keypoints import BODY_POINTS
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
+from ..shell.fields import SKIP_SAVE, Choice, Text, Vector
 from ..shell.footage_clicks import ClickSequence
 from ..shell.footage_view import FootageRequest, side_of, stop_asking
 from ..shell.requirements import footage, idle
@@ -45,21 +46,16 @@ KEYS = "Tab: Next Point   |   Backspace: Previous   |   Enter: Done   |   Esc: C
 class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
     """Click on points of the body in this frame, one after another; the arrow keys go to other frames"""
 
-    bl_idname = "keymark.click_point"
     bl_label = "Click Points"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, idle)
 
-    point: bpy.props.EnumProperty(
-        name="Body Point",
-        description="The point of the body; left and right are the performer's own",
+    point: Choice(
+        "Body Point",
+        "The point of the body; left and right are the performer's own",
         items=body_point_items(),
     )
-    pixel: bpy.props.FloatVectorProperty(
-        name="Pixel",
-        description="Where it is, in pixels of the footage from its top left corner",
-        size=2,
-        options={"SKIP_SAVE"},
+    pixel: Vector(
+        "Pixel", "Where it is, in pixels of the footage from its top left corner", size=2, options=SKIP_SAVE
     )
 
     _before: Any = None
@@ -144,9 +140,7 @@ class KEYMARK_OT_remove_clicks(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, idle)
 
-    point: bpy.props.StringProperty(
-        name="Body Point", description="The point to remove; empty for all", options={"SKIP_SAVE"}
-    )
+    point: Text("Body Point", "The point to remove; empty for all", options=SKIP_SAVE)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         take = active_take(context.scene)
@@ -168,11 +162,11 @@ class KEYMARK_OT_click_performer(ClickSequence, BaseOperator, bpy.types.Operator
     bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, keypoint_files, idle)
 
-    pixel: bpy.props.FloatVectorProperty(
-        name="Pixel",
-        description="Where the performer is, in pixels of the footage from its top left corner",
+    pixel: Vector(
+        "Pixel",
+        "Where the performer is, in pixels of the footage from its top left corner",
         size=2,
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
 
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
@@ -211,8 +205,3 @@ def nearest_point(
             if best is None or away[row] < best[0]:
                 best = float(away[row]), name, (float(places[row, 0]), float(places[row, 1]))
     return None if best is None else best[1:]
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_click_point, KEYMARK_OT_remove_clicks, KEYMARK_OT_click_performer)
-)

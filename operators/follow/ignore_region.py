@@ -8,6 +8,7 @@ import numpy as np
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator, reported, warn
+from ..shell.fields import SKIP_SAVE, Entries, Number
 from ..shell.footage_clicks import ClickSequence, footage_is_shown
 from ..shell.footage_view import FootageRequest, follow_mouse, pixel_under, stop_asking
 from ..shell.job_operator import JobOperator
@@ -98,25 +99,19 @@ SIZES = {"LEFT_BRACKET": -1, "RIGHT_BRACKET": 1}
 class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
     """Brush over what has a marker's color and is none, as a wall or a chair; it is never taken for one"""
 
-    bl_idname = "keymark.ignore_region"
     bl_label = "Not This"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, markers, idle)
     cursor = "PAINT_CROSS"
     ends_beside = False
 
-    path: bpy.props.CollectionProperty(
+    path: Entries(
         name="Path",
         description="Pixels of the footage under the brush; a new stroke begins with another time",
         type=bpy.types.OperatorMousePath,
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
-    radius: bpy.props.FloatProperty(
-        name="Radius",
-        description="The brush's radius in pixels of the footage",
-        default=10.0,
-        min=0.5,
-        options={"SKIP_SAVE"},
+    radius: Number(
+        "Radius", "The brush's radius in pixels of the footage", default=10.0, min=0.5, options=SKIP_SAVE
     )
 
     _masks_before: bool | None = None  # Whether masks were shown before; None in a script
@@ -274,8 +269,3 @@ class KEYMARK_OT_remove_ignored_region(BaseOperator, bpy.types.Operator):
         take.active_ignored = max(0, index - 1)
         clear_readouts(take)
         redraw_footage(context)
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_ignore_region, KEYMARK_OT_ignore_still_areas, KEYMARK_OT_remove_ignored_region)
-)

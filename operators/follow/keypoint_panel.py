@@ -184,8 +184,3 @@ def _draw_clicks(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> N
     row.operator("keymark.remove_clicks", text="", icon="TRASH")
     source = (follow, "clicks", follow, "active_click")
     layout.template_list("KEYMARK_UL_clicked_points", "", *source, rows=FEWEST_ROWS, maxrows=MOST_ROWS)
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_UL_keypoint_files, KEYMARK_UL_tracks, KEYMARK_UL_clicked_points)
-)

@@ -10,6 +10,7 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import run
 from ..shell.base_operator import BaseOperator, browse, chosen_path, warn
+from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import footage, idle
 from ..shell.results import reading_of
@@ -25,26 +26,24 @@ if TYPE_CHECKING:
 class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
     """Load points of the body that a detector has found in this clip: a file, or a folder with one a frame"""
 
-    bl_idname = "keymark.load_keypoints"
     bl_label = "Load Keypoints"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, idle)
 
-    filepath: bpy.props.StringProperty(
-        name="File Path",
-        description="Keypoints of this clip: Keymark's own file or a detector's; where that writes a file a "
+    filepath: Text(
+        "File Path",
+        "Keypoints of this clip: Keymark's own file or a detector's; where that writes a file a "
         "frame, the folder or any file in it",
         subtype="FILE_PATH",
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
-    replace: bpy.props.BoolProperty(
-        name="Replace",
-        description="Let it take the place of the chosen file, as of one that was moved",
+    replace: Switch(
+        "Replace",
+        "Let it take the place of the chosen file, as of one that was moved",
         default=False,
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
-    filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
-    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    filter_glob: Text(default="*.json", options=HIDDEN)
+    filter_folder: Switch(default=True, options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if self.filepath:
@@ -181,8 +180,3 @@ def _output(take: bpy.types.PropertyGroup, clip: Path) -> Path:
     known = {keypoint_path(entry) for entry in take.follow.files}
     names = [wanted, *(sidecar_file(clip, f"keypoints{number}.json") for number in range(2, 1000))]
     return next((name for name in names if name in known or not name.exists()), wanted)
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_load_keypoints, KEYMARK_OT_remove_keypoints, KEYMARK_OT_detect_keypoints)
-)

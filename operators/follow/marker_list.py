@@ -41,9 +41,7 @@ def append_usual_markers(take: bpy.types.PropertyGroup) -> None:
 class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
     """Remove the active marker"""
 
-    bl_idname = "keymark.remove_marker"
     bl_label = "Remove Marker"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (markers,)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -112,8 +110,3 @@ class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
             return {"CANCELLED"}
         append_usual_markers(take)
         return None
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_remove_marker, KEYMARK_OT_show_masks, KEYMARK_OT_add_marker, KEYMARK_OT_add_usual_markers)
-)

@@ -134,6 +134,3 @@ def _row(layout: bpy.types.UILayout, name: str, value: str) -> None:
     left.alignment = "RIGHT"
     left.label(text=name)
     row.label(text=value, translate=False)
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_markers, KEYMARK_UL_ignored_regions))

@@ -3,6 +3,7 @@
 import bpy
 
 from ...core.body.human import HUMAN
+from ..shell.fields import HIDDEN, Choice, Entries, Integer, Number, Switch, Text, Vector
 from ..shell.takes import footage_of
 
 
@@ -45,45 +46,35 @@ def _set_last(region: bpy.types.PropertyGroup, frame: int) -> None:
 class KEYMARK_PG_stroke_point(bpy.types.PropertyGroup):
     """A point of a brush's path."""
 
-    pixel: bpy.props.FloatVectorProperty(
-        name="Pixel", description="Where, in pixels of the footage from its top left corner", size=2
-    )
+    pixel: Vector("Pixel", "Where, in pixels of the footage from its top left corner", size=2)
 
 
 class KEYMARK_PG_ignored_region(bpy.types.PropertyGroup):
     """A region of the picture that is never a marker."""
 
-    name: bpy.props.StringProperty(name="Name", description="Your name for this region")
-    box: bpy.props.FloatVectorProperty(
-        name="Box",
-        description="Left, top, right and bottom of a box in pixels of the footage; unused by a stroke",
-        size=4,
+    name: Text("Name", "Your name for this region")
+    box: Vector(
+        "Box", "Left, top, right and bottom of a box in pixels of the footage; unused by a stroke", size=4
     )
-    stroke: bpy.props.CollectionProperty(type=KEYMARK_PG_stroke_point)
-    radius: bpy.props.FloatProperty(
-        name="Radius", description="The brush's radius in pixels of the footage", min=0.0
-    )
-    some_frames: bpy.props.BoolProperty(
-        name="Some Frames Only",
-        description="Leave the region out in the frames from first to last, not in the whole clip",
+    stroke: Entries(type=KEYMARK_PG_stroke_point)
+    radius: Number("Radius", "The brush's radius in pixels of the footage", min=0.0)
+    some_frames: Switch(
+        "Some Frames Only",
+        "Leave the region out in the frames from first to last, not in the whole clip",
         default=False,
         update=_changed,
     )
-    first: bpy.props.IntProperty(
-        name="First", description="Its first frame, counted from the clip's first", options={"HIDDEN"}
-    )
-    last: bpy.props.IntProperty(
-        name="Last", description="Its last frame, counted from the clip's first", options={"HIDDEN"}
-    )
-    first_frame: bpy.props.IntProperty(
-        name="First Frame",
-        description="First frame of the scene in which the region is left out",
+    first: Integer("First", "Its first frame, counted from the clip's first", options=HIDDEN)
+    last: Integer("Last", "Its last frame, counted from the clip's first", options=HIDDEN)
+    first_frame: Integer(
+        "First Frame",
+        "First frame of the scene in which the region is left out",
         get=_shown_first,
         set=_set_first,
     )
-    last_frame: bpy.props.IntProperty(
-        name="Last Frame",
-        description="Last frame of the scene in which the region is left out",
+    last_frame: Integer(
+        "Last Frame",
+        "Last frame of the scene in which the region is left out",
         get=_shown_last,
         set=_set_last,
     )
@@ -119,16 +110,16 @@ def _on_segment_changed(marker: bpy.types.PropertyGroup, context: bpy.types.Cont
 class KEYMARK_PG_marker(bpy.types.PropertyGroup):
     """A colored marker, and its readout from the footage."""
 
-    name: bpy.props.StringProperty(name="Name", description="The marker's name", update=_on_changed)
-    segment: bpy.props.EnumProperty(
-        name="Segment",
-        description="The body part that wears the marker; left and right are the performer's own",
+    name: Text("Name", "The marker's name", update=_on_changed)
+    segment: Choice(
+        "Segment",
+        "The body part that wears the marker; left and right are the performer's own",
         items=[(segment, segment_title(segment), "") for segment in SEGMENTS],
         update=_on_segment_changed,
     )
-    color: bpy.props.FloatVectorProperty(
-        name="Color",
-        description="The marker's color in the footage; one sample is enough",
+    color: Vector(
+        "Color",
+        "The marker's color in the footage; one sample is enough",
         subtype="COLOR_GAMMA",
         size=3,
         min=0.0,
@@ -136,33 +127,23 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
         default=(0.5, 0.5, 0.5),
         update=_on_changed,
     )
-    named_after: bpy.props.StringProperty(
-        name="Named After",
-        description="The segment that the name was taken from; the name follows it until you change it",
-        options={"HIDDEN"},
+    named_after: Text(
+        "Named After",
+        "The segment that the name was taken from; the name follows it until you change it",
+        options=HIDDEN,
     )
-    sampled: bpy.props.IntProperty(
-        name="Sampled Frames", description="Frames in which the marker was looked for; 0 for none yet"
+    sampled: Integer("Sampled Frames", "Frames in which the marker was looked for; 0 for none yet")
+    found: Integer("Found In", "Sampled frames in which the marker was found")
+    area: Number("Area", "Area that the marker usually covers, in pixels of the footage")
+    area_share: Number("Share of the Picture", "Share of the picture that the marker usually covers")
+    distinctness: Number(
+        "Distinctness",
+        "Certainty that its color belongs to the marker and nothing else in the footage, 0 to 1",
     )
-    found: bpy.props.IntProperty(name="Found In", description="Sampled frames in which the marker was found")
-    area: bpy.props.FloatProperty(
-        name="Area", description="Area that the marker usually covers, in pixels of the footage"
-    )
-    area_share: bpy.props.FloatProperty(
-        name="Share of the Picture", description="Share of the picture that the marker usually covers"
-    )
-    distinctness: bpy.props.FloatProperty(
-        name="Distinctness",
-        description="Certainty that its color belongs to the marker and nothing else in the footage, 0 to 1",
-    )
-    warning: bpy.props.StringProperty(
-        name="Warning", description="Likely problems with the marker, one sentence a line"
-    )
-    still_areas: bpy.props.CollectionProperty(type=KEYMARK_PG_ignored_region)
-    checked_clip: bpy.props.StringProperty(
-        name="Checked Clip",
-        description="Digest of the clip in which the marker was looked for",
-        options={"HIDDEN"},
+    warning: Text("Warning", "Likely problems with the marker, one sentence a line")
+    still_areas: Entries(type=KEYMARK_PG_ignored_region)
+    checked_clip: Text(
+        "Checked Clip", "Digest of the clip in which the marker was looked for", options=HIDDEN
     )
 
     @property
@@ -183,8 +164,8 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
 def register() -> None:
     """Register the groups, and the switch for masks, which no file keeps."""
     _register_classes()
-    bpy.types.WindowManager.keymark_show_masks = bpy.props.BoolProperty(
-        name="Show Masks", description="Highlight the markers' colors over the footage", default=False
+    bpy.types.WindowManager.keymark_show_masks = Switch(
+        "Show Masks", "Highlight the markers' colors over the footage", default=False
     )
 
 

@@ -68,6 +68,3 @@ class KEYMARK_PT_clip_follow(bpy.types.Panel):
         if context.space_data.clip != active_take(context.scene).clip:
             self.layout.label(text="The editor shows another clip", icon="INFO")
         draw_evidence(self.layout, context, active_take(context.scene))
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PT_clip_follow,))

@@ -8,6 +8,7 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.base_operator import reported, warn
+from ..shell.fields import SKIP_SAVE, Entries, Integer, Vector
 from ..shell.footage_clicks import NAVIGATION, ClickSequence, footage_is_shown
 from ..shell.footage_view import FootageRequest, ask, follow_mouse, pixel_under, stop_asking
 from ..shell.job_operator import SHORTEST_SLICE_S, TIMER_S, JobOperator, cancel_click
@@ -37,17 +38,15 @@ KEYS = "{number} of {count}   |   Backspace: Back   |   Tab: Skip   |   Enter: D
 class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
     """Click on one marker after the other in the footage; without a list they are the usual five"""
 
-    bl_idname = "keymark.pick_markers"
     bl_label = "Pick Markers"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, idle)
     cursor = "EYEDROPPER"
 
-    clicks: bpy.props.CollectionProperty(
+    clicks: Entries(
         name="Clicks",
         description="A click a marker: its name, the pixel of the footage, and the scene frame as time",
         type=bpy.types.OperatorMousePath,
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
 
     _masks_before: bool | None = None  # Whether masks were shown before; None in a script
@@ -198,17 +197,11 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, markers, idle)
 
-    pixel: bpy.props.FloatVectorProperty(
-        name="Pixel",
-        description="Where to pick, in pixels of the footage from its top left corner",
-        size=2,
-        options={"SKIP_SAVE"},
+    pixel: Vector(
+        "Pixel", "Where to pick, in pixels of the footage from its top left corner", size=2, options=SKIP_SAVE
     )
-    row: bpy.props.IntProperty(
-        name="Row",
-        description="Row of the marker in the list, from 0; -1 for the active one",
-        default=-1,
-        options={"SKIP_SAVE"},
+    row: Integer(
+        "Row", "Row of the marker in the list, from 0; -1 for the active one", default=-1, options=SKIP_SAVE
     )
 
     _masks_before: bool | None = None
@@ -296,8 +289,3 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
             warn(self, sentence)
         if not warnings:
             self.report({"INFO"}, f"All {len(result.styles)} markers with a color are found well")
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_pick_marker_color, KEYMARK_OT_check_markers, KEYMARK_OT_pick_markers)
-)

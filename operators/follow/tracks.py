@@ -8,6 +8,7 @@ from ...core.detect.layouts import named_point
 from ...core.errors import InputError
 from ..bridge.scene_evidence import AssignedTrack, clip_tracks
 from ..shell.base_operator import BaseOperator
+from ..shell.fields import Choice, Text
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, redraw_footage
 from .marker_properties import segment_title
@@ -60,18 +61,14 @@ def body_point_items(without: str = "") -> list[Item]:
 class KEYMARK_OT_assign_track(BaseOperator, bpy.types.Operator):
     """Choose the body point that this motion track follows; tracks that are named after one need no choice"""
 
-    bl_idname = "keymark.assign_track"
     bl_label = "Assign Track"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, idle)
 
-    owner: bpy.props.StringProperty(
-        name="Object", description="Name of the tracking object that the track belongs to"
-    )
-    track: bpy.props.StringProperty(name="Track", description="Name of the motion track")
-    point: bpy.props.EnumProperty(
-        name="Body Point",
-        description="The body point that the track follows; left and right are the performer's own",
+    owner: Text("Object", "Name of the tracking object that the track belongs to")
+    track: Text("Track", "Name of the motion track")
+    point: Choice(
+        "Body Point",
+        "The body point that the track follows; left and right are the performer's own",
         items=body_point_items("No Body Point"),
     )
 
@@ -81,6 +78,3 @@ class KEYMARK_OT_assign_track(BaseOperator, bpy.types.Operator):
             raise InputError(f"clip '{take.clip.name}' has no track '{self.track}' of object '{self.owner}'")
         assign(take, self.owner, self.track, "" if self.point == NO_POINT else self.point)
         redraw_footage(context)
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_assign_track,))

@@ -6,6 +6,7 @@ from ...core.body.human import HUMAN
 from ..overlays.candidates import look_at
 from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
+from ..shell.fields import Choice, Integer, Switch
 from ..shell.keyed_frames import doubtful_matches, invalidate_keyed_frames, match_at, state_of
 from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take, find_take
@@ -17,22 +18,18 @@ from .store_keyframe import improve_neighbors
 class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
     """Go to a found keyframe"""
 
-    bl_idname = "keymark.jump_to_match"
     bl_label = "Jump to Found Keyframe"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (matches,)
 
-    direction: bpy.props.EnumProperty(
-        name="Direction",
-        description="Direction from the current frame; from the last one it goes to the first",
+    direction: Choice(
+        "Direction",
+        "Direction from the current frame; from the last one it goes to the first",
         items=[
             ("NEXT", "Next", "Go to the next found keyframe"),
             ("PREVIOUS", "Previous", "Go to the previous found keyframe"),
         ],
     )
-    only_doubtful: bpy.props.BoolProperty(
-        name="Only Doubtful", description="Go to doubtful ones only, the most doubtful first", default=False
-    )
+    only_doubtful: Switch("Only Doubtful", "Go to doubtful ones only, the most doubtful first", default=False)
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
@@ -153,11 +150,8 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, matches, idle)
 
-    candidate: bpy.props.IntProperty(
-        name="Candidate",
-        description="Index of the candidate to take; 0 is the one that was chosen first",
-        default=0,
-        min=0,
+    candidate: Integer(
+        "Candidate", "Index of the candidate to take; 0 is the one that was chosen first", default=0, min=0
     )
 
     @classmethod
@@ -192,14 +186,3 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         also = f"; {improved} found ones around it were posed anew" if improved else ""
         self.report({"INFO"}, f"Frame {frame:g} shows candidate {number}{also}")
         return None
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_jump_to_match,
-        KEYMARK_OT_accept_match,
-        KEYMARK_OT_remove_match,
-        KEYMARK_OT_remove_found,
-        KEYMARK_OT_replace_match,
-    )
-)

@@ -9,6 +9,7 @@ from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ..follow.evidence import points_to_follow, scene_evidence
 from ..shell.base_operator import BaseOperator
+from ..shell.fields import SKIP_SAVE, Choice, Switch
 from ..shell.job_progress import job_is_running
 from ..shell.keyed_frames import (
     SAME_FRAME,
@@ -121,14 +122,10 @@ DIRECTIONS = (
 class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
     """Copy the pose of the keyframe before or after this frame; the performer stays in place"""
 
-    bl_idname = "keymark.copy_neighbor"
     bl_label = "Copy from Neighbor"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, keyframes, idle)
 
-    direction: bpy.props.EnumProperty(
-        name="Neighbor", description="The keyframe whose pose is copied", items=DIRECTIONS
-    )
+    direction: Choice("Neighbor", "The keyframe whose pose is copied", items=DIRECTIONS)
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
@@ -186,13 +183,11 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, camera, actor, idle)
 
-    facing: bpy.props.EnumProperty(name="Facing", description="Where the performer faces", items=FACINGS)
-    sides: bpy.props.EnumProperty(
-        name="Left and Right", description="What becomes of arms and legs in the picture", items=SIDES
-    )
-    fit: bpy.props.BoolProperty(
-        name="Fit to Footage",
-        description="Fit the turned pose to the markers and keypoints that this frame shows, if it shows any",
+    facing: Choice("Facing", "Where the performer faces", items=FACINGS)
+    sides: Choice("Left and Right", "What becomes of arms and legs in the picture", items=SIDES)
+    fit: Switch(
+        "Fit to Footage",
+        "Fit the turned pose to the markers and keypoints that this frame shows, if it shows any",
         default=True,
     )
 
@@ -259,14 +254,14 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, camera, actor, limb_chosen, idle)
 
-    limb: bpy.props.EnumProperty(
-        name="Part",
-        description="The part of the body that is flipped",
+    limb: Choice(
+        "Part",
+        "The part of the body that is flipped",
         items=[
             ("SELECTED", "Selected", "The part of which a bone is selected"),
             *((name, title, "This part of the body") for name, title in TITLES.items()),
         ],
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
@@ -293,8 +288,3 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
         set_corrected(self, context, take, posture, in_depth=True)
         self.report({"INFO"}, "; ".join(said))
         return None
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_copy_neighbor, KEYMARK_OT_turn_performer, KEYMARK_OT_flip_depth)
-)

@@ -14,6 +14,7 @@ from ..follow.marker_properties import segment_title
 from ..overlays.outlines import window
 from ..overlays.tools import Handles, show_handles, show_keys
 from ..shell.base_operator import BaseOperator, reported
+from ..shell.fields import Choice, Switch, Vector
 from ..shell.footage_clicks import NAVIGATION, WorldInRegion, view_under
 from ..shell.job_progress import job_is_running
 from ..shell.keyed_frames import keyframes_of
@@ -71,29 +72,23 @@ class JointDrag:
 class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
     """Move a joint of the actor to a place; the limb follows, with its lengths and within its joint limits"""
 
-    bl_idname = "keymark.move_joint"
     bl_label = "Move Joint"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, idle)
 
-    joint: bpy.props.EnumProperty(
-        name="Joint",
-        description="The joint; left and right are the performer's own",
+    joint: Choice(
+        "Joint",
+        "The joint; left and right are the performer's own",
         items=[(name, segment_title(name), "Move this joint") for name in HUMAN.point_names],
     )
-    place: bpy.props.FloatVectorProperty(
-        name="Place", description="Where to, in the world", subtype="TRANSLATION", size=3
-    )
-    sight: bpy.props.FloatVectorProperty(
-        name="Line of Sight",
-        description="Direction in which the view looks: along it the joint may end up elsewhere",
+    place: Vector("Place", "Where to, in the world", subtype="TRANSLATION", size=3)
+    sight: Vector(
+        "Line of Sight",
+        "Direction in which the view looks: along it the joint may end up elsewhere",
         subtype="DIRECTION",
         size=3,
         default=(0.0, 1.0, 0.0),
     )
-    pushed: bpy.props.BoolProperty(
-        name="In Depth", description="Whether the place along the line of sight counts as much as across it"
-    )
+    pushed: Switch("In Depth", "Whether the place along the line of sight counts as much as across it")
 
     def run(self, context: bpy.types.Context) -> None:
         from ...core.posing.dragged import dragged
@@ -372,6 +367,3 @@ def _preview(take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
     pushed, floor_m = drag.depth_m != 0.0, take.matching.known_floor_m
     drag.shown = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, pushed, floor_m)
     write_posture(take.armature, drag.shown)
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_move_joint, KEYMARK_OT_drag_joints))

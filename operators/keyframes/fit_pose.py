@@ -10,6 +10,7 @@ from ..follow.evidence import points_to_follow, scene_evidence
 from ..overlays.candidates import look_at
 from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
+from ..shell.fields import Choice, Integer
 from ..shell.keyed_frames import offered_at, show_keyframes
 from ..shell.requirements import actor, camera, footage, idle
 from ..shell.results import reading_of
@@ -37,14 +38,10 @@ def offer_poses(take: bpy.types.PropertyGroup, frame: float, candidates: Sequenc
 class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
     """Pose the actor like this; nothing is keyed until you store it"""
 
-    bl_idname = "keymark.show_offered"
     bl_label = "Show Candidate"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, idle)
 
-    candidate: bpy.props.IntProperty(
-        name="Candidate", description="Index of the pose; 0 is the likeliest", default=0, min=0
-    )
+    candidate: Integer("Candidate", "Index of the pose; 0 is the likeliest", default=0, min=0)
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
@@ -86,9 +83,9 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, camera, actor, points_to_follow, idle)
 
-    start: bpy.props.EnumProperty(
-        name="Start From",
-        description="What the pose may depend on beside what this frame shows",
+    start: Choice(
+        "Start From",
+        "What the pose may depend on beside what this frame shows",
         items=[
             (
                 "KEYFRAMES",
@@ -158,6 +155,3 @@ def _to_pose_mode(context: bpy.types.Context, armature_object: bpy.types.Object)
     if armature_object.visible_get(view_layer=layer):
         layer.objects.active = armature_object
         bpy.ops.object.mode_set(mode="POSE")
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_show_offered, KEYMARK_OT_fit_pose))

@@ -82,6 +82,3 @@ def _draw_candidates(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) 
     accept.enabled = is_found
     accept.operator("keymark.accept_match", icon="CHECKMARK")
     row.operator("keymark.remove_match", icon="X")
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_matches,))

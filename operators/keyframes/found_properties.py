@@ -7,6 +7,7 @@ import bpy
 from ...core.body.human import HUMAN
 from ...core.prior.texts import EVERY_LIBRARY
 from ..library.registry import library_items
+from ..shell.fields import HIDDEN, Choice, Entries, Integer, Number, Switch, Text, Vector
 from ..shell.keyed_frames import match_at
 
 if TYPE_CHECKING:
@@ -62,49 +63,33 @@ def _choose_match(matching: bpy.types.PropertyGroup, index: int) -> None:
 class KEYMARK_PG_candidate(bpy.types.PropertyGroup):
     """A posture that a frame may show, placed in the world."""
 
-    name: bpy.props.StringProperty(name="Posture", description="The posture's name in its library")
-    mirrored: bpy.props.BoolProperty(
-        name="Mirrored", description="Whether left and right of the posture are exchanged"
+    name: Text("Posture", "The posture's name in its library")
+    mirrored: Switch("Mirrored", "Whether left and right of the posture are exchanged")
+    confidence: Number(
+        "Confidence", "Probability that this posture is about right", subtype="FACTOR", min=0.0, max=1.0
     )
-    confidence: bpy.props.FloatProperty(
-        name="Confidence",
-        description="Probability that this posture is about right",
-        subtype="FACTOR",
-        min=0.0,
-        max=1.0,
-    )
-    place: bpy.props.FloatVectorProperty(
-        name="Place", description="Location and rotation of the hips", size=PLACE_VALUES
-    )
-    turned: bpy.props.FloatProperty(
-        name="Turned",
-        description="Turn to the performer's left from the posture that was chosen first, seen from above",
+    place: Vector("Place", "Location and rotation of the hips", size=PLACE_VALUES)
+    turned: Number(
+        "Turned",
+        "Turn to the performer's left from the posture that was chosen first, seen from above",
         subtype="ANGLE",
     )
-    limbs: bpy.props.StringProperty(
-        name="Limbs",
-        description="Limbs that are elsewhere than the first candidate's, which shows what is chosen between",
-        options={"HIDDEN"},
+    limbs: Text(
+        "Limbs",
+        "Limbs that are elsewhere than the first candidate's, which shows what is chosen between",
+        options=HIDDEN,
     )
-    turns: bpy.props.FloatVectorProperty(
-        name="Turns", description="Rotations of the joints", size=HUMAN.dof_count - PLACE_VALUES
-    )
+    turns: Vector("Turns", "Rotations of the joints", size=HUMAN.dof_count - PLACE_VALUES)
 
 
 class KEYMARK_PG_match(bpy.types.PropertyGroup):
     """A found keyframe with its candidates."""
 
-    frame: bpy.props.FloatProperty(name="Frame", description="The scene frame")
-    library: bpy.props.StringProperty(
-        name="Library", description="Identifier of the posture's library; composed of several"
-    )
-    candidates: bpy.props.CollectionProperty(type=KEYMARK_PG_candidate)
-    chosen: bpy.props.IntProperty(
-        name="Chosen", description="Index of the candidate that the frame has", default=0, min=0
-    )
-    by_hand: bpy.props.BoolProperty(
-        name="Chosen by Hand", description="Whether a person chose the candidate, so that it is not doubtful"
-    )
+    frame: Number("Frame", "The scene frame")
+    library: Text("Library", "Identifier of the posture's library; composed of several")
+    candidates: Entries(type=KEYMARK_PG_candidate)
+    chosen: Integer("Chosen", "Index of the candidate that the frame has", default=0, min=0)
+    by_hand: Switch("Chosen by Hand", "Whether a person chose the candidate, so that it is not doubtful")
 
     @property
     def candidate(self) -> bpy.types.PropertyGroup:
@@ -132,14 +117,12 @@ class KEYMARK_PG_match(bpy.types.PropertyGroup):
 class FloorSettings:
     """Mixin of properties: the floor that performers stand on while they are sought."""
 
-    floor: bpy.props.EnumProperty(
-        name="Floor",
-        description="Source of the floor's height, which determines the performer's distance",
-        items=FLOORS,
+    floor: Choice(
+        "Floor", "Source of the floor's height, which determines the performer's distance", items=FLOORS
     )
-    floor_height: bpy.props.FloatProperty(
-        name="Floor Height",
-        description="Height of the floor that the performer stands on",
+    floor_height: Number(
+        "Floor Height",
+        "Height of the floor that the performer stands on",
         subtype="DISTANCE",
         precision=4,
         default=0.0,
@@ -151,45 +134,40 @@ class FloorSettings:
 class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
     """Settings and results of finding a take's keyframes."""
 
-    library_name: bpy.props.StringProperty(
-        name="Library",
-        description="Identifier of the only library to use; the numbers of menu items may change",
-        options={"HIDDEN"},
+    library_name: Text(
+        "Library",
+        "Identifier of the only library to use; the numbers of menu items may change",
+        options=HIDDEN,
     )
-    library: bpy.props.EnumProperty(
-        name="Library",
-        description="What is known of postures while keyframes are sought: all libraries, or one with "
+    library: Choice(
+        "Library",
+        "What is known of postures while keyframes are sought: all libraries, or one with "
         "the performer's own motion",
         items=_libraries,
         get=_library_number,
         set=_set_library,
     )
-    reason: bpy.props.StringProperty(
-        name="Reason", description="Whether what was found last is usable, and what speaks for or against it"
-    )
-    fit: bpy.props.FloatProperty(
-        name="Fit",
-        description="Probability that the found poses are usable; negative before any were found",
+    reason: Text("Reason", "Whether what was found last is usable, and what speaks for or against it")
+    fit: Number(
+        "Fit",
+        "Probability that the found poses are usable; negative before any were found",
         default=-1.0,
         min=-1.0,
         max=1.0,
     )
-    floor_found: bpy.props.FloatProperty(
-        name="Floor Found",
-        description="Height of the floor that the found poses stand on",
-        subtype="DISTANCE",
-        precision=4,
+    floor_found: Number(
+        "Floor Found", "Height of the floor that the found poses stand on", subtype="DISTANCE", precision=4
     )
-    corrected_frame: bpy.props.FloatProperty(
-        name="Corrected Frame",
-        description="The frame without a key whose pose was corrected last",
+    corrected_frame: Number(
+        "Corrected Frame",
+        "The frame without a key whose pose was corrected last",
         default=-1e6,
-        options={"HIDDEN"},
+        options=HIDDEN,
     )
-    corrected_in_depth: bpy.props.BoolProperty(
-        name="Corrected in Depth",
-        description="Whether that pose was moved in depth, and not in the camera's picture alone",
-        options={"HIDDEN"},
+    corrected_in_depth: Switch(
+        "Corrected in Depth",
+        "Whether that pose was moved in depth, and not in the camera's picture alone",
+        options=HIDDEN,
     )
 
     @property
@@ -199,19 +177,12 @@ class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
             return float(self.floor_height)
         return float(self.floor_found) if self.is_property_set("floor_found") else None
 
-    matches: bpy.props.CollectionProperty(type=KEYMARK_PG_match)
-    active_match: bpy.props.IntProperty(
-        name="Last Chosen", description="The found keyframe that was chosen last", min=0, options={"HIDDEN"}
-    )
-    shown_match: bpy.props.IntProperty(
-        name="Found Keyframe",
-        description="The found keyframe of the current frame; choosing one goes there",
+    matches: Entries(type=KEYMARK_PG_match)
+    active_match: Integer("Last Chosen", "The found keyframe that was chosen last", min=0, options=HIDDEN)
+    shown_match: Integer(
+        "Found Keyframe",
+        "The found keyframe of the current frame; choosing one goes there",
         min=0,
         get=_shown_match,
         set=_choose_match,
     )
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_PG_candidate, KEYMARK_PG_match, KEYMARK_PG_matching)
-)

@@ -150,8 +150,3 @@ class KEYMARK_PT_keyframes_options(Popover, bpy.types.Panel):
         _draw_propose(column, context)
         column.operator("keymark.remove_found", icon="TRASH")
         column.prop(take, "keyframe_action", text="Action")
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_PT_keyframes, KEYMARK_PT_keyframes_options)
-)

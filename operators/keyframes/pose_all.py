@@ -10,6 +10,7 @@ from ...core.progress import stretch, within
 from ..bridge.scene_frames import shown_index
 from ..follow.evidence import points_to_follow
 from ..shell.base_operator import warn
+from ..shell.fields import Text
 from ..shell.job_operator import JobOperator
 from ..shell.keyed_frames import count_found, doubtful_matches, proposed_frames
 from ..shell.requirements import actor, all_colors, camera, footage, idle
@@ -68,15 +69,12 @@ def keep_poses(scene: bpy.types.Scene, result: "FoundResult") -> tuple[str, bool
 class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
     """Find the actor's pose in every proposed frame, and key it as found; what you posed or chose stays"""
 
-    bl_idname = "keymark.pose_all"
     bl_label = "Pose All"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, camera, actor, points_to_follow, all_colors, idle)
 
-    library: bpy.props.StringProperty(
-        name="Library",
-        description="Identifier, title or file of the only library to use, auto for all of them; the "
-        "panel's where empty",
+    library: Text(
+        "Library",
+        "Identifier, title or file of the only library to use, auto for all of them; the panel's where empty",
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -107,6 +105,3 @@ def _propose(clip: SceneClip, count: int | None) -> "Job[Proposals]":
     moved = evidence_speed(tracks, take.marker_segments, keypoints, clip.reading.album)
     speed = yield from within("Measuring the speed", moved, 0.0, 1.0)
     return Proposals(tuple(map(int, propose_keyframes(speed.values, count))), speed.values)
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pose_all,))

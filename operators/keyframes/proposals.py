@@ -9,6 +9,7 @@ from ...core.progress import within
 from ..bridge.scene_frames import scene_frames
 from ..follow.evidence import scene_evidence
 from ..shell.base_operator import BaseOperator, warn
+from ..shell.fields import Choice, Switch
 from ..shell.job_operator import JobOperator
 from ..shell.keyed_frames import invalidate_keyed_frames, proposed_frames, unposed_proposals
 from ..shell.notices import give_notices
@@ -41,9 +42,7 @@ class Outcome:
 class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
     """Follow the performer through the footage and propose the frames that are best posed"""
 
-    bl_idname = "keymark.propose_keyframes"
     bl_label = "Propose Keyframes"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, all_colors, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
@@ -95,17 +94,17 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (proposals,)
 
-    direction: bpy.props.EnumProperty(
-        name="Direction",
-        description="Direction from the current frame",
+    direction: Choice(
+        "Direction",
+        "Direction from the current frame",
         items=[
             ("NEXT", "Next", "Go to the next proposed keyframe"),
             ("PREVIOUS", "Previous", "Go to the previous proposed keyframe"),
         ],
     )
-    skip_posed: bpy.props.BoolProperty(
-        name="Skip Posed",
-        description="Skip proposed keyframes that are posed; after the last one comes the first",
+    skip_posed: Switch(
+        "Skip Posed",
+        "Skip proposed keyframes that are posed; after the last one comes the first",
         default=False,
     )
 
@@ -134,8 +133,3 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
             return {"CANCELLED"}
         scene.frame_set(ahead[0] if is_next else behind[-1])
         return None
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_propose_keyframes, KEYMARK_OT_jump_to_proposal)
-)

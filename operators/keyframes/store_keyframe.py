@@ -154,9 +154,7 @@ def key_pose(context: bpy.types.Context, take: bpy.types.PropertyGroup, depth_fo
 class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
     """Key the actor's whole pose at the current frame in the keyframe Action, and show that Action"""
 
-    bl_idname = "keymark.store_keyframe"
     bl_label = "Store Keyframe"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, idle)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -194,6 +192,3 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         elif switched:
             also = "; the actor shows the keyframes now"
         self.report({"INFO"}, f"Stored a keyframe at frame {frame:g}{also}")
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_store_keyframe,))

@@ -33,6 +33,3 @@ class KEYMARK_PT_overlays(Popover, bpy.types.Panel):
         for name in SWITCHES:
             column.prop(settings, f"show_{name}")
         column.prop(settings, "opacity")
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PT_overlays,))

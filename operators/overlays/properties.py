@@ -2,6 +2,8 @@
 
 import bpy
 
+from ..shell.fields import Number, Switch
+
 
 def _changed(_settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     from . import registry  # only now: panels and properties are registered before there is anything to draw
@@ -11,7 +13,7 @@ def _changed(_settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> 
 
 
 def _switch(name: str, description: str, default: bool = True) -> bool:
-    return bpy.props.BoolProperty(name=name, description=description, default=default, update=_changed)
+    return Switch(name, description, default=default, update=_changed)
 
 
 class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
@@ -55,15 +57,6 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
         "Speed in the footage, proposed and found keyframes, confidence and weak frames, in "
         "Timeline and Dope Sheet",
     )
-    opacity: bpy.props.FloatProperty(
-        name="Opacity",
-        description="Opacity of all overlays",
-        subtype="FACTOR",
-        default=1.0,
-        min=0.0,
-        max=1.0,
-        update=_changed,
+    opacity: Number(
+        "Opacity", "Opacity of all overlays", subtype="FACTOR", default=1.0, min=0.0, max=1.0, update=_changed
     )
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_overlays,))

@@ -53,6 +53,3 @@ def draw_review(
     row.operator("keymark.jump_to_weak_frame", text="", icon="TRIA_UP").direction = "PREVIOUS"
     row.operator("keymark.pose_from_motion", icon="KEY_HLT").where = "WEAK"
     row.operator("keymark.jump_to_weak_frame", text="", icon="TRIA_DOWN").direction = "NEXT"
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_weak_frames,))

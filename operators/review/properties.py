@@ -2,6 +2,8 @@
 
 import bpy
 
+from ..shell.fields import Choice, Entries, Integer, Number, Text
+
 REASONS = (
     ("HIDDEN", "Hidden", "A marker or a body point is hidden around this frame", "HIDE_ON", 0),
     ("FAST", "Fast Motion", "The performer moves faster than usual around this frame", "FF", 1),
@@ -19,14 +21,10 @@ def _chosen(review: bpy.types.PropertyGroup, context: bpy.types.Context) -> None
 class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
     """A frame worth another keyframe."""
 
-    frame: bpy.props.FloatProperty(name="Frame", description="The scene frame")
-    reason: bpy.props.EnumProperty(
-        name="Reason", description="Reason why a keyframe helps here", items=REASONS
-    )
-    marker: bpy.props.StringProperty(name="Marker", description="Marker that is the reason, if any")
-    point: bpy.props.StringProperty(
-        name="Body Point", description="Body point whose keypoints are the reason, if any"
-    )
+    frame: Number("Frame", "The scene frame")
+    reason: Choice("Reason", "Reason why a keyframe helps here", items=REASONS)
+    marker: Text("Marker", "Marker that is the reason, if any")
+    point: Text("Body Point", "Body point whose keypoints are the reason, if any")
 
     def go_to(self, scene: bpy.types.Scene) -> None:
         whole = int(self.frame // 1.0)
@@ -36,31 +34,23 @@ class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
 class KEYMARK_PG_review(bpy.types.PropertyGroup):
     """Review of a take's motion."""
 
-    frame_count: bpy.props.IntProperty(
-        name="Frames",
-        description="Number of reconstructed frames; 0 before the first reconstruction",
-        default=0,
-        min=0,
+    frame_count: Integer(
+        "Frames", "Number of reconstructed frames; 0 before the first reconstruction", default=0, min=0
     )
-    confidence: bpy.props.FloatProperty(
-        name="Confidence",
-        description="Share of all joints in all frames that are expected within 2.5 % of the performer's "
+    confidence: Number(
+        "Confidence",
+        "Share of all joints in all frames that are expected within 2.5 % of the performer's "
         "height of their true place; negative where the method cannot tell",
         default=-1.0,
         min=-1.0,
         max=1.0,
     )
-    unseen: bpy.props.StringProperty(
-        name="Not Seen", description="In how many frames nobody is seen, and which limbs never are"
-    )
-    weak_frames: bpy.props.CollectionProperty(type=KEYMARK_PG_weak_frame)
-    active_weak_frame: bpy.props.IntProperty(
-        name="Weak Frame",
-        description="The frame chosen in the list; choosing one goes there",
+    unseen: Text("Not Seen", "In how many frames nobody is seen, and which limbs never are")
+    weak_frames: Entries(type=KEYMARK_PG_weak_frame)
+    active_weak_frame: Integer(
+        "Weak Frame",
+        "The frame chosen in the list; choosing one goes there",
         default=0,
         min=0,
         update=_chosen,
     )
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_weak_frame, KEYMARK_PG_review))

@@ -10,6 +10,7 @@ from ..bridge.object_space import evaluated
 from ..bridge.scene_frames import at_scene_frame, showing_action
 from ..footage.camera_view import look_through, viewports
 from ..shell.base_operator import BaseOperator
+from ..shell.fields import Choice
 from ..shell.keyed_frames import (
     depth_is_found,
     invalidate_keyed_frames,
@@ -23,14 +24,12 @@ from ..shell.takes import active_take
 class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
     """Go to a frame that is worth another keyframe"""
 
-    bl_idname = "keymark.jump_to_weak_frame"
     bl_label = "Jump to Weak Frame"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (weak_frames,)
 
-    direction: bpy.props.EnumProperty(
-        name="Direction",
-        description="Listed frame to go to",
+    direction: Choice(
+        "Direction",
+        "Listed frame to go to",
         items=[
             ("CHOSEN", "Chosen", "Go to the frame that is chosen in the list"),
             ("NEXT", "Next", "Go to the next frame of the list, which is less weak"),
@@ -72,9 +71,9 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, motion, idle)
 
-    where: bpy.props.EnumProperty(
-        name="Where",
-        description="The frame whose pose is stored",
+    where: Choice(
+        "Where",
+        "The frame whose pose is stored",
         items=[
             ("CURRENT", "Current Frame", "Store the pose of the scene's current frame"),
             ("WEAK", "Chosen Weak Frame", "Store the pose of the frame chosen in the list of weak frames"),
@@ -145,8 +144,3 @@ def look_from_side(
     view.view_location = center
     view.view_rotation = Matrix((up.cross(backward), up, backward)).transposed().to_quaternion()
     view.view_distance = 2.6 * height  # all of it is seen, limbs stretched out too
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_jump_to_weak_frame, KEYMARK_OT_pose_from_motion, KEYMARK_OT_look_from_side)
-)

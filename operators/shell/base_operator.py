@@ -48,18 +48,37 @@ def reported(operator: bpy.types.Operator) -> Iterator[None]:
             f"Keymark needs the Python library {missing}, which is not there; install Keymark from its "
             "package for this platform, which brings it along",
         )
+    except Unchanged as error:
+        operator.report({"INFO"}, capitalized(str(error)))
     except KeymarkError as error:
         operator.report({"ERROR"}, capitalized(str(error)))
     except ReferenceError:
         operator.report({"ERROR"}, "An object or a take of this job was removed while it ran; run it again")
 
 
-class BaseOperator:
-    """Mixin of an operator: a subclass lists its requirements and gives `run`."""
+class Unchanged(KeymarkError):  # noqa: N818
+    """Raised by an operator that has nothing to do; the sentence is reported, and there is no undo step."""
 
+
+PREFIX = "KEYMARK_OT_"
+
+
+class BaseOperator:
+    """Mixin of an operator: a subclass lists its requirements and gives `run`.
+
+    `KEYMARK_OT_load_take` is called `keymark.load_take`, and is a step of undo unless it says otherwise.
+    """
+
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
     report: Callable[[set[str], str], None]  # Blender's, of the Operator this is mixed into
     requirements: ClassVar[tuple[Requirement, ...]] = ()
     """What must hold before the operator can run; the first that does not becomes the tooltip."""
+
+    def __init_subclass__(cls) -> None:
+        """Name the operator after its class."""
+        super().__init_subclass__()
+        if cls.__name__.startswith(PREFIX):
+            cls.bl_idname = f"keymark.{cls.__name__.removeprefix(PREFIX)}"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -74,7 +93,7 @@ class BaseOperator:
 
     @abstractmethod
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Do the work; return {"CANCELLED"} when nothing was changed, so that Blender adds no undo step."""
+        """Do the work; without a change raise `Unchanged`, or return {"CANCELLED"}, for no step of undo."""
 
 
 # --- Asking for a file: the browser opens where it was left
