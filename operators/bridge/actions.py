@@ -1,7 +1,6 @@
 """Slotted Actions, by the API that Blender 4.5 and 5.x share."""
 
 import hashlib
-from collections.abc import Iterable
 
 import bpy
 import numpy as np
@@ -9,17 +8,17 @@ import numpy as np
 SLOT = "Actor"  # name of the slot of an Action that is made for no armature in particular
 
 
-def new_channelbag(action: bpy.types.Action) -> bpy.types.ActionChannelbag:
-    """The F-curves of an empty Action that any armature may be given."""
-    slot = action.slots.new(id_type="OBJECT", name=SLOT)
-    return action.layers.new("Layer").strips.new(type="KEYFRAME").channelbag(slot, ensure=True)
+def channelbag_for(
+    action: bpy.types.Action, datablock: bpy.types.ID | None = None
+) -> bpy.types.ActionChannelbag:
+    """The F-curves of `datablock` in `action`; slot, layer, strip and bag are added where missing.
 
-
-def channelbag_for(action: bpy.types.Action, datablock: bpy.types.ID) -> bpy.types.ActionChannelbag:
-    """The F-curves of `datablock` in `action`; slot, layer, strip and bag are added where missing."""
-    slot = slot_for(action, datablock)
+    Without a data-block, those of an empty Action that any armature may be given.
+    """
+    slot = None if datablock is None else slot_for(action, datablock)
     if slot is None:
-        slot = action.slots.new(id_type=datablock.id_type, name=datablock.name)
+        kind, name = ("OBJECT", SLOT) if datablock is None else (datablock.id_type, datablock.name)
+        slot = action.slots.new(id_type=kind, name=name)
     layer = action.layers[0] if action.layers else action.layers.new("Layer")
     strip = layer.strips[0] if layer.strips else layer.strips.new(type="KEYFRAME")
     return strip.channelbag(slot, ensure=True)
@@ -33,6 +32,21 @@ def existing_channelbag(
     if slot is None or not action.layers or not action.layers[0].strips:
         return None
     return action.layers[0].strips[0].channelbag(slot)
+
+
+def curves_of(
+    action: bpy.types.Action, datablock: bpy.types.ID | None = None
+) -> dict[tuple[str, int], bpy.types.FCurve]:
+    """The F-curves of `datablock` in `action`, by data path and array index.
+
+    Without a data-block, those of all slots.
+    """
+    if datablock is None:
+        bags = [bag for layer in action.layers for strip in layer.strips for bag in strip.channelbags]
+    else:
+        bag = existing_channelbag(action, datablock)
+        bags = [] if bag is None else [bag]
+    return {(curve.data_path, curve.array_index): curve for bag in bags for curve in bag.fcurves}
 
 
 def slot_for(action: bpy.types.Action, datablock: bpy.types.ID) -> bpy.types.ActionSlot | None:
@@ -56,29 +70,27 @@ def assign_action(datablock: bpy.types.ID, action: bpy.types.Action) -> None:
         data.action_slot = slot
 
 
+def action_of(animated: bpy.types.Object) -> bpy.types.Action | None:
+    """The Action that animates an object."""
+    data = animated.animation_data
+    return None if data is None else data.action
+
+
 def curve_digest(animated: bpy.types.Object) -> str:
     """SHA-256 of the curves that animate an object, to the last digit.
 
     It is the same in every run, unlike a .blend, which holds memory addresses.
     """
-    animation = animated.animation_data
-    action = None if animation is None else animation.action
-    bag = None if action is None else existing_channelbag(action, animated)
-    return _digest(() if bag is None else bag.fcurves)
+    action = action_of(animated)
+    return hashlib.sha256().hexdigest() if action is None else action_digest(action)
 
 
 def action_digest(action: bpy.types.Action) -> str:
     """SHA-256 of the curves of an Action with one slot, as `curve_digest` gives it of what it animates."""
-    strips = action.layers[0].strips if action.layers else ()
-    bags = [bag for strip in strips for bag in strip.channelbags]
-    return _digest([curve for bag in bags for curve in bag.fcurves])
-
-
-def _digest(curves: Iterable[bpy.types.FCurve]) -> str:
     hashed = hashlib.sha256()
-    for curve in sorted(curves, key=lambda curve: (curve.data_path, curve.array_index)):
+    for (path, index), curve in sorted(curves_of(action).items()):
         points = np.empty(2 * len(curve.keyframe_points), dtype="<f4")
         curve.keyframe_points.foreach_get("co", points)
-        hashed.update(f"{curve.data_path} {curve.array_index} {len(points)}:".encode())
+        hashed.update(f"{path} {index} {len(points)}:".encode())
         hashed.update(points.tobytes())
     return hashed.hexdigest()

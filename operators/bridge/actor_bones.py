@@ -3,13 +3,15 @@
 Nothing that starts slowly is imported, so that fields can ask while Blender starts.
 """
 
+from collections.abc import Iterable
+
 import bpy
 
-from ...core.body.human import HUMAN, LIGHT, SHADED, Rgb, side_of
+from ...core.body.human import HUMAN, LIGHT, SHADED, side_of
 
 ACTOR_BONES = frozenset(segment.name for segment in HUMAN.segments)
 ROOT = "pelvis"
-TELLING = (ROOT, "girdle.L")  # bones that every motion of an actor moves; other rigs have hardly both
+MOVED = (ROOT, "girdle.L")  # bones that every motion of an actor moves; other rigs have hardly both
 TURNS = ("rotation_quaternion", "rotation_euler", "rotation_axis_angle")
 
 
@@ -35,11 +37,8 @@ def hips_at_rest(armature_object: bpy.types.Object) -> tuple[float, float, float
 def moves_an_actor(action: bpy.types.Action) -> bool:
     """Whether an Action turns the bones of a Keymark actor."""
     bags = [bag for layer in action.layers for strip in layer.strips for bag in strip.channelbags]
-    return any(all(_turns(bag, bone) for bone in TELLING) for bag in bags)
-
-
-def _turns(bag: bpy.types.ActionChannelbag, bone: str) -> bool:
-    return any(bag.fcurves.find(f'pose.bones["{bone}"].{turn}') is not None for turn in TURNS)
+    paths = [[f'pose.bones["{bone}"].{turn}' for turn in TURNS] for bone in MOVED]
+    return any(all(any(map(bag.fcurves.find, turns)) for turns in paths) for bag in bags)
 
 
 WHITER = 0.55  # share of white in the color of the active bone, which outshines the selected ones
@@ -47,27 +46,17 @@ EARLIER = {"L": "THEME01", "R": "THEME04", "": "THEME09"}
 """Palettes that actors of earlier versions have: red on the left and blue on the right."""
 
 
-def color_bones(armature: bpy.types.Armature) -> None:
-    """Give every bone the color of its side: the strong one, lighter where it is selected or active."""
-    for bone in armature.bones:
-        _color(bone)
+def color_bones(bones: Iterable[bpy.types.Bone]) -> None:
+    """Give bones the colors of their sides: the strong one, lighter where it is selected or active."""
+    for bone in bones:
+        side = side_of(bone.name)
+        normal, light = ([level / 255.0 for level in colors[side]] for colors in (SHADED, LIGHT))
+        bone.color.palette = "CUSTOM"
+        custom = bone.color.custom
+        custom.normal, custom.select = normal, light
+        custom.active = [level + WHITER * (1.0 - level) for level in light]
 
 
 def recolor_earlier(armature: bpy.types.Armature) -> None:
     """Give the bones of an actor of an earlier version their colors, except those colored by hand."""
-    for bone in armature.bones:
-        if bone.color.palette == EARLIER[side_of(bone.name)]:
-            _color(bone)
-
-
-def _color(bone: bpy.types.Bone) -> None:
-    side = side_of(bone.name)
-    bone.color.palette = "CUSTOM"
-    custom = bone.color.custom
-    custom.normal = _floats(SHADED[side])
-    custom.select = _floats(LIGHT[side])
-    custom.active = [level + WHITER * (1.0 - level) for level in _floats(LIGHT[side])]
-
-
-def _floats(rgb: Rgb) -> tuple[float, ...]:
-    return tuple(level / 255.0 for level in rgb)
+    color_bones(bone for bone in armature.bones if bone.color.palette == EARLIER[side_of(bone.name)])

@@ -1,6 +1,6 @@
 """An actor's lengths, read from an armature's bones in any rest pose, and set."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from ...core.body.kinematics import Body
 from ...core.body.rotations import hinge
 from ...core.body.skeleton import Placement, Skeleton
 from ...core.errors import InputError
-from .armature import BoneModel, bone_models
+from .armature import ActorBones, BoneModel, bone_models, editing
 from .object_space import object_space
 
 ANY_STATURE_M = 1.7  # stature of the actor from which bone axes are taken; they do not depend on it
@@ -39,13 +39,6 @@ def skeleton_bones(armature_object: bpy.types.Object, skeleton: Skeleton) -> tup
             f"armature '{armature_object.name}' lacks the bones {', '.join(missing)}; build an actor "
             "with Keymark and keep its bones' names"
         )
-    return _as_rolled(models, bones)
-
-
-def _as_rolled(
-    models: tuple[BoneModel, ...], bones: "bpy.types.bpy_prop_collection[bpy.types.Bone]"
-) -> tuple[BoneModel, ...]:
-    """The bones with the rolls that an armature has at rest; as they are where it rests in another pose."""
     rolled = []
     for model in models:
         rest = np.array(bones[model.name].matrix_local, dtype=np.float64)[:3, :3]
@@ -56,6 +49,14 @@ def _as_rolled(
         about = hinge(np.array([0.0, 1.0, 0.0]), np.array(roll))
         rolled.append(replace(model, axes=model.axes @ about) if abs(roll) > 1e-4 else model)
     return tuple(rolled)
+
+
+def read_bones(armature_object: bpy.types.Object, skeleton: Skeleton) -> ActorBones:
+    """An armature's bones with any location, even scale, rest pose and rotation modes; raises as above."""
+    models, bones = skeleton_bones(armature_object, skeleton), armature_object.data.bones
+    rest = {model.name: np.array(bones[model.name].matrix_local, dtype=np.float64) for model in models}
+    modes = {model.name: armature_object.pose.bones[model.name].rotation_mode for model in models}
+    return ActorBones(models, rest, modes, object_space(armature_object))
 
 
 def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:
@@ -98,12 +99,11 @@ def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:
 
 def _factors(names: tuple[str, ...], *signed: tuple[float, Placement]) -> Array:
     """A sum of placements as a matrix (3, lengths) from the actor's lengths to a vector."""
-    factors: dict[str, Array] = {name: np.zeros(3) for name in names}
+    matrix = np.zeros((3, len(names)))
     for sign, placement in signed:
-        length: Mapping[str, tuple[float, float, float]] = placement
-        for name, share in length.items():
-            factors[name] = factors[name] + sign * np.asarray(share)
-    return np.stack([factors[name] for name in names], axis=1)
+        for name, share in placement.items():
+            matrix[:, names.index(name)] += sign * np.asarray(share)
+    return matrix
 
 
 # --- Resize an actor
@@ -140,21 +140,19 @@ def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:
             head = heads[model.parent] + frames[model.parent] @ local / scale
         heads[model.name] = head
         tails[model.name] = head + frames[model.name] @ (model.end - model.start) / scale
-    with _editing(armature_object) as edit_bones:
+    with _edited(armature_object) as edit_bones:
         for model in models:
             edit_bones[model.name].head = heads[model.name]
             edit_bones[model.name].tail = tails[model.name]
 
 
 @contextmanager
-def _editing(
+def _edited(
     armature_object: bpy.types.Object,
 ) -> "Iterator[bpy.types.bpy_prop_collection[bpy.types.EditBone]]":
     """The armature's edit bones; the mode and the active object are as before afterwards."""
     scene = armature_object.users_scene[0]
-    layer = scene.view_layers[0]
-    if bpy.context.scene == scene:
-        layer = bpy.context.view_layer
+    layer = bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
     active = layer.objects.active
     if active is not None and active.mode not in ("OBJECT", "POSE"):
         raise InputError(f"leave the mode that '{active.name}' is in first (Tab)")
@@ -165,12 +163,8 @@ def _editing(
             bpy.ops.object.mode_set(mode="OBJECT")
         armature_object.hide_set(False, view_layer=layer)
         layer.objects.active = armature_object
-        with bpy.context.temp_override(object=armature_object, active_object=armature_object):
-            bpy.ops.object.mode_set(mode="EDIT")
-            try:
-                yield armature_object.data.edit_bones
-            finally:
-                bpy.ops.object.mode_set(mode="OBJECT")
+        with editing(scene, layer, armature_object) as edit_bones:
+            yield edit_bones
         armature_object.hide_set(hidden, view_layer=layer)
         layer.objects.active = active
         if mode != "OBJECT":

@@ -11,13 +11,15 @@ The bone's axes define the joint's frame: `frame = bone rotation @ axes.T`, what
 pose is. Editing the rest pose to an A pose, or applying the object's rotation, changes nothing.
 """
 
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import lru_cache
 from math import pi
 
 import bpy
 import numpy as np
 from mathutils import Vector
-from numpy.typing import ArrayLike
 
 from ...core.arrays import Array
 from ...core.body.human import side_of
@@ -25,6 +27,7 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind, Segment, Skeleton
 from .actor_bones import color_bones
+from .object_space import ObjectSpace
 
 HINGE_ORDER = "YZX"
 
@@ -71,24 +74,35 @@ def bone_models(body: Body) -> tuple[BoneModel, ...]:
     return tuple(models)
 
 
-def usual_mode(skeleton: Skeleton, model: BoneModel) -> str:
-    """The rotation mode that a bone is built with: Euler angles for hinges, quaternions for balls."""
-    hinged = any(skeleton.joints[index].kind is JointKind.HINGE for index in model.chain)
-    return HINGE_ORDER if hinged else "QUATERNION"
+@dataclass(frozen=True, eq=False)
+class ActorBones:
+    """An actor's bones, parents first, as they rest in an armature."""
+
+    models: tuple[BoneModel, ...]
+    rest: Mapping[str, Array]  # (4, 4) rest matrix of each in the object's space
+    modes: Mapping[str, str]  # rotation mode of each
+    space: ObjectSpace
 
 
-def rest_matrices(body: Body) -> dict[str, Array]:
-    """(4, 4) rest matrix of each bone, as `build_armature` builds them: a T pose on z = 0 [m]."""
+@lru_cache(maxsize=4)
+def bones_at_rest(body: Body) -> ActorBones:
+    """The bones as `build_armature` builds them: a T pose on z = 0 [m], the object at the world's origin."""
     models = bone_models(body)
     origins = body.pose(Posture.rest(body.skeleton)).origin
     floor = min(float((origins[model.joint] + model.end)[2]) for model in models)
     rest = {}
     for model in models:
-        matrix = np.eye(4)
+        rest[model.name] = matrix = np.eye(4)
         matrix[:3, :3] = model.axes
         matrix[:3, 3] = origins[model.joint] + model.start - [0.0, 0.0, floor]
-        rest[model.name] = matrix
-    return rest
+    modes = {model.name: _usual_mode(body.skeleton, model) for model in models}
+    return ActorBones(models, rest, modes, ObjectSpace(np.eye(3), np.zeros(3), 1.0))
+
+
+def _usual_mode(skeleton: Skeleton, model: BoneModel) -> str:
+    """The rotation mode that a bone is built with: Euler angles for hinges, quaternions for balls."""
+    hinged = any(skeleton.joints[index].kind is JointKind.HINGE for index in model.chain)
+    return HINGE_ORDER if hinged else "QUATERNION"
 
 
 def _direction(body: Body, segment: Segment) -> Array:
@@ -136,72 +150,66 @@ def build_armature(scene: bpy.types.Scene, body: Body, name: str = "Actor") -> b
     armature = bpy.data.armatures.new(name)
     armature_object = bpy.data.objects.new(name, armature)
     scene.collection.objects.link(armature_object)
-    models = bone_models(body)
-    _add_bones(scene, armature_object, body, models)
+    bones = bones_at_rest(body)
+    layer = scene.view_layers[0]
+    layer.objects.active = armature_object
+    with editing(scene, layer, armature_object) as edit_bones:
+        for model in bones.models:
+            bone = edit_bones.new(model.name)
+            bone.head = bones.rest[model.name][:3, 3]
+            bone.tail = bones.rest[model.name][:3, 3] + model.end - model.start
+            bone.align_roll(Vector(model.axes[:, 2]))
+            if model.parent:
+                bone.parent = edit_bones[model.parent]
+                bone.use_connect = (bone.head - bone.parent.tail).length < 1e-6
     armature.display_type = "OCTAHEDRAL"
     armature_object.show_in_front = True
     armature_object.display_type = "WIRE"  # the footage is to be seen through it
     for side, title in COLLECTIONS.items():
         collection = armature.collections.new(title)
-        for model in models:
+        for model in bones.models:
             if side_of(model.name) == side:
                 collection.assign(armature.bones[model.name])
-    color_bones(armature)
-    for model in models:
-        _set_freedoms(armature_object.pose.bones[model.name], body.skeleton, model)
+    color_bones(armature.bones)
+    for model in bones.models:
+        pose_bone = armature_object.pose.bones[model.name]
+        pose_bone.rotation_mode = bones.modes[model.name]
+        _set_freedoms(pose_bone, body.skeleton, model)
     return armature_object
 
 
-def _add_bones(
-    scene: bpy.types.Scene, armature_object: bpy.types.Object, body: Body, models: tuple[BoneModel, ...]
-) -> None:
-    rest = rest_matrices(body)
-    layer = scene.view_layers[0]
-    layer.objects.active = armature_object
-    # Edit bones exist in edit mode only, which Blender enters for the active object of the context's layer.
-    with bpy.context.temp_override(
-        scene=scene, view_layer=layer, object=armature_object, active_object=armature_object
-    ):
+@contextmanager
+def editing(
+    scene: bpy.types.Scene, layer: bpy.types.ViewLayer, active: bpy.types.Object
+) -> "Iterator[bpy.types.bpy_prop_collection[bpy.types.EditBone]]":
+    """The edit bones of a layer's active armature: they exist in edit mode only, which the context enters."""
+    with bpy.context.temp_override(scene=scene, view_layer=layer, object=active, active_object=active):
         bpy.ops.object.mode_set(mode="EDIT")
-        edit_bones = armature_object.data.edit_bones
-        for model in models:
-            bone = edit_bones.new(model.name)
-            head = rest[model.name][:3, 3]
-            bone.head = head
-            bone.tail = head + model.end - model.start
-            bone.align_roll(Vector(model.axes[:, 2]))
-            if model.parent:
-                bone.parent = edit_bones[model.parent]
-                bone.use_connect = (bone.head - bone.parent.tail).length < 1e-6
-        bpy.ops.object.mode_set(mode="OBJECT")
+        try:
+            yield active.data.edit_bones
+        finally:
+            bpy.ops.object.mode_set(mode="OBJECT")
 
 
 def _set_freedoms(pose_bone: bpy.types.PoseBone, skeleton: Skeleton, model: BoneModel) -> None:
-    hinges = [skeleton.joints[i] for i in model.chain if skeleton.joints[i].kind is JointKind.HINGE]
-    pose_bone.rotation_mode = usual_mode(skeleton, model)
+    """Lock what a bone cannot do, and limit its IK to the joints' ranges."""
     pose_bone.lock_scale = (True, True, True)
     pose_bone.lock_location = (not model.is_root,) * 3
+    joints = [skeleton.joints[index] for index in model.chain]
+    hinges = [joint for joint in joints if joint.kind is JointKind.HINGE]
+    ranges = [(joint.axis, joint.limits_deg[0]) for joint in hinges]
     if hinges:
         free = [any(abs(model.axes[:, axis] @ joint.axis) > 0.5 for joint in hinges) for axis in range(3)]
         pose_bone.lock_rotation = [not axis for axis in free]
         pose_bone.lock_ik_x, pose_bone.lock_ik_y, pose_bone.lock_ik_z = (not axis for axis in free)
-        for joint in hinges:
-            _limit_ik(pose_bone, model, joint.axis, joint.limits_deg[0])
-        return
-    for index in model.chain:
-        joint = skeleton.joints[index]
-        for axis, limits in zip(np.eye(3), joint.limits_deg, strict=False):
-            _limit_ik(pose_bone, model, axis, limits)
-
-
-def _limit_ik(
-    pose_bone: bpy.types.PoseBone, model: BoneModel, axis: ArrayLike, limits_deg: tuple[float, float]
-) -> None:
-    along = model.axes.T @ np.asarray(axis)  # the bone's own axes are the joint's up to order and sign
-    column = int(np.argmax(np.abs(along)))
-    low, high = np.radians(limits_deg) if along[column] > 0.0 else -np.radians(limits_deg)[::-1]
-    letter = "xyz"[column]
-    setattr(pose_bone, f"use_ik_limit_{letter}", True)
-    # Blender keeps IK limits on their own side of rest: the lower at most 0, the upper at least 0.
-    setattr(pose_bone, f"ik_min_{letter}", max(-pi, min(0.0, low)))
-    setattr(pose_bone, f"ik_max_{letter}", min(pi, max(0.0, high)))
+    else:
+        ranges = [pair for joint in joints for pair in zip(np.eye(3), joint.limits_deg, strict=False)]
+    for axis, limits_deg in ranges:
+        along = model.axes.T @ np.asarray(axis)  # the bone's own axes are the joint's up to order and sign
+        column = int(np.argmax(np.abs(along)))
+        low, high = np.radians(limits_deg) if along[column] > 0.0 else -np.radians(limits_deg)[::-1]
+        letter = "xyz"[column]
+        setattr(pose_bone, f"use_ik_limit_{letter}", True)
+        # Blender keeps IK limits on their own side of rest: the lower at most 0, the upper at least 0.
+        setattr(pose_bone, f"ik_min_{letter}", max(-pi, min(0.0, low)))
+        setattr(pose_bone, f"ik_max_{letter}", min(pi, max(0.0, high)))

@@ -12,7 +12,7 @@ from ...core.arrays import Array
 from ...core.body.kinematics import extremity_names
 from ...core.body.skeleton import Skeleton
 from .actions import existing_channelbag
-from .keys import copy_as_generated, ensure_fcurve, generated_frames
+from .keys import MOTION, copy_as_generated, ensure_fcurve, unchanged_frames
 from .rotation_modes import ALL_PATHS, bone_path, rotation_path
 
 AT_REST = {"rotation_quaternion": (None, 0.0, 0.0, 0.0), "rotation_axis_angle": (0.0, None, None, None)}
@@ -135,7 +135,9 @@ def _leaves_rest(curve: bpy.types.FCurve) -> bool:
 
 def _generated_in_all(curves: list[bpy.types.FCurve]) -> Array:
     """Frames (N,) that have an unchanged GENERATED key in every curve."""
-    rotations = [generated_frames(curve) for curve in curves if not curve.data_path.endswith(".location")]
+    rotations = [
+        unchanged_frames(curve, MOTION) for curve in curves if not curve.data_path.endswith(".location")
+    ]
     found = rotations[0] if rotations else np.zeros(0)
     for frames in rotations[1:]:
         found = found[np.isin(np.round(found, 3), np.round(frames, 3))]

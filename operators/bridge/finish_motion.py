@@ -26,11 +26,11 @@ from ...core.finish.planted_feet import (
 from ...core.finish.rig import Rig, RigPose
 from ...core.progress import Job, Progress, within
 from .actions import channelbag_for, existing_channelbag
-from .actor_lengths import read_body
+from .actor_lengths import read_body, read_bones
 from .extremity_curves import turned_extremities
 from .fcurves import moved_paths, posture_columns
-from .keyframes import keyed_frames, untouched_frames
-from .keys import copy_keys, ensure_fcurve, write_linear_keys, write_smooth_keys
+from .keyframes import keyed_frames, unchanged_keyframes
+from .keys import FOUND, copy_keys, ensure_fcurve, write_linear_keys, write_smooth_keys
 from .review_curves import is_review_curve
 from .rig import (
     absence_note,
@@ -112,7 +112,7 @@ def finish_motion(
     yield Progress(PLANTING, READ)
     time_s = (frames - frames[0]) * frame_s
     shown = rig.pose(values)
-    planted = PlantedFeet(shown_postures(armature_object, rig, shown, body), ())
+    planted = PlantedFeet(shown_postures(rig, shown, body), ())
     away = absence_note(armature_object, action, body, 1.0 / frame_s)
     notes: tuple[str, ...] = (away,) if away else ()
     yield Progress(PLANTING, SEEN)
@@ -197,7 +197,7 @@ def _replaced(
     extremities: Extremities = RIGID,
 ) -> list[Array]:
     """Values with those of postures in the frames `where` (F,) says of each bone; the rest stays."""
-    columns = posture_columns(armature_object, posture, extremities)
+    columns = posture_columns(read_bones(armature_object, HUMAN), posture, extremities)
     stored = {(path, index): column for path, index, _, column in columns}
     changed = [column.copy() for column in values]
     for bone, column, path, index in rig_channels(rig):
@@ -229,7 +229,7 @@ def posed_indices(
     if keyframe_action is None:
         return np.zeros(0, dtype=np.intp)
     keyed = keyed_frames(armature_object, keyframe_action, skeleton)
-    matched = untouched_frames(armature_object, keyframe_action, skeleton)
+    matched = unchanged_keyframes(armature_object, keyframe_action, skeleton, FOUND)
     posed = np.array(sorted(set(keyed) - set(matched)))
     return np.flatnonzero(np.isin(frames, np.round(posed)))
 

@@ -14,7 +14,7 @@ from ...core.video.image_sequence import find_images
 from .actions import assign_action, channelbag_for
 from .footage import clip_rate, set_scene_range
 from .footage_camera import new_camera, set_background, set_clip_lens, set_lens, set_still_pose
-from .keys import add_generated_keys
+from .keys import MOTION, write_keys
 
 
 def load_footage(path: Path) -> bpy.types.MovieClip:
@@ -95,7 +95,7 @@ def _set_pose(camera_object: bpy.types.Object, camera: Camera, frames: Array) ->
     channelbag = channelbag_for(action, camera_object)
     poses = camera.matrix_world[: len(frames)]
     turns = continuous_quaternions(to_quaternions(poses[:, :3, :3]))
-    for path, values in (("location", poses[:, :3, 3]), ("rotation_quaternion", turns)):
-        for index, column in enumerate(values.T):
-            add_generated_keys(channelbag, path, index, "Camera", frames[: len(poses)], column)
+    channels = (("location", poses[:, :3, 3]), ("rotation_quaternion", turns))
+    columns = [(path, i, "Camera", values[:, i]) for path, values in channels for i in range(values.shape[1])]
+    write_keys(channelbag, columns, frames[: len(poses)], MOTION)
     assign_action(camera_object, action)

@@ -1,6 +1,6 @@
 """Keyframes of an actor, posed by the animator or found in the footage, read and written."""
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -13,18 +13,21 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
 from ...core.prior.keyframes import Keyframe, Matched
-from .actions import channelbag_for, existing_channelbag
-from .actor_lengths import skeleton_bones
+from .actions import channelbag_for, curves_of, existing_channelbag
+from .actor_lengths import read_bones, skeleton_bones
 from .armature import BoneModel
 from .fcurves import moved_paths, posture_columns
 from .keys import (
+    FOUND,
+    PICTURED,
+    POSED,
+    Column,
+    KeyKind,
     animator_frames,
-    generated_frames,
     give_to_animator,
-    picture_frames,
     remove_keys,
-    set_matched_keys,
-    set_posed_keys,
+    unchanged_frames,
+    write_keys,
 )
 from .pose import read_posture
 from .rotation_modes import bone_path, rotation_path
@@ -42,43 +45,20 @@ def candidate_posture(candidate: bpy.types.PropertyGroup) -> Posture:
 DIGITS = 3  # decimals to which frames are told apart, as in `keyed_frames`
 
 
-def untouched_frames(
-    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton
+def unchanged_keyframes(
+    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, kind: KeyKind
 ) -> tuple[float, ...]:
-    """Scene frames whose found posture is unchanged, in order."""
-    return _frames_of_all(
-        armature_object, action, skeleton, lambda curve: generated_frames(curve, matched=True)
-    )
+    """Scene frames at which all bones with degrees of freedom have keys of a kind, unchanged, in order.
 
-
-def picture_corrected_frames(
-    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton
-) -> tuple[float, ...]:
-    """Scene frames whose posture a person put right in the picture alone, unchanged since, in order."""
-    return _frames_of_all(armature_object, action, skeleton, picture_frames)
-
-
-def _frames_of_all(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    skeleton: Skeleton,
-    marked: Callable[[bpy.types.FCurve], Array],
-) -> tuple[float, ...]:
-    """Scene frames that are marked on the curves of all bones with degrees of freedom, in order."""
-    channelbag = existing_channelbag(action, armature_object)
-    if channelbag is None:
-        return ()
+    FOUND: what was found and left as it is; PICTURED: what a person put right in the picture alone.
+    """
+    curves = curves_of(action, armature_object)
     found: set[float] | None = None
     for model, path, index, _ in _channels(armature_object, skeleton):
-        if not model.chain:
-            continue
-        fcurve = channelbag.fcurves.find(path, index=index)
-        if fcurve is None:
-            return ()
-        frames = set(np.round(marked(fcurve), DIGITS).tolist())
-        found = frames if found is None else found & frames
-        if not found:
-            return ()
+        if model.chain and found != set():
+            curve = curves.get((path, index))
+            frames = () if curve is None else np.round(unchanged_frames(curve, kind), DIGITS).tolist()
+            found = set(frames) if found is None else found & set(frames)
     return tuple(sorted(found or ()))
 
 
@@ -87,11 +67,10 @@ def write_matched(
 ) -> None:
     """Key K postures at scene frames (K,) as found keyframes; other keys there are replaced."""
     channelbag = channelbag_for(action, armature_object)
-    columns = posture_columns(armature_object, Posture.stack(list(postures)))
-    turned = _turned_to_neighbors(channelbag, columns, frames)
-    remove_keys(channelbag, moved_paths(armature_object, postures[0].skeleton), frames)
-    for path, index, bone, column in columns:
-        set_matched_keys(channelbag, path, index, bone, frames, column * turned.get(path, 1.0))
+    columns = posture_columns(read_bones(armature_object, HUMAN), Posture.stack(list(postures)))
+    turned = _turned_to_neighbors(curves_of(action, armature_object), columns, frames)
+    remove_keys(channelbag, moved_paths(armature_object, HUMAN), frames)
+    write_keys(channelbag, turned, frames, FOUND)
 
 
 def remove_keyframes(
@@ -124,27 +103,27 @@ def _channels(
 
 
 def _turned_to_neighbors(
-    channelbag: bpy.types.ActionChannelbag, columns: list[tuple[str, int, str, Array]], frames: Array
-) -> dict[str, Array]:
-    """Signs (K,) of the quaternions by data path, so that bones do not turn the long way round.
+    curves: Mapping[tuple[str, int], bpy.types.FCurve], columns: Sequence[Column], frames: Array
+) -> list[Column]:
+    """Columns with quaternions of the sign by which bones do not turn the long way round.
 
     A quaternion and its negative are the same posture, but Blender interpolates number by number.
     """
-    signs: dict[str, Array] = {}
+    signs: dict[str, Array] = {}  # (K,) by data path
     for path in {path for path, *_ in columns if path.endswith("rotation_quaternion")}:
         values = np.stack([column for other, _, _, column in columns if other == path])  # (4, K)
-        curves = [channelbag.fcurves.find(path, index=index) for index in range(len(values))]
-        if all(curve is not None and len(curve.keyframe_points) for curve in curves):
-            there = np.array([[curve.evaluate(float(frame)) for frame in frames] for curve in curves])
-            signs[path] = np.where(np.sum(values * there, axis=0) < 0.0, -1.0, 1.0)
-    return signs
+        there = [curve for index in range(len(values)) if (curve := curves.get((path, index))) is not None]
+        if len(there) == len(values) and all(len(curve.keyframe_points) for curve in there):
+            shown = np.array([[curve.evaluate(float(frame)) for frame in frames] for curve in there])
+            signs[path] = np.where(np.sum(values * shown, axis=0) < 0.0, -1.0, 1.0)
+    return [(path, index, bone, column * signs.get(path, 1.0)) for path, index, bone, column in columns]
 
 
 # --- Keyframes of the animator
 
 
 Matches = Mapping[float, Matched]
-"""What found keyframes resemble, by scene frame as `untouched_frames` gives them."""
+"""What found keyframes resemble, by scene frame as `unchanged_keyframes` gives them."""
 
 NOT_MATCHED: Matches = MappingProxyType({})
 NEAREST = 0.5  # a key farther than this [frames] from every frame of the clip belongs to none
@@ -166,14 +145,9 @@ def keyed_frames(
 
     Keys that a motion left do not count; those of matched keyframes do.
     """
-    channelbag = existing_channelbag(action, armature_object)
-    if channelbag is None:
-        return ()
-    wanted = set(moved_paths(armature_object, skeleton))
-    frames = [animator_frames(fcurve) for fcurve in channelbag.fcurves if fcurve.data_path in wanted]
-    if not frames:
-        return ()
-    return tuple(np.unique(np.round(np.concatenate(frames), DIGITS)).tolist())
+    wanted, curves = set(moved_paths(armature_object, skeleton)), curves_of(action, armature_object)
+    frames = [animator_frames(curve) for (path, _), curve in curves.items() if path in wanted]
+    return tuple(np.unique(np.round(np.concatenate([np.zeros(0), *frames]), DIGITS)).tolist())
 
 
 def read_keyframes(
@@ -193,7 +167,7 @@ def read_keyframes(
     notes: list[str] = []
     found: dict[int, tuple[float, Keyframe]] = {}
     outside: list[str] = []
-    pictured = set(picture_corrected_frames(armature_object, action, body.skeleton))
+    pictured = set(unchanged_keyframes(armature_object, action, body.skeleton, PICTURED))
     with showing_action(armature_object, action), at_scene_frame(scene) as go_to:
         for frame in keyed_frames(armature_object, action, body.skeleton):
             index = int(np.argmin(np.abs(clip_frames - frame)))
@@ -229,10 +203,10 @@ def store_pose(
 
     `depth_found`: whether it was put right in the picture alone.
     """
-    channelbag = channelbag_for(action, armature_object)
-    at = np.array([frame])
-    for model, path, index, value in _channels(armature_object, skeleton):
-        set_posed_keys(channelbag, path, index, model.name, at, np.array([value]), depth_found)
+    channels = _channels(armature_object, skeleton)
+    columns = [(path, index, model.name, np.array([value])) for model, path, index, value in channels]
+    kind = PICTURED if depth_found else POSED
+    write_keys(channelbag_for(action, armature_object), columns, np.array([frame]), kind)
 
 
 def write_keyframes(
@@ -250,11 +224,11 @@ def write_keyframes(
     postures = Posture.stack([keyframe.posture for keyframe in keyframes])
     posed = np.array([keyframe.matched is None for keyframe in keyframes])
     pictured = np.array([keyframe.depth_found for keyframe in keyframes])
-    for path, index, bone, column in posture_columns(armature_object, postures):
-        for depth_found in (False, True):
-            own = posed & (pictured == depth_found)
-            if own.any():
-                set_posed_keys(channelbag, path, index, bone, frames[own], column[own], depth_found)
+    columns = posture_columns(read_bones(armature_object, postures.skeleton), postures)
+    for own, kind in ((posed & ~pictured, POSED), (posed & pictured, PICTURED)):
+        if own.any():
+            rows = [(path, index, bone, column[own]) for path, index, bone, column in columns]
+            write_keys(channelbag, rows, frames[own], kind)
     if not posed.all():
         matched = [keyframe.posture for keyframe in keyframes if keyframe.matched is not None]
         write_matched(armature_object, action, frames[~posed], matched)

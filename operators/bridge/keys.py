@@ -8,6 +8,7 @@ animator put right in the picture alone.
 """
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
@@ -16,15 +17,33 @@ from numpy.typing import NDArray
 from ...core.arrays import Array, BoolArray, SingleArray
 
 Keys = dict[str, NDArray[np.generic]]  # properties of N keys by name: (N,), or (N, 2) for coordinates
+Column = tuple[str, int, str, Array]  # data path, array index, group and values (F,) of an F-curve
 
 UNMARKED = 0.0  # `back` of a key without a record of its first value, as earlier versions made all
-MATCH_AMPLITUDE = -1.0  # `amplitude` of the keys of a found keyframe; users cannot set one below zero
-PICTURE_AMPLITUDE = -2.0  # `amplitude` of the animator's keys whose depth is as it was found
 SAME_FRAME = 1e-3  # keys nearer than this [frames] lie on the same frame
 FLOATS = ("back", "amplitude", "period")
 PAIRS = ("co", "handle_left", "handle_right")
 ENUMS = ("interpolation", "easing", "handle_left_type", "handle_right_type", "type")
 FLAGS = ("select_control_point", "select_left_handle", "select_right_handle")
+
+
+@dataclass(frozen=True)
+class KeyKind:
+    """A kind of keys that Keymark writes and tells from others."""
+
+    type: str = "KEYFRAME"
+    interpolation: str = "BEZIER"
+    amplitude: float | None = None  # what marks them; users cannot set an amplitude below zero
+    gives_way: bool = False  # whether another key on a frame stays there alone; else it is replaced
+
+
+POSED = KeyKind()  # as the animator sets keys, with Blender's usual smooth interpolation
+LINEAR = KeyKind(interpolation="LINEAR")
+PICTURED = KeyKind(
+    amplitude=-2.0
+)  # the animator's, put right in the picture alone: as deep as they were found
+FOUND = KeyKind("GENERATED", amplitude=-1.0)  # those of a found keyframe
+MOTION = KeyKind("GENERATED", "LINEAR", gives_way=True)
 
 
 def _generated(keys: Keys) -> BoolArray:
@@ -86,7 +105,7 @@ def _write_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
     fcurve.update()
 
 
-def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -> Keys:
+def _new_keys(frames: Array, values: Array, kind: KeyKind) -> Keys:
     """Keys that are not selected, so that what the animator does next does not move them."""
     count = len(frames)
     coordinates = np.column_stack([frames, values]).astype(np.float32)
@@ -96,16 +115,17 @@ def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -
         keys[name] = np.full(count, default, np.float32)
     for name in FLAGS:
         keys[name] = np.zeros(count, np.bool_)
-    chosen = {
-        "interpolation": interpolation,
-        "easing": "AUTO",
-        "handle_left_type": "AUTO_CLAMPED",
-        "handle_right_type": "AUTO_CLAMPED",
-        "type": key_type,
-    }
-    for name, item in chosen.items():
+    items = (kind.interpolation, "AUTO", "AUTO_CLAMPED", "AUTO_CLAMPED", kind.type)
+    for name, item in zip(ENUMS, items, strict=True):
         keys[name] = np.full(count, _enum_value(name, item), np.int32)
+    if kind.amplitude is not None:
+        keys["amplitude"] = np.full(count, kind.amplitude, np.float32)
+    if kind.amplitude is not None or kind.type == "GENERATED":
+        keys["back"] = _value_mark(keys)
     return keys
+
+
+# --- Frames with keys
 
 
 def animator_frames(fcurve: bpy.types.FCurve) -> Array:
@@ -119,29 +139,54 @@ def animator_frames(fcurve: bpy.types.FCurve) -> Array:
     if not counted.all():
         amplitudes = np.empty(len(points), np.float32)
         points.foreach_get("amplitude", amplitudes)
-        counted |= amplitudes == MATCH_AMPLITUDE
+        counted |= amplitudes == FOUND.amplitude
     return np.asarray(coordinates[counted, 0], dtype=np.float64)
 
 
-def picture_frames(fcurve: bpy.types.FCurve) -> Array:
-    """Frames (N,) of the keys that were put right in the picture alone and not changed since."""
-    if not len(fcurve.keyframe_points):
-        return np.zeros(0)
+def unchanged_frames(fcurve: bpy.types.FCurve, kind: KeyKind) -> Array:
+    """Frames (N,) of the keys of a kind that nobody has changed; MOTION stands for all that are GENERATED."""
     keys = _read_keys(fcurve)
-    unchanged = (keys["amplitude"] == PICTURE_AMPLITUDE) & (keys["back"] == _value_mark(keys))
-    unchanged &= keys["type"] != _enum_value("type", "GENERATED")
+    if kind.type == "GENERATED":
+        unchanged = _generated(keys)
+    else:
+        unchanged = (keys["back"] == _value_mark(keys)) & (keys["type"] != _enum_value("type", "GENERATED"))
+    if kind.amplitude is not None:
+        unchanged &= keys["amplitude"] == kind.amplitude
     return np.asarray(keys["co"][unchanged, 0], dtype=np.float64)
 
 
-def generated_frames(fcurve: bpy.types.FCurve, matched: bool = False) -> Array:
-    """Frames (N,) of the GENERATED keys that are unchanged, or of those of found keyframes among them."""
-    if not len(fcurve.keyframe_points):
-        return np.zeros(0)
-    keys = _read_keys(fcurve)
-    unchanged = _generated(keys)
-    if matched:
-        unchanged &= keys["amplitude"] == MATCH_AMPLITUDE
-    return np.asarray(keys["co"][unchanged, 0], dtype=np.float64)
+# --- Keys written, handed over and removed
+
+
+def write_keys(
+    channelbag: bpy.types.ActionChannelbag, columns: Iterable[Column], frames: Array, kind: KeyKind
+) -> None:
+    """Set keys of a kind at scene frames (F,); all other keys of the curves stay."""
+    for path, index, group, values in columns:
+        _join_keys(
+            ensure_fcurve(channelbag, path, index, group), _new_keys(frames, values, kind), kind.gives_way
+        )
+
+
+def _join_keys(fcurve: bpy.types.FCurve, keys: Keys, gives_way: bool) -> None:
+    """Add keys to a curve; of two on one frame the new one goes, or else the old one."""
+    kept = _read_keys(fcurve)
+    if gives_way:
+        keys = _chosen(keys, ~_are_on(keys, kept["co"][:, 0]))
+    else:
+        kept = _chosen(kept, ~_are_on(kept, keys["co"][:, 0]))
+    both = {name: np.concatenate([kept[name], keys[name]]) for name in keys}
+    _write_keys(fcurve, _chosen(both, np.argsort(both["co"][:, 0], kind="stable")))
+
+
+def _are_on(keys: Keys, frames: NDArray[np.generic]) -> BoolArray:
+    """(N,) whether each key lies on one of some frames."""
+    apart = np.subtract.outer(keys["co"][:, 0].astype(np.float64), frames.astype(np.float64))
+    return np.asarray(np.abs(apart).min(axis=1, initial=np.inf) <= SAME_FRAME)
+
+
+def _chosen(keys: Keys, which: NDArray[np.generic]) -> Keys:
+    return {name: column[which] for name, column in keys.items()}
 
 
 def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]) -> None:
@@ -149,22 +194,48 @@ def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterabl
 
     Keys that the animator has given another value stay, and get the animator's own type.
     """
+    for fcurve, keys in _curves(channelbag, paths):
+        _keep(channelbag, fcurve, _as_animators(keys), ~_generated(keys))
+
+
+def remove_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
+    """Remove all keys on frames (K,) from the curves with these data paths, and curves left without keys."""
+    for fcurve, keys in _curves(channelbag, paths):
+        there = _are_on(keys, frames)
+        if there.any():
+            _keep(channelbag, fcurve, keys, ~there)
+
+
+def give_to_animator(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
+    """Turn keys of found keyframes on frames (K,) into the animator's own; values and curves stay.
+
+    The animator vouches for the picture alone: nobody has touched the depth.
+    """
+    for fcurve, keys in _curves(channelbag, paths):
+        there = _are_on(keys, frames) & (keys["amplitude"] == FOUND.amplitude)
+        if there.any():
+            keys["type"] = np.where(there, _as_animators(keys)["type"], keys["type"])
+            keys["amplitude"][there] = PICTURED.amplitude
+            _write_keys(fcurve, keys)
+
+
+def _curves(
+    channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]
+) -> Iterator[tuple[bpy.types.FCurve, Keys]]:
+    """The curves of some data paths, with their keys."""
     wanted = set(paths)
     for fcurve in [curve for curve in channelbag.fcurves if curve.data_path in wanted]:
-        keys = _read_keys(fcurve)
-        own = ~_generated(keys)
-        if not own.any():
-            channelbag.fcurves.remove(fcurve)
-        else:
-            _write_keys(fcurve, _as_animators({name: values[own] for name, values in keys.items()}))
+        yield fcurve, _read_keys(fcurve)
 
 
-def add_generated_keys(
-    channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, values: Array
+def _keep(
+    channelbag: bpy.types.ActionChannelbag, fcurve: bpy.types.FCurve, keys: Keys, kept: BoolArray
 ) -> None:
-    """Add GENERATED keys at scene frames (F,), linear between them; the animator's keys there stay alone."""
-    fcurve = ensure_fcurve(channelbag, path, index, group)
-    _add_between(fcurve, _as_generated(_new_keys(frames, values, "GENERATED", "LINEAR")))
+    """Leave a curve some of its keys only; without any it is removed."""
+    if kept.any():
+        _write_keys(fcurve, _chosen(keys, kept))
+    else:
+        channelbag.fcurves.remove(fcurve)
 
 
 def mark_generated(channelbag: bpy.types.ActionChannelbag) -> None:
@@ -173,99 +244,13 @@ def mark_generated(channelbag: bpy.types.ActionChannelbag) -> None:
         _write_keys(fcurve, _as_generated(_read_keys(fcurve)))
 
 
-def _add_between(fcurve: bpy.types.FCurve, keys: Keys) -> None:
-    """Add keys to a curve on the frames that have none."""
-    if len(fcurve.keyframe_points):
-        kept = _read_keys(fcurve)
-        free = _distances(keys["co"][:, 0], kept["co"][:, 0]) > SAME_FRAME
-        keys = _merged(kept, {name: column[free] for name, column in keys.items()})
-    _write_keys(fcurve, keys)
-
-
-def set_posed_keys(
-    channelbag: bpy.types.ActionChannelbag,
-    path: str,
-    index: int,
-    group: str,
-    frames: Array,
-    values: Array,
-    depth_found: bool = False,
-) -> None:
-    """Set keys of the animator's own type at scene frames (K,), with Blender's usual smooth interpolation.
-
-    Keys on the same frames are replaced, all others stay; `depth_found` marks those put right in the picture
-    alone.
-    """
-    keys = _new_keys(frames, values, "KEYFRAME", "BEZIER")
-    if depth_found:
-        keys["amplitude"] = np.full(len(frames), PICTURE_AMPLITUDE, np.float32)
-        keys["back"] = _value_mark(keys)
-    _set_keys(ensure_fcurve(channelbag, path, index, group), keys)
-
-
-def set_matched_keys(
-    channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, values: Array
-) -> None:
-    """Set keys like those of `set_posed_keys`, but marked as a found keyframe's."""
-    keys = _as_generated(_new_keys(frames, values, "GENERATED", "BEZIER"))
-    keys["amplitude"] = np.full(len(frames), MATCH_AMPLITUDE, np.float32)
-    _set_keys(ensure_fcurve(channelbag, path, index, group), keys)
-
-
-def _set_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
-    """Set keys on a curve; those on the same frames are replaced, all others stay."""
-    if len(fcurve.keyframe_points):
-        kept = _read_keys(fcurve)
-        free = _distances(kept["co"][:, 0], keys["co"][:, 0]) > SAME_FRAME
-        keys = _merged({name: column[free] for name, column in kept.items()}, keys)
-    _write_keys(fcurve, keys)
-
-
-def remove_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
-    """Remove all keys on frames (K,) from the curves with these data paths, and curves left without keys."""
-    for fcurve, keys, there in _keys_on(channelbag, paths, frames):
-        if there.all():
-            channelbag.fcurves.remove(fcurve)
-        else:
-            _write_keys(fcurve, {name: column[~there] for name, column in keys.items()})
-
-
-def give_to_animator(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
-    """Turn keys of found keyframes on frames (K,) into the animator's own; values and curves stay.
-
-    The animator vouches for the picture alone: nobody has touched the depth.
-    """
-    for fcurve, keys, there in _keys_on(channelbag, paths, frames):
-        there = there & (keys["amplitude"] == MATCH_AMPLITUDE)
-        if there.any():
-            given = _as_animators(keys)
-            given["amplitude"] = np.full(len(there), PICTURE_AMPLITUDE, np.float32)
-            for name, column in keys.items():
-                column[there] = given[name][there]
-            _write_keys(fcurve, keys)
-
-
-def _keys_on(
-    channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array
-) -> Iterator[tuple[bpy.types.FCurve, Keys, BoolArray]]:
-    """The curves of these paths with keys on any of the frames, their keys, and which of them lie there."""
-    wanted = set(paths)
-    for fcurve in [curve for curve in channelbag.fcurves if curve.data_path in wanted]:
-        if not len(fcurve.keyframe_points) or not len(frames):
-            continue
-        keys = _read_keys(fcurve)
-        there = _distances(keys["co"][:, 0], frames) <= SAME_FRAME
-        if there.any():
-            yield fcurve, keys, there
-
-
 def write_smooth_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array, slopes: Array) -> None:
     """Replace a curve's keys by the animator's own at rising frames (K,), with slopes (K,) per frame.
 
     The handles lie at a third of the way to the next key and are aligned: between two keys the curve is the
     cubic that has the keys' values and slopes.
     """
-    keys = _new_keys(frames, values, "KEYFRAME", "BEZIER")
+    keys = _new_keys(frames, values, POSED)
     third = np.diff(frames) / 3.0
     before, after = np.concatenate([third[:1], third]), np.concatenate([third, third[-1:]])
     keys["handle_left"] = np.column_stack([frames - before, values - slopes * before]).astype(np.float32)
@@ -277,19 +262,17 @@ def write_smooth_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array, sl
 
 def write_linear_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array) -> None:
     """Replace a curve's keys by the animator's own at rising frames (K,), linear between them."""
-    _write_keys(fcurve, _new_keys(frames, values, "KEYFRAME", "LINEAR"))
+    _write_keys(fcurve, _new_keys(frames, values, LINEAR))
 
 
-def _distances(frames: NDArray[np.generic], others: NDArray[np.generic]) -> Array:
-    """(N,) distance from each frame to the nearest of others."""
-    apart = np.subtract.outer(frames.astype(np.float64), others.astype(np.float64))
-    return np.asarray(np.abs(apart).min(axis=1))
+def copy_keys(source: bpy.types.FCurve, target: bpy.types.FCurve) -> None:
+    """Replace a curve's keys by another's, handles and interpolation included, all as the animator's."""
+    _write_keys(target, _as_animators(_read_keys(source)))
 
 
-def _merged(keys: Keys, others: Keys) -> Keys:
-    both = {name: np.concatenate([keys[name], others[name]]) for name in keys}
-    order = np.argsort(both["co"][:, 0], kind="stable")
-    return {name: column[order] for name, column in both.items()}
+def copy_as_generated(source: bpy.types.FCurve, target: bpy.types.FCurve) -> None:
+    """Add another curve's keys as GENERATED ones; where the animator has a key, that key stays alone."""
+    _join_keys(target, _as_generated(_read_keys(source)), gives_way=True)
 
 
 def ensure_fcurve(
@@ -300,13 +283,3 @@ def ensure_fcurve(
     if fcurve.group is None:
         fcurve.group = channelbag.groups.get(group) or channelbag.groups.new(group)
     return fcurve
-
-
-def copy_keys(source: bpy.types.FCurve, target: bpy.types.FCurve) -> None:
-    """Replace a curve's keys by another's, handles and interpolation included, all as the animator's."""
-    _write_keys(target, _as_animators(_read_keys(source)))
-
-
-def copy_as_generated(source: bpy.types.FCurve, target: bpy.types.FCurve) -> None:
-    """Add another curve's keys as GENERATED ones; where the animator has a key, that key stays alone."""
-    _add_between(target, _as_generated(_read_keys(source)))

@@ -27,9 +27,6 @@ class ObjectSpace:
         return np.asarray((points - self.location) @ self.rotation / self.scale)
 
 
-AT_ORIGIN = ObjectSpace(np.eye(3), np.zeros(3), 1.0)
-
-
 def object_space(armature_object: bpy.types.Object) -> ObjectSpace:
     """The object's evaluated transform, parents and constraints included.
 

@@ -8,10 +8,10 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
-from .actor_lengths import skeleton_bones
-from .fcurves import bone_channels
+from .actor_lengths import read_bones, skeleton_bones
+from .fcurves import posture_columns
 from .object_space import evaluated, object_space
-from .rotation_modes import posture_from_frames, set_rotation
+from .rotation_modes import posture_from_frames
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,10 +61,11 @@ def write_posture(armature_object: bpy.types.Object, posture: Posture) -> None:
 
     Bones without degrees of freedom (hands, feet) keep what they have.
     """
-    batch = Posture.stack([posture])
-    for channels in bone_channels(armature_object, batch):
-        pose_bone = armature_object.pose.bones[channels.bone]
-        pose_bone.location = (0.0, 0.0, 0.0) if channels.location is None else channels.location[0]
-        pose_bone.scale = (1.0, 1.0, 1.0)
-        set_rotation(pose_bone, channels.rotation[0])
+    bones = read_bones(armature_object, posture.skeleton)
+    for model in bones.models:
+        if model.chain:
+            pose_bone = armature_object.pose.bones[model.name]
+            pose_bone.location, pose_bone.scale = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
+    for path, index, _, column in posture_columns(bones, Posture.stack([posture])):
+        armature_object.path_resolve(path)[index] = column[0]
     evaluated(armature_object)

@@ -1,6 +1,6 @@
 """The actor's armature as core's `Rig`, and the channel values that an Action has for it."""
 
-from collections.abc import Collection, Generator, Mapping
+from collections.abc import Collection, Generator
 
 import bpy
 import numpy as np
@@ -18,40 +18,25 @@ from ...core.finish.rig import Rig, RigBone, RigPose, channel_count
 from ...core.numerics.vectors import runs
 from ...core.progress import run, within
 from ...core.take.motion import Motion
-from .actions import existing_channelbag
-from .actor_lengths import read_body, skeleton_bones
-from .armature import BoneModel, bone_models
+from .actions import curves_of
+from .actor_lengths import read_body, read_bones
+from .armature import ActorBones, BoneModel, bone_models
 from .fcurves import moved_paths
-from .object_space import ObjectSpace, object_space
 from .rotation_modes import bone_path, posture_from_frames, rotation_path
 
 
 def read_rig(armature_object: bpy.types.Object, body: Body, extremities: Collection[str] = ()) -> Rig:
-    """Read the bones with degrees of freedom, in their rotation modes, with the ends of hands and feet.
+    """The bones of an armature with degrees of freedom, with the ends of hands and feet."""
+    return rig_of(read_bones(armature_object, body.skeleton), body, extremities)
 
-    `bone_channels` run backwards: a bone's posed axes are its rest axes turned by its channels. The armature
-    has any location, even scale and rest pose; hands and feet that are not named are rigid with their limbs.
+
+def rig_of(resting: ActorBones, body: Body, extremities: Collection[str] = ()) -> Rig:
+    """A rig of bones with degrees of freedom, in their rotation modes, with the ends of hands and feet.
+
+    `posture_columns` run backwards: a bone's posed axes are its rest axes turned by its channels. Hands and
+    feet that are not named are rigid with their limbs.
     """
-    axes = {model.name: model.axes for model in skeleton_bones(armature_object, body.skeleton)}
-    names = list(axes)
-    bones = armature_object.data.bones
-    rest = {name: np.array(bones[name].matrix_local, dtype=np.float64) for name in names}
-    modes = {name: armature_object.pose.bones[name].rotation_mode for name in names}
-    return rig_at_rest(body, axes, rest, modes, object_space(armature_object), extremities)
-
-
-def rig_at_rest(
-    body: Body,
-    axes: Mapping[str, np.ndarray],
-    rest: Mapping[str, np.ndarray],
-    modes: Mapping[str, str],
-    space: ObjectSpace,
-    extremities: Collection[str] = (),
-) -> Rig:
-    """A rig as `read_rig` gives it, of bones that need not be in an armature.
-
-    By bone: its axes (3, 3) in its joint's frame, its rest matrix (4, 4) in the object's space, and its mode.
-    """
+    axes, rest, space = {model.name: model.axes for model in resting.models}, resting.rest, resting.space
     models = bone_models(body)
     turning = [model for model in models if model.chain or model.name in extremities]
     names = [model.name for model in turning]
@@ -69,7 +54,7 @@ def rig_at_rest(
             RigBone(
                 name=model.name,
                 parent=-1 if model.parent is None else names.index(model.parent),
-                mode=modes[model.name],
+                mode=resting.modes[model.name],
                 left=left,
                 right=axes[model.name].T,
                 origin=origin,
@@ -117,11 +102,10 @@ def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, b
     Raises:
         InputError: It has fewer than two.
     """
-    ranges = [curve.range() for curve in _keyed(armature_object, action, body)]
-    first = int(
-        np.ceil(min((r[0] for r in ranges), default=0.0) - 1e-3)
-    )  # keys as near as this lie on the frame
-    last = int(np.floor(max((r[1] for r in ranges), default=0.0) + 1e-3))
+    ranges = [curve.range() for curve in _keyed(armature_object, action, body)] or [(0.0, 0.0)]
+    # Keys as near as this lie on the frame.
+    first = int(np.ceil(min(first for first, _ in ranges) - 1e-3))
+    last = int(np.floor(max(last for _, last in ranges) + 1e-3))
     if last <= first:
         raise InputError(
             f"Action '{action.name}' has no motion of '{armature_object.name}' over two frames or more; "
@@ -131,10 +115,8 @@ def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, b
 
 
 def _keyed(armature_object: bpy.types.Object, action: bpy.types.Action, body: Body) -> list[bpy.types.FCurve]:
-    channelbag = existing_channelbag(action, armature_object)
-    wanted = set(moved_paths(armature_object, body.skeleton))
-    curves = channelbag.fcurves if channelbag is not None else ()
-    return [curve for curve in curves if curve.data_path in wanted and not curve.is_empty]
+    wanted, curves = set(moved_paths(armature_object, body.skeleton)), curves_of(action, armature_object)
+    return [curve for (path, _), curve in curves.items() if path in wanted and not curve.is_empty]
 
 
 def present_frames(
@@ -181,11 +163,10 @@ def read_values(
     plays the Action. Yields the fraction done; returns values as in `Rig`, (F, C) a bone, quaternions of unit
     length and without jumps of sign.
     """
-    channelbag = existing_channelbag(action, armature_object)
-    channels = rig_channels(rig)
+    curves, channels = curves_of(action, armature_object), rig_channels(rig)
     columns: list[list[Array]] = [[] for _ in rig.bones]
     for number, (bone, _, path, index) in enumerate(channels):
-        fcurve = channelbag.fcurves.find(path, index=index) if channelbag is not None else None
+        fcurve = curves.get((path, index))
         if fcurve is None or fcurve.mute:
             unkeyed = armature_object.path_resolve(path)[index]
             columns[bone].append(np.full(len(frames), float(unkeyed)))
@@ -206,14 +187,9 @@ def unit_quaternions(quaternions: Array) -> Array:
     return continuous_quaternions(unit)
 
 
-def shown_postures(armature_object: bpy.types.Object, rig: Rig, shown: RigPose, body: Body) -> Posture:
+def shown_postures(rig: Rig, shown: RigPose, body: Body) -> Posture:
     """The postures nearest to a rig's poses, a batch of F."""
-    return nearest_postures(skeleton_bones(armature_object, body.skeleton), rig, shown, body)
-
-
-def nearest_postures(models: tuple[BoneModel, ...], rig: Rig, shown: RigPose, body: Body) -> Posture:
-    """The same of bones that need not be in an armature."""
-    turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
+    turns, models = {bone.name: shown.rotation[row] for row, bone in enumerate(rig.bones)}, bone_models(body)
     turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}
     hips = shown.points[:, rig.point_slices[0].start] - body.offsets[0]
     return posture_from_frames(body.skeleton, models, turns, hips)
@@ -231,7 +207,7 @@ def shown_motion(
     if most_frames is not None:
         frames = frames[np.unique(np.linspace(0, len(frames) - 1, most_frames).astype(np.intp))]
     values = run(within("Reading the motion", read_values(armature_object, action, rig, frames), 0.0, 1.0))
-    posture = shown_postures(armature_object, rig, rig.pose(values), body)
+    posture = shown_postures(rig, rig.pose(values), body)
     points = body.points(body.pose(posture))
     rate, unknown = scene.render.fps / scene.render.fps_base, np.full((*points.shape, 3), np.nan)
     time_s = (frames - frames[0]) / rate

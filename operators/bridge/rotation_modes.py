@@ -39,12 +39,6 @@ def rotation_values(rotation: Array, mode: str) -> Array:
     return _continuous_eulers(rotation, mode)
 
 
-def set_rotation(pose_bone: bpy.types.PoseBone, rotation: Array) -> None:
-    """Turn a pose bone to `rotation` (3, 3), relative to its rest, in the bone's own mode."""
-    mode = pose_bone.rotation_mode
-    setattr(pose_bone, rotation_path(mode), rotation_values(rotation[None], mode)[0])
-
-
 def _continuous_axis_angles(rotation: Array) -> Array:
     vectors = Rotation.from_matrix(rotation).as_rotvec()
     angles = np.linalg.norm(vectors, axis=-1)

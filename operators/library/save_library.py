@@ -195,7 +195,7 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
         from ..bridge.library.posed_library import library_from_action
         from .registry_files import write_to_registry
 
-        take, render = active_take(context.scene), context.scene.render
+        take = active_take(context.scene)
         title = self.title.strip() or take.name
         known = {entry.identifier for entry in registered_libraries(folders())}
         about = LibraryMetadata(
@@ -205,8 +205,7 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
             identifier=self.learned_as or identifier_from(title, known),
         )
         action = take.finish.action or take.motion_action
-        frame_s = render.fps_base / render.fps
-        library = library_from_action(take.armature, action, frame_s, about, self.count or None)
+        library = library_from_action(context.scene, take.armature, action, about, self.count or None)
         self.learned_as = library.identifier
         write_to_registry([library])
         refresh(library.identifier)

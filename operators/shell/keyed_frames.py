@@ -108,13 +108,13 @@ def _keyed_of(take: bpy.types.PropertyGroup) -> KeyedFrames:
         return KeyedFrames()
     key = take.armature.session_uid, take.keyframe_action.session_uid
     if key not in _keyed:
-        from ..bridge.keyframes import keyed_frames, picture_corrected_frames, untouched_frames
+        from ..bridge.keyframes import keyed_frames, unchanged_keyframes
+        from ..bridge.keys import FOUND, PICTURED
 
         source = take.armature, take.keyframe_action, HUMAN
         try:
-            _keyed[key] = KeyedFrames(
-                keyed_frames(*source), untouched_frames(*source), picture_corrected_frames(*source)
-            )
+            found, pictured = (unchanged_keyframes(*source, kind) for kind in (FOUND, PICTURED))
+            _keyed[key] = KeyedFrames(keyed_frames(*source), found, pictured)
         except InputError:  # an armature of other bones
             _keyed[key] = KeyedFrames()
     return _keyed[key]

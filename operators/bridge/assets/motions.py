@@ -11,12 +11,11 @@ from ....core.files.paths import real_path
 from ....core.finish.natural_extremities import natural_extremities
 from ....core.report.stick_figure import thumbnail
 from ....core.take.motion import Motion
-from ..actions import action_digest, assign_action, new_channelbag
-from ..armature import bone_models, build_armature, rest_matrices, usual_mode
+from ..actions import action_digest, assign_action, channelbag_for
+from ..armature import bones_at_rest, build_armature
 from ..blend_files import check_blend, one_line, own_scene
-from ..fcurves import channel_columns, channels_at_rest
-from ..keys import add_generated_keys
-from ..object_space import AT_ORIGIN
+from ..fcurves import posture_columns
+from ..keys import MOTION, write_keys
 from ..scene_frames import scene_frames
 from .catalogs import write_asset_blend
 from .marking import AssetDetails, mark_asset
@@ -74,15 +73,11 @@ class MotionAsset:
 
 def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
     """Write a motion into an empty Action: a GENERATED key for each frame and channel."""
-    channelbag, motion = new_channelbag(action), motion.without_absence()
-    body, skeleton = motion.body, motion.body.skeleton
-    models = bone_models(body)
-    modes = {model.name: usual_mode(skeleton, model) for model in models}
+    motion = motion.without_absence()
     frames = scene_frames(motion.time_s, motion.frame_start, motion.fps)
-    extremities = natural_extremities(body, motion.posture, motion.time_s)
-    channels = channels_at_rest(models, rest_matrices(body), AT_ORIGIN, motion.posture, extremities)
-    for path, index, bone, column in channel_columns(channels, modes.__getitem__):
-        add_generated_keys(channelbag, path, index, bone, frames, column)
+    extremities = natural_extremities(motion.body, motion.posture, motion.time_s)
+    columns = posture_columns(bones_at_rest(motion.body), motion.posture, extremities)
+    write_keys(channelbag_for(action), columns, frames, MOTION)
     action.use_frame_range = True
     action.frame_start, action.frame_end = float(frames[0]), float(frames[-1])
 

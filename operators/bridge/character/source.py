@@ -45,7 +45,7 @@ def read_source(
     reading = read_values(armature_object, action, rig, frames)
     values = yield from within("Reading the motion", reading, 0.0, READ)
     shown = rig.pose(values)
-    posture = shown_postures(armature_object, rig, shown, body)
+    posture = shown_postures(rig, shown, body)
     yield Progress("Reading the motion", SEEN)
     time_s = (frames - frames[0]) * scene.render.fps_base / scene.render.fps
     natural = natural_extremities(body, posture, time_s).without(keyed)

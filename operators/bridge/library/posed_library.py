@@ -17,11 +17,10 @@ from ....core.prior.learning import LibraryMetadata, learn_library, numbered_nam
 from ....core.prior.library import Library, LibraryMotion, LibraryPosture, MotionStep
 from ....core.prior.texts import identifier_from, unique_name
 from ....core.prior.transfer import transferred
-from ....core.progress import run
 from ..actor_lengths import read_body
 from ..keyframes import keyed_frames, read_keyframes
 from ..posture_curves import read_posture_curves
-from ..rig import motion_frames, read_rig, read_values, shown_postures
+from ..rig import shown_motion
 from .pose_assets import is_posture, library_from_assets
 
 
@@ -104,15 +103,8 @@ def _leveled(body: Body, postures: Posture) -> Posture:
 
 
 def _empty(body: Body, about: LibraryMetadata) -> Library:
-    return Library(
-        about.identifier or identifier_from(about.title),
-        about.title,
-        1,
-        about.author,
-        about.license,
-        body.actor,
-        (),
-    )
+    identifier = about.identifier or identifier_from(about.title)
+    return Library(identifier, about.title, 1, about.author, about.license, body.actor, ())
 
 
 def _checked(library: Library) -> Library:
@@ -122,19 +114,15 @@ def _checked(library: Library) -> Library:
 
 
 def library_from_action(
+    scene: bpy.types.Scene,
     armature_object: bpy.types.Object,
     action: bpy.types.Action,
-    frame_s: float,
     about: LibraryMetadata,
-    count: int | None = None,
+    count: int | None,
 ) -> Library:
-    """Learn a library from the motion that an Action holds for an actor; `frame_s` is a frame's time [s].
+    """Learn a library from the motion that an Action holds for an actor.
 
     It has `count` postures; by default 10 to 40, as many as differ.
     """
-    body = read_body(armature_object, HUMAN)
-    rig = read_rig(armature_object, body)
-    frames = motion_frames(armature_object, action, body)
-    values = run(read_values(armature_object, action, rig, frames))
-    posture = shown_postures(armature_object, rig, rig.pose(values), body)
-    return _checked(learn_library(body, posture, (frames - frames[0]) * frame_s, about, count))
+    motion = shown_motion(scene, armature_object, action)
+    return _checked(learn_library(motion.body, motion.posture, motion.time_s, about, count))

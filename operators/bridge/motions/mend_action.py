@@ -25,7 +25,7 @@ from ..character.read_character import read_character
 from ..character.source import show_result
 from ..export_formats import write_bvh
 from ..fcurves import write_motion
-from ..keys import add_generated_keys, set_posed_keys
+from ..keys import MOTION, POSED, write_keys
 from ..rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
 from .read_poses import action_frames, animated_action, posed_frames, read_poses
 
@@ -119,10 +119,10 @@ def write_mended(armature_object: bpy.types.Object, found: MendedAction) -> bpy.
     for curve in [curve for curve in channelbag.fcurves if curve.data_path in written]:
         channelbag.fcurves.remove(curve)
     posed = list(found.posed)
-    for path, index, bone, values in found.columns:
-        if posed:
-            set_posed_keys(channelbag, path, index, bone, found.frames[posed], values[posed])
-        add_generated_keys(channelbag, path, index, bone, found.frames, values)
+    if posed:
+        own = [(path, index, bone, values[posed]) for path, index, bone, values in found.columns]
+        write_keys(channelbag, own, found.frames[posed], POSED)
+    write_keys(channelbag, found.columns, found.frames, MOTION)
     action.use_fake_user = True
     wrong = _farthest_m(armature_object, action, found)
     if wrong > SHOWN_M:

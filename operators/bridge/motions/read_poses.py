@@ -22,7 +22,7 @@ from ....core.take.conversion_settings import AUTO
 from ..actions import existing_channelbag
 from ..actor_bones import is_actor
 from ..character.read_character import read_character
-from ..keys import animator_frames, generated_frames
+from ..keys import MOTION, animator_frames, unchanged_frames
 from ..object_space import evaluated, joint_places, object_space
 from ..rotation_modes import ALL_PATHS, bone_path
 from ..scene_frames import at_scene_frame, showing_action
@@ -111,7 +111,7 @@ def posed_frames(
     every: set[int] = set()
     for curve in curves:
         keyed = {round(key.co[0]) for key in curve.keyframe_points}
-        made = {round(frame) for frame in generated_frames(curve)}
+        made = {round(frame) for frame in unchanged_frames(curve, MOTION)}
         every |= keyed
         if made:
             own |= keyed - made

@@ -22,10 +22,10 @@ from keymark.operators.bridge.keyframes import (
     remove_keyframes,
     store_pose,
     take_over,
-    untouched_frames,
+    unchanged_keyframes,
     write_matched,
 )
-from keymark.operators.bridge.keys import MATCH_AMPLITUDE
+from keymark.operators.bridge.keys import FOUND
 from keymark.operators.bridge.pose import read_posture
 from keymark.operators.bridge.take_from_scene import read_scene_take
 from keymark.operators.follow.evidence import scene_evidence
@@ -166,10 +166,10 @@ def test_matched_keyframes_are_taken_over_and_removed(take: bpy.types.PropertyGr
     armature_object, action = take.armature, take.keyframe_action
     before = read_at(take, 7)
     take_over(armature_object, action, HUMAN, (7.0,))
-    assert untouched_frames(armature_object, action, HUMAN) == ()
+    assert unchanged_keyframes(armature_object, action, HUMAN, FOUND) == ()
     assert read_at(take, 7).minus(before) == pytest.approx(0.0, abs=1e-6)
     key = key_at(take, 'pose.bones["chest"].rotation_quaternion', 0, 7.0)
-    assert key.type == "KEYFRAME" and key.amplitude != MATCH_AMPLITUDE
+    assert key.type == "KEYFRAME" and key.amplitude != FOUND.amplitude
     remove_keyframes(armature_object, action, HUMAN, (7.0,))
     invalidate_keyed_frames()
     assert keyed_frames(armature_object, action, HUMAN) == keyframes_of(take) == (1.0, 13.0)

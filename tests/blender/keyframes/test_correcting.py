@@ -11,7 +11,8 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.posing.turned import Facing, facing_of
 from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.keyframes import keyed_frames, picture_corrected_frames
+from keymark.operators.bridge.keyframes import keyed_frames, unchanged_keyframes
+from keymark.operators.bridge.keys import PICTURED
 from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.keyframes.corrections import camera_now
@@ -200,7 +201,7 @@ def test_undo_takes_a_correction_back(opened: bpy.types.Scene) -> None:
 
 def pictured(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
     """Frames that count as put right in the picture alone."""
-    return picture_corrected_frames(take.armature, take.keyframe_action, HUMAN)
+    return unchanged_keyframes(take.armature, take.keyframe_action, HUMAN, PICTURED)
 
 
 @pytest.mark.usefixtures("still_neighbors")

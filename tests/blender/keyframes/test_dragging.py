@@ -11,7 +11,8 @@ from _posed import posture_of
 from _scene_state import differences, scene_state
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
-from keymark.operators.bridge.keyframes import picture_corrected_frames
+from keymark.operators.bridge.keyframes import unchanged_keyframes
+from keymark.operators.bridge.keys import PICTURED
 from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.keyframes import drag_joints
 from keymark.operators.overlays.tools import Handles
@@ -138,7 +139,7 @@ def test_depth_counts_if_one_of_the_drags_was_in_depth(tool: Any) -> None:
     tool.drag(0, 40, ctrl=True)
     tool.drag(30, 0)
     tool.send("RET")
-    assert picture_corrected_frames(take.armature, take.keyframe_action, HUMAN) == ()
+    assert unchanged_keyframes(take.armature, take.keyframe_action, HUMAN, PICTURED) == ()
     assert 7.0 in posed_frames(take)
 
 

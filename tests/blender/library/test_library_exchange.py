@@ -14,7 +14,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library, LibraryPosture, read_library, write_library
 from keymark.core.prior.registry import registered_libraries
-from keymark.operators.bridge.actions import new_channelbag
+from keymark.operators.bridge.actions import channelbag_for
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.keyframes import write_keyframes
 from keymark.operators.bridge.library.library_file import read_library_blend
@@ -196,7 +196,7 @@ def test_pose_assets_that_blender_made_of_the_actor_join_the_library(
     mine = bpy.data.actions.new("Raised")
     write_posture_curves(mine, body, random_posture(7))
     other = bpy.data.actions.new("Other Rig")
-    new_channelbag(other).fcurves.new('pose.bones["tail"].location', index=0).keyframe_points.insert(1, 0.0)
+    channelbag_for(other).fcurves.new('pose.bones["tail"].location', index=0).keyframe_points.insert(1, 0.0)
     motion = mine.copy()
     for curve in motion.layers[0].strips[0].channelbags[0].fcurves:
         curve.keyframe_points.insert(20, 0.0)
