@@ -12,27 +12,32 @@ import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from takes import OUTPUT, ROOT, chosen_takes, load_project, write_results
 
 load_project()
 
+from keymark.core.api import convert, reconstruct  # noqa: E402
 from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.body.actor import Actor  # noqa: E402
 from keymark.core.body.body_volume import standing_height_m  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
 from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.detect.keypoint_file import write_keypoints  # noqa: E402
-from keymark.core.pipeline.convert import FoundReconstruction, convert, find_and_reconstruct  # noqa: E402
+from keymark.core.estimate.reconstruct import Reconstruction  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
 from keymark.core.prior.registry import registered_libraries  # noqa: E402
 from keymark.core.progress import Job, Progress  # noqa: E402
 from keymark.core.review.score import read_truth  # noqa: E402
+from keymark.core.session.described import findings  # noqa: E402
+from keymark.core.session.see import Sight  # noqa: E402
 from keymark.core.take.conversion_settings import ConversionSettings  # noqa: E402
 from keymark.core.take.description import describe  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402
 
+Result = TypeVar("Result")
 LIBRARIES = ROOT / "presets" / "keyframes"
 COLUMNS = (
     "take", "similar, found camera [mm]", "true camera [mm]", "hips aligned, found [mm]", "true [mm]",
@@ -104,7 +109,7 @@ def heading(points: Array) -> Array:
     return np.arctan2(left[:, 1] - right[:, 1], left[:, 0] - right[:, 0])
 
 
-def timed(job: Job[FoundReconstruction]) -> tuple[FoundReconstruction, dict[str, float]]:
+def timed(job: Job[Result]) -> tuple[Result, dict[str, float]]:
     """Run a job; its result, and the process time of each stage [s]."""
     seconds: dict[str, float] = {}
     stage, since = "", time.process_time()
@@ -133,18 +138,17 @@ def measure(
             settings = replace(settings, keypoints=(kept,))
         description = describe(clip, {"actor": {"height_m": height_m}}, "--height")
         made, seconds = timed(convert(description, settings, libraries))
+    motion, take = made[Reconstruction].motion, made.inputs.take
     if not kept.is_file():
         kept.parent.mkdir(parents=True, exist_ok=True)
-        write_keypoints(kept, made.take.keypoints[0], made.take.frame_start, made.take.fps)
+        write_keypoints(kept, made[Sight].people[0], take.frame_start, take.fps)
     body = Body(Actor.from_stature(height_m))
-    known = replace(
-        true, keypoints=made.take.keypoints, markers=(), keyframes=(), body=body, frame_count=None
-    )
-    by_true, _ = timed(find_and_reconstruct(known, libraries, "map", 0.0))
-    count = len(made.reconstruction.motion.time_s)
+    known = replace(true, keypoints=made[Sight].people, markers=(), keyframes=(), body=body, frame_count=None)
+    by_true, _ = timed(reconstruct(known, "map", None, libraries, 0.0))
+    count = len(motion.time_s)
     truth = read_truth(folder / "truth.json", true.frame_start, count)
-    errors = [errors_of(one.reconstruction.motion.points, truth, true.fps) for one in (made, by_true)]
-    return errors[0], errors[1], seconds, list(made.findings)
+    errors = [errors_of(one.points, truth, true.fps) for one in (motion, by_true.motion)]
+    return errors[0], errors[1], seconds, list(findings(made, description))
 
 
 def main() -> None:

@@ -18,6 +18,7 @@ from trials import Trial, read_trial
 
 load_project()
 
+from keymark.core.api import reconstruct  # noqa: E402
 from keymark.core.body.body_volume import standing_height_m  # noqa: E402
 from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.camera.camera import Camera, default_camera_pose, guess_lens  # noqa: E402
@@ -26,13 +27,13 @@ from keymark.core.camera.camera_fields import CameraPlacement  # noqa: E402
 from keymark.core.camera.camera_fit import HEIGHT, LENS, PARAMETERS, ROLL, TILT, fit_camera  # noqa: E402
 from keymark.core.detect.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.detect.standing_moments import standing_keypoints  # noqa: E402
-from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.posing.found_poses import with_found  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.prior.registry import registered_libraries  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score, read_truth  # noqa: E402
+from keymark.core.session.stages import seen_in  # noqa: E402
 from keymark.core.take.performer_keypoints import performer_keypoints  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402
@@ -146,7 +147,7 @@ def scores(trial: Trial, camera: Camera) -> dict[str, Score]:
     motion = seen.estimated("map")
     libraries = [one.library for one in registered_libraries([LIBRARIES]) if one.library is not None]
     bare = replace(seen.take, keyframes=())
-    poses = run(pose_clip(bare, trial.reading, libraries))
+    poses = run(pose_clip(seen_in(bare, trial.reading), libraries))
     reading = poses.reading or trial.reading
     unposed = run(reconstruct(with_found(bare, poses), "map", reading)).motion
     return {"posed": trial.score(motion.points), "not posed": trial.score(unposed.points)}

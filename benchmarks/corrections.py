@@ -18,11 +18,11 @@ from trials import Trial, unposed_trials
 
 load_project()
 
+from keymark.core.api import reconstruct  # noqa: E402
 from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.body.actor import Actor  # noqa: E402
 from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.body.posture_fit import fit_posture  # noqa: E402
-from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses, with_found  # noqa: E402
 from keymark.core.posing.picture_depth import put_right  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
@@ -31,6 +31,7 @@ from keymark.core.prior.library import Library  # noqa: E402
 from keymark.core.prior.registry import SHIPPED, find_libraries  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
+from keymark.core.session.stages import seen_in  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 
 COUNTS = (1, 2, 4, 10**6)
@@ -137,7 +138,7 @@ def main(arguments: Sequence[str]) -> int:
         if options.average:
             body = Body(Actor.from_stature(trial.take.body.actor.stature_m))
             trial = replace(trial, take=replace(trial.take, body=body))
-        found = run(pose_clip(replace(trial.take, keyframes=()), trial.reading, libraries))
+        found = run(pose_clip(seen_in(replace(trial.take, keyframes=()), trial.reading), libraries))
         results[name] = measure(trial, found, libraries)
     as_dictionaries = {
         name: {column: asdict(error) for column, error in row.items()} for name, row in results.items()

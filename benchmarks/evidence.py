@@ -20,9 +20,10 @@ from wrong_keypoints import WRONG
 
 load_project()
 
+from keymark.core.api import reconstruct  # noqa: E402
 from keymark.core.detect.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.detect.keypoints import People  # noqa: E402
-from keymark.core.estimate.reconstruct import Reconstruction, reconstruct  # noqa: E402
+from keymark.core.estimate.reconstruct import Reconstruction  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
 from keymark.core.take.evidence import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS  # noqa: E402

@@ -18,9 +18,9 @@ from trials import read_trial
 load_project()
 sys.path.insert(0, str(ROOT / "tools"))
 
+from keymark.core.api import reconstruct  # noqa: E402
 from keymark.core.arrays import Image  # noqa: E402
 from keymark.core.errors import KeymarkError  # noqa: E402
-from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
 from keymark.core.take.evidence import CONTOURS, MARKERS  # noqa: E402

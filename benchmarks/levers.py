@@ -21,6 +21,7 @@ from trials import Trial, read_trial
 
 load_project()
 
+from keymark.core import api  # noqa: E402
 from keymark.core.estimate import (  # noqa: E402
     contour_evidence,
     contour_search,
@@ -131,7 +132,7 @@ def measured(trial: Trial, evidence: str, lever: str) -> tuple[float, float]:
             stack.enter_context(patch.object(*switch))
         fresh = lever == "matting" or take.markers != trial.take.markers
         reading = run(read_footage(take)) if fresh else trial.reading
-        motion = run(reconstruct.reconstruct(take, "map", reading)).motion
+        motion = run(api.reconstruct(take, "map", reading)).motion
     score = trial.score(motion.points, motion.sigma_m)
     return score.mpjpe, score.coverage95 or 0.0
 

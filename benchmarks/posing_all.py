@@ -16,6 +16,7 @@ from trials import Trial, unposed_trials
 
 load_project()
 
+from keymark.core.api import reconstruct  # noqa: E402
 from keymark.core.arrays import Array, BoolArray  # noqa: E402
 from keymark.core.body.actor import Actor  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
@@ -23,7 +24,6 @@ from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.body.rotations import exponential  # noqa: E402
 from keymark.core.detect.keypoints import People  # noqa: E402
 from keymark.core.errors import InputError  # noqa: E402
-from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses, with_found  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
@@ -32,6 +32,7 @@ from keymark.core.prior.registry import SHIPPED, find_libraries  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
+from keymark.core.session.stages import seen_in  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
@@ -71,7 +72,7 @@ def measure(trial: Trial, libraries: Sequence[Library]) -> Measured:
     """Pose a take without a person, and reconstruct it."""
     take, truth = replace(trial.take, keyframes=()), trial.truth
     begun = time.process_time()
-    found = run(pose_clip(take, trial.reading, libraries))
+    found = run(pose_clip(seen_in(take, trial.reading), libraries))
     seconds = 100.0 * (time.process_time() - begun) / len(truth)
     index = [frame.index for frame in found.frames]
     points = take.body.points(take.body.pose(found.postures))[index]
@@ -108,7 +109,7 @@ def between_seconds(trial: Trial, take: Take, found: FoundPoses, libraries: Sequ
     ends = tuple(int(np.abs(time_s - middle - side * BETWEEN_S).argmin()) for side in (-0.5, 0.5))
     posed = replace(take, keyframes=tuple(Keyframe(index, found.postures[index]) for index in ends))
     begun = time.process_time()
-    run(pose_clip(posed, trial.reading, libraries, found.floor_m, between=ends))
+    run(pose_clip(seen_in(posed, trial.reading), libraries, found.floor_m, between=ends))
     return time.process_time() - begun
 
 
@@ -198,7 +199,7 @@ def judged(name: str, trial: Trial, libraries: Sequence[Library]) -> Iterator[tu
     for kind, change in INPUTS.items():
         try:
             take = change(whole)
-            found = run(pose_clip(take, reading, libraries))
+            found = run(pose_clip(seen_in(take, reading), libraries))
             job = reconstruct(with_found(take, found), "map", reading, floor_m=found.floor_m)
             motion = run(job).motion
         except InputError:

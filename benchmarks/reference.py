@@ -18,12 +18,11 @@ from trials import KEYPOINTS, Trial, with_keypoints
 
 load_project()
 
+from keymark.core.api import reconstruct  # noqa: E402
 from keymark.core.arrays import Array  # noqa: E402
-from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.estimate.reference_alignment import MIRRORED, align  # noqa: E402
 from keymark.core.estimate.reference_evidence import own_and_usual_cost  # noqa: E402
 from keymark.core.estimate.reference_placement import SeenPoints  # noqa: E402
-from keymark.core.pipeline.convert import find_and_reconstruct  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.prior.registry import SHIPPED, find_libraries  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
@@ -79,7 +78,7 @@ def measure(trial: Trial, keys: tuple[Keyframe, ...], reference: ReferenceMotion
         motion = run(reconstruct(take, "map", trial.reading)).motion
     else:
         libraries = find_libraries(EVERY_LIBRARY, [SHIPPED])
-        motion = run(find_and_reconstruct(take, libraries, "map")).reconstruction.motion
+        motion = run(reconstruct(take, libraries=libraries)).motion
     seconds = time.process_time() - begun
     return scored(replace(trial, unscored=tuple(key.index for key in keys)), motion, seconds)
 

@@ -10,9 +10,9 @@ from takes import chosen_takes, load_project
 load_project()
 
 from auto_clamped import interpolate_auto_clamped  # noqa: E402
+from keymark.core.api import reconstruct  # noqa: E402
 from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.detect.keypoint_file import read_keypoints  # noqa: E402
-from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.markers.reading import Reading  # noqa: E402
 from keymark.core.markers.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.prior.keyframes import interpolate, interpolate_linearly  # noqa: E402

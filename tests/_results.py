@@ -7,7 +7,7 @@ import bpy
 from _faults import tree
 from keymark.core.files.digest import content_digest
 from keymark.core.files.paths import real_path
-from keymark.core.pipeline.result import AS_MADE
+from keymark.core.session.result import AS_MADE
 from keymark.core.take.conversion_record import read_record
 from keymark.operators.bridge.actions import curve_digest
 

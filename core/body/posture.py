@@ -1,7 +1,7 @@
 """Postures: values of the degrees of freedom, changed by tangent steps, never by adding Euler angles."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -92,6 +92,10 @@ class Posture:
     def __getitem__(self, index: Index) -> "Posture":
         """Postures selected along the batch axes."""
         return Posture(self.skeleton, self.translation[index], self.rotations[index], self.angles[index])
+
+    def lowered(self, by_m: float) -> "Posture":
+        """The postures so much lower."""
+        return replace(self, translation=self.translation - [0.0, 0.0, by_m])
 
     def to_vector(self) -> Array:
         """The posture vector (..., D) for `from_vector`; rotation vectors of at most π."""

@@ -19,15 +19,13 @@ from ..markers.reading import Reading, of_same_footage
 from ..markers.region_tracks import RegionTracks
 from ..prior.keyframe_proposals import evidence_speed
 from ..prior.keyframes import interpolate, with_offset
-from ..progress import Job, Progress, stretch, within
-from ..take.checked_keypoints import with_checked_keypoints
+from ..progress import Job, Progress, within
 from ..take.clip_check import check_frame_count, check_in_front
 from ..take.conversion_settings import METHODS
 from ..take.motion import Motion
-from ..take.performer_keypoints import performer_keypoints
-from ..take.presence import absence_notes, presence, unseen_limbs, unseen_notes
-from ..take.read_footage import average_model, read_footage
-from ..take.steady_camera import camera_notes
+from ..take.presence import absence_notes, unseen_notes
+from ..take.read_footage import average_model
+from ..take.seen_take import SeenTake
 from ..take.take import Take
 from ..terms.region_model import RegionModel
 from .fuzzy import Memberships, keyframe_distance
@@ -37,12 +35,11 @@ from .keyframe_trust import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .performer_placement import feet_over_floor_m, found_ankle_m
-from .reference_evidence import OPTIONS, NoReference, ReferenceEvidence, reference_evidence, with_reference
+from .reference_evidence import OPTIONS, NoReference, ReferenceEvidence, with_reference
 from .second_look import seen_tracks
 from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 
 CHUNK_FRAMES = 500
-EXTRACTION_SHARE = 0.6  # usual share of the work of reading the footage
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,30 +68,28 @@ class Reconstruction:
 
 
 def reconstruct(
-    take: Take,
+    seen: SeenTake,
     method: str = "map",
-    reading: Reading | None = None,
     earlier: Reconstruction | None = None,
     referred: ReferenceEvidence | NoReference | None = None,
     floor_m: float | None = None,
 ) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
-    `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; `reading` has
-    what was read from the same clip before, which is then not opened again; of `earlier` those parts are used
-    that still hold; `referred` is what is known already of the take's reference motion; `floor_m` is the
-    floor's height, on which found poses should stand. Closing the generator cancels the job, which has no
+    `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; of `earlier`
+    those parts are used that still hold; `referred` is what the take's reference motion tells; `floor_m` is
+    the floor's height, on which found poses should stand. Closing the generator cancels the job, which has no
     effects of its own.
 
     Raises:
-        InputError: The clip cannot be used, a color matches nothing in it, or the method is unknown.
+        InputError: The method is unknown, or there are too few keyframes.
         ConversionError: No motion could be computed.
         ValueError: The reading is one of other markers.
     """
-    check_reconstructible(take, method)
+    check_reconstructible(seen.take, method)
     # The matrices are small: more threads of linear algebra take up to twenty times as long.
     with threadpool_limits(limits=1, user_api="blas"):
-        return (yield from _reconstruct(take, method, reading, earlier, referred, floor_m))
+        return (yield from _reconstruct(seen, method, earlier, referred, floor_m))
 
 
 def check_reconstructible(take: Take, method: str) -> None:
@@ -125,32 +120,22 @@ def check_method(take: Take, method: str) -> None:
 
 
 def _reconstruct(
-    take: Take,
+    given: SeenTake,
     method: str,
-    reading: Reading | None,
     earlier: Reconstruction | None,
     said: ReferenceEvidence | NoReference | None,
     floor_m: float | None,
 ) -> Job[Reconstruction]:
-    notes, begun = take.notes, 0.0
-    if reading is None:
-        reading = yield from stretch(read_footage(take), 0.0, EXTRACTION_SHARE)
-        begun = EXTRACTION_SHARE
-    else:
-        _check_tracks(take, reading.tracks)
-    take = yield from with_checked_keypoints(take, reading, begun)
-    tracks, referred = reading.tracks, None
-    if take.reference is not None and method == "map":
-        said = said or reference_evidence(take, tracks)
+    take, reading, keypoints, there = given.take, given.reading, given.keypoints, given.there
+    notes, tracks, referred, shaken = take.notes, reading.tracks, None, given.camera_notes
+    _check_tracks(take, tracks)
+    if said is not None:
         notes += said.notes
         if isinstance(said, ReferenceEvidence):
             referred, take = said, with_reference(take, said)
         elif len(take.keyframes) < 2:
             raise InputError(f"{said.notes[0]}; without it at least 2 keyframes are needed")
-    keypoints = performer_keypoints(take, interpolate(take.keyframes, tracks.frame_count), tracks)
-    there = presence(take, reading, keypoints)
     absent = absence_notes(take, there)
-    shaken = camera_notes(take, reading)
     take = _present(take, there)
     worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps, keypoints)
     left_out = len(take.keyframes) - len(worth)
@@ -160,19 +145,17 @@ def _reconstruct(
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
     wide = [OPTIONS.keyframe_width if key.matched and key.matched.is_referred else 1.0 for key in keyframes]
     prior = interpolate(keyframes, tracks.frame_count)
-    if left_out or absent or match_scale.any():  # else the prior is that of all keyframes
-        keypoints = performer_keypoints(take, prior, tracks)
     notes += keypoints.notes
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution, seen = baseline, average_model(take), None, tracks
     if method == "map":
         usable = _usable(earlier, reading)
         ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
-        given = Seen(tracks, take.marker_segments, keypoints, reading.album, ignored, there)
-        unseen = unseen_limbs(take, tracks, keypoints, there)
+        footage = Seen(tracks, take.marker_segments, keypoints, reading.album, ignored, there)
+        unseen = given.unseen
         believed = _believed(take, prior, match_scale * wide, unseen, referred)
-        estimate = estimate_whole_clip(take.body, take.camera, given, believed, earlier=usable)
-        solution = yield from within("Estimating the motion", estimate, begun, 1.0)
+        estimate = estimate_whole_clip(take.body, take.camera, footage, believed, earlier=usable)
+        solution = yield from within("Estimating the motion", estimate, 0.0, 1.0)
         seen = seen_tracks(tracks, solution.problem.observed)
         motion, model = _solved(take, seen, solution, match_scale, unseen, floor_m), solution.evidence.model
         if not shaken:  # else the camera is what does not fit
@@ -180,7 +163,7 @@ def _reconstruct(
         notes += keypoint_notes(solution.keypoints)
         notes += contour_notes(take, solution.contours is not None) + unseen_notes(unseen)
     elif method == "ekf":
-        motion = yield from _filtered(take, tracks, prior, begun)
+        motion = yield from _filtered(take, tracks, prior)
         notes += filter_notes(take)
     moved = evidence_speed(tracks, take.marker_segments, keypoints, reading.album)
     speed = yield from within("Measuring the speed", moved, 1.0, 1.0)
@@ -293,9 +276,9 @@ def _solved(
     return replace(motion, point_covariance=motion.point_covariance + open_depth)
 
 
-def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:
+def _filtered(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:
     estimate = filter_clip(take.body, take.camera, tracks, take.marker_segments, prior, take.keyframe_indices)
-    result = yield from within("Filtering the motion", estimate, begun, 1.0)
+    result = yield from within("Filtering the motion", estimate, 0.0, 1.0)
     diagnostics = {
         "normalized_innovation_squared": result.normalized_innovation_squared,
         "row_count": result.row_count.astype(np.float64),

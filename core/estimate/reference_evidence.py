@@ -18,13 +18,12 @@ from ..body.posture_fit import fit_posture
 from ..detect.keypoints import Keypoints
 from ..detect.performer import principal_keypoints
 from ..errors import pluralize
-from ..markers.region_tracks import RegionTracks
 from ..numerics.robust import DEGREES
 from ..numerics.vectors import gaussian, usual_step
 from ..prior.keyframes import Keyframe, Matched
 from ..prior.texts import REFERENCE
-from ..take.performer_keypoints import performer_keypoints
 from ..take.reference import ReferenceMotion
+from ..take.seen_take import SeenTake
 from ..take.take import Take
 from ..terms.reference import ExpectedPoints
 from .reference_alignment import AlignedReference, about_hips, align
@@ -102,12 +101,12 @@ class NoReference:
     notes: tuple[str, ...]
 
 
-def reference_evidence(take: Take, tracks: RegionTracks) -> ReferenceEvidence | NoReference:
+def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
     """What a take's reference motion tells; its posed keyframes correct it."""
+    take, tracks, keypoints = seen_take.take, seen_take.reading.tracks, seen_take.keypoints
     assert take.reference is not None
     name = Path(take.reference.file).name or "the reference motion"
     posed = tuple(key for key in take.keyframes if key.matched is None)
-    keypoints = performer_keypoints(replace(take, keyframes=posed), None, tracks)
     if _is_own_guess(take.reference, keypoints):
         return NoReference(
             (

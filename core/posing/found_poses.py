@@ -39,6 +39,16 @@ class FoundPoses:
         said = Matched(COMPOSED, chosen.name, chosen.mirrored, chosen.confidence)
         return Keyframe(at, posture, matched=said)
 
+    def lowered(self, by_m: float) -> "FoundPoses":
+        """The same in a world that is so much lower."""
+
+        def lower(frame: MatchedFrame) -> MatchedFrame:
+            candidates = (replace(each, posture=each.posture.lowered(by_m)) for each in frame.candidates)
+            return replace(frame, candidates=tuple(candidates))
+
+        frames, postures = tuple(map(lower, self.frames)), self.postures.lowered(by_m)
+        return replace(self, frames=frames, postures=postures, floor_m=self.floor_m - by_m)
+
     def sought(self, index: int) -> bool:
         """Whether a frame was looked at."""
         return self.between is None or self.between[0] <= index <= self.between[1]

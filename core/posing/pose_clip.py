@@ -22,12 +22,11 @@ from ..estimate.whole_clip import (
     WholeClipResult,
     estimate_whole_clip,
 )
-from ..markers.reading import Reading
 from ..prior.keyframes import Keyframe, interpolate
 from ..prior.library import Library
 from ..prior.texts import COMPOSED
 from ..progress import Job, Part, Progress, stretch, within
-from ..take.checked_keypoints import with_checked_keypoints
+from ..take.seen_take import SeenTake
 from ..take.take import Take
 from .agreement import agreement
 from .candidates import MatchedFrame, composed_candidates
@@ -42,8 +41,7 @@ LEARNED_SHARE, COMPOSED_SHARE = 0.05, 0.8  # of the work, after which parts are 
 
 
 def pose_clip(
-    take: Take,
-    reading: Reading,
+    seen: SeenTake,
     libraries: Sequence[Library],
     floor_m: float | None = None,
     keyframe_count: int | None = None,
@@ -54,8 +52,7 @@ def pose_clip(
     """Find the postures of a clip that nobody posed; there always are some, with a confidence.
 
     Args:
-        take: The take; what is posed of it holds, what was found of it earlier is not used.
-        reading: The clip as `read_footage` has read it.
+        seen: The take; what is posed of it holds, what was found of it earlier is not used.
         libraries: What is known of postures: each limb may come from another one.
         floor_m: Height of the floor in the world [m]; None where it is not known.
         keyframe_count: Number of frames to find keyframes at; 10 per 100 frames where None.
@@ -65,15 +62,14 @@ def pose_clip(
         floor_open: An unknown floor is wherever the feet are; else it should be z = 0.
 
     Raises:
-        InputError: There is no library, none has a posture, neither a marker nor a keypoint is seen, or the
-            keypoints are not of this clip.
+        InputError: There is no library, none has a posture, or neither a marker nor a keypoint is seen.
     """
     usable = [library for library in libraries if library.postures]
     if not usable:
         raise InputError("no keyframe library with a posture is given; at least one is needed to find poses")
-    take = yield from with_checked_keypoints(take, reading)
+    take = seen.take
     with threadpool_limits(limits=1, user_api="blas"):
-        given = posing_input(take, reading, keyframe_count)
+        given = posing_input(seen, keyframe_count)
         if frames is not None:
             given = replace(given, keyframes=np.unique(np.array(frames, dtype=np.intp)))
         floor_m = given.posed.floor_m() if floor_m is None else floor_m

@@ -14,14 +14,12 @@ from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
 from ..errors import InputError
 from ..estimate.keypoint_trust import sided_by_pictures, upright
-from ..markers.reading import Reading
 from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import runs
 from ..prior.keyframe_proposals import evidence_speed, propose_keyframes
 from ..prior.keyframes import Keyframe
 from ..progress import run
-from ..take.performer_keypoints import performer_keypoints
-from ..take.presence import presence, unseen_limbs
+from ..take.seen_take import SeenTake
 from ..take.take import Take
 from .match_evidence import MatchEvidence
 
@@ -100,7 +98,7 @@ def tempering(time_s: Array) -> float:
     return min(1.0, float(np.median(np.diff(time_s))) / 0.25)
 
 
-def posing_input(take: Take, reading: Reading, keyframe_count: int | None = None) -> PosingInput:
+def posing_input(seen: SeenTake, keyframe_count: int | None = None) -> PosingInput:
     """Gather what a take has to find its poses by; pictures are not asked, nor what was found earlier.
 
     `keyframe_count` is the number of frames to ask for; 10 per 100 frames where None.
@@ -108,16 +106,14 @@ def posing_input(take: Take, reading: Reading, keyframe_count: int | None = None
     Raises:
         InputError: Neither a marker nor a keypoint is seen.
     """
+    take, tracks, keypoints, there = seen.take, seen.reading.tracks, seen.keypoints, seen.there
     check_followed(take)
-    tracks = reading.tracks
-    keypoints = performer_keypoints(take, None, tracks)
     if not (tracks.visible.any() or keypoints.seen.any()):
         given = (("marker", take.markers), ("keypoint", take.keypoints))
         missing = " and ".join(name for name, has in given if has)
         raise InputError(f"{take.clip}: no {missing} is seen in the footage, so no posture can be found")
     keypoints = sided_by_pictures(keypoints, take.keypoints, take.body.actor.stature_m, tracks.time_s)
     speed = run(evidence_speed(tracks, take.marker_segments, keypoints)).values
-    there = presence(take, reading, keypoints)
     posed = [keyframe for keyframe in take.keyframes if there[keyframe.index]]
     return PosingInput(
         take.body,
@@ -127,7 +123,7 @@ def posing_input(take: Take, reading: Reading, keyframe_count: int | None = None
         PosedFrames.of(take.body, posed),
         keypoints,
         there,
-        unseen_limbs(take, tracks, keypoints, there),
+        seen.unseen,
     )
 
 

@@ -11,38 +11,15 @@ import numpy as np
 
 from ..arrays import Array, Image
 from ..camera.camera import Camera
-from ..camera.camera_motion import ZOOMING, CameraMotion, camera_motion, moved
-from ..detect.keypoints import People
+from ..camera.camera_motion import ZOOMING, camera_motion, moved
+from ..detect.keypoints import Keypoints, People
 from ..markers.reading import Reading
 from ..markers.region_tracks import RegionTracks
 from ..progress import Job, Progress
-from .performer_keypoints import performer_keypoints
 from .take import Take
 
 LOOKS = 30
-"""Frames, evenly spaced, in which it is looked whether the camera moves at all."""
-
-
-def background_motion(take: Take, reading: Reading, every: bool = False) -> CameraMotion | None:
-    """How the camera of a take moves that is said to stand still; None where it does, or nothing tells.
-
-    It is looked at `LOOKS` frames, and only if `every` and it moves in all of them.
-    """
-    album, count = reading.album, reading.tracks.frame_count
-    if album is None or take.camera.is_moving or reading.steady is not None:
-        return None
-    places = performer_keypoints(replace(take, keyframes=()), None, reading.tracks).pixel
-    tracks = reading.tracks
-    around = 2.0 * np.sqrt(
-        np.diagonal(tracks.second_moment, axis1=-2, axis2=-1)
-    )  # of an ellipse: to its edge
-    places = np.concatenate([tracks.centroid - around, tracks.centroid + around, places], axis=1)
-    some = np.unique(np.linspace(0, count - 1, min(LOOKS, count)).astype(np.intp))
-    camera = take.camera
-    found = camera_motion(album, some, places, camera_matrix(camera), camera.resolution)
-    if found is None or not found.noticed or not every:
-        return found if found is not None and found.noticed else None
-    return camera_motion(album, np.arange(count), places, camera_matrix(camera), camera.resolution)
+"""Frames, evenly spaced, in which it is looked whether the camera moves at all; only then at every one."""
 
 
 def camera_matrix(camera: Camera) -> Array:
@@ -51,16 +28,33 @@ def camera_matrix(camera: Camera) -> Array:
     return np.array([[camera.focal_px, 0.0, column], [0.0, camera.focal_px, row], [0.0, 0.0, 1.0]])
 
 
-def steadied(take: Take, reading: Reading) -> Job[tuple[Take, Reading]]:
+def steadied(
+    take: Take, reading: Reading, performer: Keypoints
+) -> Job[tuple[Take, Reading, tuple[str, ...]]]:
     """The take and its reading as a camera that stands still would show them, where it only turns or zooms.
 
-    Both as they are where it stands still, moves from its place, or shows too little of the background.
+    Both as they are where it stands still, moves from its place, or shows too little of the background; with
+    a sentence where it moves and is not followed. `performer`: what of the picture is no background.
     """
     yield Progress("Looking whether the camera moves", 0.0)
-    found = background_motion(take, reading, every=True)
-    count = reading.tracks.frame_count
-    if found is None or not found.turns or len(found.frames) < count or reading.album is None:
-        return take, reading
+    album, tracks, camera = reading.album, reading.tracks, take.camera
+    if album is None or camera.is_moving:
+        return take, reading, ()
+    count, matrix = tracks.frame_count, camera_matrix(camera)
+    # Around the middle of an ellipse: to its edge.
+    around = 2.0 * np.sqrt(np.diagonal(tracks.second_moment, axis1=-2, axis2=-1))
+    places = np.concatenate([tracks.centroid - around, tracks.centroid + around, performer.pixel], axis=1)
+    some = np.unique(np.linspace(0, count - 1, min(LOOKS, count)).astype(np.intp))
+    noticed = camera_motion(album, some, places, matrix, camera.resolution)
+    if noticed is None or not noticed.noticed:
+        return take, reading, ()
+    found = camera_motion(album, np.arange(count), places, matrix, camera.resolution)
+    if found is None or not found.noticed or not found.turns or len(found.frames) < count:
+        lost = (
+            f"the camera moves, by {noticed.moved_px:.0f} px of the picture, and is taken to stand still; "
+            "one that only turns or zooms is followed, one that walks by Blender's camera solver"
+        )
+        return take, reading, (lost,)
     back = np.linalg.inv(found.homography)
     keypoints = tuple(_people(people, back) for people in take.keypoints)
     note = (
@@ -69,23 +63,12 @@ def steadied(take: Take, reading: Reading) -> Job[tuple[Take, Reading]]:
     )
     steady = replace(
         reading,
-        tracks=_tracks(reading.tracks, back),
-        album=reading.album.warped(back),
+        tracks=_tracks(tracks, back),
+        album=album.warped(back),
         notes=(*reading.notes, note),
         steady=found.homography,
     )
-    return replace(take, keypoints=keypoints), steady
-
-
-def camera_notes(take: Take, reading: Reading) -> tuple[str, ...]:
-    """A sentence on a camera that moves and is not followed."""
-    found = background_motion(take, reading)
-    if found is None:
-        return ()
-    return (
-        f"the camera moves, by {found.moved_px:.0f} px of the picture, and is taken to stand still; the "
-        "command line follows one that only turns or zooms, Blender's camera solver one that walks",
-    )
+    return replace(take, keypoints=keypoints), steady, ()
 
 
 def followed_camera(take: Take, reading: Reading) -> Camera:

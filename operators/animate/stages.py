@@ -88,7 +88,8 @@ def follow_found_file(take: bpy.types.PropertyGroup, clip: Path) -> None:
 
 def _place_camera(take: bpy.types.PropertyGroup, stature_m: float) -> str:
     """Find the camera by the performer; it stays as it was put where they do not tell it."""
-    from ...core.pipeline.place import camera_by_performer, camera_in_words, lens_of
+    from ...core.session.lens import lens_of
+    from ...core.session.place import FoundCamera, camera_by_performer, camera_in_words
 
     source = footage_of(take.id_data, take)
     lens = lens_of(source.path, (source.clip.size[0], source.clip.size[1]))
@@ -97,7 +98,7 @@ def _place_camera(take: bpy.types.PropertyGroup, stature_m: float) -> str:
         take.guessed_lens_mm = 0.0
     uprights = standing_performer(take, stature_m)
     camera, fit = camera_by_performer(still_camera(source), not lens_is_guess(take), uprights)
-    said = camera_in_words(fit, lens, len(uprights))
+    said = camera_in_words(FoundCamera(fit, lens, len(uprights)))
     if fit is None or not is_found(fit):
         take.camera_findings = f"Camera {said}"
         return take.camera_findings

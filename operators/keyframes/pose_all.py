@@ -33,6 +33,7 @@ def find_poses(scene: bpy.types.Scene, library: str, floor_m: float | None) -> "
     `library` is the only one that is used, the panel's where empty; the scene stays as it is.
     """
     from ...core.posing.pose_clip import pose_clip
+    from ...core.session.stages import seen_in
     from ..library.registry_files import named_libraries
     from .found_result import FoundResult, found_keyframes
 
@@ -50,7 +51,7 @@ def find_poses(scene: bpy.types.Scene, library: str, floor_m: float | None) -> "
     decided = {keyframe.index for keyframe in clip.take.keyframes}
     if wanted <= decided:
         raise InputError("every proposed frame is posed; propose more, or remove keyframes first")
-    job = pose_clip(clip.take, clip.reading, libraries, floor_m, frames=sorted(wanted - decided))
+    job = pose_clip(seen_in(clip.take, clip.reading), libraries, floor_m, frames=sorted(wanted - decided))
     found = yield from stretch(job, MEASURED, 1.0)
     return FoundResult(identifier, clip, found, found_keyframes(clip.take, found), proposals)
 

@@ -73,6 +73,7 @@ def _pose_anew(
 ) -> int:
     from ...core.posing.pose_clip import pose_clip
     from ...core.posing.turned import section_around, take_around
+    from ...core.session.stages import seen_in
     from ..bridge.scene_frames import scene_frames
     from ..library.registry_files import named_libraries
     from .found_result import write_found
@@ -88,7 +89,7 @@ def _pose_anew(
     floor_m = float(matching.floor_found) if matching.is_property_set("floor_found") else None
     libraries = named_libraries(matching.library_name)
     between = section.first, section.last
-    job = pose_clip(take, reading, libraries, floor_m, between=between, frames=section.changed)
+    job = pose_clip(seen_in(take, reading), libraries, floor_m, between=between, frames=section.changed)
     found = run(job)
     keyframes = [found.keyframe(each) for each in found.frames]
     for each in keyframes:

@@ -35,8 +35,10 @@ def reconstruct_take(
 
     `show` gets the preview, where the take wants one; the scene stays as it is.
     """
-    from ...core.estimate.reconstruct import check_reconstructible, reconstruct
+    from ...core.estimate.reconstruct import Reconstruction, check_reconstructible
     from ...core.review.review import review
+    from ...core.session.session import Inputs, Session
+    from ...core.session.stages import reach
     from ...core.take.read_footage import read_footage
     from ..bridge.take_from_scene import read_scene_take
     from .live_preview import LivePreview, ReconstructionResult
@@ -55,8 +57,9 @@ def reconstruct_take(
     frames = scene_frames(reading.tracks.time_s, take.frame_start, take.fps)
     if watched:
         show(LivePreview(scene, armature, frames))
-    job = reconstruct(take, method, reading, earlier, floor_m=settings.matching.known_floor_m)
-    result = yield from stretch(job, READ, SOLVED)
+    inputs = Inputs(take, method, floor_m=settings.matching.known_floor_m, earlier=earlier)
+    way = reach(Session(inputs, {"read": reading}), "reconstruct")
+    result = (yield from stretch(way, READ, SOLVED))[Reconstruction]
     judged = yield from stretch(review(take, result, frames), SOLVED, 1.0)
     return ReconstructionResult(identifier, frames, result, judged, (*notes, *result.notes))
 

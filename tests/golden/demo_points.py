@@ -16,7 +16,7 @@ UNIT_M = 1e-6
 
 def demo_points() -> NDArray[np.float64]:
     """(118, 13, 3) points of the demonstration, converted now [m]."""
-    from keymark.core.estimate.reconstruct import reconstruct
+    from keymark.core.api import reconstruct
     from keymark.core.progress import run
     from keymark.core.take.take_file import read_take
 

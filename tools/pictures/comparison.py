@@ -6,9 +6,9 @@ The upper rows show the footage used, the lower ones the reference camera from t
 import json
 
 import numpy as np
+from keymark.core.api import reconstruct
 from keymark.core.arrays import Image
 from keymark.core.camera.camera import Camera
-from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.progress import run
 from keymark.core.report.canvas import INK, Canvas
 from keymark.core.report.stick_figure import draw_figure, stick_figure

@@ -7,8 +7,8 @@ wants an icon of 256 by 256 pixels and a featured image of 1920 by 1080.
 from pathlib import Path
 
 import numpy as np
+from keymark.core.api import reconstruct
 from keymark.core.arrays import Array, Image
-from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.progress import run
 from keymark.core.report.canvas import INK, WHITE, Canvas, Color, write_png
 from keymark.core.report.mannequin import TILT_RAD, View, backdrop, draw_mannequin, mannequin, view_axes

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from keymark.core.api import reconstruct
 from keymark.core.arrays import Array, Image
 from keymark.core.camera.camera import Camera
-from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.markers.color_model import ColorModel
 from keymark.core.markers.marker_check import check_markers
 from keymark.core.markers.regions import color_masks, mask_outlines

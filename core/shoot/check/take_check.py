@@ -9,9 +9,8 @@ from ...detect.pose_network import PoseNetwork
 from ...estimate.reconstruct import check_method
 from ...files.fields import PLACED, Fields, child_location
 from ...markers.marker_check import MarkerReadout
-from ...pipeline.convert import take_to_convert
-from ...pipeline.place import is_detected, is_unplaced, take_to_place
 from ...posing.posing_input import check_followed
+from ...session.described import described, is_detected
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import METHODS, NO_SETTINGS, CharacterSettings, ConversionSettings
 from ...take.description import Description
@@ -189,9 +188,7 @@ def check_take(
 def _read(description: Description, settings: ConversionSettings, findings: Findings) -> Take | None:
     """Read the take as its conversion will; without keyframes and keypoints where one is unusable."""
     with findings.catching():
-        if is_unplaced(description, settings):
-            return take_to_place(description, settings)[0]
-        return take_to_convert(description, settings)
+        return described(description, settings).take
     with findings.catching():
         without = replace(settings, keypoints=())
         return read_described(

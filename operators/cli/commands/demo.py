@@ -12,6 +12,7 @@ from ....core.errors import ConversionError
 from ....core.estimate.reconstruct import reconstruct
 from ....core.progress import run
 from ....core.review.score import Score, read_truth, score_points
+from ....core.session.pose import Posed
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, REPORT
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings, ConversionSettings
 from ....core.take.description import describe
@@ -52,7 +53,7 @@ def demo_command(arguments: argparse.Namespace) -> None:
         done = convert_take(describe(demo), arguments.output, console, settings, arguments.debug)
         console.announce("Step 3 of 5: the same by the paper's filter, to compare.")
         console.stage("Trying the paper's filter")
-        filtered = run(reconstruct(done.take, "ekf", done.reconstruction.reading))
+        filtered = run(reconstruct(done.session[Posed].seen, "ekf"))
         console.announce("Step 4 of 5: the take is converted without its markers, by keypoints and contours.")
         output: Path = arguments.output
         unmarked_settings = ConversionSettings(demo / POSED_BY_HAND, evidence=UNMARKED)

@@ -8,9 +8,9 @@ from ....core.errors import InputError
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import absolute_path, real_path
 from ....core.finish.mend_motion import Mended, MendOptions, mend_motion
-from ....core.pipeline.result import AS_MADE, changed_files, kept_note, write_made_digests
 from ....core.progress import run
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
+from ....core.session.result import AS_MADE, changed_files, kept_note, write_made_digests
 from ....core.take.conversion_record import BVH, CHARACTER_BLEND, CHARACTER_PICTURE, MOTION
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.conversion_settings import CharacterFile, CharacterSettings

@@ -4,10 +4,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ....core.api import convert
+from ....core.estimate.reconstruct import Reconstruction
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
-from ....core.pipeline.convert import convert, found_summary
-from ....core.pipeline.result import (
+from ....core.posing.found_poses import FoundPoses
+from ....core.prior.library import library_digest
+from ....core.progress import run
+from ....core.report.overlay_sheet import performer_contours
+from ....core.report.pictures import write_pictures
+from ....core.retarget.maps.map_registry import map_digests
+from ....core.review.frame_evidence import compare_keypoints
+from ....core.session.pose import Posed
+from ....core.session.result import (
     Conversion,
     finish_result,
     own_files,
@@ -16,18 +25,13 @@ from ....core.pipeline.result import (
     write_motion_files,
     write_take_files,
 )
-from ....core.prior.library import library_digest
-from ....core.progress import run
-from ....core.report.overlay_sheet import performer_contours
-from ....core.report.pictures import write_pictures
-from ....core.retarget.maps.map_registry import map_digests
-from ....core.review.frame_evidence import compare_keypoints
 from ....core.take.conversion_digest import conversion_digest
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, RECORD_FILE, REPORT, is_up_to_date
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description
 from ....core.take.reference import ReferenceMotion
 from ....core.take.steady_camera import followed_camera
+from ....core.take.take import Take
 from ..blender_silence import blender_silence
 from ..console import Console
 from ..library_search_path import library_folders, requested_libraries
@@ -86,14 +90,13 @@ def convert_if_changed(
             console.stage("Opening the character")
             with opened_character(character.file, character.map, debug):
                 pass  # what is wrong with it is better known before the work
-        made = run(
-            convert(description, settings, libraries, lambda file: _reference(file, debug)), console.progress
-        )
-        take, result = made.take, made.reconstruction
+        way = convert(description, settings, libraries, lambda file: _reference(file, debug))
+        session = run(way, console.progress)
+        take, result = session[Posed].seen.take, session[Reconstruction]
         console.stage("Writing the motion")
-        write_motion_files(staging_folder, made)
-        if made.findings:
-            write_take_files(staging_folder, made, settings.evidence)
+        write_motion_files(staging_folder, session)
+        if session.inputs.open_lens is not None:
+            write_take_files(staging_folder, session, description, settings.evidence)
         console.stage("Writing Blender's files")
         real_output = real_path(output)
         notes: tuple[str, ...] = ()
@@ -121,7 +124,7 @@ def convert_if_changed(
             report = staging_folder / REPORT
             write_pictures(report, take, result.motion, result.tracks, seen, contours, result.reading)
         asked, folders = (description, settings, digest), (staging_folder, output)
-        return finish_result(made, libraries, notes, asked, version(), folders, curves, kept_names)
+        return finish_result(session, notes, asked, version(), folders, curves, kept_names)
 
 
 def _reference(file: Path, debug: bool) -> ReferenceMotion:
@@ -143,7 +146,31 @@ def conversion_summary(conversion: Conversion) -> dict[str, Any]:
         "fps": motion.fps,
         "keyframes": [index + motion.frame_start for index in motion.keyframe_indices],
         "notes": list(conversion.notes),
-        **({} if conversion.found is None else found_summary(conversion.take, conversion.found)),
+        **({} if conversion.found is None else _found_summary(conversion.take, conversion.found)),
+    }
+
+
+def _found_summary(take: Take, found: FoundPoses) -> dict[str, Any]:
+    matches = [(key.index + take.frame_start, key.matched) for key in take.keyframes if key.matched]
+    return {
+        "library": found.library,
+        "fit": round(float(found.fit), 4),
+        "reason": found.reason,
+        "floor_m": found.floor_m,
+        "matches": [
+            {
+                "frame": frame,
+                "posture": match.posture,
+                "mirrored": match.mirrored,
+                "confidence": round(float(match.confidence), 4),
+                "doubtful": match.is_doubtful,
+            }
+            for frame, match in matches
+        ],
+        "contradictions": [
+            {"frame": index + take.frame_start, "evidence": list(names)}
+            for index, names in sorted(found.contradictions.items())
+        ],
     }
 
 

@@ -7,15 +7,16 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from keymark.core.api import reconstruct
 from keymark.core.body.rotations import exponential
 from keymark.core.camera.camera import Camera
 from keymark.core.camera.camera_motion import camera_motion, moved
+from keymark.core.detect.keypoints import Keypoints
 from keymark.core.markers.reading import Reading
 from keymark.core.markers.region_tracks import RegionTracks
-from keymark.core.pipeline.convert import find_and_reconstruct
 from keymark.core.progress import run
 from keymark.core.review.score import score_points
-from keymark.core.take.steady_camera import camera_matrix, camera_notes, followed_camera, steadied
+from keymark.core.take.steady_camera import camera_matrix, followed_camera, steadied
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 from keymark.core.video.album import Album
@@ -78,7 +79,8 @@ def test_a_camera_that_stands_still_is_not_noticed() -> None:
     assert found is not None and not found.noticed and found.moved_px < 0.2
 
 
-def test_a_camera_that_walks_moves_near_things_more_than_far_ones() -> None:
+def walking() -> Album:
+    """Stripes near the camera that move six times as far as the wall behind them."""
     album, wall = Album(), room()
     near = np.random.default_rng(6).permuted(wall, axis=0)
     near = cv2.GaussianBlur(near, (0, 0), 2.0)
@@ -87,7 +89,11 @@ def test_a_camera_that_walks_moves_near_things_more_than_far_ones() -> None:
         for column in range(0, 320, 64):
             image[:, column : column + 32] = np.roll(near, 6 * index, axis=1)[:, column : column + 32]
         album.add(index, image)
-    found = camera_motion(album, np.arange(FRAMES), NOTHING, MATRIX, SIZE)
+    return album
+
+
+def test_a_camera_that_walks_moves_near_things_more_than_far_ones() -> None:
+    found = camera_motion(walking(), np.arange(FRAMES), NOTHING, MATRIX, SIZE)
     assert found is None or (found.noticed and not found.turns)
 
 
@@ -111,11 +117,10 @@ def test_what_a_turning_camera_sees_is_taken_back_and_its_turns_are_known(take: 
         clipped=np.zeros((FRAMES, 1), dtype=bool),
     )
     reading = Reading(tracks, filmed(shaking()))
-    assert "the camera moves" in camera_notes(take, reading)[0]
-    _, steady = run(steadied(take, reading))
+    _, steady, notes = run(steadied(take, reading, Keypoints.none(FRAMES)))
     np.testing.assert_allclose(steady.tracks.centroid, still, atol=0.8)
     assert "the camera turns" in steady.notes[-1]
-    assert camera_notes(take, steady) == ()
+    assert notes == ()
     ahead = np.array([0.3, 0.2, -5.0])
     pixel, _ = followed_camera(take, steady).project(np.tile(ahead, (FRAMES, 1)), np.arange(FRAMES))
     expected = moved(steady.steady, CAMERA.project(ahead)[0])
@@ -124,16 +129,15 @@ def test_what_a_turning_camera_sees_is_taken_back_and_its_turns_are_known(take: 
 
 def test_the_reading_of_a_camera_that_stands_still_stays_as_it_is(take: Take) -> None:
     reading = Reading(RegionTracks.unmarked(np.arange(FRAMES) / 30.0, SIZE), filmed([np.eye(3)] * FRAMES))
-    same, steady = run(steadied(take, reading))
-    assert same is take and steady is reading
-    assert camera_notes(take, reading) == ()
+    same, steady, notes = run(steadied(take, reading, Keypoints.none(FRAMES)))
+    assert same is take and steady is reading and notes == ()
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(not CASES.is_dir(), reason="the reported cases are not beside the repository")
 def test_a_hand_held_camera_costs_little_accuracy() -> None:
     take = read_take(CASES / "04-hand-held", WALK / "keyframes.json")
-    result = run(find_and_reconstruct(take, None, "map")).reconstruction
+    result = run(reconstruct(take))
     truth = json.loads((WALK / "truth.json").read_text())["points"]
     true = np.stack([np.array(truth[name]) for name in take.body.skeleton.point_names], axis=1)
     motion = result.motion

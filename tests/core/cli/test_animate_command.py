@@ -12,9 +12,10 @@ import pytest
 from _shoot import gliding, write_frames, write_video
 from _synthetic_take import BODY, drawn_frames, true_postures, write_json, write_keypoints
 from keymark.core.detect.keypoint_file import read_keypoints
-from keymark.core.pipeline import place
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.prior.library import write_library
+from keymark.core.progress import Progress
+from keymark.core.session import see
 from keymark.core.shoot.discovery import find_takes
 from keymark.core.take import clip_check
 from keymark.core.take.motion import read_motion
@@ -95,11 +96,11 @@ def test_without_keypoints_they_are_detected(
     file.unlink()
 
     def find(_clip: object, _network: object) -> Any:
-        yield place.Progress("Detecting keypoints", 0.0)
+        yield Progress("Detecting keypoints", 0.0)
         return found
 
-    monkeypatch.setattr(place, "PoseNetwork", SimpleNamespace)
-    monkeypatch.setattr(place, "find_people", find)
+    monkeypatch.setattr(see, "PoseNetwork", SimpleNamespace)
+    monkeypatch.setattr(see, "find_people", find)
     assert animate(clip, tmp_path / "out", "--height", 1.75, "--quiet") == 0
     fields = json.loads((tmp_path / "out" / "take.json").read_text(encoding="utf-8"))
     assert fields["//found"][0] == f"Keypoints: somebody in {FRAMES} of {FRAMES} frames, by drawn"
@@ -125,8 +126,8 @@ def test_a_height_that_is_none_is_refused(
 def damaged(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     model = folder / "model.onnx"
     model.write_bytes(b"ONNX")
-    network = place.PoseNetwork
-    monkeypatch.setattr(place, "PoseNetwork", lambda: network(model))
+    network = see.PoseNetwork
+    monkeypatch.setattr(see, "PoseNetwork", lambda: network(model))
     write_frames(folder / "clip.mp4", list(drawn_frames(true_postures(5))))
     return folder / "clip.mp4"
 
@@ -147,7 +148,7 @@ def of_one_frame(folder: Path, _monkeypatch: pytest.MonkeyPatch) -> Path:
 def too_long(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     write_frames(folder / "clip.mp4", list(drawn_frames(true_postures(8))))
     monkeypatch.setattr(clip_check, "LONGEST_FRAMES", 6)
-    monkeypatch.setattr(place, "PoseNetwork", lambda: pytest.fail("the network was read"))
+    monkeypatch.setattr(see, "PoseNetwork", lambda: pytest.fail("the network was read"))
     return folder / "clip.mp4"
 
 

@@ -17,7 +17,7 @@ from _command_line import one_line, tree
 from _synthetic_take import SIZE, write_json, write_synthetic_take
 from keymark.core.errors import ConversionError
 from keymark.core.estimate.reconstruct import METHODS
-from keymark.core.pipeline.result import RESULT_FILES
+from keymark.core.session.result import RESULT_FILES
 from keymark.core.take.conversion_record import EARLIER_PICTURES
 from keymark.core.take.motion import read_motion
 from keymark.operators.cli import parser as usage

@@ -16,10 +16,10 @@ from _synthetic_take import write_keypoints as write_keypoints_of
 from keymark.core.detect.keypoint_file import read_keypoints, write_keypoints
 from keymark.core.detect.keypoints import People, SeenPeople
 from keymark.core.errors import ConversionError
-from keymark.core.pipeline import place
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.progress import Job, Progress
 from keymark.core.review.score import read_truth, score_points
+from keymark.core.session import see
 from keymark.core.take import examples
 from keymark.core.take.motion import read_motion
 from keymark.core.take.take_file import read_take
@@ -66,8 +66,8 @@ def bare_clip(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
     posture, metadata = true_postures(24), LibraryMetadata("Swaying", "Nobody")
     library = learn_library(BODY, posture, np.arange(24) / 30.0, metadata)
-    monkeypatch.setattr(place, "PoseNetwork", SimpleNamespace)
-    monkeypatch.setattr(place, "find_people", find)
+    monkeypatch.setattr(see, "PoseNetwork", SimpleNamespace)
+    monkeypatch.setattr(see, "find_people", find)
     monkeypatch.setattr(convert_take, "requested_libraries", lambda _name: (library,))
 
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
-from keymark.core.pipeline import convert as pipeline
 from keymark.core.posing.candidates import Candidate, MatchedFrame
 from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.prior.library import library_digest, read_library, write_library
+from keymark.core.session import pose as pose_stage
 from keymark.core.take.conversion_record import read_record
 from keymark.core.take.motion import read_motion
 from keymark.operators.cli import library_search_path
@@ -150,9 +150,7 @@ def test_posed_keyframes_stay_and_the_others_are_found(
 def test_found_keyframes_are_said_to_be_doubtful_and_contradictions_are_named(
     take: Path, few_libraries: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
 ) -> None:
-    def pose(
-        given: Any, _reading: object, _libraries: object, _floor_m: object = None, **_more: object
-    ) -> Any:
+    def pose(given: Any, _libraries: object, _floor_m: object, _count: object, **_more: object) -> Any:
         yield from ()
         truth = true_postures(FRAMES)
         sure = {0: 0.9, 12: 0.2, 23: 0.4}
@@ -160,10 +158,10 @@ def test_found_keyframes_are_said_to_be_doubtful_and_contradictions_are_named(
             MatchedFrame(index, (Candidate(truth[index], "Sway", False, confidence),))
             for index, confidence in sure.items()
         )
-        against = {12: (given.markers[0].name, "wrist.L"), 23: ("wrist.L",)}
+        against = {12: (given.take.markers[0].name, "wrist.L"), 23: ("wrist.L",)}
         return FoundPoses(frames, truth, 0.7, 0.0, "two frames are in doubt", against)
 
-    monkeypatch.setattr(pipeline, "pose_clip", pose)
+    monkeypatch.setattr(pose_stage, "pose_clip", pose)
     assert convert(take, tmp_path / "out", "--keyframes", "auto", "--json", "--no-report") == 0
     said = said_as_json(capsys)
     first = json.loads((take / "take.json").read_text(encoding="utf-8"))["frame_start"]

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from _consistency import coverage, normalized_squared, verdict
+from keymark.core.api import reconstruct
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.kalman import FilterOptions, FuzzyKalmanFilter
 from keymark.core.estimate.line_ends import LineEnds
-from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.progress import run
 from keymark.core.take.take_file import read_take
 from keymark.core.terms.depths import point_depths

@@ -13,10 +13,11 @@ import numpy as np
 import pytest
 from _recorded import assert_recorded
 from _synthetic_take import BODY, SIZE, true_postures, write_synthetic_take
+from keymark.core.api import reconstruct
 from keymark.core.detect.keypoints import People
 from keymark.core.errors import InputError
 from keymark.core.estimate.notes import evidence_notes
-from keymark.core.estimate.reconstruct import METHODS, Reconstruction, reconstruct
+from keymark.core.estimate.reconstruct import METHODS, Reconstruction
 from keymark.core.prior.keyframes import interpolate_linearly
 from keymark.core.progress import Progress, run
 from keymark.core.review.score import read_truth, score_points
@@ -97,7 +98,8 @@ def test_linear_algebra_keeps_to_one_thread_while_the_job_runs_and_only_then(tak
     with threadpool_limits(limits=2, user_api="blas"):
         before = threads()
         job = reconstruct(take)
-        next(job)
+        while next(job).stage != "Estimating the motion":
+            pass
         assert threads() <= {1}  # none where the libraries know nothing of threads
         job.close()
         assert threads() == before

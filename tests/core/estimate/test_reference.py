@@ -9,11 +9,12 @@ import pytest
 from _detector import detect, lasting, sides_exchanged
 from _recorded import assert_recorded
 from _scene import BODY, CAMERA, exercise
+from keymark.core.api import reconstruct
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.core.detect.keypoints import Keypoints, People, SeenPeople
 from keymark.core.errors import InputError
-from keymark.core.estimate.reconstruct import check_reconstructible, reconstruct
+from keymark.core.estimate.reconstruct import check_reconstructible
 from keymark.core.estimate.reference_alignment import MIRRORED, AlignedReference, about_hips, align
 from keymark.core.estimate.reference_evidence import (
     STD_M,
@@ -31,6 +32,7 @@ from keymark.core.prior.frame_prior import process_noise_factor
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import run
 from keymark.core.take.reference import ReferenceMotion
+from keymark.core.take.seen_take import seen_take
 from keymark.core.take.take import Take
 from keymark.core.terms.reference import ExpectedPoints, ReferenceTerm
 from keymark.core.terms.state import ClipState
@@ -181,7 +183,7 @@ def take_of(
 
 
 def said_of(take: Take) -> ReferenceEvidence:
-    said = reference_evidence(take, TRACKS)
+    said = reference_evidence(seen_take(take, Reading(TRACKS)))
     assert isinstance(said, ReferenceEvidence)
     return said
 
@@ -209,7 +211,7 @@ def test_posed_keyframes_correct_it_nearby_and_take_the_place_of_found_ones() ->
 
 def test_what_is_of_something_else_is_left_out_and_said() -> None:
     shuffled = network()[np.random.default_rng(2).permutation(FRAMES)]
-    said = reference_evidence(take_of(shuffled), TRACKS)
+    said = reference_evidence(seen_take(take_of(shuffled), Reading(TRACKS)))
     assert isinstance(said, NoReference)
     assert "network.csv: is set aside" in said.notes[0]
     half = network()
@@ -225,7 +227,7 @@ def test_the_detectors_own_guess_is_no_other_evidence() -> None:
     names = [KEYPOINTS.names.index(name) if name != "head" else 0 for name in HUMAN.point_names]
     hints = np.full((FRAMES, len(KEYPOINTS.names), 3), np.nan)
     hints[:, names] = network()
-    said = reference_evidence(take_of(network(), hints=hints), TRACKS)
+    said = reference_evidence(seen_take(take_of(network(), hints=hints), Reading(TRACKS)))
     assert isinstance(said, NoReference)
     assert "came with the keypoints" in said.notes[0]
 

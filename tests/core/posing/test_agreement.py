@@ -12,6 +12,7 @@ from keymark.core.posing.agreement import agreement
 from keymark.core.posing.candidates import Candidate, MatchedFrame
 from keymark.core.posing.posing_input import PosingInput, posing_input
 from keymark.core.prior.registry import SHIPPED, find_libraries
+from keymark.core.session.stages import seen_in
 
 
 @cache
@@ -23,7 +24,7 @@ def truth() -> Posture:
 @cache
 def seen(hinted: bool = True) -> PosingInput:
     people = detected(truth(), camera())
-    return posing_input(*unmarked(truth(), camera(), people if hinted else people.without_hints()))
+    return posing_input(seen_in(*unmarked(truth(), camera(), people if hinted else people.without_hints())))
 
 
 def frames(confidence: float = 0.9) -> list[MatchedFrame]:

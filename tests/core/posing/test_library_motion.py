@@ -21,6 +21,7 @@ from keymark.core.posing.part_pools import part_pools
 from keymark.core.posing.posing_input import posing_input
 from keymark.core.prior.library import Library, read_library
 from keymark.core.progress import run
+from keymark.core.session.stages import seen_in
 
 HEADING = np.radians(30.0)
 
@@ -57,7 +58,7 @@ def test_known_postures_face_ahead_with_their_mirror_images_behind_them(
 def test_a_known_motion_makes_the_parts_it_shows_likelier(walking: Library, waving: Library) -> None:
     truth = performed(walking, HEADING)
     take, reading = filmed(truth, camera())
-    given = posing_input(take, reading)
+    given = posing_input(seen_in(take, reading))
     pools = part_pools([waving, walking], BODY)
     stances = stance_features(pools, given.evidence)
     beliefs = run(part_beliefs(given, pools, stances, truth, truth.translation[given.sampled], 0.0))
@@ -79,7 +80,7 @@ def test_a_known_motion_makes_the_parts_it_shows_likelier(walking: Library, wavi
 def test_a_motion_that_fits_badly_is_believed_little(walking: Library, waving: Library) -> None:
     truth = performed(walking, HEADING)
     take, reading = filmed(truth, camera())
-    given = posing_input(take, reading)
+    given = posing_input(seen_in(take, reading))
     hips = truth.translation[given.sampled]
     most = []
     for library in (walking, waving):

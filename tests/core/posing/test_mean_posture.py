@@ -14,6 +14,7 @@ from keymark.core.posing.part_features import HEADINGS, StanceFeatures, composed
 from keymark.core.posing.part_pools import PartPools, part_pools
 from keymark.core.posing.posing_input import posing_input
 from keymark.core.prior.library import Library
+from keymark.core.session.stages import seen_in
 
 ARM = "arm.L"
 STANCE, HIPS = 3, np.array([0.2, 0.1, 0.9])
@@ -24,7 +25,7 @@ Known = tuple[PartPools, StanceFeatures]
 def known(walking: Library) -> Known:
     pools = part_pools([walking], BODY)
     take, reading = filmed(performed(walking, 0.0), camera())
-    return pools, stance_features(pools, posing_input(take, reading).evidence)
+    return pools, stance_features(pools, posing_input(seen_in(take, reading)).evidence)
 
 
 def path_of(known: Known, arms: dict[int, float]) -> tuple[list[FrameStates], ComposedPath]:

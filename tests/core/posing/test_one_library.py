@@ -15,6 +15,7 @@ from keymark.core.posing.pose_clip import pose_clip
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library
 from keymark.core.progress import run
+from keymark.core.session.stages import seen_in
 
 pytestmark = pytest.mark.slow
 
@@ -22,7 +23,7 @@ pytestmark = pytest.mark.slow
 @pytest.mark.parametrize("heading_deg", [-100.0, 35.0])
 def test_walking_is_found_in_its_phase_heading_and_place(walking: Library, heading_deg: float) -> None:
     truth = performed(walking, np.radians(heading_deg))
-    found = run(pose_clip(*filmed(truth, camera()), [walking], floor_m=0.0))
+    found = run(pose_clip(seen_in(*filmed(truth, camera())), [walking], floor_m=0.0))
     rooted, absolute = errors_m(found, truth)
     assert rooted < 0.06
     assert absolute < 0.15
@@ -40,20 +41,22 @@ def test_walking_on_the_spot_is_walking(walking: Library) -> None:
     level = np.append(there.translation[:, :2].mean(axis=0), 0.0)
     hips = level + there.translation * np.array([0.0, 0.0, 1.0])
     truth = Posture(there.skeleton, hips, there.rotations, there.angles)
-    rooted, absolute = errors_m(run(pose_clip(*filmed(truth, camera()), [walking], floor_m=0.0)), truth)
+    rooted, absolute = errors_m(
+        run(pose_clip(seen_in(*filmed(truth, camera())), [walking], floor_m=0.0)), truth
+    )
     assert rooted < 0.07
     assert absolute < 0.15
 
 
 def test_a_camera_that_moves_and_markers_that_hide_do_no_harm(walking: Library) -> None:
     truth = performed(walking, np.radians(60.0))
-    found = run(pose_clip(*filmed(truth, camera(FRAMES), hidden=0.1), [walking]))
+    found = run(pose_clip(seen_in(*filmed(truth, camera(FRAMES), hidden=0.1)), [walking]))
     assert errors_m(found, truth)[0] < 0.07
 
 
 def test_an_unknown_floor_is_found_by_the_sizes(walking: Library) -> None:
     truth = performed(walking, np.radians(35.0), floor_m=-1.0)
-    found = run(pose_clip(*filmed(truth, camera()), [walking]))
+    found = run(pose_clip(seen_in(*filmed(truth, camera())), [walking]))
     assert found.floor_m == pytest.approx(-1.0, abs=0.3)
     assert errors_m(found, truth)[0] < 0.07
 
@@ -70,7 +73,7 @@ def test_a_mirrored_performance_is_found(squatting: Library) -> None:
         ),
     )
     truth = mirrored(performed(library, 0.3, style_rad=0.03))
-    found = run(pose_clip(*filmed(truth, camera()), [library], floor_m=0.0))
+    found = run(pose_clip(seen_in(*filmed(truth, camera())), [library], floor_m=0.0))
     assert errors_m(found, truth)[0] < 0.07
 
 
@@ -85,7 +88,7 @@ def test_confidence_follows_what_is_right(walking: Library, squatting: Library) 
     sure, off, doubtful = [], [], []
     for truth, library in ((walk, walking), (walk, squatting), (led.plus(moves), squatting)):
         take, reading = filmed(truth, camera())
-        found = run(pose_clip(take, reading, [library]))
+        found = run(pose_clip(seen_in(take, reading), [library]))
         kept = [keyframe.matched for keyframe in with_found(take, found).keyframes]
         assert len(kept) == len(found.frames) and found.library == library.identifier
         doubtful.append([said is not None and said.is_doubtful for said in kept])
@@ -103,8 +106,8 @@ def test_posed_keyframes_steer_the_match(walking: Library) -> None:
     truth = performed(walking, np.radians(35.0), style_rad=0.15, floor_m=0.2)
     take, reading = filmed(truth, camera())
     ends = tuple(Keyframe(index, truth[index]) for index in (0, FRAMES - 1))
-    alone = run(pose_clip(take, reading, [walking]))
-    steered = run(pose_clip(replace(take, keyframes=ends), reading, [walking]))
+    alone = run(pose_clip(seen_in(take, reading), [walking]))
+    steered = run(pose_clip(seen_in(replace(take, keyframes=ends), reading), [walking]))
     assert alone.floor_m == 0.0
     assert steered.floor_m == pytest.approx(0.2, abs=0.05)
     assert errors_m(steered, truth)[1] < 0.8 * errors_m(alone, truth)[1]
@@ -115,7 +118,7 @@ def test_posed_keyframes_steer_the_match(walking: Library) -> None:
 
 def test_posed_keyframes_stay_beside_matched_ones(walking: Library) -> None:
     take, reading = filmed(performed(walking, 0.6), camera())
-    match = run(pose_clip(take, reading, [walking]))
+    match = run(pose_clip(seen_in(take, reading), [walking]))
     first = match.frames[0]
     posed = Keyframe(first.index + 1, first.candidates[0].posture)
     mixed = with_found(replace(take, keyframes=(posed,)), match)
@@ -130,7 +133,7 @@ def test_posed_keyframes_stay_beside_matched_ones(walking: Library) -> None:
 def test_what_cannot_be_matched_is_refused(walking: Library) -> None:
     take, reading = filmed(performed(walking, 0.6), camera())
     with pytest.raises(InputError, match="no keyframe library with a posture is given"):
-        run(pose_clip(take, reading, [replace(walking, postures=(), motions=())]))
+        run(pose_clip(seen_in(take, reading), [replace(walking, postures=(), motions=())]))
     nothing = replace(reading.tracks, centroid=np.full_like(reading.tracks.centroid, np.nan))
     with pytest.raises(InputError, match="no marker is seen"):
-        run(pose_clip(take, Reading(nothing), [walking]))
+        run(pose_clip(seen_in(take, Reading(nothing)), [walking]))

@@ -11,6 +11,7 @@ from keymark.core.markers.reading import Reading
 from keymark.core.posing.pose_clip import pose_clip
 from keymark.core.prior.library import Library
 from keymark.core.progress import run
+from keymark.core.session.stages import seen_in
 
 pytestmark = pytest.mark.slow
 
@@ -21,7 +22,7 @@ def test_walking_is_found_without_a_marker(walking: Library, heading_deg: float,
     truth = performed(walking, np.radians(heading_deg))
     people = detected(truth, camera())
     people = people if hinted else people.without_hints()
-    found = run(pose_clip(*unmarked(truth, camera(), people), [walking], floor_m=0.0))
+    found = run(pose_clip(seen_in(*unmarked(truth, camera(), people)), [walking], floor_m=0.0))
     rooted, absolute = errors_m(found, truth)
     assert rooted < 0.075
     assert absolute < 0.2
@@ -31,7 +32,7 @@ def test_walking_is_found_without_a_marker(walking: Library, heading_deg: float,
 def test_wrong_points_and_exchanged_sides_do_no_harm(walking: Library) -> None:
     truth = performed(walking, np.radians(35.0))
     people = exchanged(detected(truth, camera(), wrong=0.2), range(10, 35))
-    found = run(pose_clip(*unmarked(truth, camera(), people), [walking], floor_m=0.0))
+    found = run(pose_clip(seen_in(*unmarked(truth, camera(), people)), [walking], floor_m=0.0))
     assert errors_m(found, truth)[0] < 0.075
 
 
@@ -39,7 +40,7 @@ def test_a_detector_whose_left_is_right_throughout_does_no_harm_beside_markers(w
     truth = performed(walking, np.radians(35.0))
     take, reading = filmed(truth, camera())
     wrong = replace(take, keypoints=(exchanged(detected(truth, camera()), range(FRAMES)),))
-    assert errors_m(run(pose_clip(wrong, reading, [walking], floor_m=0.0)), truth)[0] < 0.075
+    assert errors_m(run(pose_clip(seen_in(wrong, reading), [walking], floor_m=0.0)), truth)[0] < 0.075
 
 
 def test_keypoints_find_the_arms_that_few_markers_leave_open(walking: Library) -> None:
@@ -49,9 +50,9 @@ def test_keypoints_find_the_arms_that_few_markers_leave_open(walking: Library) -
     trunk = {name: getattr(reading.tracks, name)[:, :1] for name in names}
     bare = replace(take, markers=take.markers[:1])
     seen = Reading(replace(reading.tracks, names=reading.tracks.names[:1], **trunk))
-    alone = errors_m(run(pose_clip(bare, seen, [walking], floor_m=0.0)), truth)[0]
+    alone = errors_m(run(pose_clip(seen_in(bare, seen), [walking], floor_m=0.0)), truth)[0]
     both = replace(bare, keypoints=(detected(truth, camera()),))
-    assert errors_m(run(pose_clip(both, seen, [walking], floor_m=0.0)), truth)[0] < 0.7 * alone
+    assert errors_m(run(pose_clip(seen_in(both, seen), [walking], floor_m=0.0)), truth)[0] < 0.7 * alone
 
 
 def test_keypoints_that_are_never_seen_change_nothing(walking: Library) -> None:
@@ -61,7 +62,8 @@ def test_keypoints_that_are_never_seen_change_nothing(walking: Library) -> None:
     nobody = SeenPeople(np.zeros((0, len(NAMES), 2)), np.zeros((0, len(NAMES))), np.zeros((0, len(NAMES), 3)))
     blind = replace(blind, frames=(nobody,) * FRAMES)
     first, second = (
-        run(pose_clip(each, reading, [walking])) for each in (take, replace(take, keypoints=(blind,)))
+        run(pose_clip(seen_in(each, reading), [walking]))
+        for each in (take, replace(take, keypoints=(blind,)))
     )
     np.testing.assert_array_equal(first.postures.to_vector(), second.postures.to_vector())
 
@@ -70,8 +72,8 @@ def test_a_take_with_neither_markers_nor_keypoints_is_refused(walking: Library) 
     truth = performed(walking, 0.6)
     take, reading = unmarked(truth, camera(), detected(truth, camera()))
     with pytest.raises(InputError, match="neither markers nor keypoints"):
-        run(pose_clip(replace(take, keypoints=()), reading, [walking]))
+        run(pose_clip(seen_in(replace(take, keypoints=()), reading), [walking]))
     nobody = SeenPeople(np.zeros((0, len(NAMES), 2)), np.zeros((0, len(NAMES))), np.zeros((0, len(NAMES), 3)))
     blind = replace(take.keypoints[0], frames=(nobody,) * FRAMES)
     with pytest.raises(InputError, match="no keypoint is seen"):
-        run(pose_clip(replace(take, keypoints=(blind,)), reading, [walking]))
+        run(pose_clip(seen_in(replace(take, keypoints=(blind,)), reading), [walking]))

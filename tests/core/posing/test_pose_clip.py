@@ -16,6 +16,7 @@ from keymark.core.posing.pose_clip import pose_clip
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library, read_library
 from keymark.core.progress import run
+from keymark.core.session.stages import seen_in
 
 pytestmark = pytest.mark.slow
 
@@ -48,7 +49,7 @@ def truth() -> Posture:
 
 @cache
 def found_by_markers() -> FoundPoses:
-    return run(pose_clip(*filmed(truth(), camera()), libraries()))
+    return run(pose_clip(seen_in(*filmed(truth(), camera())), libraries()))
 
 
 def errors_m(postures: Posture) -> tuple[np.ndarray, np.ndarray]:
@@ -68,7 +69,10 @@ def test_a_motion_of_no_library_is_found_by_five_markers() -> None:
 def test_and_by_keypoints() -> None:
     rooted, absolute = errors_m(
         run(
-            pose_clip(*unmarked(truth(), camera(), detected(truth(), camera()).without_hints()), libraries())
+            pose_clip(
+                seen_in(*unmarked(truth(), camera(), detected(truth(), camera()).without_hints())),
+                libraries(),
+            )
         ).postures
     )
     assert rooted.mean() < 0.08
@@ -78,7 +82,7 @@ def test_and_by_keypoints() -> None:
 def test_the_floor_is_the_ruler_where_the_performer_is_smaller_than_said() -> None:
     take, reading = unmarked(truth(), camera(), detected(truth(), camera()).without_hints())
     larger = replace(take, body=Body(Actor.from_stature(1.07 * 1.62)))
-    found = run(pose_clip(larger, reading, libraries(), floor_m=0.0))
+    found = run(pose_clip(seen_in(larger, reading), libraries(), floor_m=0.0))
     farther = (found.postures.translation - truth().translation)[:, 1]
     assert abs(farther.mean()) < 0.15  # by size alone 0.3
 
@@ -103,7 +107,7 @@ def test_between_two_posed_frames_only_those_change() -> None:
     posed = tuple(Keyframe(index, truth()[index]) for index in (12, 37))
     others = tuple(key for key in found.keyframes if abs(key.index - 12) > 2 and abs(key.index - 37) > 2)
     corrected = replace(take, keyframes=tuple(sorted((*posed, *others), key=lambda key: key.index)))
-    again = run(pose_clip(corrected, reading, libraries(), between=(12, 37), frames=(20, 29)))
+    again = run(pose_clip(seen_in(corrected, reading), libraries(), between=(12, 37), frames=(20, 29)))
     assert [frame.index for frame in again.frames] == [20, 29]
     rooted, _ = errors_m(again.postures)
     assert rooted[[12, 37]].max() < 0.02
@@ -117,6 +121,6 @@ def test_between_two_posed_frames_only_those_change() -> None:
 def test_what_is_needed_is_said() -> None:
     take, reading = filmed(truth(), camera())
     with pytest.raises(InputError, match="at least one is needed"):
-        run(pose_clip(take, reading, ()))
+        run(pose_clip(seen_in(take, reading), ()))
     with pytest.raises(InputError, match="neither markers nor keypoints"):
-        run(pose_clip(replace(take, markers=()), reading, libraries()))
+        run(pose_clip(seen_in(replace(take, markers=()), reading), libraries()))

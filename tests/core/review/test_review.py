@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from _review import made_up_review
 from _synthetic_take import write_synthetic_take
+from keymark.core.api import reconstruct
 from keymark.core.detect.keypoints import Keypoints, People, SeenPeople
-from keymark.core.estimate.reconstruct import METHODS, reconstruct
+from keymark.core.estimate.reconstruct import METHODS
 from keymark.core.progress import run
 from keymark.core.review.compared_keypoints import ComparedKeypoints
 from keymark.core.review.frame_evidence import contour_sight, used_evidence

@@ -18,7 +18,7 @@ from keymark.core.errors import InputError
 from keymark.core.markers.reading import read_clip, reading_arrays, reading_from_arrays
 from keymark.core.progress import run
 from keymark.core.take import checked_keypoints
-from keymark.core.take.checked_keypoints import with_checked_keypoints
+from keymark.core.take.checked_keypoints import checked_keypoints as check
 from keymark.core.take.conversion_settings import ConversionSettings
 from keymark.core.take.description import describe
 from keymark.core.take.performer_keypoints import performer_keypoints
@@ -80,8 +80,8 @@ def test_a_picture_that_is_repeated_counts_once(
         assert notes[0].startswith(f"{len(repeated)} of {FRAMES} pictures repeat the one before (")
     people = detected(walker(shown.astype(float)))
     take = replace(synthetic, keypoints=(people,))
-    checked = run(with_checked_keypoints(take, reading))
-    empty = [index for index, frame in enumerate(checked.keypoints[0].frames) if not len(frame.pixel)]
+    checked = run(check(take, reading))
+    empty = [index for index, frame in enumerate(checked[0].frames) if not len(frame.pixel)]
     assert empty == list(repeated)
 
 
@@ -156,7 +156,7 @@ def test_keypoints_of_half_the_size_are_scaled(
     take = unposed(plain_walk, failing("01-keypoints-of-another-size/half_size.json"))
     reading = run(read_footage(replace(take, contours=False)))
     assert apart(take.keypoints[0], own) > 40.0
-    (people,) = run(with_checked_keypoints(take, reading)).keypoints
+    (people,) = run(check(take, reading))
     assert apart(people, own) < 0.5
     assert any("160 x 120" in note for note in people.notes)
 
@@ -195,7 +195,9 @@ def test_a_jump_to_a_passer_by_is_left_out(failing: Callable[[str], Path], plain
     needs_network()
     take = unposed(plain_walk, failing("10-another-person-in-between/passer_by.json"))
     reading = run(read_footage(replace(take, contours=False)))
-    found: Keypoints = performer_keypoints(run(with_checked_keypoints(take, reading)), None, reading.tracks)
+    found: Keypoints = performer_keypoints(
+        replace(take, keypoints=run(check(take, reading))), None, reading.tracks
+    )
     np.testing.assert_array_equal(np.flatnonzero(~found.seen.any(axis=1)), JUMPED)
     assert any("the 20 frames that show him are left out" in note for note in found.notes)
 
@@ -212,14 +214,12 @@ def test_posed_keyframes_points_by_hand_and_those_just_found_need_no_network(
         replace(synthetic, keyframes=(), keypoints=(detected(back, by_hand=True),)),
         replace(synthetic, keyframes=(), keypoints=(replace(detected(back), source=NAME, file=""),)),
     ):
-        assert run(with_checked_keypoints(take, reading)).keypoints == take.keypoints
+        assert run(check(take, reading)) == take.keypoints
     assert network.looks == 0
     away = replace(synthetic, keyframes=(), keypoints=(detected(back),))
-    for _ in range(2):  # the second time from what is known
-        with pytest.raises(InputError, match=r"seen\.json: .* must be of this clip"):
-            run(with_checked_keypoints(away, reading))
-        looks = network.looks
-    assert network.looks == looks > 0
+    with pytest.raises(InputError, match=r"seen\.json: .* must be of this clip"):
+        run(check(away, reading))
+    assert network.looks > 0
 
 
 def test_without_the_network_files_are_believed(
@@ -228,4 +228,4 @@ def test_without_the_network_files_are_believed(
     monkeypatch.setattr(checked_keypoints, "_network", lambda: None)
     reading = run(read_clip(clip_of(np.arange(FRAMES, dtype=float), tmp_path), ()))
     take = replace(synthetic, keyframes=(), keypoints=(detected(0.5 * walker(np.arange(FRAMES))),))
-    assert run(with_checked_keypoints(take, reading)).keypoints == take.keypoints
+    assert run(check(take, reading)) == take.keypoints

@@ -7,14 +7,13 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from keymark.core.api import reconstruct
 from keymark.core.body.body_volume import rested
 from keymark.core.body.posture import Posture
 from keymark.core.detect.keypoints import Keypoints
 from keymark.core.errors import InputError
-from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.markers.reading import Reading
 from keymark.core.markers.region_tracks import RegionTracks
-from keymark.core.pipeline.convert import find_and_reconstruct
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.registry import SHIPPED, find_libraries
 from keymark.core.prior.texts import EVERY_LIBRARY
@@ -202,7 +201,7 @@ def test_a_performer_who_enters_late_is_as_well_known_as_without_the_frames_befo
 @pytest.mark.skipif(not CASES.is_dir(), reason="the reported cases are not beside the repository")
 def test_legs_behind_a_desk_rest_and_are_not_believed() -> None:
     take = replace(read_take(CASES / "05-legs-never-seen", keyframes_required=False), keyframes=())
-    result = run(find_and_reconstruct(take, find_libraries(EVERY_LIBRARY, (SHIPPED,)), "map")).reconstruction
+    result = run(reconstruct(take, libraries=find_libraries(EVERY_LIBRARY, (SHIPPED,))))
     knees = [BODY.skeleton.point_names.index(f"knee.{side}") for side in "LR"]
     assert result.motion.sigma_m[:, knees].min() > 0.2
     flexion = result.motion.posture.to_vector()[:, BODY.skeleton.dof_names.index("knee.L.flexion")]

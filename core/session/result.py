@@ -14,7 +14,7 @@ from ..files.commit import backup_name
 from ..files.digest import content_digest
 from ..files.json_file import read_json, write_json
 from ..posing.found_poses import FoundPoses, contradiction_notes
-from ..prior.library import Library, library_digest
+from ..prior.library import library_digest
 from ..progress import run
 from ..retarget.retarget_record import RECORD_FILE as RETARGET
 from ..review.frame_evidence import used_evidence
@@ -39,7 +39,11 @@ from ..take.keyframe_file import write_keyframes
 from ..take.motion import write_motion
 from ..take.take import Take
 from ..take.take_file import write_take
-from .convert import FoundReconstruction
+from .described import findings
+from .place import Placed
+from .pose import Posed
+from .see import Sight
+from .session import Session
 
 AS_MADE = ".as_made.json"
 """SHA-256 of files as they were made: of those whose bytes differ from run to run though their content does
@@ -58,15 +62,26 @@ EDITABLE_FILES = (BLEND, CHARACTER_BLEND, KEYFRAME_FILE)
 class Conversion:
     """The result of a conversion."""
 
-    take: Take
-    reconstruction: Reconstruction
+    session: Session
     files: tuple[Path, ...]
     """In the order of `RESULT_FILES`, then keyframes and record."""
-    found: FoundPoses | None = None
-    """What was found of keyframes, if that was asked for, and how well it fits."""
-    libraries: tuple[Library, ...] = ()
     conversion_notes: tuple[str, ...] = ()
-    """Sentences on unused keyframes and on files that are kept."""
+    """What was found where nobody said it, and sentences on unused keyframes and on files that are kept."""
+
+    @property
+    def take(self) -> Take:
+        """With all its keyframes."""
+        return self.session[Posed].seen.take
+
+    @property
+    def reconstruction(self) -> Reconstruction:
+        """The motion."""
+        return self.session[Reconstruction]
+
+    @property
+    def found(self) -> FoundPoses | None:
+        """What was found of keyframes, if that was wanted, and how well it fits."""
+        return self.session[Posed].found
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -86,6 +101,7 @@ def conversion_record(
     stable_digests: Mapping[str, str],
 ) -> ConversionRecord:
     """The record of a conversion."""
+    libraries = conversion.session.inputs.libraries or ()
     take, motion = conversion.take, conversion.reconstruction.motion
     frames = np.arange(len(motion.time_s), dtype=np.float64) + motion.frame_start
     reviewed = run(review(take, conversion.reconstruction, frames))
@@ -108,7 +124,7 @@ def conversion_record(
         notes=conversion.notes,
         files={name: stable_digests.get(name) or content_digest(folder / name) for name in names},
         evidence=used_evidence(conversion.reconstruction),
-        libraries={library.identifier: library_digest(library) for library in conversion.libraries},
+        libraries={each.identifier: library_digest(each) for each in libraries},
         doubtful=tuple(
             index + motion.frame_start for index, said in sorted(found.items()) if said.is_doubtful
         ),
@@ -124,11 +140,11 @@ def refuse_own_folder(description: Description, output: Path) -> None:
         )
 
 
-def write_motion_files(folder: Path, made: FoundReconstruction) -> None:
+def write_motion_files(folder: Path, session: Session) -> None:
     """Write the motion, and the keyframes where some were found."""
-    take = made.take
-    write_motion(made.reconstruction.motion, folder / MOTION)
-    if made.found is not None:
+    take = session[Posed].seen.take
+    write_motion(session[Reconstruction].motion, folder / MOTION)
+    if session[Posed].found is not None:
         write_keyframes(folder / KEYFRAME_FILE, take.keyframes, take.body, take.frame_start)
 
 
@@ -143,24 +159,26 @@ def own_files(description: Description, output: Path) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*RESULT_FILES, AS_MADE, *sorted(made))))
 
 
-def write_take_files(folder: Path, made: FoundReconstruction, evidence: Sequence[str] | None) -> None:
+def write_take_files(
+    folder: Path, session: Session, description: Description, evidence: Sequence[str] | None
+) -> None:
     """Write what makes the folder of a result a take: the camera and the actor as found, and the clip.
 
-    The clip is another name of the same file, where the disk has such names, and a copy elsewhere.
+    The clip is another name of the same file, where the disk has such names, and a copy elsewhere. Keypoints
+    are as the clip shows them: the motion's are those that a steady camera would see.
     """
-    take = replace(made.take, keypoints=made.keypoints)
+    take = replace(session[Posed].seen.take, keypoints=session[Sight].people)
     clip = folder / take.clip.name
     if take.clip.is_file():
         with suppress(OSError):
             os.link(take.clip, clip)
     take = replace(take, clip=clip) if clip.exists() else take
-    floor = {} if made.floor_m is None else {"floor_m": made.floor_m}
-    write_take(take, folder, evidence, {"//found": list(made.findings), **floor})
+    floor_m = session[Placed].floor_m or 0.0
+    write_take(take, folder, evidence, {"//found": list(findings(session, description)), "floor_m": floor_m})
 
 
 def finish_result(
-    made: FoundReconstruction,
-    libraries: tuple[Library, ...],
+    session: Session,
     notes: Sequence[str],
     input_of: tuple[Description, ConversionSettings, str],
     version: str,
@@ -171,8 +189,7 @@ def finish_result(
     """Write the record of a result whose other files are complete.
 
     Args:
-        made: The motion and the keyframes it was made from.
-        libraries: Those that took part.
+        session: The motion and all it was made from.
         notes: Sentences on the character.
         input_of: The description, the settings and the digest of the input.
         version: Keymark's.
@@ -188,13 +205,10 @@ def finish_result(
     recorded = {} if record is None else record.files
     kept_names.update(changed_files(output, staging_folder, replaced, EDITABLE_FILES, recorded))
     conversion = Conversion(
-        made.take,
-        made.reconstruction,
+        session,
         files=tuple(output / name for name in (*written, RECORD)),
-        found=made.found,
-        libraries=libraries,
         conversion_notes=(
-            *made.findings,
+            *findings(session, description),
             *_unused_keyframes_note(description, settings),
             *notes,
             *(kept_note(*names) for names in kept_names.items()),

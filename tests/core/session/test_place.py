@@ -13,7 +13,9 @@ from keymark.core.camera.camera import Camera, lens_of_equivalent
 from keymark.core.camera.camera_fields import CameraPlacement
 from keymark.core.detect.keypoints import Keypoints
 from keymark.core.detect.standing_moments import standing_keypoints
-from keymark.core.pipeline.place import Lens, camera_by_performer, camera_in_words, is_unplaced, lens_of
+from keymark.core.session.described import is_unplaced
+from keymark.core.session.lens import Lens, lens_of
+from keymark.core.session.place import FoundCamera, camera_by_performer, camera_in_words
 from keymark.core.take.conversion_settings import ConversionSettings
 from keymark.core.take.description import describe, keypoints_beside
 from keymark.core.video.stated_lens import FOCAL_LENGTH, stated_lens_mm
@@ -58,7 +60,7 @@ def test_somebody_who_never_stands_leaves_the_camera_as_it_was_put() -> None:
     put = lens.put(SIZE)
     camera, fit = camera_by_performer(put, False, standing_keypoints(seen_by(put, walk(1)), BODY, FPS))
     assert fit is None and camera is put
-    said = camera_in_words(fit, lens, 1)
+    said = camera_in_words(FoundCamera(fit, lens, 1))
     assert "assumed to be level at 1.4 m" in said and "stands upright at no two moments" in said
 
 
@@ -67,7 +69,7 @@ def test_what_is_found_and_what_is_assumed_is_said_apart() -> None:
     uprights = standing_keypoints(seen_by(true, walk()), BODY, FPS)
     lens = Lens(38.0, 36.0, "as described", True)
     _, fit = camera_by_performer(lens.put(true.resolution), True, uprights)
-    said = camera_in_words(fit, lens, len(uprights))
+    said = camera_in_words(FoundCamera(fit, lens, len(uprights)))
     found, _, assumed = said.partition("assumed: ")
     assert "height 1.1" in found and "±" in found and "±" not in assumed
     assert "lens 38.0 mm (as described)" in assumed and f"by {len(uprights)} moments" in said

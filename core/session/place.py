@@ -1,0 +1,114 @@
+"""Place: where the camera stands, by a performer who is upright on the floor, and what it sees as it turns.
+
+Somebody of known height who stands or walks upright on the floor measures the room (`standing_moments`,
+`camera_fit`). The world's origin is where the performer is in the middle of these moments, and the floor is
+z = 0.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..camera.camera import EYE_HEIGHT_M, Camera
+from ..camera.camera_evidence import CameraEvidence, Uprights
+from ..camera.camera_fit import LENS, PARAMETERS, CameraFit, fit_camera
+from ..detect.standing_moments import standing_keypoints
+from ..markers.reading import Reading
+from ..progress import Job, Progress, stretch
+from ..take.performer_keypoints import performer_keypoints
+from ..take.seen_take import SeenTake, seen_take
+from ..take.steady_camera import steadied
+from .lens import Lens
+from .see import Sight
+from .session import Inputs, Session, Stage
+
+FEWEST_MOMENTS = 2
+"""Upright moments that tell a camera; one is the same from a camera high above and from a low one."""
+
+
+@dataclass(frozen=True, eq=False)
+class FoundCamera:
+    """What a camera was found by."""
+
+    fit: CameraFit | None
+    """None where too few moments tell it."""
+    lens: Lens
+    moments: int
+    """In which the performer is upright."""
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A take that is seen from where its camera stands."""
+
+    seen: SeenTake
+    floor_m: float | None
+    """Height of the floor [m]; None where it is not known."""
+    camera: FoundCamera | None = None
+    """None where the camera's place was known."""
+
+
+def place(session: Session) -> Job[Placed]:
+    """Find a camera that nobody has placed, take its turning back, and tell who performs when."""
+    inputs, reading = session.inputs, session[Reading]
+    take, floor_m, found = replace(inputs.take, keypoints=session[Sight].checked), inputs.floor_m, None
+    anyone = performer_keypoints(replace(take, keyframes=()), None, reading.tracks)
+    if inputs.open_lens is not None:
+        yield Progress("Placing the camera", 0.0)
+        uprights = standing_keypoints(anyone, take.body, take.fps)
+        camera, fit = camera_by_performer(take.camera, inputs.open_lens.is_known, uprights)
+        take, found = replace(take, camera=camera), FoundCamera(fit, inputs.open_lens, len(uprights))
+        floor_m = 0.0 if floor_m is None and fit is not None else floor_m
+    take, steady, notes = yield from stretch(steadied(take, reading, anyone), 0.5, 1.0)
+    return Placed(seen_take(take, steady, notes), floor_m, found)
+
+
+def placed_take(session: Session) -> SeenTake:
+    """The session's take as it was placed: what it is to be posed with may have changed since."""
+    seen, take = session[Placed].seen, session.inputs.take
+    return replace(seen, take=replace(take, camera=seen.take.camera, keypoints=seen.take.keypoints))
+
+
+def _uses(inputs: Inputs) -> tuple[object, ...]:
+    take = inputs.take
+    posed = tuple(key for key in take.keyframes if key.matched is None)
+    return take.camera, take.body.actor.segments_m, take.fps, inputs.open_lens, inputs.floor_m, posed
+
+
+STAGE = Stage("place", place, _uses, lambda _inputs: 0.3)
+
+
+def camera_by_performer(
+    put: Camera, lens_is_known: bool, uprights: Uprights
+) -> tuple[Camera, CameraFit | None]:
+    """The camera that upright moments show, with the performer about the world's origin.
+
+    Where there are too few of them, it is the camera as it was put, and there is no fit.
+    """
+    if len(uprights) < FEWEST_MOMENTS:
+        return put, None
+    fit = fit_camera(put, CameraEvidence(uprights=uprights), lens_is_known)
+    location, sight = fit.camera.rays(uprights.lower_px)
+    falls = sight[:, 2] < 0.0
+    if not falls.any():
+        return fit.camera, fit
+    far = (location[2] - uprights.lower_m) / np.where(falls, -sight[:, 2], np.inf)
+    ground = location[:2] + far[:, None] * sight[:, :2]
+    pose = fit.camera.matrix_world.copy()
+    pose[:2, 3] -= np.median(ground[falls], axis=0)
+    return replace(fit.camera, matrix_world=pose), fit
+
+
+def camera_in_words(camera: FoundCamera) -> str:
+    """What was found of a camera, and what was assumed."""
+    fit, lens = camera.fit, camera.lens
+    if fit is None:
+        return (
+            f"assumed to be level at {EYE_HEIGHT_M:g} m, lens {lens.lens_mm:.1f} mm ({lens.source}); the "
+            "performer stands upright at no two moments, by which it would be found"
+        )
+    found = [fit.said(name) for name in PARAMETERS if name not in fit.kept]
+    kept = [fit.said(name) for name in PARAMETERS if name in fit.kept and name != LENS]
+    kept += [f"{fit.said(LENS)} ({lens.source})"] if LENS in fit.kept else []
+    parts = [", ".join(found) or "nothing found"] + ([f"assumed: {', '.join(kept)}"] if kept else [])
+    return f"{'; '.join(parts)}; by {camera.moments} moments in which the performer is upright"

@@ -1,0 +1,81 @@
+"""Pose: the keyframes that a motion is made from: posed ones, those of a reference motion, and found ones."""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+from ..estimate.reference_evidence import (
+    NoReference,
+    ReferenceEvidence,
+    reference_evidence,
+    with_reference,
+)
+from ..posing.found_poses import FoundPoses, referred_poses, with_found
+from ..posing.pose_clip import pose_clip
+from ..prior.library import library_digest
+from ..progress import Job
+from ..take.seen_take import SeenTake
+from ..take.take import Take
+from .place import Placed, placed_take
+from .session import Inputs, Session, Stage
+
+
+@dataclass(frozen=True, eq=False)
+class Posed:
+    """A take with all its keyframes."""
+
+    seen: SeenTake
+    floor_m: float | None
+    """Height of the floor [m]; None where it is not known."""
+    found: FoundPoses | None = None
+    """What was found; None where that was not wanted."""
+    referred: ReferenceEvidence | NoReference | None = None
+    """What the take's reference motion tells; None without one."""
+
+
+def pose(session: Session) -> Job[Posed]:
+    """Find keyframes where that is wanted; what a person has posed stays.
+
+    Raises:
+        InputError: There is no library with a posture.
+    """
+    inputs, seen, floor_m = session.inputs, placed_take(session), session[Placed].floor_m
+    said = reference_evidence(seen) if seen.take.reference is not None and inputs.method == "map" else None
+    if inputs.libraries is None:
+        return Posed(seen, floor_m, None, said)
+    is_open = inputs.floor_open and floor_m is None
+    if isinstance(said, ReferenceEvidence) and not said.left_out.any():
+        take = with_reference(seen.take, said)
+        found = referred_poses(take, said)
+    else:
+        found = yield from pose_clip(
+            seen,
+            inputs.libraries,
+            floor_m,
+            inputs.keyframe_count,
+            frames=inputs.frames,
+            floor_open=is_open,
+        )
+        take = with_found(seen.take, found)
+    if is_open:
+        take, found = lowered(take, found.floor_m), found.lowered(found.floor_m)
+    return Posed(replace(seen, take=take), found.floor_m, found, said)
+
+
+def lowered(take: Take, by_m: float) -> Take:
+    """The take with its camera and its keyframes so much lower."""
+    matrix_world = take.camera.matrix_world.copy()
+    matrix_world[..., 2, 3] -= by_m
+    keyframes = tuple(replace(each, posture=each.posture.lowered(by_m)) for each in take.keyframes)
+    return replace(take, camera=replace(take.camera, matrix_world=matrix_world), keyframes=keyframes)
+
+
+_library_digest = lru_cache(maxsize=64)(library_digest)
+
+
+def _uses(inputs: Inputs) -> tuple[object, ...]:
+    libraries = None if inputs.libraries is None else tuple(map(_library_digest, inputs.libraries))
+    take, asked = inputs.take, (inputs.frames, inputs.keyframe_count, inputs.floor_open)
+    return libraries, asked, take.keyframes, take.reference, inputs.method == "map"
+
+
+STAGE = Stage("pose", pose, _uses, lambda inputs: 0.0 if inputs.libraries is None else 3.0)

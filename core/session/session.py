@@ -1,0 +1,122 @@
+"""A session: what the way of a take starts from, and what its stages have made of that so far.
+
+A stage is a pure generator from a session to one result, of a class of its own by which later stages ask for
+it. The digest of all that a result depends on tells whether it was made before.
+"""
+
+from collections.abc import Callable, Mapping, MutableMapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ..estimate.reconstruct import Reconstruction
+from ..files.digest import digest
+from ..markers.reading import Reading
+from ..prior.library import Library
+from ..progress import Job, stretch
+from ..take.conversion_settings import METHODS
+from ..take.take import Take
+from .lens import Lens
+
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True, eq=False)
+class Inputs:
+    """What a session starts from, read from files or from a scene."""
+
+    take: Take
+    method: str = METHODS[0]
+    detects: bool = False
+    """Whether the pose network is to see the performer, in place of the take's keypoints."""
+    evidence: tuple[str, ...] | None = None
+    """Kinds of evidence that are used, also of what is detected; None for all there are."""
+    open_lens: Lens | None = None
+    """Of a camera that is to be found by the performer; None where its place is known."""
+    libraries: Sequence[Library] | None = None
+    """In which poses are found; None where the take has its keyframes already."""
+    floor_m: float | None = None
+    """Height of the floor [m] where it is known."""
+    floor_open: bool = False
+    """Whether the world is moved so that an unknown floor, once it is found, is z = 0."""
+    frames: tuple[int, ...] | None = None
+    """Frames to find keyframes at; None for those in which the performer rests or turns back."""
+    keyframe_count: int | None = None
+    """How many of these; 10 per 100 frames where None."""
+    kept: Reading | None = None
+    """A reading of any clip, whose parts are used that still hold."""
+    earlier: Reconstruction | None = None
+    """A reconstruction of which those parts are used that still hold."""
+    bridge: Mapping[str, Callable[["Session"], Job[Any]]] = field(default_factory=dict)
+    """Stages that only Blender can do, by name, and how; those left out are not done."""
+
+
+@dataclass(frozen=True, eq=False)
+class Session:
+    """Inputs, and the results of stages by name, in order; `key` is the digest of all they depend on."""
+
+    inputs: Inputs
+    made: Mapping[str, object] = field(default_factory=dict)
+    key: str = ""
+
+    def __getitem__(self, kind: type[Result]) -> Result:
+        """The result of a class; KeyError where no stage has made one yet."""
+        for made in self.made.values():
+            if isinstance(made, kind):
+                return made
+        raise KeyError(kind.__name__)
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """A stage on the way of a take."""
+
+    name: str
+    run: Callable[[Session], Job[object]]
+    uses: Callable[[Inputs], tuple[object, ...]] | None
+    """What of the inputs its result depends on beside the stage before; None where that is not known."""
+    work: Callable[[Inputs], float]
+    """Its usual share of all the work."""
+
+
+def plain(value: object) -> object:
+    """A value as `digest` takes it: records as their fields."""
+    if is_dataclass(value):
+        return type(value).__name__, *(plain(getattr(value, each.name)) for each in fields(value))
+    if isinstance(value, Mapping):
+        return tuple((plain(name), plain(each)) for name, each in value.items())
+    if isinstance(value, tuple | list):
+        return tuple(map(plain, value))
+    if isinstance(value, np.generic):
+        return value.item()
+    return str(value) if isinstance(value, Path) else value
+
+
+def advance(
+    session: Session,
+    stages: Sequence[Stage],
+    kept: MutableMapping[str, object] | None = None,
+    keep: Callable[[str, Session], None] = lambda _stage, _session: None,
+) -> Job[Session]:
+    """The session after further stages; `keep` gets each stage's name and the session as it is complete.
+
+    `kept` has results by the digest of what they depend on: those found there are not made again, and new
+    ones are added.
+    """
+    ahead = [stage for stage in stages if stage.name not in session.made]
+    whole, done = max(sum(stage.work(session.inputs) for stage in ahead), 1e-9), 0.0
+    for stage in ahead:
+        end = min(done + stage.work(session.inputs) / whole, 1.0)
+        key, result = "", None
+        if kept is not None and stage.uses is not None:
+            key = digest(stage.name, session.key, *map(plain, stage.uses(session.inputs)))
+            result = kept.get(key)
+        if result is None:
+            result = yield from stretch(stage.run(session), done, end)
+            if kept is not None and key:
+                kept[key] = result
+        session, done = replace(session, made={**session.made, stage.name: result}, key=key), end
+        keep(stage.name, session)
+    return session

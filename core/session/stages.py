@@ -1,0 +1,52 @@
+"""The way of a take, stage by stage: all that is made of a clip goes along this list, up to its stage."""
+
+from collections.abc import Callable, MutableMapping
+
+from ..markers.reading import Reading
+from ..progress import Job, run
+from ..take.seen_take import SeenTake
+from ..take.take import Take
+from . import place, pose, read, reconstruct, see
+from .session import Inputs, Session, Stage, advance
+
+
+def _by_bridge(name: str, work: float) -> Stage:
+    """A stage that only Blender can do, as the inputs say how: for it the take's bones are in a scene."""
+
+    def through(session: Session) -> Job[object]:
+        return (yield from session.inputs.bridge[name](session)) if name in session.inputs.bridge else None
+
+    return Stage(name, through, None, lambda inputs: work if name in inputs.bridge else 0.0)
+
+
+STAGES = (
+    read.STAGE,
+    see.STAGE,
+    place.STAGE,
+    pose.STAGE,
+    reconstruct.STAGE,
+    _by_bridge("finish", 0.5),
+    _by_bridge("retarget", 0.7),
+)
+
+
+def reach(
+    session: Session,
+    last: str,
+    kept: MutableMapping[str, object] | None = None,
+    keep: Callable[[str, Session], None] = lambda _stage, _session: None,
+) -> Job[Session]:
+    """The session with all stages up to `last`; see `advance`.
+
+    Raises:
+        InputError: The clip or anything else of the take cannot be used.
+        ConversionError: No motion could be computed.
+    """
+    names = [stage.name for stage in STAGES]
+    return advance(session, STAGES[: names.index(last) + 1], kept, keep)
+
+
+def seen_in(take: Take, reading: Reading) -> SeenTake:
+    """A take as a reading of its clip shows it."""
+    session = run(reach(Session(Inputs(take), {"read": reading}), "place"))
+    return place.placed_take(session)

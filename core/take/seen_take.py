@@ -1,0 +1,42 @@
+"""A take as its footage shows it: what poses and motions are made of, told once for all of them."""
+
+from dataclasses import dataclass, replace
+
+from ..arrays import BoolArray
+from ..detect.keypoints import Keypoints
+from ..markers.reading import Reading
+from ..prior.keyframes import interpolate
+from .performer_keypoints import performer_keypoints
+from .presence import presence, unseen_limbs
+from .take import Take
+
+
+@dataclass(frozen=True, eq=False)
+class SeenTake:
+    """A take, the reading of its clip, and the performer in it."""
+
+    take: Take
+    """With its keypoints as the pictures say they are meant, seen as by a camera that stands still."""
+    reading: Reading
+    """As that camera sees the clip."""
+    keypoints: Keypoints
+    """The performer's."""
+    there: BoolArray
+    """(F,) frames in which the performer is there."""
+    unseen: tuple[str, ...]
+    """Limbs that are never seen."""
+    camera_notes: tuple[str, ...] = ()
+    """A sentence on a camera that moves and is not followed."""
+
+
+def seen_take(take: Take, reading: Reading, camera_notes: tuple[str, ...] = ()) -> SeenTake:
+    """Tell the performer from everybody else, and when which of his limbs are seen.
+
+    Clicks, markers and posed keyframes tell it, and not what was found by these very keypoints.
+    """
+    posed = tuple(key for key in take.keyframes if key.matched is None)
+    prior = interpolate(posed, reading.tracks.frame_count) if len(posed) > 1 else None
+    keypoints = performer_keypoints(replace(take, keyframes=posed), prior, reading.tracks)
+    there = presence(take, reading, keypoints)
+    unseen = unseen_limbs(take, reading.tracks, keypoints, there)
+    return SeenTake(take, reading, keypoints, there, unseen, camera_notes)
