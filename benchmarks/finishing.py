@@ -20,10 +20,10 @@ load_project()
 from _rig import quaternion_rig, rig_values  # noqa: E402
 from keymark.core.arrays import Array, IndexArray  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
-from keymark.core.finish.hermite import fit_keys  # noqa: E402
-from keymark.core.finish.key_reduction import ReducedKeys, reduce_keys  # noqa: E402
-from keymark.core.finish.planted_feet import plant_feet, point_tolerances  # noqa: E402
-from keymark.core.finish.rig import Rig  # noqa: E402
+from keymark.core.feet.planted_feet import plant_feet, point_tolerances  # noqa: E402
+from keymark.core.keys.hermite import fit_keys  # noqa: E402
+from keymark.core.keys.key_reduction import ReducedKeys, reduce_keys  # noqa: E402
+from keymark.core.keys.rig import Rig  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 
 TOLERANCES_MM = (5, 10, 20)

@@ -27,7 +27,7 @@ from _rigify import add_rig, rigify_file  # noqa: E402
 from _varied import varied  # noqa: E402
 from keymark.core.body.kinematics import SegmentMotion, segment_motion  # noqa: E402
 from keymark.core.errors import InputError  # noqa: E402
-from keymark.core.finish.natural_extremities import natural_extremities  # noqa: E402
+from keymark.core.feet.natural_extremities import natural_extremities  # noqa: E402
 from keymark.core.progress import Progress, run  # noqa: E402
 from keymark.core.retarget.options import RetargetOptions  # noqa: E402
 from keymark.core.retarget.quality import Quality  # noqa: E402

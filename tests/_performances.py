@@ -13,7 +13,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body, SegmentMotion, segment_motion
 from keymark.core.body.posture import Posture, turned_and_shifted
 from keymark.core.body.posture_fit import fit_posture
-from keymark.core.finish.natural_extremities import natural_extremities
+from keymark.core.feet.natural_extremities import natural_extremities
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.character_motion import CharacterMotion, Similarity

@@ -5,7 +5,7 @@ from _scene import BODY
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import continuous_quaternions, to_quaternions
-from keymark.core.finish.rig import Rig, RigBone
+from keymark.core.keys.rig import Rig, RigBone
 
 LEAVES = ("hand", "foot")
 

@@ -203,7 +203,7 @@ class SegmentMotion:
 
 
 def segment_motion(body: Body, posture: Posture, time_s: Array, extremities: Extremities) -> SegmentMotion:
-    """The motion of every segment, hands and feet as they are posed or `finish/natural_extremities` says."""
+    """The motion of every segment, hands and feet as they are posed or `feet/natural_extremities` says."""
     pose = body.pose(posture)
     names = [segment.name for segment in body.skeleton.segments]
     ends = {name: segment_ends(body, pose, extremities, name) for name in names}

@@ -1,1 +1,1 @@
-"""A reconstructed motion made ready for an animator: feet that stand still, and few keys."""
+"""A motion from elsewhere mended without footage."""

@@ -16,15 +16,15 @@ from ..body.posture import Posture
 from ..body.posture_fit import fit_posture, guess_posture, nearest_rotation
 from ..body.skeleton import SIDES
 from ..errors import InputError, pluralize
+from ..feet.contacts import Contact
+from ..feet.place_by_feet import place_by_feet
+from ..feet.planted_feet import plant_feet
+from ..feet.soles import Soles
 from ..numerics.vectors import gaussian, weighted_median
 from ..numerics.wandering import Sizes, learn_sizes, smooth_path
 from ..progress import Job, Progress, within
 from ..take.motion import Motion
-from .contacts import Contact
 from .exchanged_sides import exchanged_frames, opposite_points
-from .foot_ground import Soles
-from .place_by_feet import place_by_feet
-from .planted_feet import plant_feet
 
 METHOD = "mend"
 MOST_FRAMES = 36_000  # twenty minutes at 30 frames a second

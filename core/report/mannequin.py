@@ -10,8 +10,8 @@ from ..body.body_volume import Piece, body_pieces, ring_quads
 from ..body.human import STRONG
 from ..body.kinematics import Body, Extremities, segment_turn
 from ..body.posture import Posture, facing_rad
-from ..finish.foot_ground import Shins, Soles
-from ..finish.natural_extremities import feet_on_floor
+from ..feet.natural_extremities import feet_on_floor
+from ..feet.soles import Shins, Soles
 from ..numerics.vectors import unit
 from .canvas import Canvas, Color
 from .stick_figure import Projection

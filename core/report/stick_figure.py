@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import Array, Image
 from ..body.kinematics import segment_ends
 from ..camera.camera import Camera
-from ..finish.natural_extremities import natural_extremities
+from ..feet.natural_extremities import natural_extremities
 from ..take.motion import Motion
 from .canvas import GRAY, INK, LEFT, PALE, PAPER, RIGHT, WHITE, Canvas, Color
 

@@ -13,8 +13,8 @@ from ..arrays import Array, IndexArray
 from ..body.human import HUMAN
 from ..body.posture_fit import nearest_rotation
 from ..body.skeleton import SIDES
+from ..feet.fading import FADE_S
 from ..finish.mend_motion import Mended
-from ..finish.planted_feet import FADE_S
 from ..numerics.vectors import unit
 from ..numerics.wandering import smooth_path
 from .solve.rest_body import RestBody

@@ -8,7 +8,7 @@ from ...core.body import rotations
 from ...core.body.kinematics import RIGID, Extremities
 from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind, Skeleton
-from ...core.finish.natural_extremities import natural_extremities
+from ...core.feet.natural_extremities import natural_extremities
 from ...core.take.motion import Motion
 from .actions import assign_action, channelbag_for
 from .actor_lengths import read_bones, skeleton_bones

@@ -11,19 +11,15 @@ from ...core.body.human import HUMAN
 from ...core.body.kinematics import RIGID, Body, Extremities
 from ...core.body.posture import Posture
 from ...core.body.skeleton import SIDES, Skeleton
-from ...core.finish.contacts import Contact
-from ...core.finish.foot_ground import Shins, Soles, find_ground, floor_notes, on_ground
-from ...core.finish.hermite import Spline
-from ...core.finish.key_reduction import reduce_keys
-from ...core.finish.natural_extremities import natural_extremities
-from ...core.finish.planted_feet import (
-    NEAR_GROUND_M,
-    PlantedFeet,
-    plant_feet,
-    point_tolerances,
-    sole_rows,
-)
-from ...core.finish.rig import Rig, RigPose
+from ...core.feet.contacts import Contact
+from ...core.feet.ground import floor_notes
+from ...core.feet.natural_extremities import natural_extremities
+from ...core.feet.planted_feet import PlantedFeet, plant_feet
+from ...core.feet.soles import ground_of
+from ...core.keys.hermite import Spline
+from ...core.keys.key_reduction import reduce_keys
+from ...core.keys.rig import Rig, RigPose
+from ...core.keys.tolerances import NEAR_FLOOR_M, foot_rows, point_tolerances
 from ...core.progress import Job, Progress, within
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import read_body, read_bones
@@ -133,11 +129,13 @@ def finish_motion(
         for held, bone in zip(values, rig.bones, strict=True):
             if bone.name in where and bone.mode == "QUATERNION":
                 held[:, :4] = unit_quaternions(held[:, :4])
-    floor_m = _floor_m(body, planted, time_s) if options.stray_m is not None else None
+    floor_m = None
+    if planted.contacts:
+        floor_m = ground_of(body, body.pose(planted.posture), time_s, planted.contacts).height_m
     if options.tolerance_m is None:
         notes += _floor_notes(rig, rig.pose(values), floor_m, frames)
         return Finished(body, rig, frames, values, 0.0, planted.contacts, notes)
-    near = None if floor_m is None else _sole_heights_m(rig, rig.pose(values)) - floor_m < NEAR_GROUND_M
+    near = None if floor_m is None else _sole_heights_m(rig, rig.pose(values)) - floor_m < NEAR_FLOOR_M
     allowed = point_tolerances(rig, len(frames), options.tolerance_m, planted.contacts, near)
     reducing = reduce_keys(rig, frames, values, allowed, exact, options.whole_pose)
     reduced = yield from within("Finding the keys", reducing, PLANTED, 1.0)
@@ -146,18 +144,9 @@ def finish_motion(
     return Finished(body, rig, frames, reduced.splines, reduced.furthest_m, planted.contacts, notes)
 
 
-def _floor_m(body: Body, planted: PlantedFeet, time_s: Array) -> Array | None:
-    """(F, 2) height of the floor under each foot by its rests [m]; None where no foot stands."""
-    standing = on_ground(planted.contacts)
-    if not standing:
-        return None
-    shins = Shins.of(body, body.pose(planted.posture))
-    return find_ground(shins, Soles.of(body), time_s, standing).floor_m
-
-
 def _sole_heights_m(rig: Rig, shown: RigPose) -> Array:
     """(F, 2) height of the lower of heel and tip of each foot [m]; infinite without bones of their own."""
-    heights = [shown.points[:, sole_rows(rig, side), 2] for side in SIDES]
+    heights = [shown.points[:, foot_rows(rig, side)[1:], 2] for side in SIDES]
     return np.stack([own.min(axis=1, initial=np.inf) for own in heights], axis=1)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
-from ...core.finish.rig import channel_count
+from ...core.keys.rig import channel_count
 from .actions import channelbag_for, curves_of
 from .armature import BoneModel, bones_at_rest
 from .fcurves import posture_columns

@@ -14,7 +14,7 @@ from ...core.body.rotations import continuous_quaternions
 from ...core.body.skeleton import SIDES
 from ...core.errors import InputError
 from ...core.files.fields import listed
-from ...core.finish.rig import Rig, RigBone, RigPose, channel_count
+from ...core.keys.rig import Rig, RigBone, RigPose, channel_count
 from ...core.numerics.vectors import runs
 from ...core.progress import run, within
 from ...core.take.motion import Motion

@@ -28,6 +28,8 @@ ROOMS = (
     ("core.take",),
     ("core.estimate",),
     ("core.posing",),
+    ("core.feet",),
+    ("core.keys",),
     ("core.finish", "core.review"),
     ("core.retarget",),
     ("core.session",),

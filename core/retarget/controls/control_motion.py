@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from ...arrays import Array
-from ...finish.hermite import Spline
+from ...keys.hermite import Spline
 from .control_channels import Control, ControlChannels
 from .control_plan import IN_FK, ControlKind
 from .point_tolerances import HeldPoint

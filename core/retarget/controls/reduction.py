@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ...finish.key_reduction import reduce_keys
-from ...finish.rig import NO_TURN, Rig, RigBone
+from ...keys.key_reduction import reduce_keys
+from ...keys.rig import NO_TURN, Rig, RigBone
 from ...progress import Part, scaled
 from .control_channels import Control, ControlChannels, control_channels
 from .control_motion import ChannelValues, ControlMotion, KeyedControl

@@ -17,8 +17,8 @@ from ...body import rotations
 from ...body.body_volume import segment_piece
 from ...body.kinematics import SegmentMotion
 from ...body.skeleton import SIDES
+from ...feet.fading import ease
 from ...numerics.vectors import unit
-from .hips import ease
 from .rest_body import RestBody
 from .stage import Stage
 from .two_bone import smallest_rotation

@@ -17,10 +17,11 @@ from ...body.body_volume import sole_offsets
 from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
-from ...finish.contacts import RELEASE_SPEED_M_S, Contact
-from ...finish.foot_ground import smooth_above
-from .foot_shape import FootShape, Ground, is_rigid
-from .hips import Hold, ease, faded, speeds, straightness
+from ...feet.contacts import RELEASE_SPEED_M_S, Contact, speeds
+from ...feet.fading import Hold, ease, faded, smooth_above
+from ...feet.ground import Ground
+from .foot_shape import FootShape, is_rigid
+from .hips import straightness
 from .stage import Stage
 from .two_bone import LimbPose, smallest_rotation
 
@@ -82,9 +83,9 @@ def plan_foot(
     ground_m = stage.heights(ground.height_m[:, point]) + lift_m
     turn = _rolled(source, stage, ground, shape, side, ankle[:, 2] - ground_m)
     rests = [rest for rest in ground.rests if rest.point == point]
-    stands = [_standing(turn[rest.first : rest.last + 1]) for rest in rests]
+    stands = [_standing(turn[rest.frames]) for rest in rests]
     turning = [
-        Hold(rest.first, rotations.logarithm(stand @ np.swapaxes(turn[rest.first : rest.last + 1], -1, -2)))
+        Hold(rest.first, rotations.logarithm(stand @ np.swapaxes(turn[rest.frames], -1, -2)))
         for rest, stand in zip(rests, stands, strict=True)
     ]
     turn = np.asarray(rotations.exponential(faded(turning, time_s)) @ turn)

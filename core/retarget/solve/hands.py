@@ -14,12 +14,13 @@ from ...body import rotations
 from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
+from ...feet.contacts import speeds
+from ...feet.fading import ease, smoothed
+from ...feet.ground import Ground
 from ...numerics.vectors import unit
 from ..character import LONG_BONES
 from ..character_motion import HandGoal
 from .body_frames import distances_m, in_segment, part_shapes, places_by_part
-from .foot_shape import Ground
-from .hips import ease, smoothed, speeds
 from .rest_body import RestBody
 from .stage import Stage
 from .two_bone import LimbPose, reach_for, smallest_rotation, stretched_m

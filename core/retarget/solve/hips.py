@@ -1,106 +1,13 @@
-"""Corrections that fade, signals over time, and what moves the hips and the way over the ground."""
+"""What moves the hips: legs that stand and must reach, and the way over the ground."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from ...arrays import Array, BoolArray
 from ...body.posture import yaw_rotation
-from ...finish.foot_ground import smooth_above, smooth_step
-from ...numerics.vectors import columns_at, gaussian
+from ...feet.fading import ease, smooth_above, smoothed
 from .two_bone import STRAIGHTEST, LimbPose
-
-FADE_S = 0.2  # time in which a correction fades on either side of a hold
-
-
-@dataclass(frozen=True, eq=False)
-class Hold:
-    """A stretch of frames with a correction."""
-
-    first: int  # its first frame, from 0
-    offset: Array  # (N, 3) the correction in each of its N frames
-
-    @property
-    def last(self) -> int:
-        """Its last frame, included."""
-        return self.first + len(self.offset) - 1
-
-
-def faded(holds: Sequence[Hold], time_s: Array) -> Array:
-    """(F, 3) the corrections of holds, fading on either side without a jump in place or speed.
-
-    Holds are in order and do not overlap; two that follow each other closely are joined by one cubic.
-    """
-    offset = np.zeros((len(time_s), 3))
-    for hold in holds:
-        offset[hold.first : hold.last + 1] = hold.offset
-    for before, after in zip([None, *holds], [*holds, None], strict=True):
-        left = -1 if before is None else before.last
-        right = len(time_s) if after is None else after.first
-        if right - left < 2:
-            continue
-        near = before is not None and after is not None and time_s[right] - time_s[left] <= 2.0 * FADE_S
-        between = slice(left + 1, right)
-        if before is not None:
-            end = time_s[right] if near else time_s[left] + FADE_S
-            offset[between] += _fading(before, -1, time_s, between, end)
-        if after is not None:
-            start = time_s[left] if near else time_s[right] - FADE_S
-            offset[between] += _fading(after, 0, time_s, between, start)
-    return offset
-
-
-def _fading(hold: Hold, edge: int, time_s: Array, frames: slice, end: float) -> Array:
-    """A cubic from a hold's first (0) or last (-1) correction and its rate to zero at a time `end`."""
-    times, rate = time_s[hold.first : hold.last + 1], np.zeros(3)
-    if len(times) > 1:
-        one, other = (0, 1) if edge == 0 else (-2, -1)
-        rate = (hold.offset[other] - hold.offset[one]) / (times[other] - times[one])
-    span = end - times[edge]
-    s = np.clip((time_s[frames] - times[edge]) / span, 0.0, 1.0)[:, None]
-    return np.asarray((1.0 - s) ** 2 * ((1.0 + 2.0 * s) * hold.offset[edge] + s * span * rate))
-
-
-# --- Signals over time
-
-
-def ease(value: Array, start: float, end: float) -> Array:
-    """0 up to `start`, 1 from `end` on (or the other way round, where `end` is below), smooth between."""
-    return smooth_step((np.asarray(value) - start) / (end - start))
-
-
-def speeds(path: Array, time_s: Array) -> Array:
-    """(F,) speed along a path (F, 3) [m/s]."""
-    if len(path) < 2:
-        return np.zeros(len(path))
-    return np.asarray(np.linalg.norm(np.gradient(path, time_s, axis=0), axis=-1))
-
-
-def smoothed(values: Array, time_s: Array, deviation_s: float, ends_kept: bool = True) -> Array:
-    """Values (F, ...) smoothed by a Gaussian in time.
-
-    With `ends_kept` the first and last values stay and slopes go on beyond them, as a way's do; else they are
-    as smooth as all others.
-    """
-    if len(values) < 3:
-        return np.array(values)
-    even = np.linspace(time_s[0], time_s[-1], len(time_s))
-    step = max(float(even[1] - even[0]), 1e-6)
-    columns = values.reshape(len(values), -1)
-    sampled = columns_at(even, time_s, columns)
-    reach = min(len(even) - 1, int(np.ceil(4.0 * deviation_s / step)))
-    before, after = sampled[reach:0:-1], sampled[-2 : -reach - 2 : -1]
-    if ends_kept:
-        # Mirrored in value, too, about either end, so that the ends do not lag behind.
-        before, after = 2.0 * sampled[0] - before, 2.0 * sampled[-1] - after
-    extended = np.concatenate([before, sampled, after])
-    filtered = gaussian(extended, deviation_s / step)[reach : reach + len(even)]
-    return columns_at(time_s, even, filtered).reshape(values.shape)
-
-
-# --- Hips
-
 
 LEG_SOFT = 0.988  # share of its length from which a leg resists being stretched
 SINK_S = 0.12  # time over which the hips go down and up again

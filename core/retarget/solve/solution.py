@@ -9,11 +9,12 @@ from ...arrays import Array
 from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
+from ...feet.ground import Ground
 from ..character import LIMBS, joint_roles
 from ..character_motion import FootRest, HandGoal
 from .body_frames import bone_turns, joint_places
 from .feet import FootPath, foot_turns, plan_foot, toe_bends
-from .foot_shape import FootShape, Ground
+from .foot_shape import FootShape
 from .hands import ARM_SOFT, above_floor, floor_goals, hand_goals, reach
 from .hips import LEG_SOFT, lowered_m, needed_drop_m, raised_m
 from .rest_body import RestBody

@@ -15,7 +15,7 @@ from ..character_motion import CharacterMotion, Similarity
 from ..maps.character_map import CharacterMap
 from ..options import Placement, RetargetOptions, RootMotion
 from .body_frames import rest_alignment
-from .foot_shape import find_ground, foot_shape, rest_floor_m, sole_points
+from .foot_shape import foot_shape, performer_ground, rest_floor_m, sole_points
 from .hips import root_poses, smooth_headings_rad, smooth_way
 from .rest_body import RestBody, rest_notes
 from .solution import Solution
@@ -43,7 +43,7 @@ def solve_motion(
     floor_m = rest_floor_m(body)
     shapes = {side: foot_shape(body, side, floor_m) for side in SIDES}
     yield Progress("Finding where the feet rest", 0.1)
-    ground = find_ground(source)
+    ground = performer_ground(source)
     stand = np.array([*body.hip_joints[:2], floor_m])
     ankle_m = float(np.mean([shape.ankle_m for shape in shapes.values()]))
     stage = find_stage(source, ground, stand, body.leg_m, ankle_m)

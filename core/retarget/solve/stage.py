@@ -7,8 +7,8 @@ import numpy as np
 from ...arrays import Array
 from ...body.kinematics import SegmentMotion
 from ...body.posture import turn_headings_rad, yaw_rotation
+from ...feet.ground import Ground
 from ..character_motion import Similarity
-from .foot_shape import Ground
 
 
 @dataclass(frozen=True, eq=False)

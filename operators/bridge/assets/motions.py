@@ -7,8 +7,8 @@ from pathlib import Path
 import bpy
 
 from ....core.errors import InputError
+from ....core.feet.natural_extremities import natural_extremities
 from ....core.files.paths import real_path
-from ....core.finish.natural_extremities import natural_extremities
 from ....core.report.stick_figure import thumbnail
 from ....core.take.motion import Motion
 from ..actions import action_digest, assign_action, channelbag_for

@@ -7,7 +7,7 @@ import numpy as np
 
 from ....core.arrays import Array
 from ....core.errors import InputError
-from ....core.finish.hermite import Spline
+from ....core.keys.hermite import Spline
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, values_of
 from ....core.retarget.controls.control_plan import ControlKind
 from ..rotation_modes import bone_path, rotation_path

@@ -8,7 +8,7 @@ import bpy
 from ....core.arrays import Array
 from ....core.body.kinematics import SegmentMotion
 from ....core.errors import InputError
-from ....core.finish.foot_ground import IN_FLOOR_M, floor_notes
+from ....core.feet.ground import IN_FLOOR_M, floor_notes
 from ....core.progress import Job, Progress, run, stretch, within
 from ....core.retarget.character import Character
 from ....core.retarget.character_motion import CharacterMotion, Similarity, find_stance

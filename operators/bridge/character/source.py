@@ -9,9 +9,9 @@ from ....core.arrays import Array
 from ....core.body.human import HUMAN
 from ....core.body.kinematics import Extremities, SegmentMotion, extremity_names, segment_motion
 from ....core.errors import InputError
+from ....core.feet.natural_extremities import natural_extremities
 from ....core.files.paths import real_path
-from ....core.finish.natural_extremities import natural_extremities
-from ....core.finish.rig import Rig, RigPose
+from ....core.keys.rig import Rig, RigPose
 from ....core.progress import Job, Progress, within
 from ....core.take.motion import Motion
 from ..actions import existing_channelbag

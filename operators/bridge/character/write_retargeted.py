@@ -10,7 +10,7 @@ from mathutils import Quaternion
 
 from ....core.arrays import Array
 from ....core.errors import InputError
-from ....core.finish.hermite import Spline
+from ....core.keys.hermite import Spline
 from ....core.retarget.character_motion import Similarity
 from ....core.retarget.controls.control_motion import KeyedControl, values_of
 from ..actions import channelbag_for

@@ -11,10 +11,10 @@ import numpy as np
 
 from ....core.body.kinematics import SegmentMotion, segment_motion
 from ....core.errors import ConversionError, InputError, KeymarkError, describe_unexpected
+from ....core.feet.natural_extremities import natural_extremities
 from ....core.files.digest import content_digest
 from ....core.files.fields import listed
 from ....core.files.paths import regular_file_size
-from ....core.finish.natural_extremities import natural_extremities
 from ....core.progress import Job, run
 from ....core.report.canvas import write_png
 from ....core.retarget.character import LIMBS, Character

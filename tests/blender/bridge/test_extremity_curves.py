@@ -6,7 +6,7 @@ import pytest
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body, extremity_names, segment_motion
 from keymark.core.body.posture import Posture
-from keymark.core.finish.natural_extremities import natural_extremities
+from keymark.core.feet.natural_extremities import natural_extremities
 from keymark.core.progress import run
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import assign_action, existing_channelbag

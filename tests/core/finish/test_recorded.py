@@ -5,14 +5,15 @@ from _elsewhere import RATE, seen_by_network
 from _performances import performance, stepping
 from _recorded import assert_recorded
 from keymark.core.body.posture import turned_and_shifted
-from keymark.core.finish.contacts import find_contacts
+from keymark.core.feet.contacts import find_contacts
+from keymark.core.feet.fading import smooth_above
+from keymark.core.feet.natural_extremities import natural_extremities
+from keymark.core.feet.place_by_feet import place_by_feet
+from keymark.core.feet.planted_feet import plant_feet
+from keymark.core.feet.soles import Shins, Soles, ground_of
 from keymark.core.finish.exchanged_sides import exchanged_frames, opposite_points
-from keymark.core.finish.foot_ground import Shins, Soles, find_ground, on_ground, smooth_above
-from keymark.core.finish.hermite import fit_keys, refit
 from keymark.core.finish.mend_motion import MendOptions, mend_motion
-from keymark.core.finish.natural_extremities import natural_extremities
-from keymark.core.finish.place_by_feet import place_by_feet
-from keymark.core.finish.planted_feet import plant_feet
+from keymark.core.keys.hermite import fit_keys, refit
 from keymark.core.progress import run
 
 FRAMES = 80
@@ -40,8 +41,8 @@ def test_the_ground() -> None:
     ankles = [BODY.skeleton.point_names.index(f"ankle.{side}") for side in "LR"]
     contacts = find_contacts(POINTS[:, ankles], TIME_S)
     shins, soles = Shins.of(BODY, BODY.pose(STEPS)), Soles.of(BODY)
-    ground = find_ground(shins, soles, TIME_S, on_ground(contacts))
-    assert_recorded("finish ground", ground.floor_m, 100.0 * soles.clearance_m(shins))
+    ground = ground_of(BODY, BODY.pose(STEPS), TIME_S, contacts)
+    assert_recorded("ground", ground.height_m, 100.0 * soles.clearance_m(shins))
     needed = np.maximum(np.sin(np.arange(FRAMES) / 5.0), 0.0)
     assert_recorded("smooth above", smooth_above(needed, TIME_S, 0.2))
 

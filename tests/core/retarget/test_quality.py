@@ -3,7 +3,7 @@
 import numpy as np
 from _characters import plain_character, plain_map
 from _performances import joints, quality, soles, solved, source_joints, steps
-from keymark.core.finish.foot_ground import floor_notes
+from keymark.core.feet.ground import floor_notes
 from keymark.core.retarget.character_motion import FootRest
 from keymark.core.retarget.quality import (
     Quality,

@@ -12,7 +12,7 @@ from _varied import nameless, varied
 from keymark.core.arrays import Array
 from keymark.core.body.posture import turned_and_shifted
 from keymark.core.body.rotations import hinge
-from keymark.core.finish.hermite import Spline
+from keymark.core.keys.hermite import Spline
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.character_motion import find_stance
@@ -22,7 +22,7 @@ from keymark.core.retarget.controls.reduction import reduce_controls
 from keymark.core.retarget.options import LimbKeys, RetargetOptions
 from keymark.core.retarget.quality import direction_errors_deg
 from keymark.core.retarget.recognition.recognize import recognize
-from keymark.core.retarget.solve.foot_shape import find_ground
+from keymark.core.retarget.solve.foot_shape import performer_ground
 
 FRAMES = 60
 UP = np.array([0.0, 0.0, 1.0])
@@ -53,7 +53,7 @@ def test_a_performance_on_a_character(shape: str) -> None:
         assert_recorded(f"solved {shape} {number}", *(motion.poses[name] for name in sorted(motion.poses)))
         figures = astuple(quality(character, known, source, motion))
         assert_recorded(f"quality {shape} {number}", [one for one in figures if isinstance(one, float)])
-        ground = find_ground(source)
+        ground = performer_ground(source)
         assert_recorded(f"ground {number}", ground.height_m, [ground.ankle_m])
 
 

@@ -11,7 +11,7 @@ from _characters import plain_character, plain_map
 from _performances import performance, stepping
 from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.errors import InputError
-from keymark.core.finish.hermite import Spline
+from keymark.core.keys.hermite import Spline
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.maps.character_map import CharacterMap

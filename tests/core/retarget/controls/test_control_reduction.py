@@ -9,8 +9,8 @@ from _characters import plain_character, plain_map
 from _controls import control_motion, quaternion_values, with_ik
 from _performances import performance, stepping
 from keymark.core.body.kinematics import SegmentMotion
-from keymark.core.finish.hermite import Spline
-from keymark.core.finish.rig import rotation_matrices
+from keymark.core.keys.hermite import Spline
+from keymark.core.keys.rig import rotation_matrices
 from keymark.core.progress import run
 from keymark.core.retarget.character_motion import CharacterMotion, Similarity
 from keymark.core.retarget.controls.control_channels import (

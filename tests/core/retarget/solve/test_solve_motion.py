@@ -20,7 +20,7 @@ from keymark.core.arrays import Array
 from keymark.core.body.kinematics import RIGID, segment_motion
 from keymark.core.body.posture import Posture, yaw_rotation
 from keymark.core.errors import InputError
-from keymark.core.finish.natural_extremities import natural_extremities
+from keymark.core.feet.natural_extremities import natural_extremities
 from keymark.core.retarget.character import LONG_BONES, Character
 from keymark.core.retarget.character_motion import Similarity
 from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones

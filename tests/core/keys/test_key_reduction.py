@@ -5,9 +5,9 @@ import pytest
 from _rig import quaternion_rig, rig_values
 from _scene import BODY, exercise
 from keymark.core.body.posture import Posture
-from keymark.core.finish.hermite import fit_keys
-from keymark.core.finish.key_reduction import ReducedKeys, reduce_keys
-from keymark.core.finish.rig import NO_TURN, Rig, RigBone, channel_count, rotation_matrices
+from keymark.core.keys.hermite import fit_keys
+from keymark.core.keys.key_reduction import ReducedKeys, reduce_keys
+from keymark.core.keys.rig import NO_TURN, Rig, RigBone, channel_count, rotation_matrices
 from keymark.core.progress import run
 from scipy.spatial.transform import Rotation
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from keymark.core.finish.hermite import Spline, fit_keys, refit
+from keymark.core.keys.hermite import Spline, fit_keys, refit
 
 TIMES = np.concatenate([np.arange(20.0), 20.0 + 0.5 * np.arange(20)])
 NONE = np.zeros(0, dtype=np.intp)

@@ -4,8 +4,9 @@ import numpy as np
 from _performances import performance, stepping, steps
 from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.body.posture import Posture
-from keymark.core.finish.contacts import Contact
-from keymark.core.retarget.solve.foot_shape import CHANGE_S, Ground, _under, find_ground
+from keymark.core.feet.contacts import Contact
+from keymark.core.feet.ground import CHANGE_S, Ground, _under
+from keymark.core.retarget.solve.foot_shape import performer_ground
 
 
 def raised(*heights_m: float) -> SegmentMotion:
@@ -26,14 +27,14 @@ def levels_m(ground: Ground) -> list[float]:
 
 
 def test_rests_on_the_scenes_ground_are_on_it() -> None:
-    ground = find_ground(steps())
+    ground = performer_ground(steps())
     assert set(levels_m(ground)) == {0.0}
     assert not ground.height_m.any()
     assert 0.06 < ground.ankle_m < 0.09
 
 
 def test_steps_keep_their_heights() -> None:
-    ground = find_ground(raised(0.0, 0.2))
+    ground = performer_ground(raised(0.0, 0.2))
     levels = np.unique(np.round(levels_m(ground), 6))
     assert len(levels) == 2 and levels[0] == 0.0
     assert abs(levels[1] - 0.2) < 0.02
@@ -41,12 +42,12 @@ def test_steps_keep_their_heights() -> None:
 
 
 def test_noise_is_leveled() -> None:
-    ground = find_ground(raised(0.5, 0.51))
+    ground = performer_ground(raised(0.5, 0.51))
     assert len(set(levels_m(ground))) == 1
 
 
 def test_a_slope_is_not_leveled() -> None:
-    ground = find_ground(raised(*np.arange(1.0, 1.12, 0.02)))
+    ground = performer_ground(raised(*np.arange(1.0, 1.12, 0.02)))
     assert np.ptp(levels_m(ground)) > 0.08
 
 
@@ -54,7 +55,7 @@ def test_without_rests_the_lowest_feet_tell() -> None:
     body, posture = stepping()
     sliding = posture.translation + np.linspace([0.0, 0.0, 0.3], [9.0, 0.0, 0.3], posture.batch[0])
     source = performance(body, Posture(posture.skeleton, sliding, posture.rotations, posture.angles))
-    ground = find_ground(source)
+    ground = performer_ground(source)
     assert ground.rests == ()
     assert abs(ground.height_m[0, 0] - 0.3) < 0.02
 
@@ -62,11 +63,11 @@ def test_without_rests_the_lowest_feet_tell() -> None:
 def test_the_ground_under_a_foot_changes_just_before_it_steps_up_and_after_it_steps_down() -> None:
     rests = tuple(Contact(0, first, first + 10, np.zeros(3)) for first in (0, 30, 60))
     time_s = np.arange(71) / 30.0
-    height_m = _under(0, rests, [0.0, 0.2, -0.1], time_s)
+    height_m = _under(0, rests, np.array([0.0, 0.2, -0.1]), time_s)
     change, whole = int(np.ceil(30.0 * CHANGE_S)), int(30.0 * CHANGE_S)
     np.testing.assert_allclose(height_m[: 30 - change + 1], 0.0, atol=1e-12)
     np.testing.assert_allclose(height_m[30:41], 0.2)
     np.testing.assert_allclose(height_m[40 + change :], -0.1)
     assert (np.diff(height_m[30 - whole : 31]) > 0.0).all()
     assert (np.diff(height_m[40 : 41 + whole]) < 0.0).all()
-    np.testing.assert_array_equal(_under(1, rests, [0.0, 0.2, -0.1], time_s), height_m)
+    np.testing.assert_array_equal(_under(1, rests, np.array([0.0, 0.2, -0.1]), time_s), height_m)

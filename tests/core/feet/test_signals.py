@@ -1,7 +1,7 @@
 """Signals over time: corrections that fade, smoothing that keeps ends, drops that suffice."""
 
 import numpy as np
-from keymark.core.retarget.solve.hips import FADE_S, Hold, faded, smooth_above, smoothed
+from keymark.core.feet.fading import FADE_S, Hold, faded, smooth_above, smoothed
 
 TIME_S = np.arange(120) / 30.0
 

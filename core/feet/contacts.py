@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, BoolArray
+from ..numerics.vectors import runs
 
 RELEASE_SPEED_M_S = 0.25  # below this a foot may rest; once it must be slower than half of it
 NEIGHBORHOOD_S = 1.0
@@ -20,27 +21,34 @@ class Contact:
     last: int  # its last frame, included
     place: Array  # (3,) its place [m]
 
+    @property
+    def frames(self) -> slice:
+        """Its frames."""
+        return slice(self.first, self.last + 1)
+
 
 def find_contacts(places: Array, time_s: Array, stray_m: float = STRAY_M) -> tuple[Contact, ...]:
     """Find the contacts of points (F, N, 3) [m], in order of point and frame.
 
     No floor is assumed: a foot may rest on a step or a beam. One that sways or slides farther than it may
-    stray does not rest. A rest on a step begins when the point comes there, though its way there still tells
-    that it is high.
+    stray does not rest, nor one that is held still high above the other. A rest on a step begins when the
+    point comes there, though its way there still tells that it is high.
     """
     if len(places) < 3:
         return ()
-    speed = np.linalg.norm(np.gradient(places, time_s, axis=0), axis=-1)
+    speed = speeds(places, time_s)
     found: list[Contact] = []
     for point in range(places.shape[1]):
         path, own = places[:, point], speed[:, point]
         # On stairs a foot that carries the body may be high, while the other one is faster than this.
         carries = np.delete(speed, point, axis=1).max(axis=1, initial=0.0) > 0.5
-        may_rest = carries | _is_low(path, time_s)
+        may_rest = carries | (over_lowest(path[:, 2], time_s) < 0.05)
         free = 0
-        for run in _slow_runs(own, may_rest):
-            first, last = _longest_rest(path, stray_m, *run)
-            lasted, whole = time_s[last] - time_s[first], time_s[run[1]] - time_s[run[0]]
+        for start, stop in runs((own < RELEASE_SPEED_M_S) & may_rest):
+            if own[start:stop].min() >= 0.12:
+                continue
+            first, last = _longest_rest(path, stray_m, start, stop - 1)
+            lasted, whole = time_s[last] - time_s[first], time_s[stop - 1] - time_s[start]
             # Shortest rest; shorter ones are turning points of a moving foot.
             # Least share of a slow run that a rest takes; a foot that is slow but does not stay slides.
             if lasted >= max(0.2, 0.6 * whole):
@@ -49,15 +57,27 @@ def find_contacts(places: Array, time_s: Array, stray_m: float = STRAY_M) -> tup
                 rest = _widened(~may_rest & near & (own < RELEASE_SPEED_M_S), first, last, free)
                 found.append(Contact(point, *rest, place))
                 free = rest[1] + 1
-    return tuple(found)
+    return tuple(contact for contact in found if not any(_is_over(contact, other) for other in found))
 
 
-def _is_low(path: Array, time_s: Array) -> BoolArray:
-    """(F,) whether a point is near its own lowest."""
-    low = np.array(
-        [path[np.abs(time_s - now) <= NEIGHBORHOOD_S, 2].min() for now in time_s], dtype=np.float64
-    )
-    return np.asarray(path[:, 2] - low < 0.05)
+def speeds(paths: Array, time_s: Array) -> Array:
+    """(F, ...) speed along paths (F, ..., 3) [m/s]."""
+    if len(paths) < 2:
+        return np.zeros(paths.shape[:-1])
+    return np.asarray(np.linalg.norm(np.gradient(paths, time_s, axis=0), axis=-1))
+
+
+def over_lowest(height: Array, time_s: Array) -> Array:
+    """(F,) how much higher a point is than where it is lowest within a second."""
+    low = [height[np.abs(time_s - now) <= NEIGHBORHOOD_S].min() for now in time_s]
+    return height - np.array(low, dtype=np.float64)
+
+
+def _is_over(contact: Contact, other: Contact) -> bool:
+    """Whether a foot is held in the air: high over another one that rests meanwhile."""
+    shared = min(contact.last, other.last) - max(contact.first, other.first)
+    meanwhile = other.point != contact.point and 2 * shared > contact.last - contact.first
+    return meanwhile and bool(contact.place[2] - other.place[2] > 0.3)
 
 
 def _widened(stays: BoolArray, first: int, last: int, free: int) -> tuple[int, int]:
@@ -69,25 +89,17 @@ def _widened(stays: BoolArray, first: int, last: int, free: int) -> tuple[int, i
     return first, last
 
 
-def _slow_runs(speed: Array, may_rest: BoolArray) -> list[tuple[int, int]]:
-    """Runs of frames (first, last) that stay below the release speed and somewhere rest."""
-    slow = (speed < RELEASE_SPEED_M_S) & may_rest
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], slow.astype(np.intp), [0]])))
-    runs = zip(edges[::2], edges[1::2] - 1, strict=True)
-    return [(int(a), int(b)) for a, b in runs if speed[a : b + 1].min() < 0.12]
-
-
 def _longest_rest(path: Array, stray_m: float, first: int, last: int) -> tuple[int, int]:
     """The longest part of a run that stays near its own mean place."""
     longest = (first, first)
     start = first
     for stop in range(first + 1, last + 1):
-        while not _stays(path[start : stop + 1], stray_m):
+        while _farthest(path[start : stop + 1]) > stray_m:
             start += 1
         if stop - start > longest[1] - longest[0]:
             longest = (start, stop)
     return longest
 
 
-def _stays(path: Array, stray_m: float) -> bool:
-    return bool((np.linalg.norm(path - path.mean(axis=0), axis=-1) <= stray_m).all())
+def _farthest(path: Array) -> float:
+    return float(np.linalg.norm(path - path.mean(axis=0), axis=-1).max())

@@ -8,14 +8,14 @@ from keymark.core.body.kinematics import RIGID, Extremities, segment_ends
 from keymark.core.body.mirror import mirrored, mirrored_actor
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import logarithm
-from keymark.core.finish.foot_ground import TOES_DOWN_RAD, TOES_UP_RAD
-from keymark.core.finish.natural_extremities import (
+from keymark.core.feet.natural_extremities import (
     CURL_RAD,
     DROOP_RAD,
     HANGING_RAD,
     THICKNESS_M,
     natural_extremities,
 )
+from keymark.core.feet.soles import TOES_DOWN_RAD, TOES_UP_RAD
 
 FPS = 30.0
 NAMES = BODY.skeleton.dof_names

@@ -16,38 +16,46 @@ from ..body.posture import Posture
 from ..body.rotations import exponential, hinge
 from ..body.skeleton import SIDES
 from ..numerics.vectors import gaussian, usual_step
-from .contacts import Contact, find_contacts
-from .foot_ground import FootGround, Shins, Soles, find_ground, on_ground, smooth_step
+from .contacts import Contact, find_contacts, speeds
+from .fading import ease
+from .ground import Ground
+from .soles import Shins, Soles, ground_of
 
 HANGING_RAD = np.radians(20.0)  # plantarflexion of a foot that hangs free, well above the ground
-HANGING_FROM_M, HANGING_AT_M = 0.15, 0.5  # heights of the sole between which a foot begins to hang
-STANDS_M_S, SWINGS_M_S = 1.0, 2.5  # ankle speeds that need no toe clearance, and all of it
-STILL_M_S, LOW_M = 0.2, 0.04  # where a foot that sways or slides is held flat by half
+HANGING_M = (0.15, 0.5)  # heights of the sole between which a foot begins to hang
 SOLE_OUT_RAD, SOLE_IN_RAD = np.radians(20.0), np.radians(35.0)  # eversion, inversion (AAOS 1965)
-LEANING_RAD, LYING_RAD = np.radians(35.0), np.radians(60.0)  # leans between which the ground lets go
+LEANING_RAD = np.radians([35.0, 60.0])
 FREE_HEADING_RAD = np.radians(25.0)  # a resting foot keeps its heading up to this turn of the shin
 
 
-def foot_turns(
-    shins: Shins, soles: Soles, ground: FootGround, time_s: Array, contacts: Sequence[Contact]
-) -> dict[str, Array]:
-    """(F, 3, 3) turn of each foot in its shin's frame, by name of segment; contacts are the ankles' rests."""
-    upright = _upright(shins)
-    height = shins.ankle[..., 2] - ground.height_m
+def foot_turns(shins: Shins, soles: Soles, ground: Ground, time_s: Array) -> dict[str, Array]:
+    """(F, 3, 3) turn of each foot in its shin's frame, by name of segment."""
+    # Leans between which the ground lets go of feet whose shins lie on their sides.
+    upright = 1.0 - ease(np.abs(shins.roll), *LEANING_RAD)
+    flat, on_toes = _resting(ground, time_s)
+    beneath = shins.ankle[..., 2] - soles.clearance_m(shins)
+    # A rest's own height is that of its ankle in every frame: what the ankle errs by, the ground has.
+    under = np.minimum((1.0 - flat) * ground.height_m + flat * beneath, beneath)
+    height = shins.ankle[..., 2] - under
     above = height - soles.flat_m
-    speed = _speed(shins.ankle, time_s)
+    speed = speeds(shins.ankle, time_s)
     # Height above a flat foot's at which its sole is no longer held level across.
-    near = np.maximum(ground.resting, 1.0 - smooth_step(above / 0.1))
-    leveling = -upright * near * _within_range(shins.roll)
-    swing = smooth_step((speed - STANDS_M_S) / (SWINGS_M_S - STANDS_M_S))
-    # Least clearance of the toes in the swing of a step (Winter 1992, *Physical Therapy* 72).
-    lifted = np.maximum(height - 0.013 * swing, 0.0)
-    pitch = soles.above_ground(
-        _free_pitch(shins, soles, ground, height), lifted, np.cos(shins.roll + leveling), shins
-    )
-    standing = np.maximum(ground.resting, (1.0 - ground.on_toes) * _still(speed, above))
+    near = np.maximum(flat, 1.0 - ease(above, 0.0, 0.1))
+    # A positive roll lowers the left foot's outer edge; countering it turns the sole outward.
+    out = np.array([1.0, -1.0])
+    leveling = -upright * near * out * np.clip(out * shins.roll, -SOLE_IN_RAD, SOLE_OUT_RAD)
+    # Least clearance of the toes in the swing of a step (Winter 1992, *Physical Therapy* 72), at ankle speeds
+    # that need none of it and all of it.
+    lifted = np.maximum(height - 0.013 * ease(speed, 1.0, 2.5), 0.0)
+    free = shins.pitch + HANGING_RAD * ease(height - soles.flat_m, *HANGING_M)
+    free += on_toes * np.maximum(soles.on_toes(height) - free, 0.0)
+    free = np.clip(free, shins.lowest_pitch, shins.highest_pitch)
+    pitch = soles.above_ground(free, lifted, np.cos(shins.roll + leveling), shins)
+    # A foot that sways or slides is held flat by half at this speed, or at this height.
+    still = 1.0 / (1.0 + (speed / 0.2) ** 4) / (1.0 + (above / 0.04) ** 4)
+    standing = np.maximum(flat, (1.0 - on_toes) * still)
     pitch += standing * upright * (np.clip(0.0, shins.lowest_pitch, shins.highest_pitch) - pitch)
-    turned = upright * _held_heading(shins, contacts, time_s)
+    turned = upright * _held_heading(shins, ground.rests, time_s)
     steady = _steadied(np.stack([pitch - shins.pitch, leveling, turned], axis=1), time_s)
     flexion, leveling, turned = np.moveaxis(steady, 1, 0)
     level = np.cos(shins.roll + leveling)
@@ -62,47 +70,24 @@ def feet_on_floor(shins: Shins, soles: Soles, floor_m: float) -> dict[str, Array
     return _by_side(shins, pitch, nothing, nothing)
 
 
-def _upright(shins: Shins) -> Array:
-    """(F, 2) 1 for shins that stand, 0 for those that lie on their sides."""
-    return 1.0 - smooth_step((np.abs(shins.roll) - LEANING_RAD) / (LYING_RAD - LEANING_RAD))
-
-
-def _free_pitch(shins: Shins, soles: Soles, ground: FootGround, height: Array) -> Array:
-    """(F, 2) pitch of feet that no ground is in the way of, within the ankle's range."""
-    above = (height - soles.flat_m - HANGING_FROM_M) / (HANGING_AT_M - HANGING_FROM_M)
-    pitch = shins.pitch + HANGING_RAD * smooth_step(above)
-    pitch += ground.on_toes * np.maximum(soles.on_toes(height) - pitch, 0.0)
-    return np.clip(pitch, shins.lowest_pitch, shins.highest_pitch)
-
-
-def _speed(places: Array, time_s: Array) -> Array:
-    """(F, 2) speed of both ankles [m/s]."""
-    if len(time_s) < 2:
-        return np.zeros(places.shape[:2])
-    return np.asarray(np.linalg.norm(np.gradient(places, time_s, axis=0), axis=-1))
-
-
-def _still(speed: Array, above: Array) -> Array:
-    """(F, 2) how far feet stand by their speed and their height above flat feet's, 0 to 1."""
-    return np.asarray(1.0 / (1.0 + (speed / STILL_M_S) ** 4) / (1.0 + (above / LOW_M) ** 4))
-
-
-def _within_range(roll: Array) -> Array:
-    """(F, 2) the rolls of shins as far as the ankles can counter them."""
-    # A positive roll lowers the left foot's outer edge; countering it turns the sole outward.
-    out = np.array([1.0, -1.0])
-    return np.asarray(out * np.clip(out * roll, -SOLE_IN_RAD, SOLE_OUT_RAD))
+def _resting(ground: Ground, time_s: Array) -> tuple[Array, Array]:
+    """(F, 2) how far each foot rests flat, and how far on its toes, 0 to 1."""
+    flat, on_toes = np.zeros_like(ground.height_m), np.zeros_like(ground.height_m)
+    for rest, tiptoe in zip(ground.rests, ground.on_toes, strict=True):
+        since = np.minimum(time_s - time_s[rest.first], time_s[rest.last] - time_s)[rest.frames]
+        # Time from the beginning of a rest until the foot lies, and from when it begins to roll off.
+        (on_toes if tiptoe else flat)[rest.frames, rest.point] = ease(since, 0.0, 0.1)
+    return flat, on_toes
 
 
 def _held_heading(shins: Shins, contacts: Sequence[Contact], time_s: Array) -> Array:
     """(F, 2) turns about the vertical that keep resting feet's headings."""
     turned, weight = np.zeros_like(shins.heading), np.zeros_like(shins.heading)
     for contact in contacts:
-        foot, rows = contact.point, slice(contact.first, contact.last + 1)
-        heading = np.unwrap(shins.heading[:, foot])
-        middle = 0.5 * (heading[rows].min() + heading[rows].max())
+        foot, heading = contact.point, np.unwrap(shins.heading[:, contact.point])
+        middle = 0.5 * (heading[contact.frames].min() + heading[contact.frames].max())
         apart = np.maximum(time_s[contact.first] - time_s, time_s - time_s[contact.last])
-        near = 1.0 - smooth_step(apart / 0.2)  # time in which a resting foot's heading comes and goes
+        near = 1.0 - ease(apart, 0.0, 0.2)  # time in which a resting foot's heading comes and goes
         turned[:, foot] += near * np.clip(middle - heading, -FREE_HEADING_RAD, FREE_HEADING_RAD)
         weight[:, foot] += near
     # Two rests that follow closely share the time between them.
@@ -207,10 +192,10 @@ def natural_extremities(
 
     `contacts` are rests of the ankles, 0 the left and 1 the right; they are found where not given.
     """
-    pose, soles = body.pose(posture), Soles.of(body)
+    pose = body.pose(posture)
     shins = Shins.of(body, pose)
-    rests = on_ground(find_contacts(shins.ankle, time_s) if contacts is None else contacts)
-    ground = find_ground(shins, soles, time_s, rests)
-    feet = foot_turns(shins, soles, ground, time_s, rests)
-    hands = hand_turns(body, pose, ground.height_m.min(axis=1), time_s)
+    rests = find_contacts(shins.ankle, time_s) if contacts is None else contacts
+    ground = ground_of(body, pose, time_s, rests)
+    feet = foot_turns(shins, Soles.of(body), ground, time_s)
+    hands = hand_turns(body, pose, ground.lowest_m, time_s)
     return Extremities(MappingProxyType({**feet, **hands}))

@@ -1,0 +1,122 @@
+"""Feet that are held where they rest and above the ground on their way."""
+
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array, BoolArray, IndexArray
+from ..body.kinematics import Body, Pose
+from ..body.posture import Posture
+from ..body.skeleton import SIDES
+from ..numerics.block_banded import BlockBanded
+from .contacts import STRAY_M, Contact, find_contacts
+from .fading import Hold, faded
+from .soles import Shins, Soles, ground_of
+
+ANKLE_STD_M = 2e-4  # standard deviation of an ankle from its target
+CHANGE_STD = {"pelvis.location": 0.005, "hip": 0.1, "knee": 0.1, "shin": 0.03}
+"""Standard deviation of the change of each degree of freedom [m, rad]: legs before hips, bends before
+twists."""
+ITERATIONS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class PlantedFeet:
+    """A motion whose resting feet stand still."""
+
+    posture: Posture  # a batch of F postures
+    contacts: tuple[Contact, ...]  # where which ankle rests; points are counted left, right
+
+
+def plant_feet(
+    body: Body, posture: Posture, time_s: Array, stray_m: float = STRAY_M
+) -> Generator[float, None, PlantedFeet]:
+    """Hold resting feet still, by their mean place, and moving ones out of the ground between their rests.
+
+    Postures far from any rest and above the ground are unchanged.
+    """
+    ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
+    pose = body.pose(posture)
+    places = body.points(pose)[:, ankles]
+    contacts = find_contacts(places, time_s, stray_m)
+    yield 0.1
+    if not contacts:
+        return PlantedFeet(posture, ())
+    target = _targets(body, pose, places, contacts, time_s)
+    touched = (target != places).any(axis=(1, 2))
+    dofs = _free_dofs(body)
+    std = np.array([CHANGE_STD[_kind(body.skeleton.dof_names[dof])] for dof in dofs])
+    delta = np.zeros((len(time_s), len(dofs)))
+    planted = posture
+    for number in range(ITERATIONS):
+        step = _gauss_newton_step(body, planted, ankles, target, touched, dofs, std, delta, time_s)
+        delta += step
+        full = np.zeros((len(time_s), body.skeleton.dof_count))
+        full[:, dofs] = delta
+        planted = Posture.where(touched, posture.plus(full), posture)
+        yield 0.1 + 0.9 * (number + 1) / ITERATIONS
+        if np.abs(step).max() < 1e-5:
+            break
+    return PlantedFeet(planted, contacts)
+
+
+def _free_dofs(body: Body) -> IndexArray:
+    """Degrees of freedom that may change: the hips' place and the legs."""
+    names = body.skeleton.dof_names
+    return np.array([i for i, name in enumerate(names) if _kind(name) in CHANGE_STD], dtype=np.intp)
+
+
+def _kind(name: str) -> str:
+    """`hip.L.rotation_x` is of the kind `hip`, `pelvis.location_x` of the kind `pelvis.location`."""
+    first, *_, last = name.split(".")
+    return f"{first}.{last.partition('_')[0]}" if first == "pelvis" else first
+
+
+def _targets(body: Body, pose: Pose, places: Array, contacts: Sequence[Contact], time_s: Array) -> Array:
+    """Target of each ankle (F, 2, 3) from its place: at rest by its contacts, else out of the ground."""
+    target = places.copy()
+    for point in range(len(SIDES)):
+        own = [contact for contact in contacts if contact.point == point]
+        holds = [Hold(contact.first, contact.place - places[contact.frames, point]) for contact in own]
+        target[:, point] += faded(holds, time_s)
+    # Feet that could lie flat are out of the ground; a resting foot is where it rests.
+    lowest = ground_of(body, pose, time_s, contacts).height_m + Soles.of(body).clearance_m(
+        Shins.of(body, pose)
+    )
+    for contact in contacts:
+        lowest[contact.frames, contact.point] = -np.inf
+    target[..., 2] = np.maximum(target[..., 2], lowest)
+    return target
+
+
+def _gauss_newton_step(
+    body: Body,
+    posture: Posture,
+    ankles: list[int],
+    target: Array,
+    touched: BoolArray,
+    dofs: IndexArray,
+    std: Array,
+    delta: Array,
+    time_s: Array,
+) -> Array:
+    """A Gauss-Newton step (F, n) of the changes `delta`."""
+    frames, size = delta.shape
+    pose = body.pose(posture)
+    residual = (body.points(pose)[:, ankles] - target).reshape(frames, -1) / ANKLE_STD_M
+    jacobian = body.points_jacobian(pose)[:, ankles][..., dofs].reshape(frames, -1, size) / ANKLE_STD_M
+    equations = BlockBanded(frames, size)
+    equations.add_rows((jacobian,))
+    gradient = (residual[:, None] @ jacobian)[:, 0]
+    every = slice(None)
+    # Factor of `CHANGE_STD` in frames without a correction.
+    unchanged = (std * np.where(touched, 1.0, 1e-6)[:, None]) ** -2
+    # Changes that change little from frame to frame: knees do not flicker.
+    steady = (std * 2.0 * np.maximum(np.diff(time_s), 1e-3)[:, None]) ** -2
+    prior = BlockBanded(frames, size)
+    prior.add_combination(every, (1.0,), unchanged)
+    prior.add_combination(every, (-1.0, 1.0), steady)
+    equations.add(prior)
+    gradient += prior.multiply(delta)
+    return equations.factorize().solve(-gradient)
