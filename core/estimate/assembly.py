@@ -9,15 +9,16 @@ import numpy as np
 
 from ..arrays import Array
 from ..body.kinematics import Body
+from ..numerics.block_banded import BlockBanded
 from ..prior.frame_prior import REFERENCE_STEP_S, FramePrior
 from ..terms.contact import BalanceTerm, FloorTerm, GroundTerm, StillnessTerm
 from ..terms.depths import DepthHintTerm, DepthTerm, point_depths
 from ..terms.keypoints import LEAST_CONFIDENCE, KeypointModel, KeypointTerm, ObservedKeypoints
-from ..terms.motion import BeliefTerm, LimitTerm, SmoothnessTerm
+from ..terms.motion import LimitTerm, SmoothnessTerm, belief_term
 from ..terms.reference import ReferenceTerm
 from ..terms.regions import ObservedRegions, RegionNoise, RegionTerm
 from ..terms.state import ClipState
-from ..terms.term import QuadraticBuilder, QuadraticTerm, Term
+from ..terms.term import QuadraticTerm, Term
 from .clip_problem import ClipProblem, KeyframeEvidence
 from .keyframe_error import picture_std_m
 from .keypoint_evidence import KeypointEvidence
@@ -97,7 +98,7 @@ def frame_terms(
     repeated = observed[np.zeros(starts, dtype=np.intp)]
     width = np.repeat(width_px, starts, axis=0)
     terms: list[Term] = [
-        BeliefTerm.of(starts, belief.posture.skeleton.dof_count, bias_std),
+        belief_term(starts, belief.posture.skeleton.dof_count, bias_std),
         RegionTerm(model, repeated, noise, width, evidence.distrust, evidence.area_ratio),
         LimitTerm(),
     ]
@@ -138,7 +139,7 @@ def free_frame_terms(
         terms += [GroundTerm(_ankles(body), standing_m), FloorTerm(_ankles(body), standing_m - SHOE_M)]
     if points is not None and evidence.keypoints.model.names:
         terms += _frame_point_terms(evidence.keypoints, points, starts)
-    return BeliefTerm.of(starts, body.skeleton.dof_count, bias_std), terms
+    return belief_term(starts, body.skeleton.dof_count, bias_std), terms
 
 
 def _frame_point_terms(evidence: KeypointEvidence, points: ObservedKeypoints, starts: int) -> list[Term]:
@@ -198,15 +199,13 @@ def _prior_term(clip: ClipProblem, window: Window, step_s: Array) -> QuadraticTe
     inside = (clip.keyframes >= window.first) & (clip.keyframes < window.last)
     dofs, frames = clip.body.skeleton.dof_count, len(width_px)
     size = noise.bias_std(width_px).reshape(frames, -1)
-    builder = QuadraticBuilder(frames, dofs + size.shape[1])
+    matrix = BlockBanded(frames, dofs + size.shape[1])
     posture, bias = slice(0, dofs), slice(dofs, None)
-    builder.add(posture, (1.0,), 20.0)
+    matrix.add_combination(posture, (1.0,), np.array(20.0**-2))
     factor = clip.accelerations
     information = factor.T @ clip.evidence.information[inside] @ factor
-    builder.add_blocks(clip.keyframes[inside] - window.first, information)
+    matrix.diagonal[clip.keyframes[inside] - window.first, :dofs, :dofs] += information
     kept = np.exp(-step_s / noise.bias_time_s)[:, None]
-    builder.add(bias, (-kept, 1.0), size[1:] * np.sqrt(1.0 - kept**2))
-    first = np.full_like(size, np.inf)
-    first[0] = size[0]
-    builder.add(bias, (1.0,), first)
-    return builder.term()
+    matrix.add_combination(bias, (-kept, 1.0), (size[1:] * np.sqrt(1.0 - kept**2)) ** -2.0)
+    matrix.diagonal[0, bias, bias] += np.diag(size[0] ** -2.0)
+    return QuadraticTerm(matrix)

@@ -7,25 +7,24 @@ weight of Geman and McClure's (1987) kernel, (1 + v² / c²)⁻², which falls t
 once for the speed and once for the height.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
-from ..arrays import Array, IndexArray
+from ..arrays import Array
 from ..body.body_volume import sole_places
 from ..body.human import mass_weights
 from ..body.kinematics import Body
 from ..body.skeleton import SIDES
 from ..camera.camera import Camera
-from ..numerics.robust import student_cost, student_weight
 from .state import ClipState
-from .term import NormalEquations
+from .term import NormalEquations, Rows, Term
 
 
 @dataclass(frozen=True, eq=False)
-class StillnessTerm:
+class StillnessTerm(Term):
     """Slow named points stand still from frame to frame."""
 
     camera: Camera
@@ -33,21 +32,19 @@ class StillnessTerm:
     step_s: Array  # (F - 1,) time between frames [s]
     rests: Array | None = None  # (F - 1, points) how far each is known to rest, whatever its speed and height
     release_speed_m_s: float = 0.2  # across the line of sight, c, at which rows count a quarter
-    depth_share: float = 0.3  # how much motion along the line of sight counts to that speed
     release_height_m: float = 0.04  # above the lowest point, at which rows count a quarter
-    std_m: float = 0.003  # how far a standing ankle wanders from frame to frame [m]
-    robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add three rows for each point and pair of frames."""
         if state.frames < 2:
             return
         chosen = list(self.points)
-        places = state.body.points(state.pose)[:, chosen]
         jacobian = state.body.points_jacobian(state.pose)[:, chosen] @ state.tangent_jacobian[:, None]
-        travel = np.diff(places, axis=0)
-        middle = 0.5 * (places[1:] + places[:-1])
-        weight = self._standing(travel, middle, state.frame[1:])[..., None] / self.std_m
+        travel, speed, height = self._moving(state)
+        standing = _kernel(speed) * _kernel(height)
+        if self.rests is not None:
+            standing = np.maximum(standing, HELD * self.rests**4)
+        weight = standing[..., None] / WANDER_M
         rows = len(chosen) * 3
         shape = (state.frames - 1, rows, -1)
         equations.add_rows(
@@ -59,42 +56,35 @@ class StillnessTerm:
     def cost(self, state: ClipState) -> Array:
         """(F,) what it costs the points to move, which is bounded; that of the later frame of each pair."""
         cost = np.zeros(state.frames)
-        if state.frames < 2:
-            return cost
-        places = state.body.points(state.pose)[:, list(self.points)]
-        travel, middle = np.diff(places, axis=0), 0.5 * (places[1:] + places[:-1])
-        speed, height = self._moving(travel, middle, state.frame[1:])
-        farthest = self.release_speed_m_s * self.step_s[:, None] / self.std_m
-        # The integral of a row times its weight, ∫ x (1 + x²)⁻⁴ dx.
-        moved = farthest**2 * (1.0 - (1.0 + speed**2) ** -3.0) / 6.0
-        cost[1:] = (moved * _kernel(height) ** 2).sum(-1)
+        if state.frames > 1:
+            _, speed, height = self._moving(state)
+            farthest = self.release_speed_m_s * self.step_s[:, None] / WANDER_M
+            # The integral of a row times its weight, ∫ x (1 + x²)⁻⁴ dx.
+            moved = farthest**2 * (1.0 - (1.0 + speed**2) ** -3.0) / 6.0
+            cost[1:] = (moved * _kernel(height) ** 2).sum(-1)
         return cost
-
-    def _standing(self, travel: Array, middle: Array, frame: IndexArray) -> Array:
-        """(F - 1, points) how far each point is taken to stand, 0 to 1."""
-        speed, height = self._moving(travel, middle, frame)
-        standing = _kernel(speed) * _kernel(height)
-        return np.asarray(standing if self.rests is None else np.maximum(standing, HELD * self.rests**4))
 
     def resting(self, state: ClipState) -> Array:
         """(F - 1, points) how far each point stays where it is in a state, at whatever height, 0 to 1.
 
         A foot that is held still in the air rests too, and a height is not known to a few centimeters.
         """
-        places = state.body.points(state.pose)[:, list(self.points)]
-        speed, _ = self._moving(np.diff(places, axis=0), 0.5 * (places[1:] + places[:-1]), state.frame[1:])
-        return _kernel(speed)
+        return _kernel(self._moving(state)[1])
 
-    def _moving(self, travel: Array, middle: Array, frame: IndexArray) -> tuple[Array, Array]:
-        """(F - 1, points) speed and height, in those at which rows count a quarter."""
-        sight = self.camera.sight(middle, frame[:, None])
+    def _moving(self, state: ClipState) -> tuple[Array, Array, Array]:
+        """Steps (F - 1, points, 3) [m]; speed and height (F - 1, points), where rows count a quarter in 1."""
+        places = state.body.points(state.pose)[:, list(self.points)]
+        travel, middle = np.diff(places, axis=0), 0.5 * (places[1:] + places[:-1])
+        sight = self.camera.sight(middle, state.frame[1:, None])
         along = np.sum(travel * sight, axis=-1, keepdims=True) * sight
-        counted = travel - (1.0 - self.depth_share) * along
+        counted = travel - (1.0 - DEPTH_SHARE) * along
         speed = np.linalg.norm(counted, axis=-1) / self.step_s[:, None]
         height = middle[..., 2] - middle[..., 2].min(axis=1, keepdims=True)
-        return speed / self.release_speed_m_s, height / self.release_height_m
+        return travel, speed / self.release_speed_m_s, height / self.release_height_m
 
 
+WANDER_M = 0.003  # how far a standing ankle wanders from frame to frame
+DEPTH_SHARE = 0.3  # how much motion along the line of sight counts to a foot's speed
 HELD = 5.0
 """Weight of a foot that is known to rest: 3 mm from frame to frame add up over a rest in which a corrected
 keyframe has it elsewhere. The fourth power leaves out feet of which that is not sure."""
@@ -106,107 +96,66 @@ def _kernel(x: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class FloorTerm:
+class FloorTerm(Term):
     """A one-sided spring on every point below a height: nobody stands in the floor."""
 
     points: tuple[int, ...]  # which of the principal points: the ankles
     least_m: float  # how low they come [m]
-    std_m: float = 0.01  # how exactly a floor is level
-    robust: ClassVar[bool] = False
+    degrees: ClassVar[float | None] = None
 
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add a row for each point, zero above the height."""
-        below = self._below(state)
-        jacobian = state.body.points_jacobian(state.pose)[:, list(self.points), 2] @ state.tangent_jacobian
-        equations.add_rows(below, jacobian * ((below != 0.0) / self.std_m)[..., None])
-
-    def cost(self, state: ClipState) -> Array:
-        """(F,) half the sum of squares."""
-        return np.asarray(0.5 * (self._below(state) ** 2).sum(-1))
-
-    def _below(self, state: ClipState) -> Array:
-        """(F, points) how far each is below [standard deviations], negative; 0 above."""
-        heights = state.body.points(state.pose)[:, list(self.points), 2]
-        return np.asarray(np.minimum(heights - self.least_m, 0.0) / self.std_m)
-
-
-DEGREES = 3.0  # of Student's t: leaps and stairs are forgiven
+    def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
+        """A row for each point below the height, within 1 cm, as exactly as a floor is level."""
+        below = state.body.points(state.pose)[:, list(self.points), 2] - self.least_m
+        by = state.body.points_jacobian(state.pose)[:, list(self.points), 2:] / 0.01 if slopes else None
+        yield Rows(below[..., None] / 0.01, by, below < 0.0)
 
 
 @dataclass(frozen=True, eq=False)
-class GroundTerm:
+class GroundTerm(Term):
     """The height of the lower of some points."""
 
     points: tuple[int, ...]  # which of the principal points: the ankles
     height_m: float | Array  # how high the lower one is while its foot is on the ground; one height or (F,)
     std_m: float = 0.03
-    robust: ClassVar[bool] = True
+    degrees: ClassVar[float | None] = 3.0  # leaps and stairs are forgiven
 
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add one row for each frame."""
-        residual, lower = self._residual(state)
-        jacobian = state.body.points_jacobian(state.pose)[np.arange(state.frames), lower, 2]  # (F, D)
-        weight = np.sqrt(student_weight(residual**2, DEGREES, 1))[:, None]
-        rows = (jacobian[:, None] @ state.tangent_jacobian) / self.std_m
-        equations.add_rows(residual[:, None] * weight, rows * weight[..., None])
-
-    def cost(self, state: ClipState) -> Array:
-        """(F,) negative logarithm of Student's t, up to a constant."""
-        residual, _ = self._residual(state)
-        return student_cost(residual**2, DEGREES, 1)
-
-    def _residual(self, state: ClipState) -> tuple[Array, IndexArray]:
-        """(F,) in standard deviations, and which point it is."""
+    def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
+        """One row for each frame."""
         heights = state.body.points(state.pose)[:, list(self.points), 2]
-        lower = heights.argmin(axis=1)
-        residual = (heights[np.arange(state.frames), lower] - self.height_m) / self.std_m
-        return residual, np.array(self.points)[lower]
+        frame, lower = np.arange(state.frames), np.array(self.points)[heights.argmin(axis=1)]
+        by = state.body.points_jacobian(state.pose)[frame, lower, 2] / self.std_m if slopes else None
+        error = (heights.min(axis=1) - self.height_m) / self.std_m
+        by = None if by is None else by[:, None, None]
+        yield Rows(error[:, None, None], by, np.ones((state.frames, 1), dtype=bool))
 
 
 STEP_M = 0.1  # a foot that is higher above the other than this bears nothing
+BALANCE_STD_M = 0.08  # half of what a foot is long, and what a step under way adds
 
 
 @dataclass(frozen=True, eq=False)
-class BalanceTerm:
+class BalanceTerm(Term):
     """The horizontal way from the place between the feet that is nearest to the center of mass, to that."""
 
     body: Body
-    std_m: float = 0.08  # half of what a foot is long, and what a step under way adds
-    robust: ClassVar[bool] = True
+    degrees: ClassVar[float | None] = 3.0
 
-    @cached_property
-    def _weights(self) -> Array:
-        return mass_weights(self.body.skeleton)
-
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add two rows for each frame."""
-        residual, share, soles = self._residual(state)
-        mass = np.einsum("p,fpid->fid", self._weights, self.body.points_jacobian(state.pose)[..., :2, :])
-        feet = state.pose.places_jacobian(self._feet, soles)[..., :2, :]  # (F, 2, 2, D)
-        jacobian = mass - (share[..., None, None] * feet).sum(axis=1)
-        weight = np.sqrt(student_weight((residual**2).sum(-1), DEGREES, 2))[:, None]
-        rows = (jacobian @ state.tangent_jacobian) / self.std_m
-        equations.add_rows(residual * weight, rows * weight[..., None])
-
-    def cost(self, state: ClipState) -> Array:
-        """(F,) negative logarithm of Student's t, up to a constant."""
-        residual, _, _ = self._residual(state)
-        return student_cost((residual**2).sum(-1), DEGREES, 2)
-
-    @cached_property
-    def _feet(self) -> tuple[int, ...]:
-        names = {segment.name: segment.joint for segment in self.body.skeleton.segments}
-        return tuple(names[f"foot.{side}"] for side in SIDES)
-
-    def _residual(self, state: ClipState) -> tuple[Array, Array, Array]:
-        """(F, 2) in standard deviations, (F, 2) share of each foot in the place, (F, 2, 3) soles' middles."""
-        points = self.body.points(state.pose)
-        mass = np.einsum("p,fpi->fi", self._weights, points[..., :2])
-        soles = sole_places(self.body, state.pose).mean(axis=-2)
+    def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
+        """Two rows for each frame."""
+        weights = mass_weights(self.body.skeleton)
+        mass = np.einsum("p,fpi->fi", weights, self.body.points(state.pose)[..., :2])
+        soles = sole_places(self.body, state.pose).mean(axis=-2)  # (F, 2, 3)
         first, way = soles[:, 0, :2], soles[:, 1, :2] - soles[:, 0, :2]
         along = ((mass - first) * way).sum(-1) / np.maximum((way**2).sum(-1), 1e-9)
         higher = soles[:, 1, 2] - soles[:, 0, 2]
         along = np.where(higher > STEP_M, 0.0, np.where(higher < -STEP_M, 1.0, np.clip(along, 0.0, 1.0)))
-        share = np.stack([1.0 - along, along], axis=-1)
-        place = (share[..., None] * soles[..., :2]).sum(axis=1)
-        return (mass - place) / self.std_m, share, soles
+        share = np.stack([1.0 - along, along], axis=-1)  # of each foot in the place
+        error = mass - (share[..., None] * soles[..., :2]).sum(axis=1)
+        by = None
+        if slopes:
+            joint = {segment.name: segment.joint for segment in self.body.skeleton.segments}
+            joints = [joint[f"foot.{side}"] for side in SIDES]
+            feet = state.pose.places_jacobian(joints, soles)[..., :2, :]
+            by = np.einsum("p,fpid->fid", weights, self.body.points_jacobian(state.pose)[..., :2, :])
+            by = (by - (share[..., None, None] * feet).sum(axis=1))[:, None] / BALANCE_STD_M
+        yield Rows(error[:, None] / BALANCE_STD_M, by, np.ones((state.frames, 1), dtype=bool))

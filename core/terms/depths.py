@@ -1,20 +1,20 @@
 """Depths of links between keypoints, as a network guesses them, and of principal points (paper, eq. 9)."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array, BoolArray, IndexArray
+from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..camera.camera import Camera
 from .keypoints import KeypointModel
 from .state import ClipState
-from .term import NormalEquations, add_errors, errors_cost
+from .term import Rows, Term
 
 # --- Links of the body whose depth a network guesses
 
@@ -91,34 +91,24 @@ def _links(index: dict[str, int]) -> list[tuple[str, Ends, Ends]]:
 
 
 @dataclass(frozen=True, eq=False)
-class DepthHintTerm:
+class DepthHintTerm(Term):
     """Compares the depths of all links with what they are expected to be by the network's guess."""
 
     model: KeypointModel
     links: DepthLinks
     expected: Array  # (F, L) depth of each link by its guess [m]; NaN where there is none
     std_m: Array  # (F, L) its error; infinite for what is not believed
-    kept: Array | None  # as of `KeypointTerm`
-    robust: ClassVar[bool] = True
+    lasting: Array | None = None
+    is_image: ClassVar[bool] = True
 
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add one row for each link."""
-        error, used = self._errors(state)
-        jacobian = self.links.jacobian(self.model, state.pose, state.frame)
-        jacobian = (jacobian * np.where(used, 1.0 / self.std_m, 0.0)[..., None])[:, :, None]
-        add_errors(
-            equations, error[..., None], used, jacobian, self.kept, temperature, state.tangent_jacobian
-        )
-
-    def cost(self, state: ClipState) -> Array:
-        """(F,) see `errors_cost`."""
-        error, used = self._errors(state)
-        return errors_cost(error[..., None], used, self.kept)
-
-    def _errors(self, state: ClipState) -> tuple[Array, BoolArray]:
-        """(F, L) errors in standard deviations, and which are known."""
+    def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
+        """One row for each link."""
         error = (self.links.depths(self.model, state.pose, state.frame) - self.expected) / self.std_m
-        return error, np.isfinite(error) & np.isfinite(self.std_m)
+        by = None
+        if slopes:
+            by = self.links.jacobian(self.model, state.pose, state.frame) / self.std_m[..., None]
+            by = by[:, :, None]
+        yield Rows(error[..., None], by, np.isfinite(error) & np.isfinite(self.std_m))
 
 
 # --- Depths of the principal points, d(θ) of the paper
@@ -148,25 +138,20 @@ def _per_point(frame: ArrayLike | None) -> IndexArray | None:
 
 
 @dataclass(frozen=True, eq=False)
-class DepthTerm:
+class DepthTerm(Term):
     """d(θ) against d(θ_p)."""
 
     camera: Camera
     prior_depth: Array  # (F, P) [m]
-    std_m: float | Array = DEPTH_STD_M  # one for all or (F, 1)
-    robust: ClassVar[bool] = False
+    std_m: Array  # (F, P) [m]
+    degrees: ClassVar[float | None] = None
 
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add one row for each point."""
-        residual = self._residual(state)
-        jacobian = depths_jacobian(state.body, self.camera, state.pose, state.frame) @ state.tangent_jacobian
-        std_m = np.asarray(self.std_m)
-        equations.add_rows(residual / std_m, jacobian / std_m[..., None])
-
-    def cost(self, state: ClipState) -> Array:
-        """(F,) half the sum of squares."""
-        return np.asarray(0.5 * ((self._residual(state) / np.asarray(self.std_m)) ** 2).sum(-1))
-
-    def _residual(self, state: ClipState) -> Array:
-        """(F, P) [m]."""
-        return np.asarray(point_depths(state.body, self.camera, state.pose, state.frame) - self.prior_depth)
+    def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
+        """One row for each point."""
+        depth = point_depths(state.body, self.camera, state.pose, state.frame)
+        by = None
+        if slopes:
+            by = depths_jacobian(state.body, self.camera, state.pose, state.frame) / self.std_m[..., None]
+            by = by[:, :, None]
+        error = (depth - self.prior_depth) / self.std_m
+        yield Rows(error[..., None], by, np.ones(error.shape, dtype=bool))

@@ -6,7 +6,7 @@ a calibration departs. Hands and feet do not turn against forearm and shin in a 
 what wrists and ankles really do.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
@@ -22,7 +22,7 @@ from ..body.skeleton import SIDES, Placement
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
 from .state import ClipState
-from .term import NormalEquations, add_errors, errors_cost
+from .term import Rows, Term
 
 
 @dataclass(frozen=True)
@@ -222,26 +222,22 @@ class ObservedKeypoints:
 
 
 @dataclass(frozen=True, eq=False)
-class KeypointTerm:
-    """Compares every keypoint that is seen with its prediction."""
+class KeypointTerm(Term):
+    """Compares every keypoint that is seen with its prediction, in pixels."""
 
     model: KeypointModel
     observed: ObservedKeypoints
     std_m: Array  # (N,) error of a sure detection along each axis [m]; infinite for what is not believed
-    kept: Array | None  # (F - 1, 1) share of an error that is left in the next frame; None: frames are apart
-    robust: ClassVar[bool] = True
+    lasting: Array | None = None
+    is_image: ClassVar[bool] = True
 
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add two rows for each keypoint."""
+    def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
+        """Two rows for each keypoint."""
         error, std_px, used = self.errors(state.pose, state.frame)
-        factor = np.where(used, 1.0 / std_px, 0.0)
-        jacobian = self.model.pixels_jacobian(state.pose, state.frame, factor)
-        add_errors(equations, error, used, jacobian, self.kept, temperature, state.tangent_jacobian)
-
-    def cost(self, state: ClipState) -> Array:
-        """(F,) see `errors_cost`."""
-        error, _, used = self.errors(state.pose, state.frame)
-        return errors_cost(error, used, self.kept)
+        by = None
+        if slopes:
+            by = self.model.pixels_jacobian(state.pose, state.frame, np.where(used, 1.0 / std_px, 0.0))
+        yield Rows(error, by, used)
 
     def errors(self, pose: Pose, frame: IndexArray) -> tuple[Array, Array, BoolArray]:
         """Errors (F, N, 2) in standard deviations, these (F, N) [px], and which are compared (F, N)."""

@@ -1,14 +1,14 @@
 """A reference motion against its prediction: points about the hips, robust, with errors that last."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
 from ..arrays import Array, BoolArray
 from ..body.skeleton import SIDES
 from .state import ClipState
-from .term import NormalEquations, add_errors, errors_cost
+from .term import Rows, Term
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,33 +30,20 @@ class ExpectedPoints:
 
 
 @dataclass(frozen=True, eq=False)
-class ReferenceTerm:
+class ReferenceTerm(Term):
     """Compares the points about the hips with those of a reference motion."""
 
     expected: ExpectedPoints
-    kept: Array  # (F - 1, 1) share of an error that is left in the next frame
-    robust: ClassVar[bool] = True
+    lasting: Array
 
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add three rows for each point; annealing does not touch them, since they are no image's."""
-        error, used = self._errors(state)
-        jacobian = state.body.points_jacobian(state.pose)
-        jacobian = jacobian - jacobian[:, _hips(state)].mean(axis=1, keepdims=True)
-        jacobian = self.expected.whitening @ jacobian
-        add_errors(equations, error, used, jacobian, self.kept, 1.0, state.tangent_jacobian)
-
-    def cost(self, state: ClipState) -> Array:
-        """(F,) see `errors_cost`."""
-        return errors_cost(*self._errors(state), self.kept)
-
-    def _errors(self, state: ClipState) -> tuple[Array, BoolArray]:
-        """(F, 13, 3) errors in standard deviations, and which are known (F, 13)."""
+    def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
+        """Three rows for each point; annealing does not touch them, since they are no image's."""
+        hips = [state.body.skeleton.point_names.index(f"hip.{side}") for side in SIDES]
         points = state.body.points(state.pose)
-        points = points - points[:, _hips(state)].mean(axis=1, keepdims=True)
-        used = np.isfinite(self.expected.points).all(axis=-1)
-        apart = np.where(used[..., None], points - self.expected.points, 0.0)
-        return (self.expected.whitening @ apart[..., None])[..., 0], used
-
-
-def _hips(state: ClipState) -> list[int]:
-    return [state.body.skeleton.point_names.index(f"hip.{side}") for side in SIDES]
+        apart = points - points[:, hips].mean(axis=1, keepdims=True) - self.expected.points
+        used = np.isfinite(apart).all(axis=-1)
+        by = None
+        if slopes:
+            by = state.body.points_jacobian(state.pose)
+            by = self.expected.whitening @ (by - by[:, hips].mean(axis=1, keepdims=True))
+        yield Rows((self.expected.whitening @ apart[..., None])[..., 0], by, used)

@@ -5,6 +5,7 @@ deviation along them, the linearized difference of matrix square roots: three nu
 angle to wrap and nothing singular when the region is round (instead of S_θ and S_λ, paper eqs 5 and 6).
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import ClassVar
 
@@ -12,10 +13,9 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..markers.region_tracks import RegionTracks
-from ..numerics.robust import DEGREES, student_cost, student_weight
 from .region_model import MOMENTS, RegionModel, RegionPrediction
 from .state import ClipState
-from .term import NormalEquations
+from .term import Rows, Term
 
 FEATURES = 5  # rows of one marker: centroid x, y and three of shape
 SMALLEST_DEVIATION_PX = 0.6
@@ -164,7 +164,7 @@ CONTRADICTED = 20.0  # cost of a marker that is seen where it should be hidden
 
 
 @dataclass(frozen=True, eq=False)
-class RegionTerm:
+class RegionTerm(Term):
     """Compares every visible marker with its prediction."""
 
     model: RegionModel
@@ -173,50 +173,29 @@ class RegionTerm:
     width_px: Array  # (F, M) mean half-width of each marker's limb in the image [px]
     distrust: Array  # (M,) factor of the noise of each marker's regions
     area_ratio: Array  # (M,) area of each marker's unhidden region, relative to the predicted one
-    robust: ClassVar[bool] = True
+    is_image: ClassVar[bool] = True
 
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add five rows for each marker that is seen and predicted to be seen."""
-        predicted = self.model.evaluate(state.pose, state.frame, jacobian=True)
-        residual, jacobian = feature_rows(self.observed, predicted)
-        assert jacobian is not None
-        count = len(self.model.placements)
-        residual = residual + state.bias.reshape(state.frames, count, FEATURES)
-        weight = np.sqrt(self.weights(residual, predicted, temperature))  # (F, M, 5)
-        residual = np.where(weight > 0.0, residual, 0.0) * weight
-        jacobian = (jacobian @ state.tangent_jacobian[:, None]) * weight[..., None]
-        jacobian[weight == 0.0] = 0.0  # a prediction behind the camera is no number
-        shape = (state.frames, count * FEATURES)
-        by_posture = jacobian.reshape(*shape, jacobian.shape[-1])
-        equations.add_biased_rows(residual.reshape(shape), by_posture, weight.reshape(shape))
-
-    def cost(self, state: ClipState) -> Array:
-        """(F,) negative logarithm of Student's t over all markers, up to a constant.
+    def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
+        """Two and three rows for each marker that is seen and predicted to be seen.
 
         A marker that is seen where the posture hides it costs as much as one that is far off.
         """
-        predicted = self.model.evaluate(state.pose, state.frame)
-        residual, _ = feature_rows(self.observed, predicted)
+        predicted = self.model.evaluate(state.pose, state.frame, jacobian=slopes)
+        residual, jacobian = feature_rows(self.observed, predicted)
         residual = residual + state.bias.reshape(residual.shape)
-        information = self._information(residual, predicted)
-        squared = np.nan_to_num(residual) ** 2 * information
-        cost = np.zeros(squared.shape[:2])
+        information = self.information(residual, predicted)
+        used, by_bias = information[..., 0] > 0.0, np.sqrt(information)
+        seen = np.isfinite(self.observed.centroid[..., 0])
+        contradicted = np.where(seen, CONTRADICTED * self.observed.quality, 0.0)
+        column = np.arange(residual[0].size).reshape(residual.shape[1:])
         for group in GROUPS:
-            cost += student_cost(squared[..., group].sum(-1), DEGREES, group.stop - group.start)
-        contradicted = np.isfinite(self.observed.centroid[..., 0]) & (information[..., 0] == 0.0)
-        return np.asarray(np.where(contradicted, CONTRADICTED * self.observed.quality, cost).sum(-1))
+            by = None if jacobian is None else jacobian[:, :, group] * by_bias[:, :, group, None]
+            bias = by_bias[..., group], column[..., group]
+            idle = contradicted if group is GROUPS[0] else None
+            yield Rows(residual[..., group] * by_bias[..., group], by, used, idle, bias)
 
-    def weights(self, residual: Array, predicted: RegionPrediction, temperature: float) -> Array:
-        """Information (F, M, 5) of each row [1/px²]; zero for what is not compared."""
-        information = self._information(residual, predicted) / temperature
-        squared = np.where(information > 0.0, np.nan_to_num(residual) ** 2 * information, 0.0)
-        for group in GROUPS:
-            size = group.stop - group.start
-            information[..., group] *= student_weight(squared[..., group].sum(-1), DEGREES, size)[..., None]
-        return np.asarray(information)
-
-    def _information(self, residual: Array, predicted: RegionPrediction) -> Array:
-        """The same before outliers are downweighted."""
+    def information(self, residual: Array, predicted: RegionPrediction) -> Array:
+        """Information (F, M, 5) of each row [1/px²], outliers or not; zero for what is not compared."""
         usable = np.isfinite(residual).all(-1) & (predicted.visible > self.noise.least_visible)
         trust = np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0)
         variance = self.noise.pixel_std_px**2 + self.noise.surface_std(self.width_px) ** 2

@@ -1,8 +1,12 @@
-"""The protocol of a term, what all of them cost, and the normal equations that terms add to."""
+"""What a term is, how its rows are weighed and what they cost, and the normal equations that terms add to.
 
-from collections.abc import Iterable
+A term gives rows: errors in standard deviations, their slopes, and which loss they have. Weighing outliers,
+widening image noise while annealing, errors that last and the sum of the cost are written here, once for all.
+"""
+
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy as np
 
@@ -31,120 +35,115 @@ class NormalEquations:
             gradient = (residual[:, None] @ jacobian)[:, 0]
             self.gradient[offset : offset + len(residual), : jacobian.shape[-1]] += gradient
 
-    def add_biased_rows(self, residual: Array, jacobian: Array, bias_weight: Array) -> None:
-        """Add rows that each have a bias of their own; the biases are the last unknowns of a frame.
+    def add_biases(self, residual: Array, jacobian: Array, weight: Array, bias: IndexArray) -> None:
+        """Add what rows that each have a bias of their own say of the biases.
 
-        `residual` (F, m) with biases, `jacobian` (F, m, n) by the leading unknowns, both whitened;
-        `bias_weight` (F, m): derivative of each row by its bias.
+        `residual` (F, m) with biases, `jacobian` (F, m, n) by the leading unknowns, both whitened; `weight`
+        (F, m): derivative of each row by its bias, which is the unknown `bias` (m,).
         """
-        self.add_rows(residual, jacobian)
         n, block = jacobian.shape[-1], self.matrix.diagonal
-        mixed = jacobian * bias_weight[..., None]
-        block[:, n:, :n] += mixed
-        block[:, :n, n:] += np.swapaxes(mixed, -1, -2)
-        bias = np.arange(n, block.shape[-1])
-        block[:, bias, bias] += bias_weight**2
-        self.gradient[:, n:] += bias_weight * residual
-
-    def add_quadratic(self, matrix: BlockBanded, unknowns: Array) -> None:
-        """Add ½ xᵀ M x at the unknowns x (F, N)."""
-        self.matrix.add(matrix)
-        self.gradient += matrix.multiply(unknowns)
+        mixed = jacobian * weight[..., None]
+        block[:, bias, :n] += mixed
+        block[:, :n, bias] += np.swapaxes(mixed, -1, -2)
+        block[:, bias, bias] += weight**2
+        self.gradient[:, bias] += weight * residual
 
 
-class Term(Protocol):
-    """A term adds its linearized rows at a state, and tells its cost, by which states are chosen between."""
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """N groups of G rows each in F frames. A group is an outlier as a whole."""
 
-    robust: ClassVar[bool]  # whether its noise has heavy tails; else the cost is half a sum of squares
+    error: Array  # (F, N, G) over standard deviations; any number where not used
+    slopes: Array | None  # (F, N, G, D) of the errors by the posture's tangent; None where not asked for
+    used: BoolArray  # (F, N) which groups are compared
+    idle: Array | None = None  # (F, N) what groups cost that are not compared; None for nothing
+    bias: tuple[Array, IndexArray] | None = None
+    """Slopes (F, N, G) of the errors by biases of their own, and which of the biases (N, G) these are."""
+
+
+class Term:
+    """A kind of evidence or belief: `rows`, and in class attributes what their errors are like.
+
+    What is no set of rows in single frames overrides `add_to` and `cost`.
+    """
+
+    degrees: ClassVar[float | None] = DEGREES  # of Student's t; None for a normal distribution
+    is_image: ClassVar[bool] = False  # whether annealing widens its noise
+    counts: ClassVar[float] = 1.0  # what each row counts, where more of them err together
+    lasting: Array | None = None
+    """(F - 1, 1) share of an error that is left in the next frame; None where frames err apart."""
+
+    def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
+        """The rows at a state; with `slopes`, which a cost does not need."""
+        raise NotImplementedError
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add this term's rows; `temperature` ≥ 1 widens image noise while annealing."""
-        ...
+        """Add this term's weighed rows; `temperature` ≥ 1 widens image noise while annealing."""
+        temperature = temperature if self.is_image else 1.0
+        for rows in self.rows(state):
+            error = np.where(rows.used[..., None], rows.error, 0.0)
+            frames, groups, size = error.shape
+            assert rows.slopes is not None
+            slopes = np.where(rows.used[..., None, None], rows.slopes, 0.0)
+            jacobian = slopes.reshape(frames, groups * size, slopes.shape[-1]) @ state.tangent_jacobian
+            level = self._levels(error, rows.used, temperature)
+            if self.lasting is not None:
+                _add_lasting(equations, error, level, jacobian, self.lasting, temperature)
+                continue
+            weight = np.repeat(np.sqrt(level * (self.counts / temperature)), size, axis=-1)
+            jacobian *= weight[..., None]
+            residual = error.reshape(frames, -1) * weight
+            equations.add_rows(residual, jacobian)
+            if rows.bias is not None:
+                by_bias, index = rows.bias
+                bias = jacobian.shape[-1] + index.ravel()
+                equations.add_biases(residual, jacobian, by_bias.reshape(frames, -1) * weight, bias)
 
     def cost(self, state: ClipState) -> Array:
         """(F,) negative logarithm of each frame's probability, up to a constant."""
-        ...
+        total = np.zeros(state.frames)
+        for rows in self.rows(state, slopes=False):
+            error = np.where(rows.used[..., None], rows.error, 0.0)
+            cost = self._loss((error**2).sum(-1), error.shape[-1])
+            if self.lasting is not None and len(error) > 1:
+                # An error costs by its change, in so far as it and the one before are none too large.
+                levels = self._levels(error, rows.used, 1.0)
+                both = np.sqrt(levels[1:] * levels[:-1])
+                change = error[1:] - self.lasting[..., None] * error[:-1]
+                squared = (change**2).sum(-1) / np.maximum(1.0 - self.lasting**2, LEAST_FRESH)
+                cost[1:] += both * (self._loss(squared, error.shape[-1]) - cost[1:])
+            if rows.idle is not None:
+                cost = np.where(rows.used, cost, rows.idle)
+            total += self.counts * cost.sum(-1)
+        return total
+
+    def _levels(self, error: Array, used: BoolArray, temperature: float) -> Array:
+        """(F, N) weights of groups by the size of their errors, 0 to 1; 0 for what is not compared."""
+        if self.degrees is None:
+            return used.astype(np.float64)
+        squared = (error**2).sum(-1) / temperature
+        return np.where(used, student_weight(squared, self.degrees, error.shape[-1]), 0.0)
+
+    def _loss(self, squared: Array, size: int) -> Array:
+        return 0.5 * squared if self.degrees is None else student_cost(squared, self.degrees, size)
 
 
-def total_cost(terms: Iterable[Term], state: ClipState) -> Array:
-    """(F,) negative logarithm of the probability of each frame's state, up to a constant.
+LEAST_FRESH = 1e-6  # least variance of what is new in a lasting error, as a share
 
-    Sums of squares are added before robust costs: the order is fixed because rounding depends on it.
+
+def _add_lasting(
+    equations: NormalEquations, error: Array, level: Array, jacobian: Array, kept: Array, temperature: float
+) -> None:
+    """Add groups of rows whose errors last from frame to frame (quasi-differences, Cochrane & Orcutt 1949).
+
+    `error` (F, N, G), 0 where not compared; `level` (F, N) as of `Term._levels`; `jacobian` (F, N G, D);
+    `kept` (F - 1, 1) or (F - 1, N): share φ of an error that is left in the next frame.
     """
-    total = np.zeros(state.frames)
-    for term in sorted(terms, key=lambda term: term.robust):
-        total = total + term.cost(state)
-    return total
-
-
-@dataclass(frozen=True, eq=False)
-class QuadraticTerm:
-    """½ xᵀ M x over all unknowns."""
-
-    matrix: BlockBanded
-    robust: ClassVar[bool] = False
-
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add the term; annealing does not touch it."""
-        equations.add_quadratic(self.matrix, state.unknowns)
-
-    def cost(self, state: ClipState) -> Array:
-        """(F,) each frame's share of ½ xᵀ M x."""
-        unknowns = state.unknowns
-        return np.asarray(0.5 * (unknowns * self.matrix.multiply(unknowns)).sum(-1))
-
-
-class QuadraticBuilder:
-    """Gathers independent rows, each a combination of one unknown over consecutive frames."""
-
-    def __init__(self, frames: int, size: int) -> None:
-        """No rows yet."""
-        self.matrix = BlockBanded(frames, size)
-
-    def add(self, columns: slice, coefficients: tuple[Array | float, ...], std: Array | float) -> None:
-        """Add one row a frame and unknown, as `BlockBanded.add_combination` does.
-
-        An infinite `std` switches a row off.
-        """
-        self.matrix.add_combination(columns, coefficients, np.asarray(std, dtype=np.float64) ** -2.0)
-
-    def add_blocks(self, frames: IndexArray, information: Array) -> None:
-        """Add full information matrices (K, n, n) about the leading n unknowns of K different frames."""
-        count = information.shape[-1]
-        self.matrix.diagonal[frames, :count, :count] += information
-
-    def term(self) -> QuadraticTerm:
-        """The term gathered so far."""
-        return QuadraticTerm(self.matrix)
-
-
-# --- Rows whose errors last from frame to frame
-
-
-@dataclass(frozen=True, eq=False)
-class Drift:
-    """Weights of N groups of G rows each in F frames."""
-
-    level: Array  # (F, N) weight as errors too large, 0 to 1; 0 for what is not seen
-    own: Array  # (F, N) information of the rows of a frame by themselves
-    across: Array  # (F - 1, N) information that couples the rows of a frame to those of the next
-    pull: Array  # (F, N, G) derivative of half the sum of squares by the errors
-
-
-def drift(error: Array, used: BoolArray, kept: Array, temperature: float = 1.0) -> Drift:
-    """The information that lasting errors have.
-
-    `error` (F, N, G) over standard deviations; `used` (F, N): which are known; `kept` (F - 1, 1) or (F - 1,
-    N): share φ of an error that is left in the next frame.
-    """
-    error = np.where(used[..., None], error, 0.0)
-    size = error.shape[-1]
-    level = np.where(used, student_weight((error**2).sum(-1) / temperature, DEGREES, size), 0.0)
-    fresh = np.maximum(1.0 - kept**2, 1e-6) * temperature
+    size, dofs = error.shape[-1], jacobian.shape[-1]
+    fresh = np.maximum(1.0 - kept**2, LEAST_FRESH) * temperature
     change = error[1:] - kept[..., None] * error[:-1]
     both = np.sqrt(level[1:] * level[:-1])
-    steady = student_weight((change**2).sum(-1) / fresh, DEGREES, size)
-    linked = both * steady / fresh
+    linked = both * student_weight((change**2).sum(-1) / fresh, DEGREES, size) / fresh
     # What follows an outlier, or is followed after a gap, begins anew.
     begun = level / temperature
     begun[1:] *= 1.0 - both
@@ -154,64 +153,29 @@ def drift(error: Array, used: BoolArray, kept: Array, temperature: float = 1.0) 
     pull = begun[..., None] * error
     pull[1:] += linked[..., None] * change
     pull[:-1] -= (kept * linked)[..., None] * change
-    return Drift(level, own, -kept * linked, pull)
+    weight, across = (np.repeat(one, size, axis=-1)[..., None] for one in (own, -kept * linked))
+    turned = np.swapaxes(jacobian, -1, -2)
+    equations.matrix.diagonal[:, :dofs, :dofs] += turned @ (weight * jacobian)
+    equations.matrix.next[:, :dofs, :dofs] += turned[:-1] @ (across * jacobian[1:])
+    equations.gradient[:, :dofs] += (turned @ pull.reshape(len(error), -1, 1))[..., 0]
 
 
-def drift_cost(error: Array, used: BoolArray, kept: Array) -> Array:
-    """(F,) negative logarithm of Student's t of errors that last, up to a constant; arguments as of `drift`.
-
-    An error costs by its change, in so far as it and the one before are none too large, else by its size.
-    """
-    error = np.where(used[..., None], error, 0.0)
-    size, squared = error.shape[-1], (error**2).sum(-1)
-    level = np.where(used, student_weight(squared, DEGREES, size), 0.0)
-    change = error[1:] - kept[..., None] * error[:-1]
-    both = np.sqrt(level[1:] * level[:-1])
-    cost = np.where(used, student_cost(squared, DEGREES, size), 0.0)
-    fresh = np.maximum(1.0 - kept**2, 1e-6)
-    cost[1:] += both * (student_cost((change**2).sum(-1) / fresh, DEGREES, size) - cost[1:])
-    return np.asarray(cost.sum(-1))
+def total_cost(terms: Iterable[Term], state: ClipState) -> Array:
+    """(F,) negative logarithm of the probability of each frame's state, up to a constant."""
+    return np.sum([term.cost(state) for term in terms], axis=0)
 
 
-def add_drift(equations: NormalEquations, jacobian: Array, rows: Drift, tangent_jacobian: Array) -> None:
-    """Add rows with lasting errors.
+@dataclass(frozen=True, eq=False)
+class QuadraticTerm(Term):
+    """½ xᵀ M x over all unknowns x; annealing does not touch it."""
 
-    `jacobian` (F, N, G, D) of the errors, over their standard deviations, by the posture's tangent;
-    `tangent_jacobian` (F, D, D) of that by the leading unknowns.
-    """
-    frames, points, size, dofs = jacobian.shape
-    flat = jacobian.reshape(frames, points * size, dofs) @ tangent_jacobian
-    own, across = (np.repeat(weight, size, axis=-1)[..., None] for weight in (rows.own, rows.across))
-    turned = np.swapaxes(flat, -1, -2)
-    equations.matrix.diagonal[:, :dofs, :dofs] += turned @ (own * flat)
-    equations.matrix.next[:, :dofs, :dofs] += turned[:-1] @ (across * flat[1:])
-    equations.gradient[:, :dofs] += (turned @ rows.pull.reshape(frames, -1, 1))[..., 0]
+    matrix: BlockBanded
 
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add the term."""
+        equations.matrix.add(self.matrix)
+        equations.gradient += self.matrix.multiply(state.unknowns)
 
-def add_errors(
-    equations: NormalEquations,
-    error: Array,
-    used: BoolArray,
-    jacobian: Array,
-    kept: Array | None,
-    temperature: float,
-    tangent_jacobian: Array,
-) -> None:
-    """Add groups of rows (F, N, G), each an outlier as a whole: errors that last, or, `kept` None, do not."""
-    if kept is not None:
-        add_drift(equations, jacobian, drift(error, used, kept, temperature), tangent_jacobian)
-        return
-    error = np.where(used[..., None], error, 0.0)
-    trust = student_weight((error**2).sum(-1) / temperature, DEGREES, error.shape[-1])
-    weight = np.sqrt(np.where(used, trust, 0.0) / temperature)[..., None]
-    jacobian = np.where(used[..., None, None], jacobian, 0.0) @ tangent_jacobian[:, None] * weight[..., None]
-    frames, unknowns = len(error), jacobian.shape[-1]
-    equations.add_rows((error * weight).reshape(frames, -1), jacobian.reshape(frames, -1, unknowns))
-
-
-def errors_cost(error: Array, used: BoolArray, kept: Array | None) -> Array:
-    """(F,) negative logarithm of Student's t, up to a constant; arguments as of `add_errors`."""
-    if kept is not None:
-        return drift_cost(error, used, kept)
-    squared = np.where(used[..., None], error, 0.0) ** 2
-    return np.asarray(student_cost(squared.sum(-1), DEGREES, error.shape[-1]).sum(-1))
+    def cost(self, state: ClipState) -> Array:
+        """(F,) each frame's share of ½ xᵀ M x."""
+        return np.asarray(0.5 * (state.unknowns * self.matrix.multiply(state.unknowns)).sum(-1))

@@ -23,11 +23,9 @@ from keymark.core.estimate.keypoint_trust import (
 )
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.markers.region_tracks import RegionTracks
-from keymark.core.numerics.block_banded import BlockBanded
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
 from keymark.core.terms.keypoints import KeypointModel
-from keymark.core.terms.term import NormalEquations, add_drift, drift, drift_cost
 
 FRAMES = 90
 TRUTH = exercise(FRAMES)
@@ -333,49 +331,3 @@ def test_a_hip_shows_the_trunk_and_an_ankle_its_leg() -> None:
     assert named["hip.L"] == named["shoulder.R"] == "trunk"
     assert named["ankle.L"] == "shin.L"
     assert seen.mean() > 0.95
-
-
-def test_drift_is_the_likelihood_of_a_first_order_process() -> None:
-    frames, kept = 7, 0.8
-    rng = np.random.default_rng(1)
-    error = 1e-4 * rng.normal(size=(frames, 1, 1))
-    rows = drift(error, np.ones((frames, 1), dtype=bool), np.full((frames - 1, 1), kept))
-    equations = NormalEquations(frames, 1)
-    ones = np.ones((frames, 1, 1, 1))
-    add_drift(equations, ones, rows, np.ones((frames, 1, 1)))
-    apart = np.abs(np.subtract.outer(np.arange(frames), np.arange(frames)))
-    information = np.linalg.inv(kept**apart)
-    np.testing.assert_allclose(dense(equations.matrix), information, atol=1e-6)
-    np.testing.assert_allclose(equations.gradient[:, 0], information @ error[:, 0, 0], atol=1e-9)
-
-
-def test_the_cost_of_errors_that_last_is_that_of_their_changes() -> None:
-    used, kept = np.ones((20, 1), dtype=bool), np.full((19, 1), 0.95)
-    steady = np.full((20, 1, 1), 0.5)
-    jumping = steady * np.where(np.arange(20) % 2, 1.0, -1.0)[:, None, None]
-    calm, wild = drift_cost(steady, used, kept), drift_cost(jumping, used, kept)
-    assert calm[1:].max() < 0.2 * calm[0] and wild[1:].min() > 10.0 * calm[0]
-    outlier = steady.copy()
-    outlier[10] = 1000.0
-    assert drift_cost(outlier, used, kept).sum() < calm.sum() + 60.0
-    assert drift_cost(steady, ~used, kept).sum() == 0.0
-
-
-def test_drift_begins_anew_after_a_gap_or_an_outlier() -> None:
-    error = np.zeros((5, 1, 2))
-    used = np.ones((5, 1), dtype=bool)
-    used[2] = False
-    rows = drift(error, used, np.full((4, 1), 0.8))
-    assert rows.across[1, 0] == rows.across[2, 0] == 0.0
-    assert rows.own[3, 0] > 1.0
-    error[1] = 50.0
-    far = drift(error, used, np.full((4, 1), 0.8))
-    assert far.level[1, 0] < 0.01
-    assert np.abs(far.pull).max() < 0.5
-
-
-def dense(matrix: BlockBanded) -> np.ndarray:
-    """A banded matrix of one unknown a frame, in full."""
-    full = np.diag(matrix.diagonal[:, 0, 0])
-    full += np.diag(matrix.next[:, 0, 0], 1) + np.diag(matrix.next[:, 0, 0], -1)
-    return full

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from keymark.core.numerics.block_banded import BlockBanded
-from keymark.core.terms.term import QuadraticBuilder
 
 SIZE = 4
 
@@ -11,15 +10,14 @@ SIZE = 4
 def random_system(frames: int, seed: int) -> tuple[BlockBanded, np.ndarray]:
     """A positive definite system from random rows and weighted second differences, and the same dense."""
     rng = np.random.default_rng(seed)
-    builder = QuadraticBuilder(frames, SIZE)
+    banded = BlockBanded(frames, SIZE)
     rows = max(frames - 2, 0)
     coefficients = [rng.normal(size=(rows, SIZE)) for _ in range(3)]
-    builder.add(slice(0, SIZE), tuple(coefficients), np.ones(SIZE))
+    banded.add_combination(slice(0, SIZE), tuple(coefficients), np.ones(SIZE))
     dense = np.zeros((frames * SIZE, frames * SIZE))
     for t in range(rows):
         wide = np.hstack([np.diag(part[t]) for part in coefficients])
         dense[t * SIZE : (t + 3) * SIZE, t * SIZE : (t + 3) * SIZE] += wide.T @ wide
-    banded = builder.matrix
     for reach in range(min(2, frames)):
         rows = frames - reach
         jacobians = tuple(rng.normal(size=(rows, 6, SIZE)) for _ in range(reach + 1))

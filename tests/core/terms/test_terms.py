@@ -1,16 +1,22 @@
-"""The terms of the whole-clip estimate: gradients against differences of their cost, and what they mean."""
+"""The terms: slopes and gradient of any against differences of its errors and cost, and what they mean."""
 
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from _scene import BODY, CAMERA, MODEL, exercise, film
+from _detector import LAYOUT, detect
+from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
+from keymark.core.numerics.block_banded import BlockBanded
 from keymark.core.prior.frame_prior import process_noise_factor
-from keymark.core.terms.contact import FloorTerm, GroundTerm, StillnessTerm
-from keymark.core.terms.depths import DepthTerm, point_depths
-from keymark.core.terms.motion import BeliefTerm, LimitTerm, SmoothnessTerm
+from keymark.core.terms.contact import BalanceTerm, FloorTerm, GroundTerm, StillnessTerm
+from keymark.core.terms.contours import AxialTerm, ContourModel, ContourTerm, LimbAxes
+from keymark.core.terms.depths import DepthHintTerm, DepthLinks, DepthTerm, point_depths
+from keymark.core.terms.keypoints import KeypointModel, KeypointTerm, ObservedKeypoints
+from keymark.core.terms.motion import LimitTerm, SmoothnessTerm, belief_term
+from keymark.core.terms.reference import ExpectedPoints, ReferenceTerm
 from keymark.core.terms.regions import (
     FEATURES,
     ObservedRegions,
@@ -20,13 +26,15 @@ from keymark.core.terms.regions import (
     missing_variance,
 )
 from keymark.core.terms.state import ClipState
-from keymark.core.terms.term import NormalEquations, QuadraticBuilder, Term, total_cost
+from keymark.core.terms.term import NormalEquations, QuadraticTerm, Rows, Term, total_cost
 
 FRAMES = 6
 DOFS = HUMAN.dof_count
+STEP_S = np.full(FRAMES - 1, 1.0 / 30.0)
+KEPT = np.full((FRAMES - 1, 1), 0.8)
 
 
-def state(seed: int = 1, size: float = 0.05) -> ClipState:
+def state(seed: int = 1, size: float = 0.05, biases: int = 0) -> ClipState:
     """A prior and a seeded deviation from it."""
     rng = np.random.default_rng(seed)
     return ClipState(
@@ -35,51 +43,197 @@ def state(seed: int = 1, size: float = 0.05) -> ClipState:
         np.arange(FRAMES),
         process_noise_factor(exercise(FRAMES), np.arange(FRAMES) / 4.0),
         20.0 * size * rng.normal(size=(FRAMES, DOFS)),
-        np.zeros((FRAMES, 0)),
+        rng.normal(size=(FRAMES, biases)),
     )
 
 
-def moved(at: ClipState, step: np.ndarray) -> ClipState:
-    """The state a small step away."""
-    return at.stepped(step, np.inf)[0]
-
-
 def gradient(term: Term, at: ClipState) -> np.ndarray:
-    equations = NormalEquations(FRAMES, DOFS)
+    equations = NormalEquations(FRAMES, at.unknowns.shape[1])
     term.add_to(equations, at, 1.0)
     return equations.gradient
 
 
-def assert_gradient(term: Term, cost, at: ClipState) -> None:  # noqa: ANN001
-    """A term's gradient equals central differences of its cost in random directions."""
+def assert_descends(term: Term, at: ClipState, share: float = 1e-4) -> None:
+    """Slopes equal central differences of the errors, and the gradient those of the cost, to a share.
+
+    An infinite share is of errors whose slopes leave out what costs nothing.
+    """
     rng = np.random.default_rng(3)
     ours = gradient(term, at)
-    for _ in range(6):
+    assert np.abs(ours).max() > 0.0
+    for _ in range(4):
         direction = rng.normal(size=ours.shape)
-        step = 1e-6
-        numeric = (cost(moved(at, step * direction)) - cost(moved(at, -step * direction))) / (2 * step)
-        assert np.sum(ours * direction) == pytest.approx(numeric, rel=1e-4, abs=1e-6)
+        there, back = (at.stepped(sign * 1e-6 * direction, np.inf)[0] for sign in (1.0, -1.0))
+        numeric = (term.cost(there) - term.cost(back)).sum() / 2e-6
+        if term.lasting is None:
+            near = share if np.isfinite(share) else 1e-4
+            size = near * np.abs(ours).sum()
+            assert np.sum(ours * direction) == pytest.approx(numeric, rel=near, abs=size)
+        if type(term).rows is Term.rows or np.isinf(share):
+            continue
+        moved = (term.rows(one, slopes=False) for one in (there, back))
+        for rows, far, near in zip(term.rows(at), *moved, strict=True):
+            tangent = (at.tangent_jacobian @ direction[:, :DOFS, None])[..., 0]
+            assert rows.slopes is not None and far.slopes is None
+            foretold = (rows.slopes @ tangent[:, None, :, None])[..., 0]
+            if rows.bias is not None:
+                slopes, index = rows.bias
+                foretold = foretold + slopes * direction[:, DOFS + index]
+            found = (far.error - near.error)[rows.used] / 2e-6
+            typical = np.abs(found).max()
+            np.testing.assert_allclose(foretold[rows.used], found, rtol=share, atol=share * typical)
 
 
-def test_the_ground_term_pulls_the_lower_ankle_to_its_height() -> None:
-    term = GroundTerm((11, 12), 0.12)
-    assert_gradient(term, lambda at: term.cost(at).sum(), state(size=0.02))
+def every_term() -> dict[str, tuple[Term, ClipState, float]]:
+    """Each term, a state at which it pulls, and the share within which its slopes are right."""
+    frame, rng, at = np.arange(FRAMES), np.random.default_rng(4), state(size=0.02)
+    ankles = (11, 12)
+    depth = point_depths(BODY, CAMERA, BODY.pose(at.prior), frame)
+    model = KeypointModel.usual(BODY, CAMERA, LAYOUT)
+    seen = detect(exercise(FRAMES), hint_error_m=0.03)
+    points, links = ObservedKeypoints.of(seen), DepthLinks.between(LAYOUT, seen.sources)
+    expected = links.guessed(points.depth_m)
+    expected[2, 1] = np.nan
+    std_m = np.where(np.arange(len(LAYOUT)) == 3, np.inf, 0.03)
+    outlines = ContourModel.average(BODY, CAMERA)
+    edges = outlines.evaluate(BODY.pose(at.prior), frame)
+    axes = LimbAxes(outlines.parts, CAMERA)
+    parts = len(outlines.parts.segments)
+    direction = rng.normal(size=(FRAMES, parts, 2))
+    shares = rng.uniform(size=(FRAMES, parts))
+    place = np.sum(direction * axes.points(BODY.pose(at.prior), frame, shares)[1], axis=-1)
+    about = BODY.points(BODY.pose(at.prior))
+    about = about - about[:, [7, 8]].mean(axis=1, keepdims=True)
+    bent = np.zeros((FRAMES, DOFS))
+    bent[2, HUMAN.dof_names.index("knee.R.flexion")] = -0.5
+    count = len(MODEL.placements)
+    matrix = BlockBanded(FRAMES, DOFS)
+    matrix.add_combination(slice(0, DOFS), (-0.9, 1.0), np.full(DOFS, 0.3**-2))
+    ones = np.ones(count)
+    observed, width_px = ObservedRegions.from_tracks(film(exercise(FRAMES))), np.full((FRAMES, count), 20.0)
+    regions = RegionTerm(MODEL, observed, RegionNoise(), width_px, ones, ones)
+    elsewhere = ExpectedPoints(about, np.full((FRAMES, 13, 3, 3), 20.0 * np.eye(3)), 0.4)
+    return {
+        "ground": (GroundTerm(ankles, 0.12), at, 1e-4),
+        "floor": (FloorTerm(ankles, float(BODY.points(at.pose)[:, ankles, 2].mean())), at, 1e-4),
+        "balance": (BalanceTerm(BODY), at, np.inf),
+        "depths": (DepthTerm(CAMERA, depth, np.full(depth.shape, 0.2)), at, 1e-4),
+        "limits": (LimitTerm(), replace(at, factor=np.eye(DOFS), variation=bent), 1e-4),
+        "belief": (belief_term(FRAMES, DOFS, np.ones((1, 0))), at, 1e-4),
+        "quadratic": (QuadraticTerm(matrix), at, 1e-4),
+        "smoothness": (SmoothnessTerm(0.8), at, 1e-4),
+        "keypoints": (KeypointTerm(model, points, std_m), at, 0.02),
+        "keypoints that last": (KeypointTerm(model, points, std_m, KEPT), at, 0.02),
+        "hints": (DepthHintTerm(model, links, expected, np.full(expected.shape, 0.1)), at, 1e-4),
+        "contours": (ContourTerm(outlines, edges.pixel, edges.normal, np.ones(edges.depth.shape)), at, 0.1),
+        "axes": (AxialTerm(axes, shares, place, direction, np.full(place.shape, 4.0), KEPT), at, 1e-3),
+        "reference": (ReferenceTerm(elsewhere, KEPT), at, 1e-4),
+        "regions": (regions, state(size=0.02, biases=count * FEATURES), 0.05),
+    }
+
+
+TERMS = every_term()
+
+
+@pytest.mark.parametrize("name", TERMS)
+def test_slopes_and_gradients_are_those_of_errors_and_cost(name: str) -> None:
+    assert_descends(*TERMS[name])
+
+
+def test_costs_add_up() -> None:
+    at = state(seed=5, size=0.2)
+    terms = [TERMS[name][0] for name in ("belief", "limits", "ground")]
+    np.testing.assert_allclose(total_cost(terms, at), sum(term.cost(at) for term in terms), rtol=1e-12)
+
+
+def test_what_lies_within_bounds_is_left_alone() -> None:
+    at = state(size=0.0)
+    lowest = float(BODY.points(at.pose)[:, [11, 12], 2].min())
+    depth = point_depths(BODY, CAMERA, at.pose, at.frame)
+    silent = LimitTerm(), FloorTerm((11, 12), lowest - 0.001), DepthTerm(CAMERA, depth, np.ones(depth.shape))
+    for term in silent:
+        assert np.abs(gradient(term, at)).max() < 1e-9 and term.cost(at).max() < 1e-12
+
+
+def test_a_hinge_past_its_range_is_pushed_back_alone() -> None:
+    term, at, _ = TERMS["limits"]
+    push = gradient(term, at)
+    assert push[2, HUMAN.dof_names.index("knee.R.flexion")] < 0.0
+    assert np.count_nonzero(push) == 1
+
+
+def test_leaps_are_forgiven() -> None:
     lifted = [float(GroundTerm((11, 12), height).cost(state(size=0.0)).sum()) for height in (0.1, -0.5, -1.0)]
     assert lifted[0] < lifted[1] < lifted[2] < 1.4 * lifted[1]
 
 
-def test_the_floor_pushes_up_what_is_below_it_and_nothing_else() -> None:
-    at = state(size=0.0)
-    ankles = BODY.points(at.pose)[:, [11, 12], 2]
-    between = FloorTerm((11, 12), float(ankles.mean()))
-    assert_gradient(between, lambda s: between.cost(s).sum(), at)
-    assert between.cost(at).max() > 0.0
-    assert np.abs(gradient(FloorTerm((11, 12), float(ankles.min()) - 0.001), at)).max() == 0.0
+def test_a_burst_costs_less_than_its_square() -> None:
+    term, at, _ = TERMS["smoothness"]
+    burst = replace(at, variation=30.0 * at.variation)
+    assert term.cost(burst).sum() < 100.0 * term.cost(at).sum()
+
+
+@dataclass(frozen=True, eq=False)
+class Numbers(Term):
+    """Errors (F, 1, G) that are the unknowns themselves."""
+
+    error: np.ndarray
+    used: np.ndarray
+    lasting: np.ndarray | None
+
+    def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
+        by = np.broadcast_to(np.eye(self.error.shape[-1], DOFS), (*self.error.shape, DOFS))
+        yield Rows(self.error, by if slopes else None, self.used)
+
+
+def numbers(
+    error: np.ndarray, kept: float, used: np.ndarray | None = None
+) -> tuple[np.ndarray, NormalEquations]:
+    """Cost and equations of errors that last."""
+    frames = len(error)
+    used = np.ones((frames, 1), dtype=bool) if used is None else used
+    term = Numbers(error, used, np.full((frames - 1, 1), kept))
+    still, nothing = exercise(1)[np.zeros(frames, dtype=np.intp)], np.zeros((frames, DOFS))
+    at = ClipState(BODY, still, np.arange(frames), np.eye(DOFS), nothing, nothing[:, :0])
+    equations = NormalEquations(frames, DOFS)
+    term.add_to(equations, at, 1.0)
+    return term.cost(at), equations
+
+
+def test_errors_that_last_have_the_likelihood_of_a_first_order_process() -> None:
+    error = 1e-4 * np.random.default_rng(1).normal(size=(7, 1, 1))
+    _, equations = numbers(error, 0.8)
+    apart = np.abs(np.subtract.outer(np.arange(7), np.arange(7)))
+    information = np.linalg.inv(0.8**apart)
+    beside = equations.matrix.next[:, 0, 0]
+    found = np.diag(equations.matrix.diagonal[:, 0, 0]) + np.diag(beside, 1) + np.diag(beside, -1)
+    np.testing.assert_allclose(found, information, atol=1e-6)
+    np.testing.assert_allclose(equations.gradient[:, 0], information @ error[:, 0, 0], atol=1e-9)
+
+
+def test_the_cost_of_errors_that_last_is_that_of_their_changes() -> None:
+    steady = np.full((20, 1, 1), 0.5)
+    calm, _ = numbers(steady, 0.95)
+    wild, _ = numbers(steady * np.where(np.arange(20) % 2, 1.0, -1.0)[:, None, None], 0.95)
+    assert calm[1:].max() < 0.2 * calm[0] and wild[1:].min() > 10.0 * calm[0]
+    outlier = steady.copy()
+    outlier[10] = 1000.0
+    assert numbers(outlier, 0.95)[0].sum() < calm.sum() + 60.0
+    assert numbers(steady, 0.95, np.zeros((20, 1), dtype=bool))[0].sum() == 0.0
+
+
+def test_errors_begin_anew_after_a_gap_or_an_outlier() -> None:
+    error, used = np.zeros((5, 1, 2)), np.ones((5, 1), dtype=bool)
+    used[2] = False
+    _, equations = numbers(error, 0.8, used)
+    assert not equations.matrix.next[1:3].any() and equations.matrix.diagonal[3, 0, 0] > 1.0
+    error[1] = 50.0
+    assert np.abs(numbers(error, 0.8, used)[1].gradient).max() < 0.5
 
 
 def test_a_foot_that_is_known_to_rest_is_held_however_fast_it_moves() -> None:
-    at, step_s = state(size=0.5), np.full(FRAMES - 1, 1.0 / 30.0)
-    free = StillnessTerm(CAMERA, (11, 12), step_s)
+    at = state(size=0.5)
+    free = StillnessTerm(CAMERA, (11, 12), STEP_S)
     known = replace(free, rests=np.ones((FRAMES - 1, 2)))
     assert free.resting(at).max() < 0.5
     assert np.abs(gradient(known, at)).max() > 10.0 * np.abs(gradient(free, at)).max()
@@ -90,63 +244,13 @@ def test_a_foot_rests_wherever_it_stays_in_place_the_higher_one_too() -> None:
     bent = np.array([name.startswith("knee.R") for name in BODY.skeleton.dof_names], dtype=float)
     still = replace(at, prior=at.prior[np.zeros(FRAMES, dtype=np.intp)].plus(np.tile(bent, (FRAMES, 1))))
     heights = BODY.points(still.pose)[0, [11, 12], 2]
-    term = StillnessTerm(CAMERA, (11, 12), np.full(FRAMES - 1, 1.0 / 30.0))
+    term = StillnessTerm(CAMERA, (11, 12), STEP_S)
     assert np.ptp(heights) > 2.0 * term.release_height_m
     np.testing.assert_allclose(term.resting(still), 1.0)
 
 
-def test_the_depth_term_pulls_towards_the_priors_depths() -> None:
-    at = state()
-    frame = np.arange(FRAMES)
-    prior = point_depths(BODY, CAMERA, BODY.pose(at.prior), frame)
-    term = DepthTerm(CAMERA, prior)
-
-    def cost(s: ClipState) -> float:
-        depth = point_depths(BODY, CAMERA, s.pose, frame)
-        return float(0.5 * np.sum((depth - prior) ** 2) / term.std_m**2)
-
-    assert_gradient(term, cost, at)
-    assert np.abs(gradient(term, moved(at, -at.unknowns))).max() < 1e-9
-
-
-def test_the_limit_term_is_silent_within_the_range_and_pushes_back_past_it() -> None:
-    at = state(size=0.0)
-    assert np.abs(gradient(LimitTerm(), at)).max() == 0.0
-    knee = HUMAN.dof_names.index("knee.R.flexion")
-    deviation = np.zeros((FRAMES, DOFS))
-    deviation[2, knee] = -0.5
-    push = gradient(LimitTerm(), replace(at, factor=np.eye(DOFS), variation=deviation))
-    assert push[2, knee] < 0.0
-    assert np.count_nonzero(push) == 1
-
-
-def test_terms_with_a_cost_descend_it_alone_and_together() -> None:
-    at = state(seed=5, size=0.2)
-    belief = BeliefTerm.of(FRAMES, DOFS, np.ones((1, 0)))
-    ground = GroundTerm((11, 12), 0.12)
-    for term in (belief, LimitTerm()):
-        assert_gradient(term, lambda s, term=term: term.cost(s).sum(), at)
-    parts = np.sum([term.cost(at) for term in (belief, LimitTerm(), ground)], axis=0)
-    np.testing.assert_allclose(total_cost([ground, LimitTerm(), belief], at), parts, rtol=1e-12)
-    assert LimitTerm().cost(at).max() > 0.0
-
-
-def test_terms_of_a_clip_descend_their_cost() -> None:
-    at = state(seed=7, size=0.02)
-    prior = point_depths(BODY, CAMERA, BODY.pose(at.prior), at.frame)
-    builder = QuadraticBuilder(FRAMES, DOFS)
-    builder.add(slice(0, DOFS), (-0.9, 1.0), 0.3)
-    for term in (DepthTerm(CAMERA, prior, np.full((FRAMES, 1), 0.2)), builder.term()):
-        assert_gradient(term, lambda s, term=term: term.cost(s).sum(), at)
-        assert term.cost(at).shape == (FRAMES,) and term.cost(at).sum() > 0.0
-    smooth = SmoothnessTerm(0.8)
-    assert_gradient(smooth, lambda s: smooth.cost(s).sum(), at)
-    burst = replace(at, variation=30.0 * at.variation)
-    assert smooth.cost(burst).sum() < 100.0 * smooth.cost(at).sum()  # 900 times as much if it were quadratic
-
-
 def test_the_cost_of_a_moving_foot_grows_with_its_way_and_is_bounded() -> None:
-    term = StillnessTerm(CAMERA, (HUMAN.point_names.index("ankle.L"),), np.full(FRAMES - 1, 1.0 / 30.0))
+    term = StillnessTerm(CAMERA, (HUMAN.point_names.index("ankle.L"),), STEP_S)
     across = CAMERA.matrix_world[:3, 0]
     held = exercise(1)[np.zeros(FRAMES, dtype=np.intp)]
 
@@ -164,7 +268,7 @@ def test_the_cost_of_a_moving_foot_grows_with_its_way_and_is_bounded() -> None:
 
 def pull(points: tuple[int, ...], step_m: np.ndarray) -> np.ndarray:
     """The stillness term's pull on the first frame of a body that moves as a whole (3,) [m a frame]."""
-    term = StillnessTerm(CAMERA, points, np.full(FRAMES - 1, 1.0 / 30.0))
+    term = StillnessTerm(CAMERA, points, STEP_S)
     deviation = np.zeros((FRAMES, DOFS))
     deviation[:, :3] = step_m * np.arange(FRAMES)[:, None]
     held = exercise(1)[np.zeros(FRAMES, dtype=np.intp)]
@@ -196,7 +300,7 @@ def test_a_raised_foot_is_not_held_while_the_other_stands_lower() -> None:
     term = StillnessTerm(
         CAMERA,
         (HUMAN.point_names.index("ankle.L"), HUMAN.point_names.index("ankle.R")),
-        np.full(FRAMES - 1, 1.0 / 30.0),
+        STEP_S,
     )
     held = posture[np.zeros(FRAMES, dtype=np.intp)]
     raised[:, 0] = 0.001 * np.arange(FRAMES)
@@ -288,14 +392,22 @@ def test_a_body_behind_the_camera_is_not_compared_with_regions() -> None:
     assert not equations.gradient.any()
 
 
-def test_information_of_regions_falls_with_temperature_noise_and_doubt() -> None:
-    at, tracks = state(size=0.0), film(exercise(FRAMES))
-    observed, ones = ObservedRegions.from_tracks(tracks), np.ones(len(MODEL.placements))
-    term = RegionTerm(MODEL, observed, RegionNoise(), np.full((FRAMES, len(ones)), 20.0), ones, ones)
+def test_information_of_regions_falls_with_noise_and_doubt() -> None:
+    term, at = TERMS["regions"][0], state(size=0.0)
+    assert isinstance(term, RegionTerm)
     predicted = MODEL.evaluate(at.pose, at.frame)
-    nothing = np.zeros((FRAMES, len(ones), FEATURES))
-    cool, warm = (term.weights(nothing, predicted, temperature) for temperature in (1.0, 4.0))
-    assert (cool > 0.0).any()
-    np.testing.assert_allclose(warm, cool / 4.0)
-    doubted = replace(term, distrust=2.0 * ones).weights(nothing, predicted, 1.0)
-    assert (doubted[cool > 0.0] < cool[cool > 0.0]).all() and (doubted >= cool / 4.0 - 1e-12).all()
+    nothing = np.zeros((FRAMES, len(SEGMENTS), FEATURES))
+    sure = term.information(nothing, predicted)
+    assert (sure > 0.0).any()
+    doubted = replace(term, distrust=2.0 * term.distrust).information(nothing, predicted)
+    assert (doubted[sure > 0.0] < sure[sure > 0.0]).all() and (doubted >= sure / 4.0 - 1e-12).all()
+
+
+def test_annealing_widens_the_noise_of_images_alone() -> None:
+    for name in ("keypoints", "ground"):
+        term, at, _ = TERMS[name]
+        cool, warm = (NormalEquations(FRAMES, DOFS) for _ in range(2))
+        term.add_to(cool, at, 1.0)
+        term.add_to(warm, at, 4.0)
+        share = warm.matrix.diagonal.sum() / cool.matrix.diagonal.sum()
+        assert share == pytest.approx(1.0) if name == "ground" else share < 0.9
