@@ -1,17 +1,19 @@
-"""What a detector saw, held against the clip: frames, picture size, scores, and what was seen at all."""
+"""What a detector saw, held against the clip: frames, picture size, scores, and what was seen at all.
+
+Nothing is shifted without a word.
+"""
 
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import Array, BoolArray
-from ..errors import InputError
+from ..errors import InputError, pluralize
 from .continuity import repeated_results
-from .detected_frames import DetectedFrames, DetectedPerson, check_points
-from .frame_folder import MOST_FRAMES, Alignment, align_listed, align_numbered
+from .detected_frames import MOST_FRAMES, DetectedFrames
 from .keypoints import People, SeenPeople, confidences
-from .stated_frames import numbers_by_time
 
 
 def held_against_clip(
@@ -29,17 +31,14 @@ def held_against_clip(
     Raises:
         InputError: It is of another clip, or nobody is seen in it.
     """
-    if not any(detected.people.values()):
-        raise InputError(
-            f"{detected.where}: nobody is seen in any of its {len(detected.people)} frames; "
-            "it must show a person"
-        )
     if detected.time_s is not None and not detected.numbered:
-        numbers = numbers_by_time(detected.time_s, fps, frame_count)
-        if numbers is not None:
-            by_number = dict(zip(numbers, detected.people.values(), strict=True))
-            detected = replace(detected, people=by_number, numbered=True)
-    aligned = _aligned(detected, frame_count, fps, frame_start)
+        detected = _numbered_by_time(detected, detected.time_s, frame_count, fps)
+    fit = _fit_numbered if detected.numbered else _fit_listed
+    aligned = fit(detected, frame_count, fps, frame_start)
+    if aligned.frame_count > MOST_FRAMES:
+        raise InputError(
+            f"{detected.where}: has {aligned.frame_count} frames; at most {MOST_FRAMES} are read"
+        )
     everyone, notes = _everyone(detected, size)
     points, first = len(detected.layout.numbers), 0
     nobody = SeenPeople.nobody(points)
@@ -56,7 +55,17 @@ def held_against_clip(
     again = [] if detected.by_hand else repeated_results(frames)
     for index in again:
         frames[index] = nobody
-    notes += _repeat_notes(detected.where, frames, len(again))
+    if again:
+        there = sum(len(frame.pixel) > 0 for frame in frames)
+        if there == 1:  # one result alone is no motion
+            raise InputError(
+                f"{detected.where}: has the same result in each of its {len(again) + 1} frames with people, "
+                "as of a program that is stuck; it must have one for every frame"
+            )
+        notes += (
+            f"{detected.where}: {len(again)} of {there + len(again)} results repeat the one before, as of a "
+            "program that looks at some frames only; each counts once",
+        )
     # The file's name alone: notes go into results, which are the same in any folder.
     name = Path(detected.where).name or detected.where
     notes = tuple(note.replace(detected.where, name) for note in aligned.notes + notes)
@@ -64,28 +73,10 @@ def held_against_clip(
     return People(*seen, file=detected.where, by_hand=detected.by_hand, notes=notes)
 
 
-def _repeat_notes(where: str, frames: list[SeenPeople], repeated: int) -> tuple[str, ...]:
-    """A sentence on results that repeat the one before; one result alone is no motion."""
-    if not repeated:
-        return ()
-    there = sum(len(frame.pixel) > 0 for frame in frames)
-    if there == 1:
-        raise InputError(
-            f"{where}: has the same result in each of its {repeated + 1} frames with people, as of a program "
-            "that is stuck; it must have one for every frame"
-        )
-    note = (
-        f"{where}: {repeated} of {there + repeated} results repeat the one before, as of a program that "
-        "looks at some frames only; each counts once"
-    )
-    return (note,)
-
-
 def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeople, tuple[str, ...]]:
     """The people of all frames one after the other, and sentences on what was changed."""
     numbers, where = detected.layout.numbers, detected.where
     persons = [person for people in detected.people.values() for person in people]
-    check_points(len(persons) * detected.layout.count, where)
     place = np.stack([person.place[numbers] for person in persons])
     scale, notes = _scale(detected, place, size)
     place *= scale
@@ -98,48 +89,12 @@ def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeop
     _check_places(detected, place, seen, inside, size)
     seen &= inside
     place[~seen], score[~seen] = np.nan, 0.0
-    return SeenPeople(place, score, _hints(persons, numbers, seen)), notes + score_notes
-
-
-def _aligned(
-    detected: DetectedFrames, frame_count: int | None, fps: float | None, frame_start: int
-) -> Alignment:
-    where = detected.where
-    if detected.numbered:
-        first = None
-        if detected.time_s is not None and fps is not None:  # times count from the clip's first frame
-            first = round(float(np.median(np.array(list(detected.people)) - fps * detected.time_s)))
-        aligned = align_numbered(detected.people, frame_count, frame_start, where, detected.complete, first)
-    else:
-        rates, why = None, ""
-        if fps is not None and detected.fps is not None and abs(detected.fps - fps) > 0.01 * fps:
-            rates = (detected.fps, fps)  # 29.97 and 30 are one
-            why = f"; it was made at {rates[0]:g} frames per second, the clip has {rates[1]:g}"
-        count = len(detected.people)
-        aligned = align_listed(count, frame_count, where, why)
-        notes = aligned.notes
-        start = detected.frame_start
-        if start not in (None, frame_start):
-            if frame_count is not None and count != frame_count:
-                raise InputError(
-                    f"{where}: frame_start is {start} and its {count} entries are not the clip's "
-                    f"{frame_count} frames, which begin with {frame_start}; it must have one for every frame"
-                )
-            note = (
-                f"{where}: frame_start is {start}, that of the clip is {frame_start}; the first "
-                "entry was taken for the clip's first frame"
-            )
-            notes += (note,)
-        if rates and aligned.frame_count == count:
-            note = (
-                f"{where}: says {rates[0]:g} frames per second, the clip has {rates[1]:g}; it was "
-                "taken frame by frame"
-            )
-            notes += (note,)
-        aligned = Alignment(aligned.first, aligned.frame_count, notes)
-    if aligned.frame_count > MOST_FRAMES:
-        raise InputError(f"{where}: has {aligned.frame_count} frames; at most {MOST_FRAMES} are read")
-    return aligned
+    hint = np.full((*seen.shape, 3), np.nan)
+    for row, person in enumerate(persons):
+        if person.hint_m is not None:
+            hint[row] = person.hint_m[numbers]
+    hint[~seen] = np.nan
+    return SeenPeople(place, score, hint), notes + score_notes
 
 
 def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tuple[Array, tuple[str, ...]]:
@@ -189,11 +144,126 @@ def _check_places(
         )
 
 
-def _hints(persons: list[DetectedPerson], numbers: list[int], seen: BoolArray) -> Array:
-    """(S, N, 3) the guessed points of everyone [m], NaN where there are none."""
-    hint = np.full((*seen.shape, 3), np.nan)
-    for row, person in enumerate(persons):
-        if person.hint_m is not None:
-            hint[row] = person.hint_m[numbers]
-    hint[~seen] = np.nan
-    return hint
+# --- Which frame of the clip each frame of a result is
+
+
+class Alignment(NamedTuple):
+    """How a result's frames lie in the clip."""
+
+    first: int  # number of the clip's first frame in the result
+    frame_count: int  # frames of the clip
+    notes: tuple[str, ...] = ()  # sentences on what was taken for granted
+
+
+def tolerance(frame_count: int) -> int:
+    """By how many frames a result may be longer or shorter than the clip."""
+    return max(2, round(0.01 * frame_count))
+
+
+def _numbered_by_time(
+    detected: DetectedFrames, time_s: Array, frame_count: int | None, fps: float | None
+) -> DetectedFrames:
+    """The same with the numbers that its times give, from 0, where they are of some of the clip's frames."""
+    if fps is None or frame_count is None or frame_count == len(time_s):
+        return detected
+    numbers = np.round(time_s * fps).astype(np.int64)
+    if (np.diff(numbers) < 1).any() or numbers[-1] >= frame_count:
+        return detected
+    by_number = dict(zip(numbers.tolist(), detected.people.values(), strict=True))
+    return replace(detected, people=by_number, numbered=True)
+
+
+def _fit_listed(
+    detected: DetectedFrames, frame_count: int | None, fps: float | None, frame_start: int
+) -> Alignment:
+    """Of a list with one entry a frame, beginning with the clip's first."""
+    where, count, start = detected.where, len(detected.people), detected.frame_start
+    frames = count if frame_count is None else frame_count
+    notes: list[str] = []
+    of_rate = ""
+    if fps is not None and detected.fps is not None and abs(detected.fps - fps) > 0.01 * fps:
+        of_rate = f"{detected.fps:g} frames per second, the clip has {fps:g}"  # 29.97 and 30 are one
+    has = f"{where}: has {pluralize(count, 'frame')}, the clip {frames}; "
+    if abs(count - frames) > tolerance(frames):
+        why = f"; it was made at {of_rate}" if of_rate else _rate_words(count, frames)
+        raise InputError(
+            f"{has}it must have one entry for every frame of the clip, null where nobody was seen{why}"
+        )
+    if count != frames:
+        rest = "the last are not used" if count > frames else "in the last ones nobody is seen"
+        notes.append(f"{has}the first are the same, {rest}")
+    if start not in (None, frame_start):
+        if count != frames:
+            raise InputError(
+                f"{where}: frame_start is {start} and its {count} entries are not the clip's {frames} "
+                f"frames, which begin with {frame_start}; it must have one for every frame"
+            )
+        notes.append(
+            f"{where}: frame_start is {start}, that of the clip is {frame_start}; the first entry was taken "
+            "for the clip's first frame"
+        )
+    if of_rate and count == frames:
+        notes.append(f"{where}: says {of_rate}; it was taken frame by frame")
+    return Alignment(0, frames, tuple(notes))
+
+
+def _fit_numbered(
+    detected: DetectedFrames, frame_count: int | None, fps: float | None, frame_start: int
+) -> Alignment:
+    """Of frames that carry numbers, which count from 0, from 1, from the scene's first frame or otherwise."""
+    where, numbers = detected.where, set(detected.people)
+    lowest, highest = min(numbers), max(numbers)
+    bases = sorted({0, 1, frame_start})
+    if frame_count is None:
+        if lowest not in bases or highest - lowest >= MOST_FRAMES:
+            raise InputError(
+                f"{where}: its frames are numbered {lowest} to {highest}; they must begin with 0, 1 or the "
+                f"clip's first scene frame, and be at most {MOST_FRAMES}"
+            )
+        return Alignment(lowest, highest - lowest + 1)
+    if detected.time_s is not None and fps is not None:  # times count from the clip's first frame
+        first = round(float(np.median(np.array(list(detected.people)) - fps * detected.time_s)))
+        if first <= lowest and highest < first + frame_count:
+            return Alignment(first, frame_count)
+    length = highest - lowest + 1
+    fitting = [base for base in bases if base <= lowest and highest < base + frame_count]
+    notes: list[str] = []
+    if length == frame_count:
+        fitting = [lowest]
+    elif not fitting and lowest in bases and length <= frame_count + tolerance(frame_count):
+        notes.append(
+            f"{where}: goes on to frame {highest}, beyond the clip's {frame_count} frames; they are left out"
+        )
+        fitting = [lowest]
+    if not fitting:
+        raise InputError(
+            f"{where}: its frames are numbered {lowest} to {highest}; the clip has {frame_count}, so they "
+            f"must lie within 0 to {frame_count - 1} or 1 to {frame_count}{_rate_words(length, frame_count)}"
+        )
+    fitting = [base for base in fitting if lowest == base or highest == base + frame_count - 1] or fitting
+    first = fitting[0]
+    at_end = frame_count - 1 - (highest - first)
+    if detected.complete and at_end > tolerance(frame_count):
+        raise InputError(
+            f"{where}: ends with frame {highest}, {pluralize(at_end, 'frame')} before the clip's last; every "
+            f"frame must be there, also where nobody was seen{_rate_words(length, frame_count)}"
+        )
+    if len(fitting) > 1 and len(numbers) < frame_count:
+        notes.append(
+            f"{where}: its frames were taken to count from {first}; no frame tells for certain, so check "
+            "that they lie on the performer"
+        )
+    missing = frame_count - sum(0 <= number - first < frame_count for number in numbers)
+    if detected.complete and missing:
+        notes.append(f"{where}: lacks {missing} of {pluralize(frame_count, 'frame')}; nobody is seen in them")
+    return Alignment(first, frame_count, tuple(notes))
+
+
+def _rate_words(count: int, frame_count: int) -> str:
+    """The rest of the sentence where one is a multiple of the other: the detector saw another rate."""
+    few, many = sorted((count, frame_count))
+    times = round(many / max(few, 1))
+    if not 2 <= times <= 10 or abs(many - times * few) > times:
+        return ""
+    what = f"one for every {times}" if count < frame_count else f"{times} for every one"
+    return f"; it has about {what} of the clip, as if made at another frame rate"

@@ -1,27 +1,31 @@
 """Detectors' JSON: OpenPose (rtmlib, Pose2Sim, Sports2D, pose nodes), COCO, MMPose and MediaPipe."""
 
+import os
 import re
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
 from ..errors import InputError, shown
+from ..files.json_file import read_json_value
+from ..files.paths import check_symlinks
 from .detected_frames import (
+    BODY,
     FARTHEST_M,
     FARTHEST_PX,
+    MOST_FRAMES,
     DetectedFrames,
     DetectedPerson,
-    check_people,
+    Everyone,
     person_array,
-    same_layout,
+    placed,
 )
-from .layouts import HAND_POINTS, LAYOUTS, Layout, with_hands
-from .stated_frames import stated_frames
+from .layouts import HAND_POINTS, LAYOUTS
 
-BODY, HANDS = "pose_keypoints_2d", ("hand_left_keypoints_2d", "hand_right_keypoints_2d")
+HANDS = ("hand_left_keypoints_2d", "hand_right_keypoints_2d")
 OLD = "_2d"  # what names of lists did not end with before OpenPose 1.1
 
 
@@ -31,106 +35,31 @@ def is_openpose_frame(value: Any) -> bool:
     return isinstance(people, list) and all(isinstance(person, dict) for person in people)
 
 
-def openpose_people(value: Any, where: str) -> list[tuple[DetectedPerson, int]]:
-    """The people of a frame, each with the number of its body's points.
+def _openpose_person(entry: Mapping[str, Any], spot: str) -> DetectedPerson | None:
+    """A person with a body; where a hand was found, the points of the left hand and the right follow it."""
 
-    Where a hand was found, the 21 points of the left hand and those of the right follow the body's.
-    """
-    people = []
-    for index, entry in enumerate(value["people"]):
-        spot = f"{where}: people[{index}]"
-        lists = {name: _list(entry, name) for name in (BODY, *HANDS)}
-        body = points = _points(lists[BODY], f"{spot}.{BODY}")
-        if not len(body):  # only a hand or a face was found
-            continue
-        hands = [_points(lists[name], f"{spot}.{name}") for name in HANDS]
-        if any(len(hand) == HAND_POINTS for hand in hands):
-            missing = np.zeros((HAND_POINTS, 3))
-            points = np.concatenate([body, *(x if len(x) == HAND_POINTS else missing for x in hands)])
-        people.append((DetectedPerson(points[:, :2], points[:, 2]), len(body)))
-    return people
+    def points(name: str) -> Array:
+        numbers = entry.get(name)
+        numbers = entry.get(name.removesuffix(OLD)) if numbers is None else numbers
+        return _triples([] if numbers is None else numbers, f"{spot}.{name}")
 
-
-def _list(person: Mapping[str, Any], name: str) -> Any:
-    found = person.get(name)
-    found = person.get(name.removesuffix(OLD)) if found is None else found
-    return [] if found is None else found
+    body = points(BODY)
+    if not len(body):  # only a hand or a face was found
+        return None
+    hands = [own if len(own) == HAND_POINTS else None for own in map(points, HANDS)]
+    if all(hand is None for hand in hands):
+        return DetectedPerson(body[:, :2], body[:, 2])
+    missing = np.zeros((HAND_POINTS, 3))
+    every = np.concatenate([body, *(missing if hand is None else hand for hand in hands)])
+    return DetectedPerson(every[:, :2], every[:, 2], body=len(body))
 
 
-def bodiless(values: Iterable[Any]) -> str:
-    """What people of OpenPose's frames have instead of a body, as a sentence; empty without people."""
-    fields = {name for value in values for person in value["people"] for name, own in person.items() if own}
-    return f"its people have {shown(sorted(map(str, fields)))} and no {BODY}" if fields else ""
-
-
-def _points(numbers: Any, spot: str) -> Array:
+def _triples(numbers: Any, spot: str) -> Array:
     """(N, 3) x, y and score of every point, from one list of all numbers."""
     flat = person_array(numbers, (-1,), FARTHEST_PX, spot)
     if len(flat) % 3:
         raise InputError(f"{spot} has {len(flat)} numbers; it must have x, y and score of every point")
     return flat.reshape(-1, 3)
-
-
-def _is_openpose_list(value: Any) -> bool:
-    frames = _entries(value)
-    return bool(frames) and is_openpose_frame(next((frame for frame in frames if frame is not None), None))
-
-
-def _read_openpose_list(value: Any, where: str, source: str) -> DetectedFrames:
-    """Read a list of frames, or an object with one as `frames`, as pose nodes of image generators save it."""
-    layout: Layout | None = None
-    frames, canvas = _entries(value), set()
-    everyone = []
-    for index, frame in enumerate(frames):
-        spot = f"{where}: [{index}]"
-        if frame is not None and not is_openpose_frame(frame):
-            raise InputError(f"{spot} is {shown(frame)}; it must be a frame of OpenPose with people, or null")
-        check_people(0 if frame is None else len(frame["people"]), f"{spot}.people")
-        found = [] if frame is None else openpose_people(frame, spot)
-        for _, points in found:
-            layout = same_layout(layout, points, spot)
-        everyone.append([person for person, _ in found])
-        canvas |= {_canvas(frame, spot)} if frame is not None and found else set()
-    if layout is None:
-        why = bodiless(frame for frame in frames if frame is not None)
-        raise InputError(f"{where}: {why or f'nobody is seen in any of its {len(frames)} frames'}")
-    if len(canvas) > 1:
-        raise InputError(f"{where}: canvas_width and canvas_height change; they must be those of one clip")
-    longest = max(len(person.place) for people in everyone for person in people)
-    if longest > layout.count:
-        layout = with_hands(layout)
-        everyone = [[as_long(person, longest) for person in people] for people in everyone]
-    people = [tuple(people) for people in everyone]
-    return by_stated_frames(
-        DetectedFrames(where, source, layout, dict(enumerate(people)), False, size=canvas.pop(), shares=True),
-        frames,
-    )
-
-
-def by_stated_frames(listed: DetectedFrames, entries: list[Any]) -> DetectedFrames:
-    """The same, each entry at the frame that it says it is of, where all say that."""
-    stated = stated_frames(entries)
-    if stated is None:
-        return listed
-    people = dict(zip(stated.numbers, listed.people.values(), strict=True))
-    return replace(listed, people=people, numbered=stated.numbered, complete=False, time_s=stated.time_s)
-
-
-def _canvas(frame: Mapping[str, Any], spot: str) -> tuple[int, int] | None:
-    size = frame.get("canvas_width"), frame.get("canvas_height")
-    if size == (None, None):
-        return None
-    width, height = (side if type(side) is int and 0 < side <= 65536 else 0 for side in size)
-    if not (width and height):
-        said = f"{spot}: canvas_width and canvas_height are {shown(list(size))}"
-        raise InputError(f"{said}; they must be whole pixels")
-    return width, height
-
-
-def as_long(person: DetectedPerson, points: int) -> DetectedPerson:
-    """A person with so many points, of which those that are added are not seen."""
-    added = (0, points - len(person.place))
-    return DetectedPerson(np.pad(person.place, (added, (0, 0))), np.pad(person.score, added))
 
 
 def _entries(value: Any) -> list[Any]:
@@ -139,16 +68,44 @@ def _entries(value: Any) -> list[Any]:
     return frames if isinstance(frames, list) else []
 
 
+def _is_openpose_list(value: Any) -> bool:
+    return is_openpose_frame(next((frame for frame in _entries(value) if frame is not None), None))
+
+
+def _read_openpose_list(value: Any, where: str, source: str) -> DetectedFrames:
+    """Read a list of frames, or an object with one as `frames`, as pose nodes of image generators save it."""
+    everyone, canvas = Everyone(where), set()
+    frames = _entries(value)
+    for index, (spot, frame) in enumerate(placed(frames, f"{where}: ").items()):
+        if frame is not None and not is_openpose_frame(frame):
+            raise InputError(f"{spot} is {shown(frame)}; it must be a frame of OpenPose with people, or null")
+        people = [] if frame is None else frame["people"]
+        everyone.add(index, placed(people, f"{spot}: people"), _openpose_person)
+        if everyone.people[index]:
+            canvas.add(_canvas(frame, spot))
+    if len(canvas) > 1:
+        raise InputError(f"{where}: canvas_width and canvas_height change; they must be those of one clip")
+    return everyone.frames(source, frames, size=next(iter(canvas), None), shares=True)
+
+
+def _canvas(frame: Mapping[str, Any], spot: str) -> tuple[int, int] | None:
+    size = frame.get("canvas_width"), frame.get("canvas_height")
+    if size == (None, None):
+        return None
+    width, height = (side if type(side) is int and 0 < side <= 65536 else 0 for side in size)
+    if not (width and height):
+        raise InputError(
+            f"{spot}: canvas_width and canvas_height are {shown(list(size))}; they must be whole pixels"
+        )
+    return width, height
+
+
 # --- COCO's result files, as AlphaPose and others write them
 
 
 def _is_coco(value: Any) -> bool:
-    return (
-        isinstance(value, list)
-        and bool(value)
-        and isinstance(value[0], dict)
-        and {"image_id", "keypoints"} <= set(value[0])
-    )
+    first = value[0] if isinstance(value, list) and value else None
+    return isinstance(first, dict) and {"image_id", "keypoints"} <= set(first)
 
 
 def _read_coco(entries: list[Any], where: str, source: str) -> DetectedFrames:
@@ -157,32 +114,27 @@ def _read_coco(entries: list[Any], where: str, source: str) -> DetectedFrames:
     An image is numbered by its identifier, or by the number with which its name ends. Images in which nobody
     was seen are not listed.
     """
-    layout: Layout | None = None
-    people: dict[int, list[DetectedPerson]] = {}
-    for index, entry in enumerate(entries):
-        spot = f"{where}: [{index}]"
+    everyone = Everyone(where)
+    for spot, entry in placed(entries, f"{where}: ").items():
         if not isinstance(entry, dict):
             raise InputError(f"{spot} is {shown(entry)}; it must be an object with image_id and keypoints")
-        number = _number(entry.get("image_id"), spot)
-        points = _points(entry.get("keypoints"), f"{spot}.keypoints")
-        layout = same_layout(layout, len(points), f"{spot}.keypoints")
-        people.setdefault(number, []).append(DetectedPerson(points[:, :2], points[:, 2]))
-        check_people(len(people[number]), f"{where}: image {number}")
-    assert layout is not None  # there is an entry
-    by_number = {number: tuple(people[number]) for number in sorted(people)}
-    return DetectedFrames(where, source, layout, by_number, numbered=True, complete=False)
+        number = entry.get("image_id")
+        if isinstance(number, str):
+            found = re.search(r"(\d{1,15})(?:\.[A-Za-z]{1,5})?$", number[-100:])
+            number = number if found is None else int(found[1])
+        if type(number) is not int or number < 0:
+            raise InputError(
+                f"{spot}.image_id is {shown(number)}; it must be the frame's number, or an image's name that "
+                "ends in it"
+            )
+        everyone.add(number, {f"{spot}.keypoints": entry.get("keypoints")}, _coco_person)
+    everyone.people = dict(sorted(everyone.people.items()))
+    return everyone.frames(source, numbered=True, complete=False)
 
 
-def _number(image: Any, spot: str) -> int:
-    if isinstance(image, int) and not isinstance(image, bool) and image >= 0:
-        return image
-    found = re.search(r"(\d{1,15})(?:\.[A-Za-z]{1,5})?$", image[-100:]) if isinstance(image, str) else None
-    if found is None:
-        raise InputError(
-            f"{spot}.image_id is {shown(image)}; it must be the frame's number, or an image's name that ends "
-            "in it"
-        )
-    return int(found[1])
+def _coco_person(numbers: Any, spot: str) -> DetectedPerson:
+    points = _triples(numbers, spot)
+    return DetectedPerson(points[:, :2], points[:, 2])
 
 
 # --- MMPose's result files
@@ -207,40 +159,24 @@ def is_instances(value: Any) -> bool:
 def _read_mmpose(value: Any, where: str, source: str) -> DetectedFrames:
     """Read MMPose's results of a video; a file of one picture is refused."""
     entries = value[INFO] if isinstance(value, dict) else value
-    place = f"{where}: {INFO}" if isinstance(value, dict) else f"{where}: "
     if not entries:
         raise InputError(f"{where}: {INFO} is empty; it must have an entry for every frame")
-    layout: Layout | None = None
-    people: dict[int, tuple[DetectedPerson, ...]] = {}
+    everyone = Everyone(where)
     numbered = isinstance(entries[0], dict) and "frame_id" in entries[0]
-    for index, entry in enumerate(entries):
-        spot = f"{place}[{index}]"
+    for index, (spot, entry) in enumerate(placed(entries, f"{where}: {INFO}").items()):
         instances = entry.get("instances") if isinstance(entry, dict) else None
         if not isinstance(instances, list):
             raise InputError(f"{spot} is {shown(entry)}; it must be an object with a list of instances")
         number = entry.get("frame_id") if numbered else index
-        if not isinstance(number, int) or isinstance(number, bool) or number < 0:
+        if type(number) is not int or number < 0:
             raise InputError(f"{spot}.frame_id is {shown(number)}; it must be the frame's number")
-        if number in people:
+        if number in everyone.people:
             raise InputError(f"{spot}.frame_id is {number}, which stands twice; each frame must stand once")
-        check_people(len(instances), f"{spot}.instances")
-        seen = instance_people(instances, f"{spot}.instances")
-        for one, person in enumerate(seen):
-            layout = same_layout(layout, len(person.place), f"{spot}.instances[{one}].keypoints")
-        people[number] = tuple(seen)
-    if layout is None:
-        raise InputError(
-            f"{where}: nobody is seen in any of its {len(people)} frames; one must show a person"
-        )
-    return DetectedFrames(where, source, layout, people, numbered=numbered)
+        everyone.add(number, placed(instances, f"{spot}.instances"), _mmpose_person)
+    return everyone.frames(source, numbered=numbered)
 
 
-def instance_people(instances: list[Any], where: str) -> list[DetectedPerson]:
-    """The people of one frame."""
-    return [_instance(instance, f"{where}[{index}]") for index, instance in enumerate(instances)]
-
-
-def _instance(instance: Any, spot: str) -> DetectedPerson:
+def _mmpose_person(instance: Any, spot: str) -> DetectedPerson:
     if not isinstance(instance, dict):
         raise InputError(
             f"{spot} is {shown(instance)}; it must be an object with keypoints and keypoint_scores"
@@ -267,10 +203,7 @@ IMAGE, WORLD = ("landmarks", "poselandmarks"), ("worldlandmarks", "poseworldland
 
 def _is_mediapipe(value: Any) -> bool:
     """Whether the first frame that is not empty has landmarks."""
-    frames = value.get("frames") if isinstance(value, dict) else value
-    if not isinstance(frames, list):
-        return False
-    first = next((frame for frame in frames if frame), None)
+    first = next((frame for frame in _entries(value) if frame), None)
     if isinstance(first, Mapping):
         return _field(first, IMAGE) is not None or "landmark" in first
     while isinstance(first, list) and first:
@@ -280,39 +213,24 @@ def _is_mediapipe(value: Any) -> bool:
 
 def _read_mediapipe(value: Any, where: str, source: str) -> DetectedFrames:
     """Read a list of frames, or an object with one as `frames`."""
-    frames = value["frames"] if isinstance(value, dict) else value
-    people = {index: _people(frame, f"{where}: [{index}]") for index, frame in enumerate(frames)}
-    listed = DetectedFrames(where, source, LAYOUT, people, numbered=False, shares=True)
-    return by_stated_frames(listed, frames)
-
-
-def _people(frame: Any, spot: str) -> tuple[DetectedPerson, ...]:
-    world = None
-    if isinstance(frame, Mapping) and "landmark" not in frame:
-        world = _field(frame, WORLD)
-        frame = _field(frame, IMAGE)
-    people = _lists(frame, spot)
-    guesses = _lists(world, spot)
-    check_people(len(people), spot)
-    if guesses and len(guesses) != len(people):
-        raise InputError(
-            f"{spot} has {len(guesses)} world landmarks for {len(people)} people; it must have one each"
-        )
-    seen = []
-    for index, landmarks in enumerate(people):
-        place = _numbers(landmarks, ("x", "y"), FARTHEST_PX, spot)
-        score = _scores(landmarks, spot)
-        hint = _numbers(guesses[index], ("x", "y", "z"), FARTHEST_M, spot) if guesses else None
-        seen.append(DetectedPerson(place, score, hint))
-    return tuple(seen)
+    everyone, frames = Everyone(where), _entries(value)
+    for index, (spot, frame) in enumerate(placed(frames, f"{where}: ").items()):
+        world = None
+        if isinstance(frame, Mapping) and "landmark" not in frame:
+            world, frame = _field(frame, WORLD), _field(frame, IMAGE)
+        people, guesses = _lists(frame, spot), _lists(world, spot)
+        if guesses and len(guesses) != len(people):
+            raise InputError(
+                f"{spot} has {len(guesses)} world landmarks for {len(people)} people; it must have one each"
+            )
+        pairs = list(zip(people, guesses or (None,) * len(people), strict=True))
+        everyone.add(index, placed(pairs, spot), _mediapipe_person)
+    return everyone.frames(source, frames, shares=True)
 
 
 def _field(frame: Mapping[str, Any], names: tuple[str, ...]) -> Any:
     """The field of one of these names, written with or without capitals and underscores."""
-    for name, value in frame.items():
-        if name.replace("_", "").lower() in names:
-            return value
-    return None
+    return next((own for name, own in frame.items() if name.replace("_", "").lower() in names), None)
 
 
 def _lists(value: Any, spot: str) -> list[list[Any]]:
@@ -336,17 +254,20 @@ def _lists(value: Any, spot: str) -> list[list[Any]]:
     return people
 
 
+def _mediapipe_person(pair: tuple[list[Any], list[Any] | None], spot: str) -> DetectedPerson:
+    landmarks, guess = pair
+    place = _numbers(landmarks, ("x", "y"), FARTHEST_PX, spot)
+    score = np.ones(len(place))  # where no visibility is given
+    if any("visibility" in point for point in landmarks):
+        rows = [point.get("visibility", 0.0) for point in landmarks]
+        score = person_array(rows, (LAYOUT.count,), FARTHEST_PX, f"{spot} (visibility)")
+    hint = None if guess is None else _numbers(guess, ("x", "y", "z"), FARTHEST_M, spot)
+    return DetectedPerson(place, score, hint)
+
+
 def _numbers(landmarks: list[Any], axes: tuple[str, ...], farthest: float, spot: str) -> Array:
     rows = [[point.get(axis) for axis in axes] for point in landmarks]
     return person_array(rows, (LAYOUT.count, len(axes)), farthest, f"{spot} ({', '.join(axes)})")
-
-
-def _scores(landmarks: list[Any], spot: str) -> Array:
-    """(N,) the visibilities; 1 where none is given."""
-    if not any("visibility" in point for point in landmarks):
-        return np.ones(LAYOUT.count)
-    rows = [point.get("visibility", 0.0) for point in landmarks]
-    return person_array(rows, (LAYOUT.count,), FARTHEST_PX, f"{spot} (visibility)")
 
 
 FORMATS = (
@@ -356,3 +277,71 @@ FORMATS = (
     (_is_mediapipe, _read_mediapipe),
 )
 """How a file of all frames is known, and its reader of (value, where, source), the name of what saw them."""
+
+
+# --- Folders of detectors that write a file a frame
+
+
+LARGEST_FILE_BYTES = 4 * 2**20  # a hundred people with hands and face
+_NUMBER = re.compile(r"(\d{1,15})(?:_keypoints)?\.json$", re.IGNORECASE)
+
+
+def is_one_frame(value: Any) -> bool:
+    """Whether a JSON value is a single frame, whose folder has the others."""
+    return is_openpose_frame(value) or (bool(value) and is_instances(value))
+
+
+def read_frame_folder(folder: Path) -> DetectedFrames:
+    """Read the numbered files of a folder; further files are ignored.
+
+    Raises:
+        InputError: There are none, two have the same number, a link leads outside, or one cannot be used.
+    """
+    files = _numbered_files(folder)
+    check_symlinks(files.values(), [folder])
+    everyone = Everyone(str(folder))
+    for number, path in sorted(files.items()):
+        value = read_json_value(path, LARGEST_FILE_BYTES)
+        if is_openpose_frame(value):
+            everyone.add(number, placed(value["people"], f"{path}: people"), _openpose_person)
+        elif is_instances(value):
+            everyone.add(number, placed(value, str(path)), _mmpose_person)
+        else:
+            raise InputError(
+                f'{path}: holds {shown(value)}; it must be a frame of OpenPose, {{"people": [{{"{BODY}": '
+                "[x, y, score, ...]}, ...]}, or of MMPose"
+            )
+    return everyone.frames(folder.name or str(folder), numbered=True)
+
+
+def _numbered_files(folder: Path) -> dict[int, Path]:
+    """The JSON files whose names end in a number, by that number."""
+    files: dict[int, Path] = {}
+    try:
+        with os.scandir(folder) as entries:
+            for entry in entries:
+                found = _NUMBER.search(entry.name)
+                if found is None:
+                    continue
+                number = int(found[1])
+                if number in files:
+                    one, other = sorted((files[number].name, entry.name))
+                    raise InputError(
+                        f"{folder}: {shown(one)} and {shown(other)} have the same number; a frame must have "
+                        "one file, and each clip a folder of its own"
+                    )
+                if len(files) >= MOST_FRAMES:
+                    raise InputError(
+                        f"{folder}: has more than {MOST_FRAMES} numbered files; those of one clip are read"
+                    )
+                files[number] = folder / entry.name
+    except OSError as error:
+        raise InputError(
+            f"{folder}: cannot be read ({error.strerror}); it must be a readable folder"
+        ) from error
+    if not files:
+        raise InputError(
+            f"{folder}: has no JSON file whose name ends in a number; it must be the folder that a detector "
+            "has written, with files such as clip_000000000000_keypoints.json"
+        )
+    return files

@@ -1,13 +1,12 @@
 """Keymark's own file of keypoints; see docs/keypoint_format.md."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 
-from ..arrays import Array
 from ..errors import InputError, shown
 from ..files.fields import Fields
 from ..files.json_file import read_json_value, write_json
@@ -18,13 +17,14 @@ from .clip_fit import held_against_clip
 from .detected_frames import (
     FARTHEST_M,
     FARTHEST_PX,
+    MOST_FRAMES,
     DetectedFrames,
     DetectedPerson,
-    check_people,
+    Everyone,
     person_array,
+    placed,
 )
-from .detector_formats import FORMATS, is_instances, is_openpose_frame
-from .frame_folder import MOST_FRAMES, read_frame_folder
+from .detector_formats import FORMATS, is_instances, is_openpose_frame, read_frame_folder
 from .keypoints import BODY_POINTS, People, SeenPeople
 from .layouts import LAYOUTS, OWN, Layout, own_layout
 
@@ -72,7 +72,10 @@ class OwnFile(Record):
 def read_own(fields: Fields, name: str) -> DetectedFrames:
     """Read a file of our own, whose name stands for a detector that is not named."""
     said = read_record(OwnFile, fields)
-    layout = _layout(said, fields)
+    layout = LAYOUTS.get(said.layout)
+    if layout is None:
+        fields.required("names", NAMES.valid)
+        layout = own_layout(NAMES.read(said.names, fields.where, "names"))
     several = said.people is not None
     if several == (said.frames is not None):
         found = "both frames and people" if several else "neither frames nor people"
@@ -88,23 +91,46 @@ def read_own(fields: Fields, name: str) -> DetectedFrames:
             "frames"
         )
     field = "people" if several else "frames"
-    people = {}
+    everyone = Everyone(fields.where, layout)
     for index, (row, hints) in enumerate(zip(rows, world, strict=True)):
         where, hint_where = f"{fields.where}: {field}[{index}]", f"{fields.where}: world[{index}]"
+        if row is None and hints is not None:
+            raise InputError(f"{hint_where} guesses depths where nobody is seen; it must be null there")
         if not several:
-            row, hints = (None if entry is None else [entry] for entry in (row, hints))
-        people[index] = _frame(row, hints, layout, where, hint_where)
-    return DetectedFrames(
-        where=fields.where,
-        source=said.detector or name,
-        layout=layout,
-        people=people,
-        numbered=False,
+            everyone.add(index, {} if row is None else {where: (row, hints, hint_where)}, _person(layout))
+            continue
+        if not isinstance(row, list | None):
+            raise InputError(f"{where} is {shown(row)}; it must be a list of people or null")
+        if hints is not None and (not isinstance(hints, list) or len(hints) != len(row or ())):
+            raise InputError(
+                f"{hint_where} is {shown(hints)}; it must be null or have as many people as the frame"
+            )
+        pairs = zip(row or (), hints or [None] * len(row or ()), strict=True)
+        entries = [(one, hint, hint_where) for one, hint in pairs]
+        everyone.add(index, placed(entries, where), _person(layout))
+    return everyone.frames(
+        said.detector or name,
         size=(said.size[0], said.size[1]),
         fps=said.fps,
         frame_start=said.frame_start,
         by_hand=bool(said.by_hand),
     )
+
+
+def _person(layout: Layout) -> Callable[[tuple[Any, Any, str], str], DetectedPerson]:
+    """The reader of one person: points, the guess of them in space or None, and the place of that."""
+
+    def read(entry: tuple[Any, Any, str], where: str) -> DetectedPerson:
+        value, hint, hint_where = entry
+        points = person_array(value, (layout.count, 3), FARTHEST_PX, where)
+        if np.isnan(points).any():
+            raise InputError(
+                f"{where} has null or NaN among its numbers; a point that is not seen must be [0, 0, 0]"
+            )
+        hint_m = None if hint is None else person_array(hint, (layout.count, 3), FARTHEST_M, hint_where)
+        return DetectedPerson(points[:, :2], points[:, 2], hint_m)
+
+    return read
 
 
 def write_keypoints(path: Path, people: People, frame_start: int, fps: float | None = None) -> None:
@@ -127,41 +153,6 @@ def write_keypoints(path: Path, people: People, frame_start: int, fps: float | N
     write_json(path, fields)
 
 
-def _layout(said: OwnFile, fields: Fields) -> Layout:
-    if said.layout != OWN:
-        return LAYOUTS[said.layout]
-    fields.required("names", NAMES.valid)
-    return own_layout(NAMES.read(said.names, fields.where, "names"))
-
-
-def _frame(row: Any, hints: Any, layout: Layout, where: str, hint_where: str) -> tuple[DetectedPerson, ...]:
-    if row is None:
-        if hints is not None:
-            raise InputError(f"{hint_where} guesses depths where nobody is seen; it must be null there")
-        return ()
-    if not isinstance(row, list):
-        raise InputError(f"{where} is {shown(row)}; it must be a list of people or null")
-    check_people(len(row), where)
-    if hints is not None and (not isinstance(hints, list) or len(hints) != len(row)):
-        raise InputError(
-            f"{hint_where} is {shown(hints)}; it must be null or have as many people as the frame"
-        )
-    return tuple(
-        _person(one, hints[index] if hints is not None else None, layout, where, hint_where)
-        for index, one in enumerate(row)
-    )
-
-
-def _person(value: Any, hint: Any, layout: Layout, where: str, hint_where: str) -> DetectedPerson:
-    points = person_array(value, (layout.count, 3), FARTHEST_PX, where)
-    if np.isnan(points).any():
-        raise InputError(
-            f"{where} has null or NaN among its numbers; a point that is not seen must be [0, 0, 0]"
-        )
-    hint_m = None if hint is None else person_array(hint, (layout.count, 3), FARTHEST_M, hint_where)
-    return DetectedPerson(points[:, :2], points[:, 2], hint_m)
-
-
 def _written(frame: SeenPeople, several: bool) -> tuple[Any, Any]:
     """A frame's people and their hints as JSON, None where there are none."""
     if not len(frame.pixel):
@@ -171,17 +162,15 @@ def _written(frame: SeenPeople, several: bool) -> tuple[Any, Any]:
     score = np.where(seen, np.maximum(np.round(frame.score, 4), 1e-4), 0.0)
     pixel = np.round(np.where(seen[..., None], frame.pixel, 0.0), 3)  # a thousandth of a pixel
     rows = np.concatenate([pixel, score[..., None]], axis=-1).tolist()
-    hints = [_written_hints(hint) for hint in frame.hint_m]
+    hints = [
+        [[float(x) if np.isfinite(x) else None for x in point] for point in np.round(hint, 4)]  # 0.1 mm
+        if np.isfinite(hint).any()
+        else None
+        for hint in frame.hint_m
+    ]
     if all(hint is None for hint in hints):
         return (rows if several else rows[0]), None
     return (rows, hints) if several else (rows[0], hints[0])
-
-
-def _written_hints(hint: Array) -> Sequence[Any] | None:
-    if not np.isfinite(hint).any():
-        return None
-    rounded = np.round(hint, 4)  # a tenth of a millimeter
-    return [[float(x) if np.isfinite(x) else None for x in row] for row in rounded]
 
 
 LARGEST_BYTES = 128 * 2**20  # twenty minutes of two people with their hints of depth

@@ -109,23 +109,25 @@ class _Check:
         self._own = [people.names.index(name) for name in self.shared]
         self._network = [LAYOUT.names.index(name) for name in self.shared]
         other = [mirrored_point(name) for name in self.shared]
-        self._swap = [
-            self.shared.index(name) if name in self.shared else number for number, name in enumerate(other)
-        ]
+        self._swap = [self.shared.index(name) if name in self.shared else at for at, name in enumerate(other)]
 
     def look(self, frame: int, picture: Image, factor: float, network: PoseNetwork) -> tuple[_Look, bool]:
         """Whom the network sees where the file has people; whether it is sure of somebody."""
         people = self.people.frames[frame]
+
+        def sees(pose: Pose, least: tuple[float, float]) -> bool:
+            return pose.presence > least[0] and float(pose.score.mean()) > least[1]
+
         order = np.argsort(-person_size(people.pixel) * people.score.mean(axis=1), kind="stable")
         poses = []
         seen = np.isfinite(people.pixel[:, self._own]).all(axis=-1).sum(axis=1) >= FEWEST_POINTS
         for row in order[seen[order]][:PEOPLE]:
             pose = network(picture, _crop(people.pixel[row] / factor, self.people.names))
-            if not _sees(pose, SURE) or self.distance(self.seen(frame, [pose], factor), people) >= FITS:
+            if not sees(pose, SURE) or self.distance(self.seen(frame, [pose], factor), people) >= FITS:
                 pose = network(picture, pose.crop)  # somebody may be there, in another place of the crop
-            if _sees(pose, LIKELY):
+            if sees(pose, LIKELY):
                 poses.append(pose)
-        return self.seen(frame, poses, factor), any(_sees(pose, SURE) for pose in poses)
+        return self.seen(frame, poses, factor), any(sees(pose, SURE) for pose in poses)
 
     def seen(self, frame: int, poses: Sequence[Pose], factor: float) -> _Look:
         """A look at a picture that is smaller than the clip's by a factor."""
@@ -177,7 +179,11 @@ class _Check:
         sided, now = cost(either_side=False), cost()
         if sided < LEAST_OFF:
             return None
-        flip = partial(_flipped, width=float(self.people.size[0]), swap=self._swap)
+        width = np.array([float(self.people.size[0]), 0.0])
+
+        def flip(pixel: Array) -> Array:
+            return np.asarray((width + pixel * [-1.0, 1.0])[:, self._swap])
+
         if cost(flip, either_side=False) < min(FITS, BETTER * sided):
             return PictureFinding(mirrored=True, looked=there)
         if now < LEAST_OFF:
@@ -269,14 +275,6 @@ def applied(people: People, finding: PictureFinding) -> People:
             pixel, hint = size * [1.0, 0.0] + pixel * [-1.0, 1.0], hint * [-1.0, 1.0, 1.0]
         frames.append(SeenPeople(pixel, frame.score, hint))
     return replace(people, names=names, frames=tuple(frames), notes=(*people.notes, *notes))
-
-
-def _flipped(pixel: Array, width: float, swap: Sequence[int]) -> Array:
-    return np.asarray((np.array([width, 0.0]) + pixel * [-1.0, 1.0])[:, list(swap)])
-
-
-def _sees(pose: Pose, least: tuple[float, float]) -> bool:
-    return pose.presence > least[0] and float(pose.score.mean()) > least[1]
 
 
 def _crop(pixel: Array, names: Sequence[str]) -> Crop:

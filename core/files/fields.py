@@ -108,7 +108,9 @@ class Fields:
             return self.values[name]
         if name in self.values:
             raise InputError(f"{self.source_of(name)}: {name} is null; it must be {valid}")
-        close = get_close_matches(name, self._first_names(), n=1, cutoff=0.6)
+        # Among the first hundred names: comparing thousands takes long.
+        names = [each for each in islice(self.values, 100) if isinstance(each, str)]
+        close = get_close_matches(name, names, n=1, cutoff=0.6)
         hint = f" (is {shown(close[0])} meant to be it?)" if close else ""
         raise InputError(f"{self.where}: {name} is missing{hint}; it must be {valid}")
 
@@ -121,10 +123,6 @@ class Fields:
             raise InputError(
                 f"{self.where} has the unknown field {shown(unknown[0])}{hint}; known are {listed(known)}"
             )
-
-    def _first_names(self) -> list[str]:
-        """The first hundred names, to find a mistyped one among; comparing thousands takes long."""
-        return [name for name in islice(self.values, 100) if isinstance(name, str)]
 
 
 def is_number(value: Any) -> bool:

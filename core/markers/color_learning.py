@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import Array, BoolArray, Image, IndexArray, IntArray
 from ..errors import InputError
 from ..files.digest import digest
+from ..video.clip import spread_frames
 from ..video.working_image import halvings, learning_image, measuring_image
 from .color_model import (
     ColorDistribution,
@@ -64,9 +65,7 @@ class ColorLearner:
     def learn(self, images: Sequence[Image]) -> None:
         """Learn from the clip's first images, (rows, columns, 3) on the measuring grid."""
         for count in (SAMPLES, 48):
-            # Centers of equal intervals: neither the first frame nor the last, which fades and cuts spoil.
-            middles = (np.arange(count) + 0.5) * len(images) / count
-            indices = sorted({int(middle) for middle in middles})
+            indices = spread_frames(len(images), count)
             self._samples = [(index, learning_image(images[index])) for index in indices]
             self._learn()
             if not self._missing.size:

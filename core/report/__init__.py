@@ -1,1 +1,1 @@
-"""Pictures of a result, drawn with OpenCV: speed, the skeleton over the footage, other views."""
+"""Pictures of a result, drawn with OpenCV: the skeleton over the footage, the side view, characters."""

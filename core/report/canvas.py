@@ -156,6 +156,14 @@ def truncated(text: str, width: float, size: float) -> str:
 UP = np.array([0.0, 0.0, 1.0])
 
 
+def view_axes(turn_rad: float, tilt_rad: float) -> Array:
+    """World directions (3, 3) that a view shows to the right, upwards, and away from the eye, as rows."""
+    right = np.array([np.cos(turn_rad), np.sin(turn_rad), 0.0])
+    level = np.array([-right[1], right[0], 0.0])
+    away = np.cos(tilt_rad) * level - np.sin(tilt_rad) * np.array([0.0, 0.0, 1.0])
+    return np.stack([right, np.cross(right, away), away])
+
+
 def side_directions(camera: Camera) -> Array:
     """World directions (3, 3) that a view from the side shows to the right, upwards, and away, as rows.
 

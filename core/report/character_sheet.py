@@ -6,13 +6,12 @@ import numpy as np
 
 from ..arrays import Array, Image
 from ..camera.camera import Camera
-from .canvas import GRAY, INK, PAPER, Canvas, ascii_text, draw_grid, side_directions
+from .canvas import PAPER, Canvas, ascii_text, draw_grid, side_directions
 from .mannequin import CharacterFigure, draw_character
-from .overlay_sheet import FOOT, GAP, MARGIN, TITLE, Cell, frame_label
+from .overlay_sheet import GAP, frame_label, sheet
 from .stick_figure import square_of, squares_around
 
 SIDE = 220
-ROWS = ("footage", "camera", "side")
 GRID_M = 0.5
 ROOM = 1.15
 """Side of the view from the side, in heights or widths of the largest figure."""
@@ -36,53 +35,32 @@ def character_sheet(
         frame_start: Scene frame of index 0.
         floor_m: Height of the floor under the character [m].
     """
-    rows = ROWS if images else ROWS[1:]
-    frames = list(figures)
-    width = 2 * MARGIN + len(frames) * SIDE + (len(frames) - 1) * GAP
-    canvas = Canvas(width, 2 * MARGIN + TITLE + len(rows) * SIDE + (len(rows) - 1) * GAP + FOOT)
-    canvas.text(ascii_text(f"{name}: through the camera, and from the side"), MARGIN, MARGIN + 15, 12.0, INK)
+    title = ascii_text(f"{name}: through the camera, and from the side")
     words = (
         f"From the side in parallel projection about the hips; grid of {GRID_M:g} m. Numbers: scene frames."
     )
-    canvas.text(words, MARGIN, canvas.height - MARGIN, 8.0, GRAY)
-    corners, side_px = _crops(figures, camera)
-    side_m = ROOM * max(np.ptp(figure.points, axis=0).max() for figure in figures.values())
-    for column, (frame, corner) in enumerate(zip(frames, corners, strict=True)):
-        left = MARGIN + column * (SIDE + GAP)
-        tiles = {
-            "footage": _footage(images.get(frame), corner, side_px, camera),
-            "camera": _through_camera(figures[frame], camera, frame, corner, side_px),
-            "side": _from_side(figures[frame], camera, side_m, floor_m),
-        }
-        for row, kind in enumerate(rows):
-            canvas.paste(tiles[kind], left, MARGIN + TITLE + row * (SIDE + GAP), SIDE, SIDE)
-        last = Cell(frame, left, MARGIN + TITLE + (len(rows) - 1) * (SIDE + GAP), SIDE, SIDE)
-        frame_label(canvas, last, frame + frame_start, keyframe=False)
-    return canvas.image()
-
-
-def _crops(figures: Mapping[int, CharacterFigure], camera: Camera) -> tuple[Array, float]:
-    """Corner (K, 2) of the square around the character in each frame, and their side [px]."""
+    rows = 3 if images else 2
+    canvas, cells = sheet(title, words, figures, len(figures), SIDE, rows * (SIDE + GAP) - GAP)
     points = {frame: figure.points for frame, figure in figures.items()}
-    centers, side = squares_around(points, camera, list(figures))
-    return centers - 0.5 * side, side
+    centers, side_px = squares_around(points, camera, list(figures))
+    side_m = ROOM * max(np.ptp(figure.points, axis=0).max() for figure in figures.values())
+    for cell, corner in zip(cells, centers - 0.5 * side_px, strict=True):
 
+        def project(places: Array, frame: int = cell.frame, corner: Array = corner) -> tuple[Array, Array]:
+            pixels, depth = camera.project(places, frame)
+            return (pixels - corner) * (SIDE / side_px), depth
 
-def _footage(image: Image | None, corner: Array, side: float, camera: Camera) -> Image:
-    if image is None:
-        return Canvas(SIDE, SIDE, PAPER).image()
-    return square_of(image, corner, side, camera.resolution)
-
-
-def _through_camera(figure: CharacterFigure, camera: Camera, frame: int, corner: Array, side: float) -> Image:
-    tile = Canvas(SIDE, SIDE, PAPER)
-
-    def project(points: Array) -> tuple[Array, Array]:
-        pixels, depth = camera.project(points, frame)
-        return (pixels - corner) * (SIDE / side), depth
-
-    draw_character(tile, figure, project)
-    return tile.image()
+        figure, image = figures[cell.frame], images.get(cell.frame)
+        through = Canvas(SIDE, SIDE, PAPER)
+        tiles = [Canvas(SIDE, SIDE, PAPER).image()] * (rows - 2)
+        if image is not None:
+            tiles = [square_of(image, corner, side_px, camera.resolution)]
+        draw_character(through, figure, project)
+        tiles += [through.image(), _from_side(figure, camera, side_m, floor_m)]
+        for row, tile in enumerate(tiles):
+            canvas.paste(tile, cell.left, cell.top + row * (SIDE + GAP), SIDE, SIDE)
+        frame_label(canvas, cell, cell.frame + frame_start, keyframe=False)
+    return canvas.image()
 
 
 def _from_side(figure: CharacterFigure, camera: Camera, side_m: float, floor_m: float) -> Image:

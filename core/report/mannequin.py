@@ -13,7 +13,7 @@ from ..body.posture import Posture, facing_rad
 from ..feet.natural_extremities import feet_on_floor
 from ..feet.soles import Shins, Soles
 from ..numerics.vectors import unit
-from .canvas import Canvas, Color
+from .canvas import Canvas, Color, view_axes
 from .stick_figure import Projection
 
 LIGHT = np.array([0.35, -0.5, 0.8])
@@ -80,14 +80,6 @@ class View:
         """Pixels (..., 2) and depths (...,) [m] of world points (..., 3)."""
         seen = points @ view_axes(self.turn_rad, self.tilt_rad).T
         return self.center + self.scale * seen[..., :2] * [1.0, -1.0], seen[..., 2]
-
-
-def view_axes(turn_rad: float, tilt_rad: float) -> Array:
-    """World directions (3, 3) that a view shows to the right, upwards, and away from the eye, as rows."""
-    right = np.array([np.cos(turn_rad), np.sin(turn_rad), 0.0])
-    level = np.array([-right[1], right[0], 0.0])
-    away = np.cos(tilt_rad) * level - np.sin(tilt_rad) * np.array([0.0, 0.0, 1.0])
-    return np.stack([right, np.cross(right, away), away])
 
 
 def draw_mannequin(image: Image, figure: CharacterFigure, view: View) -> Image:

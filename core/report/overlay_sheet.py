@@ -16,7 +16,7 @@ from ..take.motion import Motion
 from ..take.take import Take
 from ..terms.contours import SHARES, SIDES, ContourModel
 from .canvas import ACCENT, GRAY, INK, WHITE, Canvas, Color, ascii_text, truncated
-from .stick_figure import StickFigure, draw_figure, legend, stick_figure
+from .stick_figure import draw_figure, legend, stick_figure
 
 OUTLINE: Color = (150, 70, 150)
 
@@ -66,12 +66,14 @@ def draw_keypoints(
     seen, predicted = to_canvas(keypoints.seen[frame]), to_canvas(keypoints.predicted[frame])
     colors = [source_color(keypoints, source) for source in keypoints.sources]
     thrown_out, swapped = keypoints.thrown_out[frame], keypoints.swapped[frame]
-    size = _size(predicted)
+    rows = predicted[np.isfinite(predicted).all(axis=-1), 1]
+    size = float(np.clip(np.ptp(rows) / 220.0, 0.5, 1.0)) if len(rows) else 1.0
     for index, color in enumerate(colors):
         if not thrown_out[index]:
             canvas.line([seen[index], predicted[index]], color, 1.0)
     for place, color in zip(predicted, colors, strict=True):
-        _ring(canvas, place, color, size)
+        canvas.ring(place, size * RING, WHITE, 2.0)
+        canvas.ring(place, size * RING, color, 1.0)
     for index, color in enumerate(colors):
         if np.isfinite(seen[index]).all():
             _cross(canvas, seen[index], color, size, bool(thrown_out[index]), bool(swapped[index]))
@@ -91,16 +93,6 @@ def draw_keypoint_legend(
     for word, color in words:
         canvas.text(word, x, y, 8.0, color)
         x += canvas.text_width(word, 8.0) + 8.0
-
-
-def _size(predicted: Array) -> float:
-    rows = predicted[np.isfinite(predicted).all(axis=-1), 1]
-    return float(np.clip(np.ptp(rows) / 220.0, 0.5, 1.0)) if len(rows) else 1.0
-
-
-def _ring(canvas: Canvas, place: Array, color: Color, size: float) -> None:
-    canvas.ring(place, size * RING, WHITE, 2.0)
-    canvas.ring(place, size * RING, color, 1.0)
 
 
 def _cross(canvas: Canvas, place: Array, color: Color, size: float, thrown_out: bool, swapped: bool) -> None:
@@ -191,7 +183,11 @@ def overlay_sheet(
     cell_height = round(CELL_WIDTH * height / width)
     title = f"Estimate over the footage ({motion.method}, {len(motion.time_s)} frames)"
     outlines = None if tracks.names else contours
-    footer = _footer(tracks, outlines)
+    footer = "Numbers: scene frames; key: keyframes."
+    if tracks.names:
+        footer = f"Ellipse and cross: region found of each marker. {footer}"
+    elif outlines is not None:
+        footer = f"Lines beside the limbs: contours as the motion predicts them. {footer}"
     canvas, cells = sheet(title, footer, list(images), COLUMNS, CELL_WIDTH, cell_height)
     figure = stick_figure(motion)
     pose = motion.body.pose(motion.posture)
@@ -201,7 +197,15 @@ def overlay_sheet(
         tile.paste(paler(images[cell.frame]), 0, 0, cell.width, cell.height)
         if outlines is not None:
             draw_outlines(tile, outlines, pose, cell.frame, lambda pixels: scale * pixels)
-        _draw_estimate(tile, take, figure, tracks, cell)
+
+        def project(points: Array, frame: int = cell.frame) -> tuple[Array, Array]:
+            pixels, depth = take.camera.project(points, frame)
+            return scale * pixels, depth
+
+        draw_figure(tile, figure, cell.frame, project, 3.5, outlined=True)
+        for marker, style in enumerate(take.markers):
+            red, green, blue = style.color_srgb
+            _draw_region(tile, tracks, cell.frame, marker, scale, (blue, green, red))
         if keypoints is not None:
             draw_keypoints(tile, keypoints, cell.frame, lambda pixels: scale * pixels)
         canvas.paste(tile.image(), cell.left, cell.top, cell.width, cell.height)
@@ -211,28 +215,6 @@ def overlay_sheet(
         left = MARGIN + canvas.text_width(footer, 8.0) + 2.0 * MARGIN
         draw_keypoint_legend(canvas, keypoints, left, canvas.width - MARGIN, canvas.height - MARGIN)
     return canvas.image()
-
-
-def _footer(tracks: RegionTracks, outlines: ContourModel | None) -> str:
-    shown = ""
-    if tracks.names:
-        shown = "Ellipse and cross: region found of each marker. "
-    elif outlines is not None:
-        shown = "Lines beside the limbs: contours as the motion predicts them. "
-    return f"{shown}Numbers: scene frames; key: keyframes."
-
-
-def _draw_estimate(tile: Canvas, take: Take, figure: StickFigure, tracks: RegionTracks, cell: Cell) -> None:
-    scale = cell.width / take.camera.resolution[0]
-
-    def project(points: Array) -> tuple[Array, Array]:
-        pixels, depth = take.camera.project(points, cell.frame)
-        return scale * pixels, depth
-
-    draw_figure(tile, figure, cell.frame, project, 3.5, outlined=True)
-    for marker, style in enumerate(take.markers):
-        red, green, blue = style.color_srgb
-        _draw_region(tile, tracks, cell.frame, marker, scale, (blue, green, red))
 
 
 def paler(image: Image) -> Image:

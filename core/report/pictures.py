@@ -49,9 +49,11 @@ GRID_M = 0.5
 
 def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
     """Draw stick figures of some frames about their hips, in parallel projection."""
-    axes, figure, floor = side_directions(camera), stick_figure(motion), _floor_height(motion)
-    hips = motion.points[:, [motion.body.skeleton.point_names.index(f"hip.{side}") for side in ("L", "R")]]
+    axes, figure, names = side_directions(camera), stick_figure(motion), motion.body.skeleton.point_names
+    hips, ankles = (motion.points[:, [names.index(f"{part}.{s}") for s in "LR"]] for part in ("hip", "ankle"))
     origin = hips.mean(axis=1) * [1.0, 1.0, 0.0]  # (F, 3): the ground under the hips
+    lowest = float(np.nanmin(ankles[..., 2]))
+    floor = 0.0 if abs(lowest) < 0.5 else lowest  # the ground plane, if the feet are near it
     seen = np.concatenate([limb.points for limb in figure.limbs], axis=1) - origin[:, None]
     seen = seen[list(frames)] @ axes[:2].T  # (K, N, 2)
     low, high = min(seen[..., 1].min(), floor), seen[..., 1].max() + figure.head_radius_m
@@ -75,13 +77,6 @@ def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
         frame_label(canvas, cell, cell.frame + motion.frame_start, cell.frame in motion.keyframe_indices)
     legend(canvas, canvas.width - MARGIN, MARGIN + 15.0)
     return canvas.image()
-
-
-def _floor_height(motion: Motion) -> float:
-    """Height of the ground plane if the feet are near it, else of the lowest ankle [m]."""
-    names = motion.body.skeleton.point_names
-    lowest = float(np.nanmin(motion.points[:, [names.index("ankle.L"), names.index("ankle.R")], 2]))
-    return 0.0 if abs(lowest) < 0.5 else lowest
 
 
 def write_pictures(

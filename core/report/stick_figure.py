@@ -11,7 +11,7 @@ from ..body.kinematics import segment_ends
 from ..camera.camera import Camera
 from ..feet.natural_extremities import natural_extremities
 from ..take.motion import Motion
-from .canvas import GRAY, INK, LEFT, PALE, PAPER, RIGHT, WHITE, Canvas, Color
+from .canvas import GRAY, INK, LEFT, PALE, PAPER, RIGHT, WHITE, Canvas, Color, view_axes
 
 Projection = Callable[[Array], tuple[Array, Array]]
 """From world points (N, 3) to canvas points (N, 2) and depths (N,), which grow with the distance."""
@@ -172,7 +172,10 @@ def thumbnail(motion: Motion) -> Image:
     """Draw three poses of a motion, the earliest at the left, in parallel projection."""
     frames = np.round(np.linspace(0, len(motion.time_s) - 1, 2 * POSES + 1)[1::2]).astype(np.intp)
     figure = stick_figure(motion)
-    axes = _axes(motion)
+    names = motion.body.skeleton.point_names
+    side = np.nanmean(motion.points[:, names.index("hip.L")] - motion.points[:, names.index("hip.R")], axis=0)
+    # The performer's left is on the right of the view.
+    axes = view_axes(float(np.arctan2(side[1], side[0])) + 0.5, 0.0)
     points = np.concatenate([limb.points for limb in figure.limbs], axis=1)[frames]  # (K, N, 3)
     seen = points @ axes.T
     middle = 0.5 * (seen[..., 0].max(axis=1) + seen[..., 0].min(axis=1))  # (K,)
@@ -193,12 +196,3 @@ def thumbnail(motion: Motion) -> Image:
 
         draw_figure(canvas, figure, int(frame), project, 5.0, outlined=True)
     return canvas.image()
-
-
-def _axes(motion: Motion) -> Array:
-    """World directions (3, 3) to the right, upwards, and away from the eye, as rows."""
-    names = motion.body.skeleton.point_names
-    side = np.nanmean(motion.points[:, names.index("hip.L")] - motion.points[:, names.index("hip.R")], axis=0)
-    angle = float(np.arctan2(side[1], side[0])) + 0.5  # the performer's left is on the right of the view
-    right = np.array([np.cos(angle), np.sin(angle), 0.0])
-    return np.stack([right, [0.0, 0.0, 1.0], [-right[1], right[0], 0.0]])

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..camera.camera import Camera, default_camera_pose, guess_lens, lens_of_equivalent
-from ..video.stated_lens import stated_lens_mm
+from ..video.header import stated_lens_mm
 
 
 @dataclass(frozen=True)

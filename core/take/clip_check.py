@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..detect.frame_folder import tolerance
+from ..detect.clip_fit import tolerance
 from ..errors import InputError
 from ..markers.reading import Reading
 from ..markers.region_tracks import RegionTracks

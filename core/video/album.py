@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, BoolArray, Image, IndexArray
-from .clip import Clip
+from .clip import Clip, spread_frames
 from .frame_checks import FrameChecks
 from .working_image import halvings, learning_image, measuring_image, smooth
 
@@ -31,9 +31,7 @@ class Album:
         """Keep a frame (rows, columns, 3)."""
         small = learning_image(measuring_image(image, halvings((image.shape[1], image.shape[0]))))
         self.factor = image.shape[1] // small.shape[1]
-        # Errs less than the video's compression.
-        _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 90])
-        self._pictures[index] = packed
+        self._pictures[index] = compressed(small)
 
     def without(self, indices: Collection[int]) -> None:
         """Drop the pictures of some frames."""
@@ -53,8 +51,7 @@ class Album:
             image = cv2.imdecode(packed, cv2.IMREAD_COLOR)
             own = np.linalg.inv(scale) @ homography[index] @ scale
             size = image.shape[1], image.shape[0]
-            image = cv2.warpPerspective(image, own, size, borderMode=cv2.BORDER_REPLICATE)
-            _, kept[index] = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, 90])
+            kept[index] = compressed(cv2.warpPerspective(image, own, size, borderMode=cv2.BORDER_REPLICATE))
         return Album(self.factor, kept)
 
     def opened(self, room: int) -> "Album":
@@ -62,13 +59,13 @@ class Album:
         return Album(self.factor, self._pictures, room)
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """The concatenated compressed pictures, with their frames and end offsets."""
-        return {"factor": np.array(self.factor), **_packed(self._pictures)}
+        """See `packed`."""
+        return packed(self._pictures, factor=self.factor)
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Album":
         """The album that `to_arrays` gave."""
-        return cls(int(arrays["factor"]), _unpacked(arrays))
+        return cls(int(arrays["factor"]), unpacked(arrays))
 
     def __contains__(self, index: int) -> bool:
         return index in self._pictures
@@ -118,9 +115,8 @@ class Glimpses:
     @classmethod
     def of(cls, clip: Clip) -> "Glimpses":
         """Those of a clip that is about to be read."""
-        count = min(GLIMPSES, clip.frame_count)
-        middles = (np.arange(count) + 0.5) * clip.frame_count / count  # not the ends, which may be empty
-        return cls(clip.size[0], {int(frame): np.zeros(0, dtype=np.uint8) for frame in middles})
+        frames = spread_frames(clip.frame_count, min(GLIMPSES, clip.frame_count))
+        return cls(clip.size[0], {frame: np.zeros(0, dtype=np.uint8) for frame in frames})
 
     def add(self, index: int, image: Image) -> None:
         """Keep a frame (rows, columns, 3) if it is one of them."""
@@ -128,7 +124,7 @@ class Glimpses:
             return
         scale = min(1.0, GLIMPSE_SIDE_PX / max(image.shape[:2]))
         small = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
-        self._pictures[index] = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 90])[1].ravel()
+        self._pictures[index] = compressed(small)
 
     @property
     def frames(self) -> list[int]:
@@ -141,26 +137,33 @@ class Glimpses:
         return image, self.width / image.shape[1]
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """The concatenated compressed pictures, with their frames and end offsets."""
-        return {"width": np.array(self.width), **_packed(self._pictures)}
+        """See `packed`."""
+        return packed(self._pictures, width=self.width)
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Glimpses":
         """Those that `to_arrays` gave."""
-        return cls(int(arrays["width"]), _unpacked(arrays))
+        return cls(int(arrays["width"]), unpacked(arrays))
 
 
-def _packed(pictures: Mapping[int, Image]) -> dict[str, NDArray[Any]]:
+def compressed(image: NDArray[Any]) -> Image:
+    """A picture as bytes (N,); they err less than the video's compression."""
+    return np.asarray(cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, 90])[1].ravel(), dtype=np.uint8)
+
+
+def packed(pictures: Mapping[int, Image], **more: int) -> dict[str, NDArray[Any]]:
+    """The concatenated compressed pictures, with their frames and end offsets, and `more` numbers."""
     frames = sorted(pictures)
-    packed = [pictures[frame].ravel() for frame in frames]
     return {
+        **{name: np.array(number) for name, number in more.items()},
         "frame": np.array(frames, dtype=np.int64),
-        "end": np.cumsum([len(one) for one in packed], dtype=np.int64),
-        "picture": np.concatenate([np.zeros(0, dtype=np.uint8), *packed]),
+        "end": np.cumsum([len(pictures[frame]) for frame in frames], dtype=np.int64),
+        "picture": np.concatenate([np.zeros(0, dtype=np.uint8), *(pictures[frame] for frame in frames)]),
     }
 
 
-def _unpacked(arrays: Mapping[str, NDArray[Any]]) -> dict[int, Image]:
+def unpacked(arrays: Mapping[str, NDArray[Any]]) -> dict[int, Image]:
+    """The pictures that `packed` gave."""
     pictures = np.split(arrays["picture"], arrays["end"])
     return dict(zip(arrays["frame"].tolist(), pictures, strict=False))  # after the last end is nothing
 

@@ -102,9 +102,12 @@ class Clip:
         """
         if count < 1:
             raise ValueError(f"count must be at least 1, not {count}")
-        # Centers of equal intervals: neither the first frame nor the last, which fades and cuts spoil.
-        middles = (np.arange(count) + 0.5) * self.frame_count / count
-        return self.source.at(sorted({int(index) for index in middles}))
+        return self.source.at(spread_frames(self.frame_count, count))
+
+
+def spread_frames(frame_count: int, count: int) -> list[int]:
+    """Middles of `count` equal intervals: neither first nor last frame, which fades and cuts spoil."""
+    return sorted({int(index) for index in (np.arange(count) + 0.5) * frame_count / count})
 
 
 Stamped = tuple[float, Image]
@@ -188,8 +191,7 @@ def sample_spread_frames(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[f
     if clip.frame_count * pixels <= MOST_DECODED_PX:
         return (yield from sample_clip(clip, count))
     most = min(count, 12, max(MOST_DECODED_PX // (FRAMES_PER_SEARCH * pixels), 3))
-    middles = (np.arange(most) + 0.5) * clip.frame_count / most
-    indices = quickly_found(clip.path, [int(index) for index in middles])
+    indices = quickly_found(clip.path, spread_frames(clip.frame_count, most))
     if indices:
         return (yield from _kept(clip, clip.source.sought([0, *indices]), len(indices) + 1))
     # In files that cannot be seeked, only the beginning is affordable.

@@ -74,7 +74,7 @@ BEGINNINGS = (
 )
 RIFF = (b"AVI ", b"AVIX")
 TRANSPORT = ((188, 0), (192, 4), (204, 0))
-"""Packet lengths of MPEG transport streams, and the offset of the sync byte in a packet."""
+"""Packet lengths of MPEG transport streams, and the offset of the sync byte, G, in a packet."""
 
 
 def check_container(path: Path) -> None:
@@ -86,7 +86,10 @@ def check_container(path: Path) -> None:
             beginning = file.read(4096)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); it must be {VALID}") from error
-    if not _begins_as_video(beginning):
+    known = beginning[4:8] in BOXES or beginning.startswith(BEGINNINGS)
+    riff = beginning[:4] in (b"RIFF", b"RIFX") and beginning[8:12] in RIFF
+    sync = (beginning[start::length][:5] for length, start in TRANSPORT)
+    if not known and not riff and not any(len(mark) > 1 and set(mark) == {ord("G")} for mark in sync):
         what = "text" if _is_text(beginning[:512]) else "data of another kind"
         raise InputError(
             f"{path}: cannot be decoded; it holds {what} and must be {VALID}, no playlist or other file"
@@ -100,20 +103,6 @@ def check_pixels(path: Path, width: float, height: float) -> None:
             f"{path}: its pictures have {width:.0f} x {height:.0f} pixels; at most {MOST_PIXELS} pixels, as "
             "in 16384 x 8192, are read"
         )
-
-
-def _begins_as_video(data: bytes) -> bool:
-    return (
-        data[4:8] in BOXES
-        or data.startswith(BEGINNINGS)
-        or (data[:4] in (b"RIFF", b"RIFX") and data[8:12] in RIFF)
-        or any(_is_transport(data[start::length]) for length, start in TRANSPORT)
-    )
-
-
-def _is_transport(marks: bytes) -> bool:
-    """Whether the bytes at the offsets of sync bytes are sync bytes."""
-    return bool(marks) and marks[:5] == b"G" * min(len(marks), 5) and len(marks) > 1
 
 
 def _is_text(data: bytes) -> bool:

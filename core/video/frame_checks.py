@@ -1,10 +1,7 @@
-"""Checks of a video's header and of its frames while they are read: blank ones, cuts, and interlacing."""
+"""Checks of frames while they are read: blank ones, repeated ones, cuts, and interlacing."""
 
-import re
-import struct
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -33,110 +30,6 @@ def _teeth(levels: NDArray[np.int16]) -> float:
     rising = np.logical_and.reduce([up[tooth : tooth + windows] for tooth in range(TEETH)])
     falling = np.logical_and.reduce([down[tooth : tooth + windows] for tooth in range(TEETH)])
     return float(np.mean(rising | falling))
-
-
-HDR_TRANSFERS = {16: "PQ", 18: "HLG"}  # transfer characteristics of ITU-T H.273
-MP4 = re.compile(rb"colrncl[xc].{2}\x00(.)", re.DOTALL)
-"""The color box of MP4 and QuickTime: primaries, then transfer characteristics, two bytes each."""
-MATROSKA = re.compile(rb"\x55\xba\x81(.)", re.DOTALL)
-
-
-def video_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
-    """Sentences on faults of an open video."""
-    notes = []
-    across, down = capture.get(cv2.CAP_PROP_SAR_NUM), capture.get(cv2.CAP_PROP_SAR_DEN)
-    if across > 0.0 and down > 0.0 and abs(across / down - 1.0) >= 0.01:
-        notes.append(
-            f"the pixels of {path.name} are {across / down:.3g} times as wide as high, and Keymark and "
-            "Blender take them for square: the motion is out of shape; convert the clip first, as with "
-            "ffmpeg -i CLIP -vf scale=iw*sar:ih,setsar=1"
-        )
-    transfer = dynamic_range(path)
-    if transfer is not None:
-        notes.append(
-            f"{path.name} is of high dynamic range ({transfer}): read as it is, its colors are pale and "
-            "markers harder to tell apart; film in standard range or convert it, and pick the markers' "
-            "colors anew"
-        )
-    return tuple(notes)
-
-
-def dynamic_range(path: Path) -> str | None:
-    """Name of a video's high dynamic range transfer function, PQ or HLG; None for standard range."""
-    try:
-        with path.open("rb") as file:
-            head = file.read(2**16)  # it describes its tracks within these
-        is_matroska = head.startswith(b"\x1a\x45\xdf\xa3")
-        found = MATROSKA.search(head) if is_matroska else MP4.search(_movie_box(path))
-    except OSError:
-        return None
-    return None if found is None else HDR_TRANSFERS.get(found[1][0])
-
-
-def _movie_box(path: Path) -> bytes:
-    """The `moov` box of MP4 and QuickTime, which describes the tracks; empty if there is none."""
-    whole = path.stat().st_size
-    with path.open("rb") as file:
-        while len(head := file.read(8)) == 8:
-            size = int.from_bytes(head[:4], "big")
-            if size == 1:
-                size = int.from_bytes(file.read(8), "big") - 8
-            if head[4:] == b"moov":
-                return file.read(min(max(size - 8, 0), 2**26))
-            if not 8 <= size <= whole:
-                break
-            file.seek(size - 8, 1)
-    return b""
-
-
-def trimmed_s(path: Path) -> float | None:
-    """The time [s] that a trimmed video shows of all its pictures; None where it shows them all.
-
-    Phones trim MP4 and QuickTime by an edit list alone (ISO/IEC 14496-12, 8.6.6): the pictures before and
-    after stay in the file, are counted by it, and are never shown.
-    """
-    try:
-        movie = list(_boxes(_movie_box(path)))
-        clock, _ = _timing(dict(movie)[b"mvhd"])
-        for track in (dict(_boxes(content)) for kind, content in movie if kind == b"trak"):
-            media = dict(_boxes(track[b"mdia"]))
-            if media[b"hdlr"][8:12] != b"vide":
-                continue
-            edits = dict(_boxes(track.get(b"edts", b""))).get(b"elst", b"")
-            rate, whole = _timing(media[b"mdhd"])
-            shown = sum(_edits(edits)) / clock
-            # A frame or two at the ends are left out by encoders, whose first pictures come late.
-            return shown if 0.0 < shown < whole / rate - 0.1 else None
-    except (OSError, KeyError, struct.error, ZeroDivisionError):
-        pass
-    return None
-
-
-def _boxes(data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """Types and contents of the boxes in a box."""
-    at = 0
-    while at + 8 <= len(data):
-        size = int.from_bytes(data[at : at + 4], "big")
-        if size < 8:
-            return
-        yield data[at + 4 : at + 8], data[at + 8 : at + size]
-        at += size
-
-
-def _timing(header: bytes) -> tuple[int, int]:
-    """Time scale and duration in a header of a movie or a track's media."""
-    form, at = (">IQ", 20) if header[:1] == b"\x01" else (">II", 12)
-    scale, duration = struct.unpack_from(form, header, at)
-    return int(scale), int(duration)
-
-
-def _edits(content: bytes) -> Iterator[int]:
-    """Durations of the edits that show something, on the movie's clock."""
-    form = ">QqI" if content[:1] == b"\x01" else ">IiI"
-    count = struct.unpack_from(">I", content, 4)[0] if content else 0
-    for number in range(min(count, 1000)):
-        duration, begins, _ = struct.unpack_from(form, content, 8 + number * struct.calcsize(form))
-        yield duration if begins >= 0 else 0
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Image
 from ..errors import InputError
 from .container import check_container, check_pixels, fill_last_rows, opencv_silence
-from .frame_checks import trimmed_s, video_notes
+from .header import trimmed_s, video_notes
 
 FRAMES_PER_SEEK = 125  # mean cost of seeking: half of the usual 250 frames between video keyframes
 LONGEST_PAUSE_S = 3600.0  # longest step between valid time stamps

@@ -80,7 +80,7 @@ def _read(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, path: Path) -> 
 
 def _whole(path: Path) -> Path:
     """The folder of a detector that writes a file a frame, where one of its files was chosen."""
-    from ...core.detect.frame_folder import is_one_frame
+    from ...core.detect.detector_formats import is_one_frame
     from ...core.detect.keypoint_file import LARGEST_BYTES
     from ...core.files.json_file import read_json_value
 

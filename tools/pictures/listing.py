@@ -10,8 +10,8 @@ import numpy as np
 from keymark.core.api import reconstruct
 from keymark.core.arrays import Array, Image
 from keymark.core.progress import run
-from keymark.core.report.canvas import INK, WHITE, Canvas, Color, write_png
-from keymark.core.report.mannequin import TILT_RAD, View, backdrop, draw_mannequin, mannequin, view_axes
+from keymark.core.report.canvas import INK, WHITE, Canvas, Color, view_axes, write_png
+from keymark.core.report.mannequin import TILT_RAD, View, backdrop, draw_mannequin, mannequin
 from keymark.core.report.stick_figure import draw_figure, stick_figure
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take

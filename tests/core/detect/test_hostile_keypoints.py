@@ -25,7 +25,7 @@ from _keypoints import (
 )
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from keymark.core.detect import detected_frames, frame_folder
+from keymark.core.detect import detected_frames, detector_formats
 from keymark.core.detect.keypoint_file import read_keypoints
 from keymark.core.errors import InputError
 
@@ -110,12 +110,12 @@ def test_all_points_together_are_bounded(tmp_path: Path, monkeypatch: pytest.Mon
     with pytest.raises(InputError, match="has 150 points in all frames; at most 125"):
         read_keypoints(folder, FRAMES, SIZE)
     path = write(tmp_path / "results.json", coco_value(moving_person(COCO17)))
-    with pytest.raises(InputError, match="has 204 points"):
+    with pytest.raises(InputError, match="has 136 points"):
         read_keypoints(path, FRAMES, SIZE)
 
 
 def test_numbered_files_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(frame_folder, "MOST_FRAMES", 5)
+    monkeypatch.setattr(detector_formats, "MOST_FRAMES", 5)
     with pytest.raises(InputError, match="more than 5 numbered files"):
         read_keypoints(write_openpose(tmp_path / "json", moving_person(BODY25)), FRAMES, SIZE)
 

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 from _keypoints import FRAMES, SIZE, coco_value, mediapipe_value, moving_person, openpose_frame
+from keymark.core.detect.detected_frames import stated_frames
 from keymark.core.detect.keypoint_file import read_keypoints
 from keymark.core.detect.keypoints import People
 from keymark.core.detect.layouts import LAYOUTS
-from keymark.core.detect.stated_frames import stated_frames
 from keymark.core.errors import InputError
 
 BLAZEPOSE33, OPENPOSE25 = LAYOUTS["blazepose33"], LAYOUTS["body25"]
@@ -75,9 +75,9 @@ def test_times_tell_from_which_number_frames_count(tmp_path: Path) -> None:
 
 def test_what_counts_something_else_is_not_believed(tmp_path: Path) -> None:
     entries = landmarks(moving_person(BLAZEPOSE33), frame=lambda index: 7, time=lambda index: 1.7e9 + index)
-    assert stated_frames(entries) is None and seen(read(tmp_path, entries)) == list(range(FRAMES))
+    assert stated_frames(entries) == (None, None) and seen(read(tmp_path, entries)) == list(range(FRAMES))
     half = landmarks(moving_person(BLAZEPOSE33), frame=lambda index: index + 0.5)
-    assert stated_frames(half) is None and stated_frames([]) is None and stated_frames([[1], [2]]) is None
+    assert all(stated_frames(one) == (None, None) for one in (half, [], [[1], [2]]))
     beyond = landmarks(moving_person(BLAZEPOSE33), timestamp=lambda index: 5.0 + index / FPS)
     assert seen(read(tmp_path, beyond)) == list(range(FRAMES))  # one for every frame, late by the clock
     with pytest.raises(InputError, match="it must have one entry for every frame"):

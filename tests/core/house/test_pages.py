@@ -13,7 +13,7 @@ from _synthetic_take import write_synthetic_take
 from keymark.core import MOST_PIXELS
 from keymark.core.body import posture
 from keymark.core.camera import camera_fields
-from keymark.core.detect import detected_frames, frame_folder, keypoint_file
+from keymark.core.detect import detected_frames, detector_formats, keypoint_file
 from keymark.core.detect.keypoints import BODY_POINTS
 from keymark.core.detect.layouts import LAYOUTS
 from keymark.core.files import json_file, kinds
@@ -62,7 +62,7 @@ FORMATS = {
     "`motion.json`": mib(motion),
     "a library, `conversion.json`, `retarget.json`": mib(library, conversion_record, retarget_record),
     "a file of keypoints; a file of a detector's folder": (
-        f"{mib(keypoint_file)}; {frame_folder.LARGEST_FILE_BYTES // 2**20} MiB"
+        f"{mib(keypoint_file)}; {detector_formats.LARGEST_FILE_BYTES // 2**20} MiB"
     ),
     "`shoot.json`, a line of a list, a character map": mib(description, character_map),
     "lists and objects in a file": f"{json_file.MOST_LISTS}, {json_file.DEEPEST} levels deep",
@@ -84,8 +84,8 @@ FORMATS = {
 }
 KEYPOINTS = {
     "a file": mib(keypoint_file),
-    "a file of a detector's folder": f"{frame_folder.LARGEST_FILE_BYTES // 2**20} MiB",
-    "frames; numbered files of a folder": f"{frame_folder.MOST_FRAMES}",
+    "a file of a detector's folder": f"{detector_formats.LARGEST_FILE_BYTES // 2**20} MiB",
+    "frames; numbered files of a folder": f"{detected_frames.MOST_FRAMES}",
     "people in a frame": f"{detected_frames.MOST_PEOPLE}",
     "points of all people in all frames": f"{detected_frames.MOST_POINTS}",
     "distance of a point from the picture's corner; of a guess from the hips": (

@@ -18,7 +18,7 @@ from keymark.core.session.lens import Lens, lens_of
 from keymark.core.session.place import FoundCamera, camera_by_performer, camera_in_words
 from keymark.core.take.conversion_settings import ConversionSettings
 from keymark.core.take.description import describe, keypoints_beside
-from keymark.core.video.stated_lens import FOCAL_LENGTH, stated_lens_mm
+from keymark.core.video.header import FOCAL_LENGTH, stated_lens_mm
 
 FPS = 30.0
 AUTO = ConversionSettings(library="auto")

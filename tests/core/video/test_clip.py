@@ -18,7 +18,7 @@ from keymark.core.take.clip_check import clip_notes, picture_count
 from keymark.core.video import clip as glancing
 from keymark.core.video.clip import Clip, sample_spread_frames
 from keymark.core.video.container import quickly_found, read_packets
-from keymark.core.video.frame_checks import trimmed_s
+from keymark.core.video.header import trimmed_s
 from keymark.core.video.video_file import VideoFile
 
 

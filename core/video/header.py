@@ -1,0 +1,153 @@
+"""What the header of a video says beside its pictures: form of the pixels, dynamic range, trimming, the lens.
+
+MP4 and QuickTime are boxes, each of which begins with its length and its type, four bytes each (ISO/IEC
+14496-12); `moov` describes the tracks. A box `meta`, of the movie or of a track, lists names in `keys`, and
+in `ilst` their values by number (QuickTime File Format, Metadata).
+"""
+
+import re
+import struct
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+import cv2
+
+LARGEST_MOVIE_BYTES = 64 * 2**20
+"""Of the index, which grows with the number of frames: hours have less."""
+HDR_TRANSFERS = {16: "PQ", 18: "HLG"}  # transfer characteristics of ITU-T H.273
+MP4 = re.compile(rb"colrncl[xc].{2}\x00(.)", re.DOTALL)
+"""The color box of MP4 and QuickTime: primaries, then transfer characteristics, two bytes each."""
+MATROSKA = re.compile(rb"\x55\xba\x81(.)", re.DOTALL)
+DAMAGED = (OSError, struct.error, ValueError, LookupError, ZeroDivisionError)
+FOCAL_LENGTH = b"com.apple.quicktime.camera.focal_length.35mm_equivalent"
+SHORTEST_MM, LONGEST_MM = 5.0, 1000.0
+TEXT, FLOATS = 1, {23: ">f", 24: ">d"}
+"""Well-known types of values; those of whole numbers are all others that are read here."""
+
+
+def video_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
+    """Sentences on faults of an open video."""
+    notes = []
+    across, down = capture.get(cv2.CAP_PROP_SAR_NUM), capture.get(cv2.CAP_PROP_SAR_DEN)
+    if across > 0.0 and down > 0.0 and abs(across / down - 1.0) >= 0.01:
+        notes.append(
+            f"the pixels of {path.name} are {across / down:.3g} times as wide as high, and Keymark and "
+            "Blender take them for square: the motion is out of shape; convert the clip first, as with "
+            "ffmpeg -i CLIP -vf scale=iw*sar:ih,setsar=1"
+        )
+    transfer = None
+    with suppress(*DAMAGED), path.open("rb") as file:
+        start = file.read(2**16)  # Matroska describes its tracks within these
+        is_matroska = start.startswith(b"\x1a\x45\xdf\xa3")
+        found = MATROSKA.search(start) if is_matroska else MP4.search(_movie(path))
+        transfer = HDR_TRANSFERS.get(found[1][0]) if found else None
+    if transfer:
+        notes.append(
+            f"{path.name} is of high dynamic range ({transfer}): read as it is, its colors are pale and "
+            "markers harder to tell apart; film in standard range or convert it, and pick the markers' "
+            "colors anew"
+        )
+    return tuple(notes)
+
+
+def trimmed_s(path: Path) -> float | None:
+    """The time [s] that a trimmed video shows of all its pictures; None where it shows them all.
+
+    Phones trim MP4 and QuickTime by an edit list alone (ISO/IEC 14496-12, 8.6.6): the pictures before and
+    after stay in the file, are counted by it, and are never shown.
+    """
+    with suppress(*DAMAGED):
+        movie = list(_boxes(_movie(path)))
+        clock, _ = _timing(dict(movie)[b"mvhd"])
+        for track in (dict(_boxes(content)) for kind, content in movie if kind == b"trak"):
+            media = dict(_boxes(track[b"mdia"]))
+            if media[b"hdlr"][8:12] != b"vide":
+                continue
+            edits = dict(_boxes(track.get(b"edts", b""))).get(b"elst", b"")
+            rate, whole = _timing(media[b"mdhd"])
+            shown = sum(_edits(edits)) / clock
+            # A frame or two at the ends are left out by encoders, whose first pictures come late.
+            return shown if 0.0 < shown < whole / rate - 0.1 else None
+    return None
+
+
+def _timing(header: bytes) -> tuple[int, int]:
+    """Time scale and duration in a header of a movie or a track's media."""
+    form, at = (">IQ", 20) if header[:1] == b"\x01" else (">II", 12)
+    scale, duration = struct.unpack_from(form, header, at)
+    return int(scale), int(duration)
+
+
+def _edits(content: bytes) -> Iterator[int]:
+    """Durations of the edits that show something, on the movie's clock."""
+    form = ">QqI" if content[:1] == b"\x01" else ">IiI"
+    count = struct.unpack_from(">I", content, 4)[0] if content else 0
+    for number in range(min(count, 1000)):
+        duration, begins, _ = struct.unpack_from(form, content, 8 + number * struct.calcsize(form))
+        yield duration if begins >= 0 else 0
+
+
+def stated_lens_mm(path: Path) -> float | None:
+    """The full-frame equivalent of the lens by the picture's diagonal [mm]; None where nothing states it."""
+    with suppress(*DAMAGED):
+        movie = _movie(path)
+        metas = [movie, *(inside for kind, inside in _boxes(movie) if kind == b"trak")]
+        for holder in metas:
+            for kind, inside in _boxes(holder):
+                value = _value(inside) if kind == b"meta" else None
+                if value is not None and SHORTEST_MM <= value <= LONGEST_MM:
+                    return value
+    return None
+
+
+def _movie(path: Path) -> bytes:
+    """The content of the box `moov`; empty where the file has none."""
+    size = path.stat().st_size if path.is_file() else 0
+    with path.open("rb") as file:
+        at = 0
+        while at + 8 <= size:
+            file.seek(at)
+            head = file.read(16)
+            length, kind = struct.unpack(">I4s", head[:8])
+            begin = 8
+            if length == 1:
+                length, begin = struct.unpack(">Q", head[8:16])[0], 16
+            length = size - at if length == 0 else length
+            if length < begin:
+                break
+            if kind == b"moov":
+                file.seek(at + begin)
+                return file.read(min(length - begin, LARGEST_MOVIE_BYTES))
+            at += length
+    return b""
+
+
+def _boxes(data: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """The boxes in a box, by type and content."""
+    at = 0
+    while at + 8 <= len(data):
+        length, kind = struct.unpack_from(">I4s", data, at)
+        if length < 8:
+            return
+        yield kind, data[at + 8 : at + length]
+        at += length
+
+
+def _value(meta: bytes) -> float | None:
+    inside = dict(_boxes(meta)) or {}
+    if b"keys" not in inside:
+        inside = dict(_boxes(meta[4:]))  # in MP4 version and flags come first
+    keys, values = inside.get(b"keys", b""), inside.get(b"ilst", b"")
+    names = [name for _, name in _boxes(keys[8:])]  # after version, flags and count
+    if FOCAL_LENGTH not in names:
+        return None
+    wanted = struct.pack(">I", names.index(FOCAL_LENGTH) + 1)
+    item = dict(_boxes(values)).get(wanted, b"")
+    data = dict(_boxes(item)).get(b"data", b"")
+    kind, raw = struct.unpack_from(">I", data)[0], data[8:]
+    if kind == TEXT:
+        return float(raw.decode("ascii").lower().removesuffix("mm").strip())
+    if kind in FLOATS:
+        return float(struct.unpack(FLOATS[kind], raw)[0])
+    return float(int.from_bytes(raw[:8], "big"))
