@@ -62,7 +62,10 @@ def unregister() -> None:
 
 
 def _do(way: str, module: ModuleType) -> None:
-    """Register or unregister a module: by its own function, or else Blender's classes in it."""
+    """Register or unregister a module: by its own function, or else Blender's classes in it.
+
+    `attach` adds what needs these classes, and `detach` removes it.
+    """
     from bpy.utils import register_classes_factory
 
     classes = [
@@ -71,7 +74,11 @@ def _do(way: str, module: ModuleType) -> None:
         if name.startswith("KEYMARK_") and each.__module__ == module.__name__
     ]
     by_classes = dict(zip(("register", "unregister"), register_classes_factory(classes), strict=True))
+    if way == "unregister" and hasattr(module, "detach"):
+        module.detach()
     getattr(module, way, by_classes[way])()
+    if way == "register" and hasattr(module, "attach"):
+        module.attach()
 
 
 def _listed(folder: str, names: str) -> tuple[str, ...]:

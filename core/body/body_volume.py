@@ -131,7 +131,7 @@ class PieceStack:
 @lru_cache(maxsize=256)
 def segment_piece(body: Body, name: str) -> Piece:
     """The volume of one of the skeleton's segments, kept once made; KeyError for one without."""
-    segment = next(s for s in body.skeleton.segments if s.name == name)
+    segment = body.skeleton.segment(name)
     start, end = body.local(segment.start), body.local(segment.end)
     if name == "head":
         end = start + HEAD_OVERSHOOT * (end - start)
@@ -173,27 +173,22 @@ HEEL_BEHIND = 0.32
 
 def sole_offsets(body: Body) -> Array:
     """(2, 2, 3) heel and tip of the left and the right foot from its ankle, in the foot's frame [m]."""
-    feet = [_foot(body, side) for side in SIDES]
+    feet = [body.skeleton.segment(f"foot.{side}") for side in SIDES]
     return np.stack([_sole(body, foot) - body.local(foot.start) for foot in feet])
 
 
 def sole_places(body: Body, pose: Pose, extremities: Extremities = RIGID) -> Array:
     """World positions (..., 2, 2, 3) of heel and tip of the left and the right foot [m]."""
     feet = []
-    for foot in (_foot(body, side) for side in SIDES):
-        places = _sole(body, foot)
+    for foot in (body.skeleton.segment(f"foot.{side}") for side in SIDES):
+        places, start = _sole(body, foot), body.local(foot.start)
         if foot.name in extremities.turns:
-            start = body.local(foot.start)
-            turn = segment_turn(body, pose, extremities, foot.name)
-            ankle = pose.place(foot.joint, start)
-            feet.append(np.stack([ankle + turn @ (place - start) for place in places], axis=-2))
+            turn, ankle = segment_turn(body, pose, extremities, foot.name), pose.place(foot.joint, start)
+            shown = [ankle + turn @ (place - start) for place in places]
         else:
-            feet.append(np.stack([pose.place(foot.joint, place) for place in places], axis=-2))
+            shown = [pose.place(foot.joint, place) for place in places]
+        feet.append(np.stack(shown, axis=-2))
     return np.stack(feet, axis=-3)
-
-
-def _foot(body: Body, side: str) -> Segment:
-    return next(segment for segment in body.skeleton.segments if segment.name == f"foot.{side}")
 
 
 def _sole(body: Body, foot: Segment) -> Array:
@@ -236,12 +231,11 @@ def standing_posture(
         arms_lowered_rad: Angle of the arms below the horizontal.
     """
     skeleton = body.skeleton
-    column = {name: i for i, name in enumerate(skeleton.dof_names)}
-    vector = np.zeros(skeleton.dof_count)
+    values = {"pelvis.rotation_z": heading_rad}
     for side, out in zip(SIDES, (1.0, -1.0), strict=True):
-        vector[column[f"shoulder.{side}.rotation_y"]] = out * arms_lowered_rad
-        vector[column[f"elbow.{side}.flexion"]] = np.radians(10.0)
-    vector[column["pelvis.rotation_z"]] = heading_rad
+        values[f"shoulder.{side}.rotation_y"] = out * arms_lowered_rad
+        values[f"elbow.{side}.flexion"] = np.radians(10.0)
+    vector = np.array([values.get(name, 0.0) for name in skeleton.dof_names])
     vector[:3] = np.zeros(3) if place is None else place
     vector[2] += hip_height_m(body)
     return Posture.from_vector(skeleton, vector)
@@ -250,8 +244,8 @@ def standing_posture(
 def limb_dofs(skeleton: Skeleton, limb: str) -> IndexArray:
     """Degrees of freedom of a limb, `arm.L` ... `leg.R`."""
     kind, _, side = limb.partition(".")
-    first = next(i for i, one in enumerate(skeleton.joints) if one.name == f"{LIMB_ROOTS[kind]}.{side}")
-    return next(part for part in skeleton.limbs if skeleton.dof_starts[first] in part)
+    first = skeleton.dof_starts[skeleton.joint_index(f"{LIMB_ROOTS[kind]}.{side}")]
+    return next(part for part in skeleton.limbs if first in part)
 
 
 def rested(body: Body, posture: Posture, limbs: tuple[str, ...]) -> Posture:

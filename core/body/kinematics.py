@@ -101,7 +101,12 @@ class Body:
         count = len(skeleton.joints)
         rotation = np.empty((*posture.batch, count, 3, 3))
         origin = np.empty((*posture.batch, count, 3))
-        turns = self._joint_rotations(posture)
+        turns: list[Array] = [np.eye(3)] * count
+        for column, ball in enumerate(skeleton.ball_joints):
+            turns[ball] = posture.rotations[..., column, :, :]
+        hinged = rotations.exponential(posture.angles[..., None] * skeleton.hinge_axes)
+        for column, hinge in enumerate(skeleton.hinge_joints):
+            turns[hinge] = hinged[..., column, :, :]
         for i, joint in enumerate(skeleton.joints):
             if joint.parent < 0:
                 rotation[..., i, :, :] = turns[i]
@@ -111,16 +116,6 @@ class Body:
                 rotation[..., i, :, :] = above @ turns[i]
                 origin[..., i, :] = origin[..., joint.parent, :] + above @ self.offsets[i]
         return Pose(posture, rotation, origin)
-
-    def _joint_rotations(self, posture: Posture) -> list[Array]:
-        skeleton = self.skeleton
-        turns: list[Array] = [np.eye(3)] * len(skeleton.joints)
-        for column, ball in enumerate(skeleton.ball_joints):
-            turns[ball] = posture.rotations[..., column, :, :]
-        hinged = rotations.exponential(posture.angles[..., None] * skeleton.hinge_axes)
-        for column, joint in enumerate(skeleton.hinge_joints):
-            turns[joint] = hinged[..., column, :, :]
-        return turns
 
     def points(self, pose: Pose) -> Array:
         """World positions (..., P, 3) of the principal points [m]."""
@@ -134,11 +129,9 @@ class Body:
 
     def segment_ends(self, pose: Pose, name: str) -> tuple[Array, Array]:
         """World positions (..., 3) of a segment's two ends [m]; KeyError for an unknown segment."""
-        for segment in self.skeleton.segments:
-            if segment.name == name:
-                start, end = self.local(segment.start), self.local(segment.end)
-                return pose.place(segment.joint, start), pose.place(segment.joint, end)
-        raise KeyError(name)
+        segment = self.skeleton.segment(name)
+        start, end = self.local(segment.start), self.local(segment.end)
+        return pose.place(segment.joint, start), pose.place(segment.joint, end)
 
 
 # --- Extremities
@@ -171,10 +164,7 @@ def extremity_names(skeleton: Skeleton) -> tuple[str, ...]:
 
 def segment_turn(body: Body, pose: Pose, extremities: Extremities, name: str) -> Array:
     """World orientation (..., 3, 3) of a segment's frame; KeyError for an unknown one."""
-    segment = next((s for s in body.skeleton.segments if s.name == name), None)
-    if segment is None:
-        raise KeyError(name)
-    above = pose.rotation[..., segment.joint, :, :]
+    above = pose.rotation[..., body.skeleton.segment(name).joint, :, :]
     return np.asarray(above @ extremities.turns[name]) if name in extremities.turns else above
 
 
@@ -183,7 +173,7 @@ def segment_ends(body: Body, pose: Pose, extremities: Extremities, name: str) ->
     start, end = body.segment_ends(pose, name)
     if name not in extremities.turns:
         return start, end
-    segment = next(s for s in body.skeleton.segments if s.name == name)
+    segment = body.skeleton.segment(name)
     along = body.local(segment.end) - body.local(segment.start)
     return start, np.asarray(start + segment_turn(body, pose, extremities, name) @ along)
 

@@ -72,7 +72,13 @@ def guess_posture(body: Body, points: Array) -> Posture:
             lower = unit(point[f"{end}.{side}"] - point[f"{middle}.{side}"])
             turn, flexion = _limb(start, _in_frame(above, upper), _in_frame(above, lower), bend)
             turns[f"{ball}.{side}"], angles[f"{middle}.{side}"] = turn, flexion
-    return _assemble(body, hips, turns, angles)
+    rest = Posture.rest(skeleton, (len(hips),))
+    matrices, hinges = np.array(rest.rotations), np.array(rest.angles)
+    for column, joint in enumerate(skeleton.ball_joints):
+        matrices[:, column] = nearest_rotation(turns[skeleton.joints[joint].name])
+    for column, joint in enumerate(skeleton.hinge_joints):
+        hinges[:, column] = angles.get(skeleton.joints[joint].name, 0.0)
+    return Posture(skeleton, hips, matrices, hinges)
 
 
 def _in_frame(frame: Array, direction: Array) -> Array:
@@ -84,19 +90,6 @@ def nearest_rotation(matrix: Array) -> Array:
     left, _, right = np.linalg.svd(matrix)
     left[..., 2] *= np.linalg.det(left @ right)[..., None]
     return np.asarray(left @ right)
-
-
-def _assemble(body: Body, hips: Array, turns: dict[str, Array], angles: dict[str, Array]) -> Posture:
-    skeleton = body.skeleton
-    rest = Posture.rest(skeleton, (len(hips),))
-    matrices, hinges = np.array(rest.rotations), np.array(rest.angles)
-    for column, joint in enumerate(skeleton.ball_joints):
-        matrices[:, column] = nearest_rotation(turns[skeleton.joints[joint].name])
-    for column, joint in enumerate(skeleton.hinge_joints):
-        name = skeleton.joints[joint].name
-        if name in angles:
-            hinges[:, column] = angles[name]
-    return Posture(skeleton, hips, matrices, hinges)
 
 
 # --- Inverse kinematics from thirteen points
@@ -124,13 +117,6 @@ class PostureFit:
 
     posture: Posture
     residual_m: Array  # (N, 13) distance between each given and fitted point [m]; NaN where none was given
-
-
-def _neutral_weights(body: Body) -> Array:
-    weights = np.zeros(body.skeleton.dof_count)
-    for i, name in enumerate(body.skeleton.dof_names):
-        weights[i] = NEUTRAL_STD_RAD.get(name.split(".")[0], np.inf) ** -2
-    return weights
 
 
 def _residuals(body: Body, posture: Posture, targets: Array, weights: Array) -> tuple[Array, Array, Array]:
@@ -168,7 +154,8 @@ def fit_posture(body: Body, points: Array, start: Posture | None = None, iterati
     """
     targets = np.asarray(points, dtype=np.float64)
     posture = guess_posture(body, targets) if start is None else start
-    weights = _neutral_weights(body)
+    stems = [name.split(".")[0] for name in body.skeleton.dof_names]
+    weights = np.array([NEUTRAL_STD_RAD.get(stem, np.inf) ** -2 for stem in stems])
     posture = levenberg_marquardt(
         lambda batch: _residuals(body, batch, targets, weights),
         posture,

@@ -172,7 +172,8 @@ class Skeleton:
 
     def joint_index(self, name: str) -> int:
         """Index of the joint called `name`; KeyError where there is none."""
-        for index, joint in enumerate(self.joints):
-            if joint.name == name:
-                return index
-        raise KeyError(name)
+        return {joint.name: index for index, joint in enumerate(self.joints)}[name]
+
+    def segment(self, name: str) -> Segment:
+        """The segment called `name`; KeyError where there is none."""
+        return {segment.name: segment for segment in self.segments}[name]

@@ -176,7 +176,7 @@ def _motions(library: Library, body: Body) -> list[_Sampled]:
     used = {step.posture for motion in library.motions for step in motion.steps}
     for loose in library.postures:
         if loose.name not in used:
-            posture = Posture.stack([transferred(loose, library.actor, body)])
+            posture = Posture.stack([transferred(loose.posture, library.actor, body)])
             found.append(_Sampled(posture, [loose.name], 0.0, False))
     return found
 

@@ -91,7 +91,8 @@ def with_turns(prior: Posture, keyframes: IndexArray, turns: IndexArray) -> Post
     wound = np.concatenate([[0.0], np.cumsum(heading_steps_rad(prior[keyframes]))])
     more = np.concatenate([[0.0], np.cumsum(FULL_TURN * turns)])
     frame = np.clip(np.arange(prior.batch[0]), keyframes[0], keyframes[-1])
-    added = _monotone(keyframes, wound + more, frame) - _monotone(keyframes, wound, frame)
+    before, after = (PchipInterpolator(keyframes, heading)(frame) for heading in (wound, wound + more))
+    added = after - before
     # Whole turns are none: far from those added the interpolation stays as it is, to the last digit.
     added -= FULL_TURN * np.round(added / FULL_TURN)
     added[np.abs(added) < 1e-9] = 0.0
@@ -102,10 +103,6 @@ def with_turns(prior: Posture, keyframes: IndexArray, turns: IndexArray) -> Post
     rotations = prior.rotations.copy()
     rotations[turned] = changed.rotations
     return Posture(prior.skeleton, prior.translation, rotations, prior.angles)
-
-
-def _monotone(knots: IndexArray, values: Array, times: IndexArray) -> Array:
-    return np.asarray(PchipInterpolator(knots.astype(np.float64), values)(times.astype(np.float64)))
 
 
 # --- Interpolation
@@ -129,19 +126,12 @@ def _posed(keyframes: tuple[Keyframe, ...]) -> tuple[Posture, Array]:
 # --- Performer offset
 
 
-@dataclass(frozen=True)
-class OffsetOptions:
-    """How a performer differs from a library."""
-
-    constant_share: float = 0.5  # share of the offset's variance that is constant over the clip
-    correlation_time_s: float = 0.5  # correlation time of the rest
-    posed_variance: float = 0.1  # variance of a person's own error, relative to the offset's
-    least_variance: float = 0.05  # share of the offset's variance that remains beside any posed keyframe
-    # Time outside the matched keyframes over which the nearest of them ceases to stand for the library.
-    beyond_s: float = 0.1
-
-
-OFFSET = OffsetOptions()
+CONSTANT_SHARE = (
+    0.5  # share of the variance of a performer's offset from a library that is constant over a clip
+)
+BEYOND_S = (
+    0.1  # time outside the matched keyframes over which the nearest ceases to stand for the library [s]
+)
 
 
 def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
@@ -161,7 +151,7 @@ def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyf
     known = _known(at, beyond_s)
     across = _covariance(at, wanted)
     share = np.linalg.solve(known, across).T  # (found, posed)
-    doubt[doubt > 0.0] = np.sqrt(np.maximum(1.0 - np.sum(share * across.T, axis=1), OFFSET.least_variance))
+    doubt[doubt > 0.0] = np.sqrt(np.maximum(1.0 - np.sum(share * across.T, axis=1), 0.05))  # never none
     step = np.where([[key in matched] for key in found], share @ difference, 0.0)
     changed = Posture.stack([key.posture for key in found]).plus(step)
     both = [*posed, *(replace(key, posture=changed[row]) for row, key in enumerate(found))]
@@ -179,13 +169,13 @@ def leave_one_out_residuals(keyframes: tuple[Keyframe, ...], fps: float) -> tupl
     matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]
     difference, beyond_s = _differences(posed, matched, fps)
     information = np.linalg.inv(_known(np.array([k.index for k in posed]) / fps, beyond_s))
-    weight = 1.0 / (1.0 + (beyond_s / OFFSET.beyond_s) ** 2)
+    weight = 1.0 / (1.0 + (beyond_s / BEYOND_S) ** 2)
     return (information @ difference) / np.diag(information)[:, None], weight
 
 
 def _known(at: Array, beyond_s: Array) -> Array:
     """(P, P) covariance of the observed offsets at posed keyframes' times [s], observation noise included."""
-    noise = OFFSET.posed_variance + (beyond_s / OFFSET.beyond_s) ** 2
+    noise = 0.1 + (beyond_s / BEYOND_S) ** 2
     return np.asarray(_covariance(at, at) + np.diag(noise))
 
 
@@ -202,5 +192,5 @@ def _differences(posed: list[Keyframe], matched: list[Keyframe], fps: float) -> 
 
 
 def _covariance(one: Array, other: Array) -> Array:
-    alike = np.exp(-np.abs(one[:, None] - other) / OFFSET.correlation_time_s)
-    return np.asarray(OFFSET.constant_share + (1.0 - OFFSET.constant_share) * alike)
+    alike = np.exp(-np.abs(one[:, None] - other) / 0.5)  # the rest is correlated over this time [s]
+    return np.asarray(CONSTANT_SHARE + (1.0 - CONSTANT_SHARE) * alike)

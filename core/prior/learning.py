@@ -12,21 +12,7 @@ from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
 from .motion_playback import ankle_heights, average_cycle, find_period_s, shape_vectors
 from .texts import LONGEST_NAME, identifier_from
 
-
-@dataclass(frozen=True)
-class LearningOptions:
-    """Which frames become postures, and when a foot rests."""
-
-    fewest: int = 10  # default bounds of the number of postures
-    most: int = 40
-    distinct_m: float = 0.06  # postures are added until every frame is this near to one of them in shape
-    time_share: float = 0.5  # weight of even coverage in time relative to distance in shape
-    still_m: float = 0.01  # largest change in shape of a motion that counts as standing still
-    slow_m_s: float = 0.15  # vertical speed of the lower ankle below which its foot rests on the floor
-    lifted_m: float = 0.08  # height of a foot above the other from which it counts as lifted
-
-
-LEARNING = LearningOptions()
+FEWEST, MOST = 10, 40  # default bounds of the number of postures
 DECIMALS_S = 3
 
 
@@ -59,7 +45,7 @@ def learn_library(
     if frames < fewest:
         raise InputError(f"the motion has {frames} frames; a library of it needs at least {fewest} frames")
     shape = shape_vectors(body, posture)
-    if np.linalg.norm(shape - shape[0], axis=1).max() < LEARNING.still_m:
+    if np.linalg.norm(shape - shape[0], axis=1).max() < 0.01:  # [m]
         raise InputError("the motion stands still; a library needs postures that differ")
     posture = on_floor(body, posture, time_s)
     period_s = find_period_s(shape, time_s)
@@ -106,7 +92,7 @@ def learn_library(
 def on_floor(body: Body, posture: Posture, time_s: Array) -> Posture:
     """Shift a motion of F frames at times (F,) [s] so that its floor, where the lower foot rests, is at 0."""
     lower = ankle_heights(body, posture).min(axis=-1)
-    slow = np.abs(np.gradient(lower, time_s)) < LEARNING.slow_m_s
+    slow = np.abs(np.gradient(lower, time_s)) < 0.15  # [m/s], of a foot that rests
     floor_m = float(np.median(lower[slow]) if slow.any() else np.quantile(lower, 0.1))
     return turned_and_shifted(posture, 0.0, np.array([0.0, 0.0, -floor_m]))
 
@@ -119,8 +105,12 @@ def spread_frames(
     `shape` (F, N) [m] at times (F,) from 0; `count`: by default as many as are distinct, from 10 to 40;
     `cyclic`: the first frame follows the last; else both are chosen.
     """
-    wanted = min(len(shape), LEARNING.most if count is None else count)
-    pace = _typical_change(shape, time_s, duration_s)  # [m] in a tenth of the motion
+    wanted = min(len(shape), MOST if count is None else count)
+    tenth = max(1, round(0.1 * duration_s * (len(time_s) - 1) / max(time_s[-1] - time_s[0], 1e-9)))
+    tenth = min(tenth, len(shape) - 1)
+    pace = float(
+        np.linalg.norm(shape[tenth:] - shape[:-tenth], axis=1).mean()
+    )  # [m] in a tenth of the motion
     chosen: list[int] = []
     nearest = np.full(len(shape), np.inf)
     nearest_shape = np.full(len(shape), np.inf)
@@ -131,7 +121,7 @@ def spread_frames(
         later = np.abs(time_s - time_s[frame])
         if cyclic:
             later = np.minimum(later, duration_s - later)
-        in_time = LEARNING.time_share * pace * later / (0.1 * duration_s)
+        in_time = 0.5 * pace * later / (0.1 * duration_s)  # even coverage in time counts half as much
         np.minimum(nearest, np.hypot(apart, in_time), out=nearest)
         np.minimum(nearest_shape, apart, out=nearest_shape)
 
@@ -139,16 +129,10 @@ def spread_frames(
     if not cyclic:
         choose(len(shape) - 1)
     while len(chosen) < wanted:
-        if count is None and len(chosen) >= LEARNING.fewest and nearest_shape.max() < LEARNING.distinct_m:
-            break
+        if count is None and len(chosen) >= FEWEST and nearest_shape.max() < 0.06:
+            break  # every frame is this near [m] to a chosen one in shape
         choose(int(nearest.argmax()))
     return np.array(sorted(chosen), dtype=np.intp)
-
-
-def _typical_change(shape: Array, time_s: Array, duration_s: float) -> float:
-    step = max(1, round(0.1 * duration_s * (len(time_s) - 1) / max(time_s[-1] - time_s[0], 1e-9)))
-    step = min(step, len(shape) - 1)
-    return float(np.linalg.norm(shape[step:] - shape[:-step], axis=1).mean())
 
 
 def _straight_ahead(posture: Posture) -> float:
@@ -178,6 +162,6 @@ def numbered_names(title: str, count: int) -> list[str]:
 def _tags(body: Body, posture: Posture) -> list[tuple[str, ...]]:
     """Tags of each posture: the lifted foot, if any."""
     left, right = np.moveaxis(ankle_heights(body, posture), -1, 0)
-    higher = [left - right > LEARNING.lifted_m, right - left > LEARNING.lifted_m]
+    higher = [left - right > 0.08, right - left > 0.08]  # [m], of a foot that is lifted
     words = np.select(higher, ["left foot up", "right foot up"], "")
     return [(str(word),) if word else () for word in words]

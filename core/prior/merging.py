@@ -3,18 +3,17 @@
 Names are equal where people could not tell them apart.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any, TypeVar
 
 from ..body.kinematics import Body
 from ..errors import InputError, shown
-from ..files.fields import listed
-from .library import Library, LibraryMotion, LibraryPosture, MotionStep
+from .library import Library, LibraryMotion, LibraryPosture
 from .texts import checked_identifier, name_key, unique_name
 from .transfer import transferred
 
-Entry = TypeVar("Entry", bound=LibraryPosture | LibraryMotion)
+Entry = LibraryPosture | LibraryMotion
+Entries = dict[tuple[type, str], Entry]
 
 
 def differing_names(mine: Library, theirs: Library) -> tuple[str, ...]:
@@ -28,36 +27,29 @@ def differing_names(mine: Library, theirs: Library) -> tuple[str, ...]:
             f"libraries {shown(mine.identifier)} and {shown(theirs.identifier)} have different identifiers "
             "and cannot be merged; join them to a new library instead"
         )
-    offered = _rows(theirs)
+    offered = _entries(_fitted(theirs, mine))
     return tuple(
-        name for key, (name, row) in _rows(mine).items() if key in offered and offered[key][1] != row
+        entry.name for key, entry in _entries(mine).items() if key in offered and _differ(entry, offered[key])
     )
 
 
-def merge_versions(mine: Library, theirs: Library, replaces: bool | None = None) -> Library:
+def merge_versions(mine: Library, theirs: Library, replaces: bool) -> Library:
     """Merge two versions of a library: theirs is fitted to my actor's proportions and added to mine.
 
     The header is that of the higher version. The result's version is one above both, unless it equals one
     of them.
 
-    `replaces`: whether theirs replaces what is in both and differs; None where nothing does.
-
-    Raises:
-        InputError: Some differ and nothing says which counts, or the libraries have different identifiers.
+    `replaces`: whether theirs replaces what is in both and differs.
     """
     fitted = _fitted(theirs, mine)
-    differing = differing_names(mine, fitted)
-    if differing and replaces is None:
-        raise InputError(
-            f"library {shown(mine.identifier)}: {listed(map(shown, differing), 5)} differ between version "
-            f"{mine.version} and version {theirs.version}; choose which to keep"
-        )
-    postures = _united(mine.postures, fitted.postures, bool(replaces))
-    motions = _united(mine.motions, fitted.motions, bool(replaces))
-    spelled = {name_key(posture.name): posture.name for posture in postures}
-    head = fitted if theirs.version > mine.version else mine
+    both = _entries(mine)
+    both |= {key: entry for key, entry in _entries(fitted).items() if replaces or key not in both}
+    spelled = {key: entry.name for (_, key), entry in both.items() if isinstance(entry, LibraryPosture)}
     whole = replace(
-        head, actor=mine.actor, postures=tuple(postures), motions=tuple(_respelled(motions, spelled))
+        fitted if theirs.version > mine.version else mine,
+        actor=mine.actor,
+        postures=tuple(entry for entry in both.values() if isinstance(entry, LibraryPosture)),
+        motions=tuple(_respelled(both.values(), spelled)),
     )
     for one in (mine, theirs):
         if replace(whole, version=one.version).to_json() == one.to_json():
@@ -74,79 +66,63 @@ def join_libraries(first: Library, second: Library, identifier: str, title: str)
     Raises:
         InputError: The identifier is invalid.
     """
-    fitted = _fitted(second, first)
-    rows, others = _rows(first), _rows(fitted)
-    names: dict[str, str] = {}
+    fitted, known = _fitted(second, first), _entries(first)
+    names: dict[str, str] = {}  # of the second's postures, in the new library
     postures, motions = list(first.postures), list(first.motions)
     for posture in fitted.postures:
-        key = ("posture", name_key(posture.name))
-        if key in rows and rows[key][1] == others[key][1]:
-            names[name_key(posture.name)] = rows[key][0]
+        key = name_key(posture.name)
+        same = known.get((LibraryPosture, key))
+        if same is not None and not _differ(same, posture):
+            names[key] = same.name
             continue
         taken = [entry.name for entry in (*postures, *fitted.postures) if entry is not posture]
-        name = unique_name(posture.name, taken)
-        names[name_key(posture.name)] = name
-        postures.append(replace(posture, name=name))
+        names[key] = unique_name(posture.name, taken)
+        postures.append(replace(posture, name=names[key]))
     for motion in _respelled(fitted.motions, names):
         if not any(replace(old, name="") == replace(motion, name="") for old in first.motions):
             motions.append(replace(motion, name=unique_name(motion.name, [entry.name for entry in motions])))
+    licenses = dict.fromkeys((first.license, second.license))
+    terms = [f"({terms})" if " " in terms and len(licenses) > 1 else terms for terms in licenses]
     return Library(
         identifier=checked_identifier(identifier, "the identifier of the new library"),
         title=title,
         version=1,
-        author=", ".join(_union([first.author], [second.author])),
-        license=_both_licenses(first.license, second.license),
+        author=", ".join(dict.fromkeys((first.author, second.author))),
+        license=" AND ".join(terms),
         actor=first.actor,
         postures=tuple(postures),
         motions=tuple(motions),
-        description=" ".join(_union([first.description], [second.description])).strip(),
-        sources=_union(first.sources, second.sources),
-        tags=_union(first.tags, second.tags),
+        description=" ".join(dict.fromkeys((first.description, second.description))).strip(),
+        sources=tuple(dict.fromkeys(first.sources + second.sources)),
+        tags=tuple(dict.fromkeys(first.tags + second.tags)),
     )
-
-
-def _both_licenses(first: str, second: str) -> str:
-    if first == second:
-        return first
-    return " AND ".join(f"({license_})" if " " in license_ else license_ for license_ in (first, second))
 
 
 def _fitted(library: Library, other: Library) -> Library:
     body = Body(other.actor)
     postures = tuple(
-        replace(entry, posture=transferred(entry, library.actor, body)) for entry in library.postures
+        replace(entry, posture=transferred(entry.posture, library.actor, body)) for entry in library.postures
     )
     return replace(library, actor=other.actor, postures=postures)
 
 
-def _rows(library: Library) -> dict[tuple[str, str], tuple[str, Any]]:
-    """Name and JSON content of every posture and motion, by kind and `name_key`."""
-    value = library.to_json()
-    rows: dict[tuple[str, str], tuple[str, Any]] = {}
-    for kind in ("posture", "motion"):
-        for row in value.get(f"{kind}s", []):
-            rows[kind, name_key(row["name"])] = (row["name"], row)
-    return rows
+def _entries(library: Library) -> Entries:
+    """Postures and motions, by kind and `name_key`."""
+    entries: list[Entry] = [*library.postures, *library.motions]
+    return {(type(entry), name_key(entry.name)): entry for entry in entries}
 
 
-def _united(mine: Sequence[Entry], theirs: Sequence[Entry], replaces: bool) -> list[Entry]:
-    """The union: mine in their order, then those in theirs alone."""
-    offered = {name_key(entry.name): entry for entry in theirs}
-    kept = [offered.get(name_key(own.name), own) if replaces else own for own in mine]
-    there = {name_key(own.name) for own in mine}
-    return [*kept, *(entry for entry in theirs if name_key(entry.name) not in there)]
+def _differ(one: Entry, other: Entry) -> bool:
+    """Whether files would have different contents of the two."""
+    return one.to_json() != other.to_json()
 
 
-def _respelled(motions: Sequence[LibraryMotion], names: Mapping[str, str]) -> list[LibraryMotion]:
-    """Motions with the postures of their steps renamed; `names` by `name_key`."""
+def _respelled(entries: Iterable[Entry], names: Mapping[str, str]) -> list[LibraryMotion]:
+    """The motions with the postures of their steps renamed; `names` by `name_key`."""
     return [
         replace(
-            motion,
-            steps=tuple(MotionStep(names[name_key(step.posture)], step.time_s) for step in motion.steps),
+            entry, steps=tuple(replace(step, posture=names[name_key(step.posture)]) for step in entry.steps)
         )
-        for motion in motions
+        for entry in entries
+        if isinstance(entry, LibraryMotion)
     ]
-
-
-def _union(first: Sequence[str], second: Sequence[str]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys([*first, *second]))

@@ -42,22 +42,6 @@ def ankle_heights(body: Body, posture: Posture) -> Array:
 # --- Periodic motions
 
 
-@dataclass(frozen=True)
-class PeriodOptions:
-    """When a motion counts as periodic."""
-
-    # cycles a motion must contain: two, but for what is cut off at the clip's ends
-    fewest_cycles: float = 1.9
-    shortest_s: float = 0.25
-    most_unlike: float = 0.2  # largest normalized difference of shapes one period apart
-    # Tolerance in that difference within which the shortest lag is the period, and longer ones its multiples.
-    as_good: float = 0.05
-    still_m: float = 0.02  # variation of the body's shape below which it counts as motionless
-
-
-PERIOD = PeriodOptions()
-
-
 @dataclass(frozen=True, eq=False)
 class Cycle:
     """One cycle of a motion."""
@@ -80,15 +64,19 @@ def find_period_s(shape: Array, time_s: Array) -> float | None:
     even = time_s[0] + step_s * np.arange(count)
     rows = columns_at(even, time_s, shape)
     rows -= rows.mean(axis=0)
-    if np.sqrt(np.sum(rows**2, axis=1).mean()) < PERIOD.still_m:
+    if np.sqrt(np.sum(rows**2, axis=1).mean()) < 0.02:  # motionless [m]
         return None
-    unlike = _unlikeness(rows)[: int((count - 1) / PERIOD.fewest_cycles) + 1]
+    # A motion must contain two cycles, but for what is cut off at the clip's ends.
+    unlike = _unlikeness(rows)[: int((count - 1) / 1.9) + 1]
     lags = np.arange(1, len(unlike) - 1)
     lowest = lags[(unlike[1:-1] <= unlike[:-2]) & (unlike[1:-1] < unlike[2:])]
-    lowest = lowest[(unlike[lowest] < PERIOD.most_unlike) & (lowest * step_s >= PERIOD.shortest_s)]
+    lowest = lowest[
+        (unlike[lowest] < 0.2) & (lowest * step_s >= 0.25)
+    ]  # of a cycle: alike, and no shorter [s]
     if not len(lowest):
         return None
-    lag = int(lowest[unlike[lowest] <= unlike[lowest].min() + PERIOD.as_good][0])
+    # Of lags that are about as good the shortest is the period, and longer ones its multiples.
+    lag = int(lowest[unlike[lowest] <= unlike[lowest].min() + 0.05][0])
     left, middle, right = unlike[lag - 1 : lag + 2]
     bend = left - 2.0 * middle + right
     return float(step_s * (lag + (0.5 * (left - right) / bend if bend > 0.0 else 0.0)))

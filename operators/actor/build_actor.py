@@ -5,6 +5,7 @@ import bpy
 from ...core.body.actor import Actor
 from ..follow.evidence import scene_evidence
 from ..shell.base_operator import BaseOperator, warn
+from ..shell.fields import SKIP_SAVE, Switch, Vector
 from ..shell.footage_clicks import ClickSequence
 from ..shell.footage_view import FootageRequest
 from ..shell.notices import give_notices
@@ -17,14 +18,12 @@ from .properties import Stature, panel_lengths
 class KEYMARK_OT_build_actor(Stature, BaseOperator, bpy.types.Operator):
     """Build an armature of the performer's height and stand it where the performer is in this frame"""
 
-    bl_idname = "keymark.build_actor"
     bl_label = "Build Actor"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (bones_editable, idle)
 
-    place: bpy.props.BoolProperty(
-        name="Stand in the Footage",
-        description="Stand the actor where markers or keypoints show the performer in this frame, facing the "
+    place: Switch(
+        "Stand in the Footage",
+        "Stand the actor where markers or keypoints show the performer in this frame, facing the "
         "camera; without either, in the middle of the picture. An actor with keyframes stays where it is",
         default=True,
     )
@@ -71,9 +70,7 @@ def any_actor(context: bpy.types.Context) -> str | None:
 class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
     """Give the actor these lengths, or bring a deleted one back; its pose, keyframes and motion stay"""
 
-    bl_idname = "keymark.apply_lengths"
     bl_label = "Apply Lengths"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (any_actor, bones_editable, idle)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -95,27 +92,21 @@ class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
 class KEYMARK_OT_measure_actor(ClickSequence, Stature, BaseOperator, bpy.types.Operator):
     """Click on the top of the head and the floor between the feet, in a frame where the performer stands"""
 
-    bl_idname = "keymark.measure_actor"
     bl_label = "Measure Actor"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, camera, bones_editable, idle)
 
-    head_pixel: bpy.props.FloatVectorProperty(
-        name="Top of Head",
-        description="In pixels of the footage from its top left corner",
-        size=2,
-        options={"SKIP_SAVE"},
+    head_pixel: Vector(
+        "Top of Head", "In pixels of the footage from its top left corner", size=2, options=SKIP_SAVE
     )
-    floor_pixel: bpy.props.FloatVectorProperty(
-        name="Floor",
-        description="The floor between the feet, in pixels of the footage from its top left corner",
+    floor_pixel: Vector(
+        "Floor",
+        "The floor between the feet, in pixels of the footage from its top left corner",
         size=2,
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
-    arms_stretched: bpy.props.BoolProperty(
-        name="Arms Stretched Sideways",
-        description="The performer holds both arms out sideways, so that their lengths are measured as well",
-        default=False,
+    arms_stretched: Switch(
+        "Arms Stretched Sideways",
+        "The performer holds both arms out sideways, so that their lengths are measured as well",
     )
 
     _head: tuple[float, float] | None = None
@@ -165,8 +156,3 @@ class KEYMARK_OT_measure_actor(ClickSequence, Stature, BaseOperator, bpy.types.O
         else:
             distance = f"The performer stands {measured.distance_m:.2f} m from the camera"
             self.report({"INFO"}, f"{distance}; unseen lengths are average")
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_build_actor, KEYMARK_OT_apply_lengths, KEYMARK_OT_measure_actor)
-)

@@ -87,6 +87,3 @@ class KEYMARK_PT_actor_options(Popover, bpy.types.Panel):
             group.prop(lengths, length_property(f"{part}.L"))
             group.prop(lengths, length_property(f"{part}.R"))
         column.operator("keymark.apply_lengths", icon="CHECKMARK")
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PT_actor, KEYMARK_PT_actor_options))

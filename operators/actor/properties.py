@@ -2,6 +2,8 @@
 
 import bpy
 
+from ..shell.fields import Number, Switch
+
 SIDED = ("upper_arm", "forearm", "hand", "thigh", "shin", "foot")
 MIDDLE = ("trunk", "neck_head", "shoulder_width", "hip_width")
 DESCRIPTIONS = {
@@ -49,9 +51,9 @@ def _length(name: str) -> "bpy.types.AnyType":
     part, _, side = name.partition(".")
     label, description = DESCRIPTIONS[part]
     options = {"update": _mirror(part, side)} if side else {}
-    return bpy.props.FloatProperty(
-        name=f"{label} {side}".rstrip(),
-        description=description,
+    return Number(
+        f"{label} {side}".rstrip(),
+        description,
         subtype="DISTANCE",
         precision=3,
         step=0.5,
@@ -65,9 +67,9 @@ def _length(name: str) -> "bpy.types.AnyType":
 class Stature:
     """Mixin of operators that make an actor: the performer's body height."""
 
-    stature: bpy.props.FloatProperty(
-        name="Height",
-        description="The performer's body height",
+    stature: Number(
+        "Height",
+        "The performer's body height",
         subtype="DISTANCE",
         precision=4,
         default=1.75,
@@ -86,11 +88,7 @@ class Stature:
 class KEYMARK_PG_lengths(bpy.types.PropertyGroup):
     """Lengths of the performer's segments."""
 
-    symmetric: bpy.props.BoolProperty(
-        name="Symmetric", description="Left and right limbs are equally long", default=True
-    )
+    symmetric: Switch("Symmetric", "Left and right limbs are equally long", default=True)
 
 
 KEYMARK_PG_lengths.__annotations__.update({length_property(name): _length(name) for name in length_names()})
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_lengths,))

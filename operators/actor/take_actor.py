@@ -8,7 +8,7 @@ from mathutils import Matrix, Vector
 from ...core.body.actor import Actor
 from ...core.body.kinematics import Body
 from ...core.errors import InputError
-from ..bridge.actions import assign_action
+from ..bridge.actions import action_of, assign_action
 from ..bridge.actor_bones import hips_at_rest, is_actor
 from ..bridge.actor_lengths import set_lengths
 from ..bridge.armature import build_armature
@@ -35,7 +35,7 @@ def restore_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> 
             scene.collection.objects.link(take.armature)
     else:
         actions = kept_actions(take)
-        found = next((each for each in scene.objects if is_actor(each) and _action_of(each) in actions), None)
+        found = next((each for each in scene.objects if is_actor(each) and action_of(each) in actions), None)
         if found is None:
             new_actor(context, take, Body(Actor(panel_lengths(take.lengths))))
             return
@@ -58,7 +58,7 @@ def new_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: B
 def reattach(take: bpy.types.PropertyGroup) -> None:
     """Let a take's motion, or else its keyframes, animate an actor that nothing animates yet."""
     actions = [action for action in (take.motion_action, take.keyframe_action) if action is not None]
-    if take.armature is not None and actions and _action_of(take.armature) is None:
+    if take.armature is not None and actions and action_of(take.armature) is None:
         assign_action(take.armature, actions[0])
 
 
@@ -77,11 +77,6 @@ def select_alone(context: bpy.types.Context, armature_object: bpy.types.Object) 
         selected.select_set(False, view_layer=layer)
     armature_object.select_set(True, view_layer=layer)
     layer.objects.active = armature_object
-
-
-def _action_of(animated: bpy.types.Object) -> bpy.types.Action | None:
-    data = animated.animation_data
-    return None if data is None else data.action
 
 
 def add_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bpy.types.Object:

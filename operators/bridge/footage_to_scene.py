@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import bpy
-import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.rotations import continuous_quaternions, to_quaternions
@@ -15,6 +14,7 @@ from .actions import assign_action, channelbag_for
 from .footage import clip_rate, set_scene_range
 from .footage_camera import new_camera, set_background, set_clip_lens, set_lens, set_still_pose
 from .keys import MOTION, write_keys
+from .scene_frames import scene_frames
 
 
 def load_footage(path: Path) -> bpy.types.MovieClip:
@@ -56,34 +56,26 @@ def stored_path(file: Path) -> str:
 
 
 def show_footage(
-    scene: bpy.types.Scene,
-    camera: Camera,
-    clip_path: Path,
-    fps: float,
-    frame_start: int,
-    frame_count: int,
-    frames: Array | None = None,
-    camera_object: bpy.types.Object | None = None,
-) -> bpy.types.Object:
-    """Show a clip behind a camera, a new one by default, with the lens and pose of the footage's camera.
+    scene: bpy.types.Scene, camera: Camera, clip_path: Path, fps: float, frame_start: int, time_s: Array
+) -> tuple[bpy.types.Object, Array]:
+    """Show a clip behind a new camera, which is returned, with the scene frames (F,) of the clip's.
 
     The scene takes the clip's size, rate and range, so that scene frame `frame_start` shows its first frame;
     Blender's own reading of the clip's rate counts where it has one (see `clip_rate`). A moving camera has
-    its poses at scene frames (F,), one after the other by default.
+    its poses at the frames, whose times are (F,) [s].
     """
     clip = load_footage(clip_path)
+    rate = clip_rate(clip, fps)
+    frames = scene_frames(time_s, frame_start, rate)
     clip.frame_start = frame_start
-    set_scene_range(scene, camera.resolution, clip_rate(clip, fps), frame_start, frame_count)
+    set_scene_range(scene, camera.resolution, rate, frame_start, len(frames))
     set_clip_lens(clip, camera)
-    camera_object = camera_object or new_camera(scene)
+    camera_object = new_camera(scene)
     set_lens(camera_object.data, camera)
-    if frames is None:
-        frames = frame_start + np.arange(len(camera.matrix_world), dtype=np.float64)
     _set_pose(camera_object, camera, frames)
     set_background(camera_object.data, clip)
-    scene.camera = camera_object
-    scene.active_clip = clip
-    return camera_object
+    scene.camera, scene.active_clip = camera_object, clip
+    return camera_object, frames
 
 
 def _set_pose(camera_object: bpy.types.Object, camera: Camera, frames: Array) -> None:

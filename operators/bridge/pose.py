@@ -50,7 +50,7 @@ def read_posture(armature_object: bpy.types.Object, body: Body) -> PoseReading:
     bone_of_joint = {joint: model for model in reversed(models) for joint in (model.joint, *model.chain)}
     for row, (point, local) in enumerate(zip(body.skeleton.points, body.point_places, strict=True)):
         model = bone_of_joint[point.joint]
-        start = body.local(next(s.start for s in body.skeleton.segments if s.name == model.name))
+        start = body.local(body.skeleton.segment(model.name).start)
         shown[row] = heads[model.name] + frames[model.name] @ (local - start)
     reached = body.points(body.pose(posture))
     return PoseReading(posture, np.linalg.norm(reached - shown, axis=-1))

@@ -18,12 +18,7 @@ from .blend_files import own_scene, write_blend
 from .body_mesh import build_body_mesh
 from .export_formats import write_bvh
 from .fcurves import write_motion
-from .footage import clip_rate
-from .footage_to_scene import load_footage, show_footage
-from .scene_frames import scene_frames
-
-VIEW_TRANSFORM = "Standard"
-"""Shows colors as they are given, so that markers look as in the footage; the default, AgX, does not."""
+from .footage_to_scene import show_footage
 
 
 def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | None = None) -> str:
@@ -39,7 +34,11 @@ def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | N
         ConversionError: Blender could not write a file.
     """
     with own_scene(f"{take.name} Motion") as scene:
-        armature_object = fill_scene(scene, take, motion)
+        frames = show_take(scene, take, motion)
+        armature_object = build_armature(scene, take.body, "Actor")
+        write_motion(armature_object, motion, frames=frames)
+        build_body_mesh(armature_object, take.body, take.markers)
+        scene.frame_set(scene.frame_start)
         write_blend(blend_path, {scene}, path_remap="RELATIVE_ALL", fake_user=False)
         if bvh_path is not None:
             write_bvh(armature_object, bvh_path)
@@ -48,30 +47,17 @@ def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | N
 
 def show_take(scene: bpy.types.Scene, take: Take, motion: Motion) -> Array:
     """Put footage and camera into a scene, with rate, range and look; the motion's scene frames (F,)."""
-    clip = load_footage(take.clip)
-    rate = clip_rate(clip, motion.fps)
-    frames = scene_frames(motion.time_s, motion.frame_start, rate)
-    count = len(motion.time_s)
-    show_footage(scene, take.camera, take.clip, rate, motion.frame_start, count, frames)
+    _, frames = show_footage(scene, take.camera, take.clip, motion.fps, motion.frame_start, motion.time_s)
     scene.frame_end = max(scene.frame_end, int(np.floor(frames[-1])))
     set_look(scene)
     return frames
-
-
-def fill_scene(scene: bpy.types.Scene, take: Take, motion: Motion) -> bpy.types.Object:
-    """Put footage, camera, actor with motion, and body into a scene; returns the armature object."""
-    frames = show_take(scene, take, motion)
-    armature_object = build_armature(scene, take.body, "Actor")
-    write_motion(armature_object, motion, frames=frames)
-    build_body_mesh(armature_object, take.body, take.markers)
-    scene.frame_set(scene.frame_start)
-    return armature_object
 
 
 def set_look(scene: bpy.types.Scene) -> None:
     """Workbench in material colors, which every Blender has, and light for the other engines."""
     scene.render.engine = "BLENDER_WORKBENCH"
     scene.display.shading.color_type = "MATERIAL"
-    scene.view_settings.view_transform = VIEW_TRANSFORM
+    # It shows colors as they are given, so that markers look as in the footage; the default, AgX, does not.
+    scene.view_settings.view_transform = "Standard"
     scene.world = bpy.data.worlds.new("Soft Light")
     scene.world.color = (0.8, 0.8, 0.8)

@@ -6,6 +6,7 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator, browse, chosen_file, warn
+from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.notices import give_notices
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, add_take, find_take, placement_is_guess
@@ -30,21 +31,14 @@ def any_clip(_context: bpy.types.Context) -> str | None:
 class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
     """Use a clip that is in this file already, with the lens and the camera solution of its tracking"""
 
-    bl_idname = "keymark.use_clip"
     bl_label = "Use Clip"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (any_clip, idle)
 
-    clip: bpy.props.StringProperty(
-        name="Clip",
-        description="Name of the clip in this file; without one, the scene's own",
-        options={"SKIP_SAVE"},
-    )
-    as_new_take: bpy.props.BoolProperty(
-        name="As New Take",
-        description="Add a take for this clip, instead of giving the active take another clip",
-        default=False,
-        options={"SKIP_SAVE"},
+    clip: Text("Clip", "Name of the clip in this file; without one, the scene's own", options=SKIP_SAVE)
+    as_new_take: Switch(
+        "As New Take",
+        "Add a take for this clip, instead of giving the active take another clip",
+        options=SKIP_SAVE,
     )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
@@ -71,9 +65,7 @@ def guessed_lens(context: bpy.types.Context) -> str | None:
 class KEYMARK_OT_keep_lens(BaseOperator, bpy.types.Operator):
     """Confirm that the camera's focal length is right, so that it no longer counts as a guess"""
 
-    bl_idname = "keymark.keep_lens"
     bl_label = "Confirm Lens"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (guessed_lens,)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -92,9 +84,7 @@ def guessed_placement(context: bpy.types.Context) -> str | None:
 class KEYMARK_OT_keep_camera(BaseOperator, bpy.types.Operator):
     """Confirm the height and the tilt of the camera, so that they no longer count as a guess"""
 
-    bl_idname = "keymark.keep_camera"
     bl_label = "Confirm Camera"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (guessed_placement,)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -132,25 +122,19 @@ PATTERNS = ";".join(f"*{extension}" for extension in VIDEOS + IMAGES)
 class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
     """Load a clip behind the camera, and set the scene's size, frame rate and range from it"""
 
-    bl_idname = "keymark.load_footage"
     bl_label = "Load Footage"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (idle,)
 
-    filepath: bpy.props.StringProperty(
-        name="File Path",
-        description="A video, or one image of a numbered sequence",
-        subtype="FILE_PATH",
-        options={"SKIP_SAVE"},
+    filepath: Text(
+        "File Path", "A video, or one image of a numbered sequence", subtype="FILE_PATH", options=SKIP_SAVE
     )
-    as_new_take: bpy.props.BoolProperty(
-        name="As New Take",
-        description="Add a take for this clip, instead of giving the active take another clip",
-        default=False,
-        options={"SKIP_SAVE"},
+    as_new_take: Switch(
+        "As New Take",
+        "Add a take for this clip, instead of giving the active take another clip",
+        options=SKIP_SAVE,
     )
-    filter_glob: bpy.props.StringProperty(default=PATTERNS, options={"HIDDEN"})
-    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    filter_glob: Text(default=PATTERNS, options=HIDDEN)
+    filter_folder: Switch(default=True, options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Show the file browser, unless a file was dropped; a dropped one never replaces a clip."""
@@ -176,19 +160,17 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
 class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
     """Choose where the take's clip is now; markers, keyframes, motion and camera stay as they are"""
 
-    bl_idname = "keymark.relocate_clip"
     bl_label = "Find Clip"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, idle)
 
-    filepath: bpy.props.StringProperty(
-        name="File Path",
-        description="Where the clip is now: the video, or one image of the sequence",
+    filepath: Text(
+        "File Path",
+        "Where the clip is now: the video, or one image of the sequence",
         subtype="FILE_PATH",
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
-    filter_glob: bpy.props.StringProperty(default=PATTERNS, options={"HIDDEN"})
-    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    filter_glob: Text(default=PATTERNS, options=HIDDEN)
+    filter_folder: Switch(default=True, options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.filepath = bpy.path.abspath(active_take(context.scene).clip.filepath)
@@ -224,14 +206,3 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
             f"the clip had {count} of {size[0]} x {size[1]}; check that it is the right one"
         )
         give_notices(take, "footage", "clip", (warn(self, sentence),))
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_use_clip,
-        KEYMARK_OT_keep_lens,
-        KEYMARK_OT_keep_camera,
-        KEYMARK_OT_load_footage,
-        KEYMARK_OT_relocate_clip,
-    )
-)

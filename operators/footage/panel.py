@@ -130,8 +130,3 @@ def _draw_clip(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy
     draw_sentence(facts, context, size, "INFO")
     if state.variable_rate:
         draw_sentence(column, context, "Variable rate: keys lie between frames", "ERROR")
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_MT_clips, KEYMARK_PT_footage, KEYMARK_PT_footage_options)
-)

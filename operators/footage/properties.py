@@ -8,6 +8,7 @@ import bpy
 
 from ..bridge.camera_placement import fixed_reason, read_placement, write_placement
 from ..shell.base_operator import capitalized
+from ..shell.fields import HIDDEN, Choice, Integer, Number, Switch, Text, Vector
 from ..shell.takes import NO_GUESS, find_take
 
 DECIMALS = 5  # Digits that are shown: Blender's own matrices have about as many, and a level camera shows 0
@@ -46,18 +47,10 @@ def placement_accessors(field: str) -> dict[str, Callable[..., Any]]:
 class KEYMARK_PG_clip_state(bpy.types.PropertyGroup):
     """State of a take's clip at the last check of its file."""
 
-    missing: bpy.props.BoolProperty(
-        name="Missing", description="The clip's file was not found", options={"HIDDEN"}
-    )
-    contents: bpy.props.StringProperty(
-        name="Contents", description="Digest of the clip's file", options={"HIDDEN"}
-    )
-    rate: bpy.props.FloatProperty(
-        name="Rate", description="Frames per second of the clip on the timeline", min=0.0, options={"HIDDEN"}
-    )
-    variable_rate: bpy.props.BoolProperty(
-        name="Variable Rate", description="The clip's frames are unevenly spaced in time", options={"HIDDEN"}
-    )
+    missing: Switch("Missing", "The clip's file was not found", options=HIDDEN)
+    contents: Text("Contents", "Digest of the clip's file", options=HIDDEN)
+    rate: Number("Rate", "Frames per second of the clip on the timeline", min=0.0, options=HIDDEN)
+    variable_rate: Switch("Variable Rate", "The clip's frames are unevenly spaced in time", options=HIDDEN)
 
 
 KINDS = (
@@ -72,21 +65,14 @@ KINDS = (
 class KEYMARK_PG_camera_line(bpy.types.PropertyGroup):
     """A line that was drawn over the footage to find the camera."""
 
-    kind: bpy.props.EnumProperty(name="Kind", description="What the line is in the world", items=KINDS)
-    start: bpy.props.FloatVectorProperty(
-        name="Start", description="In pixels of the footage from its top left corner", size=2
-    )
-    end: bpy.props.FloatVectorProperty(
-        name="End", description="In pixels of the footage from its top left corner", size=2
-    )
-    length: bpy.props.FloatProperty(
-        name="Length",
-        description="Length of a line of known height; 0 for the performer's height",
+    kind: Choice("Kind", "What the line is in the world", items=KINDS)
+    start: Vector("Start", "In pixels of the footage from its top left corner", size=2)
+    end: Vector("End", "In pixels of the footage from its top left corner", size=2)
+    length: Number(
+        "Length",
+        "Length of a line of known height; 0 for the performer's height",
         subtype="DISTANCE",
         min=0.0,
         soft_max=10.0,
     )
-    frame: bpy.props.IntProperty(name="Frame", description="Scene frame in which it was drawn")
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_clip_state, KEYMARK_PG_camera_line))
+    frame: Integer("Frame", "Scene frame in which it was drawn")

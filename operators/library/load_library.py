@@ -6,6 +6,7 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator, browse, chosen_file
+from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.requirements import idle, registered_library
 from ..shell.takes import refresh_asset_browsers
 from .registry import chosen_identifier, refresh
@@ -17,24 +18,21 @@ if TYPE_CHECKING:
 class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
     """Load a keyframe library from a file, so that poses are found with it from now on"""
 
-    bl_idname = "keymark.import_library"
     bl_label = "Load Library"
     bl_options = {"REGISTER"}
     requirements = (idle,)
 
-    filepath: bpy.props.StringProperty(
-        name="File Path",
-        description="A keyframe library: .json, or .blend with pose assets of one",
+    filepath: Text(
+        "File Path",
+        "A keyframe library: .json, or .blend with pose assets of one",
         subtype="FILE_PATH",
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
-    replace: bpy.props.BoolProperty(
-        name="Replace",
-        description="Replace another library of the same identifier that is at hand",
-        options={"SKIP_SAVE"},
+    replace: Switch(
+        "Replace", "Replace another library of the same identifier that is at hand", options=SKIP_SAVE
     )
-    filter_glob: bpy.props.StringProperty(default="*.json;*.blend", options={"HIDDEN"})
-    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    filter_glob: Text(default="*.json;*.blend", options=HIDDEN)
+    filter_folder: Switch(default=True, options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         return self.execute(context) if self.filepath else browse(self, context)
@@ -77,7 +75,6 @@ def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
 class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
     """Read the folder of your libraries again, after other programs have changed its files"""
 
-    bl_idname = "keymark.refresh_shelf"
     bl_label = "Refresh Libraries"
     bl_options = {"REGISTER"}
     requirements = (idle,)
@@ -91,15 +88,11 @@ class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
 class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
     """Bring a library into this file as pose assets: to apply, to blend, to change, and to save again"""
 
-    bl_idname = "keymark.edit_library"
     bl_label = "Edit as Pose Assets"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (registered_library, idle)
 
-    library: bpy.props.StringProperty(
-        name="Library",
-        description="Identifier of a library at hand; empty: the one chosen in the list",
-        options={"SKIP_SAVE"},
+    library: Text(
+        "Library", "Identifier of a library at hand; empty: the one chosen in the list", options=SKIP_SAVE
     )
 
     def run(self, context: bpy.types.Context) -> None:
@@ -120,18 +113,11 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, f"'{library.title}' is in this file now: {count} pose assets")
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_import_library, KEYMARK_OT_refresh_shelf, KEYMARK_OT_edit_library)
-)
-
-
-def register() -> None:
-    """Register the operators, and add an entry to File > Import."""
-    _register_classes()
+def attach() -> None:
+    """Add an entry to File > Import."""
     bpy.types.TOPBAR_MT_file_import.append(_draw_import)
 
 
-def unregister() -> None:
-    """Take it all back."""
+def detach() -> None:
+    """Remove it."""
     bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
-    _unregister_classes()

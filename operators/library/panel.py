@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.errors import pluralize
 from ..shell.panel import Popover, RowList, draw_sentence
 from ..shell.takes import active_take
 from .registry import chosen_entry, own_folder
@@ -63,14 +64,10 @@ def _draw_facts(
     """Draw the facts of a registered library."""
     column = layout.column(align=True)
     column.scale_y = 0.85
-    postures = "1 posture" if item.postures == 1 else f"{item.postures} postures"
-    motions = "1 motion" if item.motions == 1 else f"{item.motions} motions"
-    column.label(text=f"{postures}, {motions}", icon="INFO", translate=False)
+    size = f"{pluralize(item.postures, 'posture')}, {pluralize(item.motions, 'motion')}"
+    column.label(text=size, icon="INFO", translate=False)
     by = f"Version {item.version} by {item.author}"
     column.label(text=by, icon="BLANK1", translate=False)
     column.label(text=item.license, icon="BLANK1", translate=False)
     if item.description:
         draw_sentence(layout, context, item.description, "TEXT", MOST_LINES)
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_shelf, KEYMARK_PT_libraries))

@@ -11,6 +11,7 @@ from zlib import crc32
 import bpy
 from bpy.app import timers
 
+from ..shell.fields import SKIP_SAVE, Entries, Group, Integer, Switch, Text
 from ..shell.results import EXTENSION
 from ..shell.takes import redraw_sidebars
 
@@ -94,13 +95,6 @@ def refresh_if_empty() -> None:
         timers.register(_refresh_now, first_interval=0.1)  # the panel is drawn first
 
 
-def cancel_refresh() -> None:
-    """Cancel a reading of the folders that was asked for."""
-    if timers.is_registered(_refresh_now):
-        timers.unregister(_refresh_now)
-    _items.clear()
-
-
 def _refresh_now() -> None:
     with suppress(ModuleNotFoundError):  # SciPy or OpenCV is missing, which operators report
         refresh()
@@ -110,41 +104,32 @@ def _refresh_now() -> None:
 class KEYMARK_PG_shelved(bpy.types.PropertyGroup):
     """A registered library; `name` is its identifier."""
 
-    title: bpy.props.StringProperty(name="Title")
-    version: bpy.props.IntProperty(name="Version")
-    author: bpy.props.StringProperty(name="Author")
-    license: bpy.props.StringProperty(name="License")
-    description: bpy.props.StringProperty(name="Description")
-    motions: bpy.props.IntProperty(name="Motions")
-    is_own: bpy.props.BoolProperty(name="Own", description="It lies in the user's folder and can be removed")
-    problem: bpy.props.StringProperty(name="Problem", description="Why the file cannot be used")
-    postures: bpy.props.IntProperty(name="Postures")
+    title: Text("Title")
+    version: Integer("Version")
+    author: Text("Author")
+    license: Text("License")
+    description: Text("Description")
+    motions: Integer("Motions")
+    is_own: Switch("Own", "It lies in the user's folder and can be removed")
+    problem: Text("Problem", "Why the file cannot be used")
+    postures: Integer("Postures")
 
 
 class KEYMARK_PG_shelf(bpy.types.PropertyGroup):
     """The registry."""
 
-    libraries: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved)
-    active: bpy.props.IntProperty(
-        name="Active Library", description="The library that is chosen in the list", default=0, min=0
-    )
+    libraries: Entries(type=KEYMARK_PG_shelved)
+    active: Integer("Active Library", "The library that is chosen in the list", min=0)
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (KEYMARK_PG_shelved, KEYMARK_PG_shelf)
-)
+def attach() -> None:
+    """Add the registry to the window manager."""
+    bpy.types.WindowManager.keymark_shelf = Group(type=KEYMARK_PG_shelf, options=SKIP_SAVE)
 
 
-def register() -> None:
-    """Register the groups, and add the registry to the window manager."""
-    _register_classes()
-    bpy.types.WindowManager.keymark_shelf = bpy.props.PointerProperty(
-        type=KEYMARK_PG_shelf, options={"SKIP_SAVE"}
-    )
-
-
-def unregister() -> None:
-    """Take it all back."""
-    cancel_refresh()
+def detach() -> None:
+    """Remove it, and cancel a reading of the folders that was asked for."""
+    if timers.is_registered(_refresh_now):
+        timers.unregister(_refresh_now)
+    _items.clear()
     del bpy.types.WindowManager.keymark_shelf
-    _unregister_classes()

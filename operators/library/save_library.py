@@ -8,6 +8,7 @@ import bpy
 from ...core.errors import InputError
 from ...core.prior.texts import identifier_from
 from ..shell.base_operator import BaseOperator, warn_if_outdated
+from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Integer, Switch, Text
 from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take, find_take
 from .registry import chosen_identifier, folders, refresh
@@ -34,9 +35,9 @@ def suggest(_properties: bpy.types.AnyType, _context: bpy.types.Context, typed: 
 class Licensed:
     """Mixin of operators that make a library: its license."""
 
-    license: bpy.props.StringProperty(
-        name="License",
-        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
+    license: Text(
+        "License",
+        "Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
         "by default none",
         default="LicenseRef-Proprietary",
         search=suggest,
@@ -59,29 +60,22 @@ SOURCES = [
 class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
     """Save a keyframe library, pose assets or the take's keyframes as a library file, to keep or share it"""
 
-    bl_idname = "keymark.export_library"
     bl_label = "Save Library"
     bl_options = {"REGISTER"}
     requirements = (idle,)
 
-    source: bpy.props.EnumProperty(
-        name="Postures", description="Postures of the library", items=SOURCES, options={"SKIP_SAVE"}
+    source: Choice("Postures", "Postures of the library", items=SOURCES, options=SKIP_SAVE)
+    library: Text(
+        "Library",
+        "Identifier of a library at hand or of pose assets; empty: the one chosen in the list",
+        options=SKIP_SAVE,
     )
-    library: bpy.props.StringProperty(
-        name="Library",
-        description="Identifier of a library at hand or of pose assets; empty: the one chosen in the list",
-        options={"SKIP_SAVE"},
-    )
-    title: bpy.props.StringProperty(
-        name="Title", description="Title of a new library; by default the take's name", options={"SKIP_SAVE"}
-    )
-    author: bpy.props.StringProperty(name="Author", description="Author of a new library")
-    format: bpy.props.EnumProperty(
-        name="Format", description="Format of the file, where its name has neither suffix", items=FORMATS
-    )
-    filepath: bpy.props.StringProperty(name="File", description="File to write", subtype="FILE_PATH")
-    check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
-    filter_glob: bpy.props.StringProperty(default="*.json;*.blend", options={"HIDDEN"})
+    title: Text("Title", "Title of a new library; by default the take's name", options=SKIP_SAVE)
+    author: Text("Author", "Author of a new library")
+    format: Choice("Format", "Format of the file, where its name has neither suffix", items=FORMATS)
+    filepath: Text("File", "File to write", subtype="FILE_PATH")
+    check_existing: Switch(default=True, options=HIDDEN)
+    filter_glob: Text(default="*.json;*.blend", options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.library = self.library or chosen_identifier(context)
@@ -151,25 +145,17 @@ A_CYCLE = "Learned '{title}': {count} postures of a cycle of {seconds:.2f} s, wh
 class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
     """Make a keyframe library of the motion, so that the next take of its kind needs fewer keyframes"""
 
-    bl_idname = "keymark.learn_library"
     bl_label = "Library from Motion"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, motion, idle)
 
-    title: bpy.props.StringProperty(
-        name="Title", description="Title of the library; by default the take's name"
+    title: Text("Title", "Title of the library; by default the take's name")
+    author: Text("Author", "Author of the library")
+    count: Integer(
+        "Postures", "Number of postures in the library; 0 for 10 to 40, as many as differ", min=0, max=1000
     )
-    author: bpy.props.StringProperty(name="Author", description="Author of the library")
-    count: bpy.props.IntProperty(
-        name="Postures",
-        description="Number of postures in the library; 0 for 10 to 40, as many as differ",
-        default=0,
-        min=0,
-        max=1000,
-    )
-    learned_as: bpy.props.StringProperty(
-        name="Learned As",
-        description="Identifier that the library was given, by which learning again replaces it",
+    learned_as: Text(
+        "Learned As",
+        "Identifier that the library was given, by which learning again replaces it",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
@@ -214,8 +200,3 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
         count, seconds = len(library.postures), learned.duration_s
         said = A_CYCLE if learned.cyclic else ONCE
         self.report({"INFO"}, said.format(title=title, count=count, seconds=seconds))
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_export_library, KEYMARK_OT_learn_library)
-)

@@ -8,32 +8,25 @@ from ...core.errors import InputError
 from ...core.files.json_file import read_json_value
 from ..footage.take_footage import IMAGES, VIDEOS
 from ..shell.base_operator import BaseOperator, browse, chosen_path, reported
+from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
 from ..shell.requirements import footage, idle, object_mode_possible
 
 
 class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
     """Open a take: its footage behind its camera, its actor, what is followed, and its keyframes"""
 
-    bl_idname = "keymark.open_take"
     bl_label = "Open Take"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (object_mode_possible, idle)
 
-    filepath: bpy.props.StringProperty(
-        name="File Path",
-        description="The take's folder, or the take.json in it; in a shoot, also the clip alone",
+    filepath: Text(
+        "File Path",
+        "The take's folder, or the take.json in it; in a shoot, also the clip alone",
         subtype="FILE_PATH",
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
-    keyframes: bpy.props.StringProperty(
-        name="Keyframes",
-        description="Name of the keyframe file in the take's folder",
-        default="keyframes.json",
-    )
-    filter_glob: bpy.props.StringProperty(
-        default=";".join(("*take.json", *(f"*{ending}" for ending in VIDEOS))), options={"HIDDEN"}
-    )
-    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    keyframes: Text("Keyframes", "Name of the keyframe file in the take's folder", default="keyframes.json")
+    filter_glob: Text(default=";".join(("*take.json", *(f"*{ending}" for ending in VIDEOS))), options=HIDDEN)
+    filter_folder: Switch(default=True, options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if self.filepath:
@@ -71,28 +64,23 @@ EXAMPLES = (
 class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
     """Open a take that comes with Keymark, ready to reconstruct; nothing is written unless you copy it"""
 
-    bl_idname = "keymark.open_example"
     bl_label = "Open Example"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (object_mode_possible, idle)
 
-    example: bpy.props.EnumProperty(
-        name="Example", description="Which take is opened", items=EXAMPLES, options={"SKIP_SAVE"}
-    )
-    copy: bpy.props.BoolProperty(
-        name="Copy to Folder",
-        description="Copy the take to a folder of yours first, and open that. Otherwise nothing is written, "
+    example: Choice("Example", "Which take is opened", items=EXAMPLES, options=SKIP_SAVE)
+    copy: Switch(
+        "Copy to Folder",
+        "Copy the take to a folder of yours first, and open that. Otherwise nothing is written, "
         "and the clip is read from Keymark's own folder, which goes when Keymark is removed",
-        default=False,
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
-    directory: bpy.props.StringProperty(
-        name="Folder",
-        description="The folder in which the copy gets a folder of its own",
+    directory: Text(
+        "Folder",
+        "The folder in which the copy gets a folder of its own",
         subtype="DIR_PATH",
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
-    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
+    filter_folder: Switch(default=True, options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
@@ -148,12 +136,11 @@ TAKE_FILE = "take.json"
 class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
     """Open a take, import a keyframe library or load keypoints, depending on what the file holds"""
 
-    bl_idname = "keymark.open_dropped"
     bl_label = "Open Take, Library or Keypoints"
     bl_options = {"REGISTER", "INTERNAL"}
     requirements = (idle,)
 
-    filepath: bpy.props.StringProperty(name="File Path", subtype="FILE_PATH", options={"SKIP_SAVE"})
+    filepath: Text("File Path", subtype="FILE_PATH", options=SKIP_SAVE)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         with reported(self):
@@ -219,24 +206,11 @@ class KEYMARK_FH_take(bpy.types.FileHandler):
         return _over_an_editor(context) or (context.area is not None and context.area.ui_type == "ASSETS")
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_open_take,
-        KEYMARK_OT_open_example,
-        KEYMARK_OT_open_dropped,
-        KEYMARK_FH_footage,
-        KEYMARK_FH_take,
-    )
-)
-
-
-def register() -> None:
-    """Register the operators and file handlers, and add an entry to File > Import."""
-    _register_classes()
+def attach() -> None:
+    """Add an entry to File > Import."""
     bpy.types.TOPBAR_MT_file_import.append(_draw_import)
 
 
-def unregister() -> None:
-    """Take it all back."""
+def detach() -> None:
+    """Remove it."""
     bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
-    _unregister_classes()

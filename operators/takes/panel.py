@@ -185,8 +185,3 @@ def _draw_takes(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -
             "KEYMARK_UL_takes", "", settings, "takes", settings, "active_take", rows=3, maxrows=4
         )
     row.menu("KEYMARK_MT_take", text="", icon="DOWNARROW_HLT")
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_UL_takes, KEYMARK_MT_take, KEYMARK_PT_guide, KEYMARK_PT_main)
-)

@@ -10,6 +10,7 @@ from ...core.progress import run
 from ..follow.evidence import add_keypoint_file, keypoint_path, scene_evidence
 from ..keyframes.found_keyframes import known_matches
 from ..shell.base_operator import BaseOperator, warn
+from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.requirements import actor, footage, idle
 from ..shell.takes import active_take, add_take, find_take, footage_of
 
@@ -17,9 +18,7 @@ from ..shell.takes import active_take, add_take, find_take, footage_of
 class KEYMARK_OT_add_performer(BaseOperator, bpy.types.Operator):
     """Add a take for another performer in the active take's clip, with an actor and markers of their own"""
 
-    bl_idname = "keymark.add_performer"
     bl_label = "Add Performer"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, idle)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -46,17 +45,14 @@ def take(context: bpy.types.Context) -> str | None:
 class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
     """Remove the active take from the list; its clip, camera, actor and Actions stay, unless deleted too"""
 
-    bl_idname = "keymark.remove_take"
     bl_label = "Remove Take"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (take, idle)
 
-    delete_data: bpy.props.BoolProperty(
-        name="Delete Its Data",
-        description="Delete its actor, camera, clip and Actions too, its characters' included, except what "
+    delete_data: Switch(
+        "Delete Its Data",
+        "Delete its actor, camera, clip and Actions too, its characters' included, except what "
         "another take uses; the characters stay",
-        default=False,
-        options={"SKIP_SAVE"},
+        options=SKIP_SAVE,
     )
 
     def run(self, context: bpy.types.Context) -> None:
@@ -96,17 +92,12 @@ def _data_of(group: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:
 class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
     """Save footage, camera, actor, keyframes and what is followed as a take folder, to convert elsewhere"""
 
-    bl_idname = "keymark.save_take"
     bl_label = "Save Take"
     bl_options = {"REGISTER"}
     requirements = (footage, actor, idle)
 
-    directory: bpy.props.StringProperty(
-        name="Folder",
-        description="Where take.json, keyframes.json and the clip are written",
-        subtype="DIR_PATH",
-    )
-    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    directory: Text("Folder", "Where take.json, keyframes.json and the clip are written", subtype="DIR_PATH")
+    filter_folder: Switch(default=True, options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         context.window_manager.fileselect_add(self)
@@ -139,8 +130,3 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
         for note in notes:
             warn(self, note)
         self.report({"INFO"}, f"Saved the take in {folder}")
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_add_performer, KEYMARK_OT_remove_take, KEYMARK_OT_save_take)
-)

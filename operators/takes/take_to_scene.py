@@ -15,11 +15,9 @@ from ...core.take.take import Take
 from ...core.take.take_file import read_described
 from ..actor.take_actor import add_actor
 from ..bridge.actions import assign_action
-from ..bridge.footage import clip_rate
-from ..bridge.footage_to_scene import load_footage, show_footage, stored_path
+from ..bridge.footage_to_scene import show_footage, stored_path
 from ..bridge.keyframes import write_keyframes
 from ..bridge.motions.import_motion import armature_reference
-from ..bridge.scene_frames import scene_frames
 from ..follow.evidence import add_keypoint_file
 from ..follow.ignored_regions import add_ignored_regions
 from ..follow.marker_styles import set_marker_color
@@ -83,9 +81,9 @@ def add_take_to_scene(context: bpy.types.Context, opened: OpenedTake) -> bpy.typ
         InputError: Blender cannot read the clip; the scene is unchanged.
     """
     take, scene = opened.take, context.scene
-    rate = clip_rate(load_footage(take.clip), take.fps)
-    frames = scene_frames(opened.time_s, take.frame_start, rate)
-    camera_object = show_footage(scene, take.camera, take.clip, rate, take.frame_start, len(frames), frames)
+    camera_object, frames = show_footage(
+        scene, take.camera, take.clip, take.fps, take.frame_start, opened.time_s
+    )
     settings = add_take(scene, take.name)
     settings.camera, settings.clip = camera_object, scene.active_clip
     armature_object = add_actor(context, settings, take.body)

@@ -195,7 +195,7 @@ def merge_command(arguments: argparse.Namespace) -> None:
                 raise UsageError(
                     f"both versions of {first.identifier} have {names}, and differ; add --conflicts"
                 )
-            library = merge_versions(first, second, None if conflicts is None else conflicts == "replace")
+            library = merge_versions(first, second, conflicts == "replace")
         else:
             title = arguments.title or f"{first.title} and {second.title}"[:LONGEST_NAME].strip()
             identifier = arguments.identifier or identifier_from(title, [first.identifier, second.identifier])
@@ -205,19 +205,12 @@ def merge_command(arguments: argparse.Namespace) -> None:
 
 def mirror_command(arguments: argparse.Namespace) -> None:
     """Exchange left and right."""
-    from ....core.prior.transfer import mirrored_library, with_mirrored
+    from ....core.prior.transfer import mirrored_library
 
     refuse_existing(arguments.output, arguments.replace)
     with arguments_console(arguments) as console:
         library = find_library(arguments.library, library_folders())
-        if not arguments.both:
-            write_new_library(console, arguments, mirrored_library(library))
-            return
-        try:
-            both = with_mirrored(library)
-        except ValueError as error:
-            raise InputError(f"library {library.identifier!r}: {error}") from error
-        write_new_library(console, arguments, both)
+        write_new_library(console, arguments, mirrored_library(library))
 
 
 LIBRARY_NAME = argument("library", metavar="LIBRARY", help=LIBRARY_HELP)
@@ -283,13 +276,7 @@ MIRROR = Command(
         "Writes a library with left and right exchanged in every posture and motion. Matching does so by "
         "itself; it is for posing."
     ),
-    arguments=(
-        LIBRARY_NAME,
-        argument(
-            "--both", action="store_true", help="add the mirrored postures and motions that the library lacks"
-        ),
-        *LIBRARY_FILE,
-    ),
+    arguments=(LIBRARY_NAME, *LIBRARY_FILE),
     run=mirror_command,
 )
 

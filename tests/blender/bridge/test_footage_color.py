@@ -9,7 +9,8 @@ from keymark.operators.bridge.footage_to_scene import show_footage
 
 
 def test_another_frame_has_another_color_under_a_moving_marker(tiny_take: Take, camera: Camera) -> None:
-    shown = show_footage(bpy.context.scene, camera, tiny_take.clip, tiny_take.fps, 1, 13)
+    times, fps = np.arange(13) / tiny_take.fps, tiny_take.fps
+    shown, _ = show_footage(bpy.context.scene, camera, tiny_take.clip, fps, 1, times)
     footage = Footage(bpy.context.scene, bpy.context.scene.active_clip, shown)
     pose = tiny_take.body.pose(tiny_take.keyframes[0].posture)
     elbow, wrist = tiny_take.body.segment_ends(pose, "forearm.L")

@@ -19,7 +19,8 @@ POINTS = np.random.default_rng(3).normal([0.0, 0.0, 1.0], 0.3, (20, 3))
 
 
 def show(take: Take, camera: Camera, frame_start: int = 1) -> bpy.types.Object:
-    return show_footage(bpy.context.scene, camera, take.clip, take.fps, frame_start, 13)
+    times = np.arange(13) / take.fps
+    return show_footage(bpy.context.scene, camera, take.clip, take.fps, frame_start, times)[0]
 
 
 def shown_pixels(camera_object: bpy.types.Object) -> np.ndarray:

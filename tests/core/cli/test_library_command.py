@@ -147,11 +147,6 @@ def test_different_libraries_become_a_new_one(
     assert (both.identifier, both.title) == ("both_of_them", "Both of Them")
 
 
-def test_both_sides_fit_in_one_library(tmp_path: Path) -> None:
-    assert run("mirror", "small_steps", "--both", "--output", tmp_path / "out.json", "--quiet") == 0
-    assert len(read_library(tmp_path / "out.json").postures) == 6
-
-
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [

@@ -93,8 +93,3 @@ def test_joints_of_a_limb_move_together_and_limbs_apart() -> None:
     correlation = found / np.outer(spread, spread)
     assert correlation[hip, knee] < -0.4
     assert correlation[elbow, knee] == 0.0
-
-
-def test_limbs_part_the_degrees_of_freedom() -> None:
-    assert sorted(np.concatenate(HUMAN.limbs)) == list(range(HUMAN.dof_count))
-    assert [len(limb) for limb in HUMAN.limbs] == [9, 3, 6, 6, 5, 5]

@@ -84,6 +84,6 @@ def test_what_is_learned() -> None:
 def test_other_bodies() -> None:
     walking = find_library("walking", (SHIPPED,))
     for number, library in enumerate((walking, mirrored_library(walking))):
-        own = [transferred(one, library.actor, BODY).to_vector() for one in library.postures]
+        own = [transferred(one.posture, library.actor, BODY).to_vector() for one in library.postures]
         assert_recorded(f"transferred {number}", *own, share=1e-4)
     assert_recorded("random", random_posture(5).to_vector())
