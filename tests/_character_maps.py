@@ -5,7 +5,7 @@ from dataclasses import replace
 from _characters import plain_character, plain_map
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
 from keymark.core.retarget.retarget_record import RECOGNIZED, RetargetRecord, UsedCharacter, UsedMap
-from keymark.core.take.conversion_settings import CharacterOptions
+from keymark.core.take.character_settings import RetargetOptions
 
 
 def full_map() -> CharacterMap:
@@ -52,7 +52,7 @@ def full_record() -> RetargetRecord:
         frame_start=1,
         fps=30.0,
         size=0.987,
-        options=CharacterOptions(root_motion="in-place", tolerance_mm=2.5),
+        options=RetargetOptions(root_motion="in-place", tolerance_mm=2.5),
         roles=full_map().roles,
         limbs={"arm.L": "fk", "leg.L": "both"},
         quality={"skate_mm_per_frame": 0.012, "hands_mm": None},

@@ -12,7 +12,7 @@ from keymark.core.retarget.controls.control_plan import ControlKind, PlannedCont
 from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
 from keymark.core.retarget.controls.control_targets import PoleSetting, on_controls
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls
-from keymark.core.retarget.options import RetargetOptions
+from keymark.core.take.character_settings import RetargetOptions
 
 SIZE = 1.6
 POLE = PoleSetting(0.5, 0.0)

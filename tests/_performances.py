@@ -18,9 +18,9 @@ from keymark.core.progress import run
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.character_motion import CharacterMotion, Similarity
 from keymark.core.retarget.maps.character_map import CharacterMap
-from keymark.core.retarget.options import RetargetOptions
 from keymark.core.retarget.quality import Quality, measured
 from keymark.core.retarget.solve.solve_motion import solve_motion
+from keymark.core.take.character_settings import RetargetOptions
 
 DEMO = Path(__file__).resolve().parents[1] / "presets" / "demo" / "aerobic"
 FPS = 30.0

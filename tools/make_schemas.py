@@ -26,7 +26,7 @@ from keymark.core.retarget.retarget_record import RetargetRecord  # noqa: E402
 from keymark.core.review.score import TruthFile  # noqa: E402
 from keymark.core.shoot.discovery import KNOWN_FIELDS  # noqa: E402
 from keymark.core.take.conversion_record import ConversionRecord  # noqa: E402
-from keymark.core.take.conversion_settings import SettingsFields  # noqa: E402
+from keymark.core.take.conversion_settings import ConversionSettings  # noqa: E402
 from keymark.core.take.description import SCHEMA_VERSION, SETTING_FIELDS, SHARED_FIELDS  # noqa: E402
 from keymark.core.take.keyframe_file import KeyframeFile  # noqa: E402
 from keymark.core.take.motion import MotionFile  # noqa: E402
@@ -84,7 +84,7 @@ def take_schema() -> Schema:
     """That of takes: every field may be inherited, and null takes one away."""
     defs: dict[str, Schema] = {}
     properties: dict[str, Schema] = {}
-    for record in (TakeFields, SettingsFields):
+    for record in (TakeFields, ConversionSettings):
         properties |= inherited_schema(record, defs)["properties"]
     clip = (
         "The footage: a video, a folder of images or a pattern of numbered ones (img_####.png), relative to "

@@ -126,6 +126,17 @@ class Text(Kind):
 
 
 @dataclass(frozen=True)
+class PathInside(Text):
+    """A relative path that stays inside a folder."""
+
+    def read(self, value: Any, where: str, name: str) -> Any:
+        return Path(super().read(value, where, name))
+
+    def write(self, value: Path) -> str:
+        return value.as_posix()
+
+
+@dataclass(frozen=True)
 class Anything(Kind):
     """Any value, which is checked later."""
 
@@ -140,6 +151,8 @@ class Choice(Kind):
     """One of some texts."""
 
     names: tuple[str, ...]
+    makes: Callable[[str], str] = str
+    """What is made of a text: a member of the enumeration that declares the choice."""
 
     @property
     def valid(self) -> str:  # type: ignore[override]
@@ -148,7 +161,10 @@ class Choice(Kind):
     def read(self, value: Any, where: str, name: str) -> str:
         if not isinstance(value, str) or value not in self.names:
             refuse(where, name, value, self.valid)
-        return value
+        return self.makes(value)
+
+    def write(self, value: Any) -> str:
+        return str(value)
 
 
 @dataclass(frozen=True)
@@ -293,7 +309,7 @@ def safe_path(fields: Fields, name: str, folder: Path, valid: str) -> Path:
     return folder / relative_path(valid).read(fields.required(name, valid), fields.source_of(name), name)
 
 
-def relative_path(valid: str) -> Text:
+def relative_path(valid: str) -> PathInside:
     """The kind of a field that holds a path inside a folder; `valid` is what it must be, for the sentence."""
 
     def fault(text: str) -> str:
@@ -302,7 +318,7 @@ def relative_path(valid: str) -> Text:
         longest = max((len(part.encode("utf-8", "surrogatepass")) for part in path.parts), default=0)
         return f"must be {valid}" if outside or longest > LONGEST_NAME_BYTES else ""
 
-    return Text(LONGEST_PATH, valid, pattern=INSIDE, one_line=True, fault=fault)
+    return PathInside(LONGEST_PATH, valid, pattern=INSIDE, one_line=True, fault=fault)
 
 
 def number_array(value: Any, *, nulls: bool = False) -> Array | None:

@@ -1,17 +1,22 @@
 # ruff: noqa: D102
 """Records: JSON objects declared once, as dataclasses whose annotations say what each field may hold.
 
-A field's annotation is `bool`, a `Record`, or `Annotated[type, kind]` with one of `kinds`; the
-docstring below it is its description in the JSON Schema, which `tools/make_schemas.py` writes. A field that
-may be missing has a default; null counts as missing. `Record.from_json` checks an object and makes the
-record, `to_json` is its inverse.
+A field's annotation is `bool`, a `StrEnum`, a `Record`, or `Annotated[type, kind]` with one of `kinds`; the
+docstring below it is its description in the JSON Schema, in the help of the command line and in Blender. A
+field that may be missing has a default; null counts as missing. `Record.from_json` checks an object and makes
+the record, `to_json` is its inverse.
 """
 
+import ast
 import dataclasses
+import inspect
+import sys
 import types
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from functools import cache
+from itertools import pairwise
 from typing import (
     Annotated,
     Any,
@@ -27,7 +32,7 @@ from typing import (
 
 from ..errors import InputError, shown
 from .fields import Fields, child_location, listed
-from .kinds import ByName, Flag, Items, Kind, Nullable, Whole, read_field, refuse
+from .kinds import ByName, Choice, Flag, Items, Kind, Nullable, Whole, read_field, refuse
 
 MISSING = dataclasses.MISSING
 
@@ -134,7 +139,32 @@ def kind_of(hint: Any) -> Kind:
     if get_origin(hint) in (Union, types.UnionType):
         (item,) = (one for one in get_args(hint) if one is not types.NoneType)
         return Nullable(kind_of(item))
+    if issubclass(hint, StrEnum):
+        return Choice(tuple(map(str, hint)), hint)
     return Flag() if hint is bool else Object(hint)
+
+
+def descriptions(one: type[Any]) -> dict[str, str]:
+    """The docstrings of a record's fields or an enumeration's members, those of bases too, each a line."""
+    found: dict[str, str] = {}
+    for base in reversed(one.__mro__):
+        if base.__module__.startswith(__package__.partition(".core")[0]):
+            found |= _documented(sys.modules[base.__module__]).get(base.__qualname__, {})
+    return found
+
+
+@cache
+def _documented(module: types.ModuleType) -> dict[str, dict[str, str]]:
+    """The docstrings below the attributes of each class of a module."""
+    classes = [one for one in ast.parse(inspect.getsource(module)).body if isinstance(one, ast.ClassDef)]
+    found: dict[str, dict[str, str]] = {one.name: {} for one in classes}
+    for one in classes:
+        for field, after in pairwise(one.body):
+            if isinstance(field, ast.AnnAssign | ast.Assign) and isinstance(after, ast.Expr):
+                target = field.target if isinstance(field, ast.AnnAssign) else field.targets[0]
+                assert isinstance(after.value, ast.Constant)
+                found[one.name][ast.unparse(target)] = " ".join(str(after.value.value).split())
+    return found
 
 
 def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None, strict: bool = False) -> R:

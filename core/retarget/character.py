@@ -92,6 +92,13 @@ class Character:
                 found[bone.parent].append(number)
         return tuple(tuple(each) for each in found)
 
+    def ancestors(self, bone: int) -> list[int]:
+        """Indices of a bone's parents upward, the nearest first."""
+        found = []
+        while (bone := self.bones[bone].parent) >= 0:
+            found.append(bone)
+        return found
+
     def bone(self, name: str) -> CharacterBone:
         """The bone called `name`; KeyError where there is none."""
         return self.bones[self.index[name]]

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from ..files.json_file import read_json, write_readable_json
 from ..files.kinds import ByName, Choice, Number, Text
 from ..files.records import Record
-from ..take.conversion_settings import CharacterOptions
+from ..take.character_settings import RetargetOptions
 from ..take.evidence import FileDigests, Frame, FrameCount, FrameRate, Line, Notes, Sha256
 from .character import LIMBS
 from .maps.character_map import Roles, roles_mistake
@@ -88,7 +88,7 @@ class RetargetRecord(Record):
     """Frames per second."""
     size: Annotated[float, Number(0.0, LARGEST_SIZE, decimals=6)]
     """The character's size: its legs' length over the performer's."""
-    options: CharacterOptions
+    options: RetargetOptions
     """How the motion was put onto it."""
     roles: Roles
     """By role, what was recognized and how surely."""

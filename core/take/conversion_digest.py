@@ -11,7 +11,8 @@ from ..files.digest import content_digest, digest
 from ..files.json_file import read_json
 from ..prior.texts import COMPOSED, EVERY_LIBRARY
 from ..video.image_sequence import find_images
-from .conversion_settings import METHODS, CharacterSettings, ConversionSettings
+from .character_settings import CharacterSettings
+from .conversion_settings import METHODS, ConversionSettings
 from .description import FILE_FIELDS, SETTING_FIELDS, Description, keypoint_files
 
 FORMAT = 3
@@ -92,10 +93,9 @@ def _keypoints(path: Path) -> tuple[object, ...]:
 
 def _character(character: CharacterSettings) -> tuple[object, ...]:
     """The character's files by name and content, its armature, and the options."""
-    file = character.file
     options = json.dumps(character.options.to_json(), sort_keys=True)
-    contents = tuple((one.name, content_digest(one)) for one in (file.path, *_buffers(file.path)))
-    return (contents, file.object, options)
+    files = (character.file, *_buffers(character.file))
+    return (tuple((file.name, content_digest(file)) for file in files), character.object, options)
 
 
 def _buffers(path: Path) -> list[Path]:

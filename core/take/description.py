@@ -12,7 +12,7 @@ from ..files.fields import COMMENT_PREFIX, Fields, InheritedFields
 from ..files.json_file import read_json
 from ..files.kinds import safe_path
 from ..files.paths import absolute_path, check_symlinks
-from ..files.records import check_version
+from ..files.records import check_version, declared
 from ..prior.texts import EVERY_LIBRARY
 from ..video.image_sequence import is_image
 from .conversion_settings import NO_SETTINGS, ConversionSettings, read_settings, with_auto_as_library
@@ -22,16 +22,13 @@ SHOOT_FILE = "shoot.json"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**20
 SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "ignored_regions", "actor")
-SETTING_FIELDS = (
-    *("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence"),
-    "reference",
-)
 ASSUMED = "(assumed)"
 """Location of fields that nobody has said, for sentences."""
 FILE_FIELDS = ("$schema", "schema_version", "root")
 """Fields about the file itself; editors read the first."""
 KEYFRAMES = "keyframes"
 """Field of `take.json` that may say `EVERY_LIBRARY` here, and nothing else."""
+SETTING_FIELDS = tuple(name for name in declared(ConversionSettings) if name != KEYFRAMES)
 KNOWN_FIELDS = (*FILE_FIELDS, *SHARED_FIELDS, KEYFRAMES, *SETTING_FIELDS)
 
 
@@ -159,7 +156,7 @@ def describe(
         used.append(Path(settings.library))
     if settings.character is not None:
         map_file = settings.character.map_file
-        used += [settings.character.file.path, *([] if map_file is None else [map_file])]
+        used += [settings.character.file, *([] if map_file is None else [map_file])]
     check_symlinks(used, [files[0].parent if shared else folder, folder])
     return Description(
         path=path,

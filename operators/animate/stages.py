@@ -11,7 +11,7 @@ from mathutils import Vector
 from ...core.errors import InputError
 from ...core.files.fields import listed
 from ...core.progress import Job, Progress, stretch
-from ...core.take.conversion_settings import CharacterFile
+from ...core.take.character_settings import CharacterFile
 from ..actor.take_actor import size_actor
 from ..bridge.camera_placement import still_camera
 from ..bridge.footage_camera import set_still_pose

@@ -6,9 +6,16 @@ from ...core.errors import InputError
 from ..bridge.character.read_character import make_override, needs_override
 from ..bridge.character.rigify_human import add_rigify_human, enable_rigify, has_rigify, is_rigify_enabled
 from ..shell.base_operator import BaseOperator, warn
+from ..shell.fields import SKIP_SAVE, Text
 from ..shell.requirements import bones_editable, idle
 from ..shell.takes import active_take
-from .characters import active_character, add_character, candidates, find_character, may_be_character
+from .characters import (
+    active_character,
+    add_character,
+    candidates,
+    find_character,
+    require_character_armature,
+)
 from .map_conversion import map_of, show_map
 from .recognition import all_doubts
 from .requirements import armature, character, take
@@ -17,22 +24,20 @@ from .requirements import armature, character, take
 class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
     """Add a character: the selected armature, the only one, or one of several; its bones are recognized"""
 
-    bl_idname = "keymark.add_character"
     bl_label = "Add Character"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (take, idle)
 
-    armature: bpy.props.StringProperty(
-        name="Armature",
-        description="Name of the armature's object; by default the selected one, or the only one there is",
-        options={"SKIP_SAVE"},
+    armature: Text(
+        "Armature",
+        "Name of the armature's object; by default the selected one, or the only one there is",
+        options=SKIP_SAVE,
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         found = candidates(context.scene, context.view_layer)
         if self.armature or len(found) < 2:
             return self.execute(context)
-        names, own = [each.name for each in found], KEYMARK_OT_add_character.bl_idname
+        names, own = [each.name for each in found], "keymark.add_character"
 
         def draw(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
             for name in names:  # Blender has freed the operator by then
@@ -64,11 +69,7 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
             found = candidates(context.scene, context.view_layer)
             return found[0] if len(found) == 1 else None
         named = bpy.data.objects.get(self.armature)
-        if not may_be_character(named):
-            raise InputError(
-                f"'{self.armature}' is no armature of a character in this file; give the name of an "
-                "armature's object that is no actor of Keymark's"
-            )
+        require_character_armature(named, self.armature)
         return named
 
 
@@ -108,9 +109,7 @@ def add_rigify_character(context: bpy.types.Context) -> bpy.types.PropertyGroup:
 class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
     """Add a Rigify rig of the performer's size as the character; asks first where Rigify is not enabled"""
 
-    bl_idname = "keymark.add_rigify_human"
     bl_label = "Add Rigify Human"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (take, rigify, bones_editable, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -135,9 +134,7 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
 class KEYMARK_OT_remove_character(BaseOperator, bpy.types.Operator):
     """Remove the chosen character from the list; its armature and Actions stay"""
 
-    bl_idname = "keymark.remove_character"
     bl_label = "Remove Character"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (character, idle)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -161,9 +158,7 @@ def linked(context: bpy.types.Context) -> str | None:
 class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
     """Make a library override of the linked character, with its meshes, so that it can be animated here"""
 
-    bl_idname = "keymark.make_override"
     bl_label = "Make Override"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (linked, idle)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -211,13 +206,3 @@ def _instance_of(scene: bpy.types.Scene, original: bpy.types.Object) -> bpy.type
         if collection is not None and original in collection.all_objects[:]:
             return each
     return None
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_add_character,
-        KEYMARK_OT_add_rigify_human,
-        KEYMARK_OT_remove_character,
-        KEYMARK_OT_make_override,
-    )
-)

@@ -1,7 +1,8 @@
 """The characters of a take: which armatures may be one, which is chosen, and what it lacks."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import bpy
 
@@ -20,8 +21,20 @@ def may_be_character(candidate: bpy.types.Object | None) -> bool:
     """Whether an object is an armature that is no actor, not even one that has lost bones."""
     if candidate is None or candidate.type != "ARMATURE" or is_actor(candidate):
         return False
-    takes = (take for scene in bpy.data.scenes for take in scene.keymark.takes)
-    return all(take.armature != candidate for take in takes)
+    return all(take.armature != candidate for take in _takes())
+
+
+def require_character_armature(candidate: bpy.types.Object | None, named: str = "") -> None:
+    """Raise InputError where an object, of this name, is no armature that may be a character."""
+    if not may_be_character(candidate):
+        raise InputError(
+            f"'{named if candidate is None else candidate.name}' is no armature of a character in this file; "
+            "choose an armature that is no actor of Keymark's"
+        )
+
+
+def _takes() -> Iterator[bpy.types.PropertyGroup]:
+    return (take for scene in bpy.data.scenes for take in scene.keymark.takes)
 
 
 def candidates(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[bpy.types.Object]:
@@ -75,14 +88,13 @@ def add_character(
     return character
 
 
-def other_with_map(character: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:
-    """Another character of the file, of any take, of the same armature, that has a map."""
-    for take in (take for scene in bpy.data.scenes for take in scene.keymark.takes):
-        for other in take.characters:
-            same = other != character and other.armature == character.armature
-            if same and len(other.character_map.roles):
-                return other
-    return None
+def with_map(
+    armature_object: bpy.types.Object, beside: bpy.types.PropertyGroup | None = None
+) -> bpy.types.PropertyGroup | None:
+    """A character of the file, of any take, of this armature, that has a map; another one than `beside`."""
+    characters = (character for take in _takes() for character in take.characters)
+    of_it = (each for each in characters if each.armature == armature_object and each != beside)
+    return next((each for each in of_it if len(each.character_map.roles)), None)
 
 
 def missing_roles(character: bpy.types.PropertyGroup) -> list[str]:
@@ -104,13 +116,6 @@ def full_title(role: str) -> str:
     """A role's label with its side, as in a sentence: `left upper arm`."""
     side = {"L": "left ", "R": "right "}.get(role.partition(".")[2], "")
     return side + role_title(role).lower()
-
-
-def few(names: list[str]) -> str:
-    """The first names of a list, and how many more there are."""
-    shown = ", ".join(names[:MOST_NAMED])
-    more = len(names) - MOST_NAMED
-    return f"{shown} and {more} more" if more > 0 else shown
 
 
 def shown_result(character: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:
@@ -142,23 +147,15 @@ def source_of(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup)
     problem = missing_source(take, character)
     if problem is not None:
         raise InputError(problem)
-    kind = _kind(take, character)
-    if kind == "ACTION":
-        action = character.source_action
-        return SourceMotion(kind, action, _actor(take, character), action.name)
-    action = take.finish.action if kind == "FINAL" else take.motion_action
-    return SourceMotion(kind, action, take.armature, take.name)
+    kind, action, actor = _source(take, character)
+    return SourceMotion(kind, action, actor, action.name if kind == "ACTION" else take.name)
 
 
 def missing_source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> str | None:
     """What is missing for a character to perform, as a sentence; None where nothing is."""
-    kind, actor = _kind(take, character), _actor(take, character)
-    if kind == "ACTION" and character.source_action is None:
-        return "Choose the Action that the character is to perform"
-    if kind == "FINAL" and take.finish.action is None:
-        return "Bake the final Action first, or choose another motion"
-    if kind == "MOTION" and take.motion_action is None:
-        return "Reconstruct the motion first"
+    kind, action, actor = _source(take, character)
+    if action is None:
+        return LACKING[kind]
     if actor is None:
         return "The motion's actor is gone; choose its armature in the step Performer"
     if not is_actor(actor):
@@ -166,18 +163,23 @@ def missing_source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyG
     return None
 
 
-def _kind(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> str:
-    if character.source != "NEWEST":
-        return str(character.source)
-    final = take.finish
-    newer = final.outdated and take.motion_action is not None
-    return "FINAL" if final.action is not None and not newer else "MOTION"
+LACKING = {
+    "ACTION": "Choose the Action that the character is to perform",
+    "FINAL": "Bake the final Action first, or choose another motion",
+    "MOTION": "Reconstruct the motion first",
+}
+"""What is to be done where there is no motion of a kind."""
 
 
-def _actor(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> bpy.types.Object | None:
-    if character.source == "ACTION" and character.source_actor is not None:
-        return character.source_actor
-    return take.armature
+def _source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> tuple[str, Any, Any]:
+    """The kind of motion that a character is to perform, its Action, and the actor that this moves."""
+    kind, final = str(character.source), take.finish
+    if kind == "ACTION":
+        return kind, character.source_action, character.source_actor or take.armature
+    if kind == "NEWEST":
+        newer = final.outdated and take.motion_action is not None
+        kind = "FINAL" if final.action is not None and not newer else "MOTION"
+    return kind, final.action if kind == "FINAL" else take.motion_action, take.armature
 
 
 # --- Results of retargeting, in a character's list
@@ -234,10 +236,15 @@ def drop_results_of_others(character: bpy.types.PropertyGroup) -> None:
 def show_lines(result: bpy.types.PropertyGroup, figures: Iterable[str], notes: Iterable[str]) -> None:
     """Show what was measured of a result, and what a person should look at."""
     result.lines.clear()
-    for level, sentences in (("INFO", figures), ("ERROR", notes)):
-        for sentence in sentences:
-            line = result.lines.add()
-            line.text, line.level = capitalized(sentence), level
+    add_lines(result.lines, figures, "INFO")
+    add_lines(result.lines, notes, "ERROR")
+
+
+def add_lines(lines: "bpy.types.bpy_prop_collection_idprop", sentences: Iterable[str], level: str) -> None:
+    """Add sentences to a list that the panel shows."""
+    for sentence in sentences:
+        line = lines.add()
+        line.text, line.level = capitalized(sentence), level
 
 
 def is_shown(character: bpy.types.PropertyGroup, result: bpy.types.PropertyGroup) -> bool:

@@ -4,9 +4,8 @@ from collections.abc import Mapping
 
 import bpy
 
-from ...core.retarget.character import LIMBS, ROLES
+from ...core.retarget.character import CHAINS, LIMBS, ROLES
 from ...core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
-from .map_properties import is_chain
 
 DIGITS = 7  # significant digits of values that Blender keeps as float32
 WORDS = ("author", "license", "description")
@@ -97,7 +96,7 @@ def _show_role(shown: bpy.types.PropertyGroup, name: str, character_map: Charact
         entry.control = control if control not in (None, bone) else ""
         if found is not None and found.shares:
             entry.share = found.shares[number]
-    shown.uneven = is_chain(name) and found is not None and bool(found.shares)
+    shown.uneven = name in CHAINS and found is not None and bool(found.shares)
     shown.source = found.source if found is not None else "you"
     shown.confidence = found.confidence if found is not None else 1.0
     shown.doubt = doubt

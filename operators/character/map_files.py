@@ -6,6 +6,7 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator, browse, chosen_file, reported
+from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.requirements import idle
 from .characters import active_character
 from .map_conversion import map_of, show_map
@@ -16,21 +17,17 @@ from .requirements import armature, recognized
 class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
     """Load which bones play which role from a file, instead of what was recognized"""
 
-    bl_idname = "keymark.load_map"
     bl_label = "Load Map"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (armature, idle)
 
-    filepath: bpy.props.StringProperty(
-        name="File Path", description="A character map", subtype="FILE_PATH", options={"SKIP_SAVE"}
+    filepath: Text("File Path", "A character map", subtype="FILE_PATH", options=SKIP_SAVE)
+    title: Text(
+        "Title",
+        "Title of a map in your library folder, instead of a file",
+        options=SKIP_SAVE,
     )
-    title: bpy.props.StringProperty(
-        name="Title",
-        description="Title of a map in your library folder, instead of a file",
-        options={"SKIP_SAVE"},
-    )
-    filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
-    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    filter_glob: Text(default="*.json", options=HIDDEN)
+    filter_folder: Switch(default=True, options=HIDDEN)
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
@@ -71,14 +68,13 @@ SUFFIX = ".json"
 class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
     """Save which bones play which role as a file; in the folder that is offered it is found again"""
 
-    bl_idname = "keymark.save_map"
     bl_label = "Save Map"
     bl_options = {"REGISTER"}
     requirements = (recognized, idle)
 
-    filepath: bpy.props.StringProperty(name="File", description="File to write", subtype="FILE_PATH")
-    check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
-    filter_glob: bpy.props.StringProperty(default=f"*{SUFFIX}", options={"HIDDEN"})
+    filepath: Text("File", "File to write", subtype="FILE_PATH")
+    check_existing: Switch(default=True, options=HIDDEN)
+    filter_glob: Text(default=f"*{SUFFIX}", options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         from ...core.retarget.maps.map_registry import map_path
@@ -116,6 +112,3 @@ class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
 
 def _title(character: bpy.types.PropertyGroup) -> str:
     return character.character_map.title.strip() or str(character.armature.name)
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_map, KEYMARK_OT_save_map))

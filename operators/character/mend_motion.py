@@ -7,8 +7,10 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import run as run_job
 from ..shell.base_operator import BaseOperator, browse, chosen_file, warn
+from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import bones_editable, idle
+from .characters import with_map
 from .map_conversion import map_of
 from .recognition import map_folders
 
@@ -41,25 +43,19 @@ def animated(context: bpy.types.Context) -> str | None:
 class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
     """Load a motion that another program made: an animated armature, or points by name"""
 
-    bl_idname = "keymark.load_motion"
     bl_label = "Load Motion"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (bones_editable, idle)
 
-    filepath: bpy.props.StringProperty(
-        name="File", description="The motion's file", subtype="FILE_PATH", options={"SKIP_SAVE"}
-    )
-    object: bpy.props.StringProperty(
-        name="Armature", description="Name of its armature, where the file has several", options={"SKIP_SAVE"}
-    )
-    filter_glob: bpy.props.StringProperty(default=FILTER, options={"HIDDEN"})
+    filepath: Text("File", "The motion's file", subtype="FILE_PATH", options=SKIP_SAVE)
+    object: Text("Armature", "Name of its armature, where the file has several", options=SKIP_SAVE)
+    filter_glob: Text(default=FILTER, options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         return browse(self, context)
 
     def run(self, context: bpy.types.Context) -> None:
         from ...core.finish.mend_motion import MendOptions, mend_motion
-        from ...core.take.conversion_settings import CharacterFile
+        from ...core.take.character_settings import CharacterFile
         from ...core.take.reference import REFERENCE_ENDINGS, read_reference
         from ..bridge.motions.import_motion import load_motion
         from ..bridge.motions.mend_action import add_actor
@@ -84,23 +80,17 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
 class KEYMARK_OT_mend_motion(JobOperator, bpy.types.Operator):
     """Mend the active armature's motion: jitter, sliding feet, exchanged sides; frames you posed stay"""
 
-    bl_idname = "keymark.mend_motion"
     bl_label = "Mend Motion"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (animated, idle)
 
-    onto: bpy.props.EnumProperty(name="Onto", description="What is to move so", items=ONTO)
-    posed: bpy.props.StringProperty(
-        name="Posed Frames",
-        description="Frames that you posed, with commas between them, as in 12, 40, 88; those in which you "
+    onto: Choice("Onto", "What is to move so", items=ONTO)
+    posed: Text(
+        "Posed Frames",
+        "Frames that you posed, with commas between them, as in 12, 40, 88; those in which you "
         "set keys on a loaded motion are known",
     )
-    plant_feet: bpy.props.BoolProperty(
-        name="Plant Feet", description="Hold resting feet still; the hips go as the feet say", default=True
-    )
-    floor: bpy.props.BoolProperty(
-        name="On the Floor", description="Bring the height on which the feet stand to zero", default=True
-    )
+    plant_feet: Switch("Plant Feet", "Hold resting feet still; the hips go as the feet say", default=True)
+    floor: Switch("On the Floor", "Bring the height on which the feet stand to zero", default=True)
 
     def start(self, scene: bpy.types.Scene) -> "Job[tuple[int, MendedAction]]":
         from ..bridge.motions.mend_action import mend_action
@@ -141,10 +131,9 @@ def _map_of(armature_object: bpy.types.Object) -> "CharacterMap":
     """The map of an armature: that of a character that it is in a take, else the one found."""
     from ..bridge.motions.read_poses import motion_map
 
-    for take in (take for scene in bpy.data.scenes for take in scene.keymark.takes):
-        for character in take.characters:
-            if character.armature == armature_object and len(character.character_map.roles):
-                return map_of(character.character_map)
+    known = with_map(armature_object)
+    if known is not None:
+        return map_of(known.character_map)
     return motion_map(armature_object, map_folders()).character_map
 
 
@@ -153,6 +142,3 @@ def _select(context: bpy.types.Context, chosen: bpy.types.Object) -> None:
         one.select_set(False)
     chosen.select_set(True)
     context.view_layer.objects.active = chosen
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_motion, KEYMARK_OT_mend_motion))

@@ -3,6 +3,7 @@
 import bpy
 from bpy.types import Armature, Context, PropertyGroup, UILayout
 
+from ...core.retarget.character import CHAINS
 from ..bridge.character.read_character import needs_override
 from ..shell.panel import Popover, RowList, TakePanel, draw_progress, draw_sentence
 from ..shell.step_panel import StepPanel
@@ -15,7 +16,7 @@ from .characters import (
     missing_roles,
     shown_result,
 )
-from .map_properties import PART_TITLES, PARTS, SOURCE_WORDS, is_chain, role_title
+from .map_properties import PART_TITLES, PARTS, SOURCE_WORDS, role_title
 from .requirements import recognized
 
 LABEL_SHARE = 0.29  # share of the width that a role's name takes
@@ -89,7 +90,7 @@ def _draw_role(column: UILayout, context: Context, character: PropertyGroup, rol
         name = split.row()
         name.alignment = "RIGHT"
         name.label(text=role_title(role.name) if index == 0 else "")
-        if is_chain(role.name) and index == len(role.bones) - 1:
+        if role.name in CHAINS and index == len(role.bones) - 1:
             name.operator("keymark.add_chain_bone", text="", icon="ADD", emboss=False).role = role.name
         row = split.row(align=True)
         field = row.row(align=True)
@@ -105,7 +106,7 @@ def _draw_role(column: UILayout, context: Context, character: PropertyGroup, rol
 def _draw_buttons(row: UILayout, role: PropertyGroup, index: int) -> None:
     pick = row.operator("keymark.pick_bone", text="", icon="EYEDROPPER")
     pick.role, pick.index = role.name, index
-    if is_chain(role.name) and not role.bones[index].bone and len(role.bones) > 1:
+    if role.name in CHAINS and not role.bones[index].bone and len(role.bones) > 1:
         remove = row.operator("keymark.remove_chain_bone", text="", icon="REMOVE")
         remove.role, remove.index = role.name, index
 
@@ -302,8 +303,3 @@ class KEYMARK_PT_character_map(TakePanel, bpy.types.Panel):
 
     def draw(self, context: Context) -> None:
         draw_map(self.layout, context, active_character(context.scene))
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_UL_characters, KEYMARK_PT_character, KEYMARK_PT_character_map, KEYMARK_PT_retarget_options)
-)

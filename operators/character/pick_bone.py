@@ -6,12 +6,14 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 from ...core.arrays import Array
 from ...core.errors import InputError
+from ...core.files.fields import listed
 from ..shell.base_operator import BaseOperator, reported
+from ..shell.fields import SKIP_SAVE, Choice, Text
 from ..shell.footage_clicks import NAVIGATION
 from ..shell.footage_view import FootageRequest, ask, follow_mouse, stop_asking
 from ..shell.job_operator import cancel_click
 from ..shell.requirements import idle
-from .characters import active_character, few, find_character, full_title
+from .characters import MOST_NAMED, active_character, find_character, full_title
 from .map_conversion import map_of, role_named, show_map
 from .recognition import RoleBoneOperator, active_bone_of, chain_role, give_bone, told
 from .requirements import armature
@@ -91,12 +93,10 @@ def is_visible(pose_bone: bpy.types.PoseBone) -> bool:
 class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     """Click on the bone in the viewport"""
 
-    bl_idname = "keymark.pick_bone"
     bl_label = "Pick Bone"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (armature, idle)
 
-    bone: bpy.props.StringProperty(name="Bone", description="Name of the bone", options={"SKIP_SAVE"})
+    bone: Text("Bone", "Name of the bone", options=SKIP_SAVE)
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
@@ -164,9 +164,7 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
 class KEYMARK_OT_add_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     """Add the next bone upward to the chain"""
 
-    bl_idname = "keymark.add_chain_bone"
     bl_label = "Add Bone"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (armature,)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -180,9 +178,7 @@ class KEYMARK_OT_add_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Operat
 class KEYMARK_OT_remove_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     """Take this bone out of the chain; its turn goes to the others"""
 
-    bl_idname = "keymark.remove_chain_bone"
     bl_label = "Remove Bone"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (armature,)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -218,12 +214,10 @@ SIDES = (
 class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
     """Copy the bones and controls of one side's arm and leg to the other, by mirrored names and places"""
 
-    bl_idname = "keymark.mirror_roles"
     bl_label = "Mirror"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (armature, idle)
 
-    side: bpy.props.EnumProperty(name="Direction", description="Which side is copied", items=SIDES)
+    side: Choice("Direction", "Which side is copied", items=SIDES)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         from ...core.retarget.maps.mirroring import mirrored_map
@@ -233,7 +227,7 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
         before = map_of(character.character_map)
         after, missing = mirrored_map(read_character(character.armature), before, self.side)
         if missing:
-            names = few([full_title(role) for role in missing])
+            names = listed(map(full_title, missing), MOST_NAMED)
             self.report({"WARNING"}, f"No bones were found that mirror those for {names}")
         if after == before:
             return {"CANCELLED"}
@@ -244,8 +238,3 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
         }
         show_map(character.character_map, after, doubts)
         return None
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_pick_bone, KEYMARK_OT_add_chain_bone, KEYMARK_OT_remove_chain_bone, KEYMARK_OT_mirror_roles)
-)

@@ -6,32 +6,30 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import InputError, KeymarkError
-from ...core.retarget.character import ROLES
+from ...core.retarget.character import CHAINS, ROLES
 from ..library import registry
 from ..shell.base_operator import BaseOperator, capitalized, warn
+from ..shell.fields import SKIP_SAVE, Integer, Text
 from ..shell.requirements import idle
 from .characters import (
     active_character,
+    add_lines,
     drop_results_of_others,
     find_character,
     full_title,
-    may_be_character,
-    other_with_map,
+    require_character_armature,
+    with_map,
 )
 from .map_conversion import clear_map, map_of, role_named, show_map
-from .map_properties import SOURCE_WORDS, is_chain
+from .map_properties import SOURCE_WORDS
 from .requirements import armature
 
 
 class RoleBoneOperator:
     """Mixin of an operator that gives a role a bone."""
 
-    role: bpy.props.StringProperty(
-        name="Role", description="The role, as in upper_arm.L", options={"SKIP_SAVE"}
-    )
-    index: bpy.props.IntProperty(
-        name="Index", description="Number of the bone in a chain, from 0", min=0, options={"SKIP_SAVE"}
-    )
+    role: Text("Role", "The role, as in upper_arm.L", options=SKIP_SAVE)
+    index: Integer("Index", "Number of the bone in a chain, from 0", min=0, options=SKIP_SAVE)
 
 
 def give_bone(character: bpy.types.PropertyGroup, role: str, index: int, bone: str) -> None:
@@ -84,7 +82,7 @@ def chain_role(role: str) -> str:
     Raises:
         InputError: It is one bone's.
     """
-    if role not in ROLES or not is_chain(role):
+    if role not in ROLES or role not in CHAINS:
         raise InputError(f"'{role}' is no chain of bones; spine and neck are")
     return role
 
@@ -101,10 +99,8 @@ def recognize_bones(character: bpy.types.PropertyGroup) -> None:
     from ...core.retarget.recognition.recognize import recognize
     from ..bridge.character.read_character import read_character
 
-    armature_object = character.armature
-    if not may_be_character(armature_object):
-        raise _not_a_character(armature_object)
-    found = recognize(read_character(armature_object))
+    require_character_armature(character.armature)
+    found = recognize(read_character(character.armature))
     by_role = {_role_of(sentence): capitalized(sentence) for sentence in found.doubts}
     show_map(character.character_map, found.character_map, by_role)
     show_doubts(character, tuple(sentence for sentence in found.doubts if not _role_of(sentence)))
@@ -114,9 +110,7 @@ def recognize_bones(character: bpy.types.PropertyGroup) -> None:
 def show_doubts(character: bpy.types.PropertyGroup, doubts: tuple[str, ...] = ()) -> None:
     """Show what is doubtful about a character's map as a whole."""
     character.doubts.clear()
-    for sentence in doubts:
-        line = character.doubts.add()
-        line.text, line.level = capitalized(sentence), "ERROR"
+    add_lines(character.doubts, doubts, "ERROR")
 
 
 def all_doubts(character: bpy.types.PropertyGroup) -> list[str]:
@@ -142,7 +136,7 @@ def armature_chosen(character: bpy.types.PropertyGroup) -> None:
     if character.armature is None:
         return
     drop_results_of_others(character)
-    known = other_with_map(character)
+    known = with_map(character.armature, beside=character)
     if known is not None:
         show_map(character.character_map, map_of(known.character_map))
         return
@@ -168,24 +162,10 @@ def map_folders() -> list[Path]:
     return [registry.own_folder()]
 
 
-def _not_a_character(armature_object: bpy.types.Object | None) -> InputError:
-    if armature_object is None:
-        return InputError("no armature is chosen; choose the character's")
-    name = armature_object.name
-    if armature_object.type != "ARMATURE":
-        return InputError(f"'{name}' is no armature; choose the character's")
-    return InputError(
-        f"'{name}' is an actor of Keymark's, which shows the motion already; choose the armature of "
-        "another character"
-    )
-
-
 class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
     """Find out which bones play which role, by their names and places; replaces what you chose before"""
 
-    bl_idname = "keymark.recognize_character"
     bl_label = "Recognize"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (armature, idle)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -196,6 +176,3 @@ class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
             warn(self, doubt)
         if not doubts:
             self.report({"INFO"}, f"Recognized the bones of '{character.armature.name}'")
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_recognize_character,))

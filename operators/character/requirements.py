@@ -2,11 +2,12 @@
 
 import bpy
 
+from ...core.files.fields import listed
 from ..bridge.character.read_character import needs_override
 from ..shell.takes import active_take, find_take
 from .characters import (
+    MOST_NAMED,
     active_character,
-    few,
     find_character,
     full_title,
     lost_bones,
@@ -60,10 +61,10 @@ def recognized(context: bpy.types.Context) -> str | None:
         return "Recognize the character's bones first"
     missing = [full_title(role) for role in missing_roles(chosen)]
     if missing:
-        return f"Choose the bones of {few(missing)} first"
+        return f"Choose the bones of {listed(missing, MOST_NAMED)} first"
     lost = lost_bones(chosen)
     if lost:
-        bones = few([f"'{bone}'" for bone in lost])
+        bones = listed((f"'{bone}'" for bone in lost), MOST_NAMED)
         said = f"'{chosen.armature.name}' has no bone {bones} any more"
         return f"{said}; recognize its bones again, or choose others"
     return None

@@ -1,15 +1,18 @@
 """Give the take's motion to a character."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import bpy
 
 from ...core.errors import InputError
 from ...core.progress import stretch
-from ...core.retarget.options import LimbKeys, Placement, RetargetOptions, RootMotion
+from ...core.take.character_settings import RetargetOptions
 from ..bridge.actions import assign_action
 from ..finish.bake_motion import mark_motion_asset
 from ..shell.base_operator import BaseOperator, warn
+from ..shell.declared_properties import read_declared
+from ..shell.fields import Integer
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import idle
 from ..shell.takes import active_take, take_by_identifier
@@ -23,7 +26,6 @@ from .characters import (
     source_of,
 )
 from .map_conversion import map_of
-from .properties import MM
 from .requirements import character, editable, recognized, result, source
 
 if TYPE_CHECKING:
@@ -75,9 +77,7 @@ def keep_retargeted(operator: bpy.types.Operator, scene: bpy.types.Scene, result
 class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
     """Let the character perform the motion, as an Action of its own"""
 
-    bl_idname = "keymark.retarget"
     bl_label = "Retarget"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (source, editable, recognized, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[tuple[Any, ...]]":
@@ -90,15 +90,8 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
 
 def options_of(group: bpy.types.PropertyGroup) -> RetargetOptions:
     """The options that properties hold."""
-    return RetargetOptions(
-        root_motion=RootMotion[group.root_motion],
-        placement=Placement[group.placement],
-        arms=LimbKeys[group.arms],
-        legs=LimbKeys[group.legs],
-        plant_feet=group.plant_feet,
-        reach_hands=group.reach_hands,
-        tolerance_m=group.tolerance_mm / MM if group.keys == "TOLERANCE" else None,
-    )
+    options = read_declared(RetargetOptions, group, place="placement")
+    return options if group.keys == "TOLERANCE" else replace(options, tolerance_mm=0.0)
 
 
 def figures(quality: "Quality") -> list[str]:
@@ -124,12 +117,10 @@ def _uid(block: bpy.types.ID | None) -> int:
 class KEYMARK_OT_show_result(BaseOperator, bpy.types.Operator):
     """Animate the character by this result"""
 
-    bl_idname = "keymark.show_result"
     bl_label = "Show Result"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (result, editable, idle)
 
-    index: bpy.props.IntProperty(name="Index", description="Number of the result in the list, from 0", min=0)
+    index: Integer("Index", "Number of the result in the list, from 0", min=0)
 
     def run(self, context: bpy.types.Context) -> None:
         character = active_character(context.scene)
@@ -142,12 +133,10 @@ class KEYMARK_OT_show_result(BaseOperator, bpy.types.Operator):
 class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
     """Remove this result from the list; its Action stays in the file, for you to delete"""
 
-    bl_idname = "keymark.remove_result"
     bl_label = "Remove Result"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (character, idle)
 
-    index: bpy.props.IntProperty(name="Index", description="Number of the result in the list, from 0", min=0)
+    index: Integer("Index", "Number of the result in the list, from 0", min=0)
 
     def run(self, context: bpy.types.Context) -> None:
         chosen = active_character(context.scene)
@@ -162,9 +151,7 @@ class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
 class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
     """Mark the character's motion as an asset, with the catalog, tags and details of the step Export"""
 
-    bl_idname = "keymark.mark_result_asset"
     bl_label = "Mark Asset"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (result, idle)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -177,8 +164,3 @@ class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
                 {"WARNING"}, "The character's motion is of an earlier one; retarget it for the newest"
             )
         self.report({"INFO"}, f"'{made.action.name}' is an asset now; save the .blend to keep it")
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_retarget, KEYMARK_OT_show_result, KEYMARK_OT_remove_result, KEYMARK_OT_mark_result_asset)
-)

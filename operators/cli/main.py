@@ -4,6 +4,7 @@ Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is
 On all but 0, one line on standard error says why, and the output is as it was before.
 """
 
+import argparse
 import os
 import shutil
 import signal
@@ -13,11 +14,14 @@ import time
 import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from types import FrameType
+from typing import Any, NoReturn
 
 from ...core.errors import InputError, KeymarkError, describe_unexpected
 from .blender_silence import codec_silence
-from .parser import UsageError, build_parser, print_error
+from .commands import SUMMARIES
+from .parser import Command, CommandGroup, UsageError, print_error, program_name, version
 
 BLENDER_PREFIX = ["--command", "keymark"]
 """What Blender needs before a command; accepted here too, so that farms call both programs alike."""
@@ -27,6 +31,8 @@ ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS
 GLTF = "io_scene_gltf2.blender."
 """Beginning of the modules that glTF's importer and exporter load when they run."""
 FIXED_IN = (5, 0)
+WORKER = "worker"
+"""The command by which a batch starts its workers; the list of commands does not have it."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -49,6 +55,9 @@ def _run(words: list[str]) -> int:
     chosen = next((word for word in words if not word.startswith("-")), None)
     try:
         with _sigterm_as_interrupt(), codec_silence(debug):
+            if words == [WORKER]:
+                import_module(".batch.worker", __package__).run_worker()
+                return DONE
             arguments = build_parser(chosen).parse_args(words)
             arguments.started = started
             arguments.run(arguments)
@@ -123,3 +132,85 @@ def _end_process(status: int) -> None:
             stream.flush()
     shutil.rmtree(blender.app.tempdir, ignore_errors=True)
     os._exit(status)
+
+
+# --- The parser
+
+
+DESCRIPTION = "Turns one video of a performer, in colored markers or any clothes, into an animated armature."
+EXAMPLES = """\
+examples:
+  {program} demo
+  {program} animate clip.mp4 --height 1.78 --character anna.blend --output out/clip
+  {program} convert takes/walk --output out/walk
+  {program} convert takes/walk --output out/walk --keyframes posed.json --method ekf --json
+  {program} convert takes/walk --output out/walk --library walking --floor 0
+  {program} convert takes/walk --output out/walk --keypoints pose.json --evidence keypoints,contours
+  {program} new shoot
+  {program} check shoot
+  {program} batch shoot --output out --jobs 4
+  {program} merge out --output library.blend
+  {program} character anna.blend --output anna.json
+  {program} retarget out/walk --character anna.blend --output out/anna_walk --format fbx
+  {program} detect shoot
+  {program} propose takes/walk --count 12
+  {program} library list
+
+A take is a folder with take.json, the clip and keyframes.json, or a clip below a shoot.json, which tells of
+many; a library takes the place of keyframes.
+Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable."""
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """A parser that tells a mistake in one sentence and leaves the exit to its caller."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise instead of writing several lines and leaving the process."""
+        raise UsageError(f"{message}; see {self.prog} --help")
+
+
+def build_parser(chosen: str | None) -> argparse.ArgumentParser:
+    """The parser; its result has `run`, which runs the command."""
+    program = program_name()
+    parser = OneLineParser(
+        prog=program,
+        description=DESCRIPTION,
+        epilog=EXAMPLES.format(program=program),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"keymark {version()}")
+    added = parser.add_subparsers(metavar="COMMAND", title="commands", required=True)
+    for name, summary in SUMMARIES.items():
+        if name == chosen:
+            _add_command(added, _declared(name), summary, program)
+        else:
+            added.add_parser(name, help=summary)
+    return parser
+
+
+def _declared(name: str) -> Any:
+    return getattr(import_module(f".commands.{name}", __package__), name.upper())
+
+
+def _add_command(added: Any, command: Command | CommandGroup, summary: str, program: str) -> None:
+    one = added.add_parser(
+        command.name,
+        help=summary,
+        description=command.description,
+        formatter_class=argparse.RawDescriptionHelpFormatter
+        if isinstance(command, CommandGroup)
+        else argparse.HelpFormatter,
+    )
+    if isinstance(command, CommandGroup):
+        inner = f"{program} {command.name}"
+        one.epilog = command.epilog.format(program=inner)
+        below = one.add_subparsers(metavar="COMMAND", title="commands", required=True)
+        for each in command.commands:
+            _add_command(below, each, each.summary, inner)
+        return
+    one.add_argument("--quiet", "-q", action="store_true", help="write nothing but errors")
+    one.add_argument("--json", action="store_true", help="write one JSON object instead of text")
+    one.add_argument("--debug", action="store_true", help="on errors, show where in the program")
+    for names, settings in command.arguments:
+        one.add_argument(*names, **settings)
+    one.set_defaults(run=command.run)

@@ -1,23 +1,20 @@
-"""Options that several commands share: evidence, keyframes and libraries, shoots, characters."""
+"""Options that several commands share; those of a record follow from its declaration."""
 
 import argparse
-from pathlib import Path, PureWindowsPath
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
 
+from ...core.files.kinds import Choice, Flag, Nullable, Number, Whole, relative_path
+from ...core.files.records import Record, declared, descriptions
 from ...core.prior.texts import EVERY_LIBRARY
-from ...core.take.conversion_settings import (
-    HIGHEST_FLOOR_M,
-    LARGEST_TOLERANCE_MM,
-    LIMB_KEYS,
-    METHODS,
-    PLACEMENTS,
-    ROOT_MOTIONS,
-    CharacterOptions,
-    ConversionSettings,
-)
-from ...core.take.evidence import EVIDENCE, evidence_mistake, in_order
+from ...core.take.character_settings import CharacterFile, CharacterSettings, RetargetOptions
+from ...core.take.conversion_settings import ConversionSettings, EvidenceKinds
+from ...core.take.evidence import EVIDENCE
 from .parser import Argument, UsageError, argument
 
-KINDS = ",".join(EVIDENCE)
+WHERE = "the command line"
 HEIGHT = "--height"
 SHOOT_HELP = "folder of takes, or a list of them (JSON Lines, .jsonl)"
 CHARACTER_HELP = (
@@ -25,10 +22,6 @@ CHARACTER_HELP = (
     "where it has several"
 )
 REPLACE_HELP = "replace what is there already"
-MAP_HELP = (
-    "character map, by title or file; auto, the default: a saved one that knows the character's bones, else "
-    "recognition; none: recognition"
-)
 
 
 def bare_clip_fields(height_m: float) -> dict[str, object]:
@@ -42,188 +35,149 @@ def output(metavar: str, words: str, *, required: bool = True, replace: str = ""
     return (to, argument("--replace", action="store_true", help=replace)) if replace else (to,)
 
 
-def evidence_option(condition: str = "") -> Argument:
-    """The kinds of evidence; `condition` says for which takes the option counts."""
-    return argument(
-        "--evidence",
-        metavar="KINDS",
-        type=_kinds,
-        help=f"what the motion is held against{condition}, one or more of {KINDS}; by default whatever a "
-        "take has",
-    )
+def field_option(
+    record: type[Record], field: str, option: str, condition: str = "", **settings: Any
+) -> Argument:
+    """The option of a record's field; None stands for one that is left out.
+
+    Choices and numbers are those of the declaration, the help is the field's docstring; `condition` says for
+    which takes the option counts.
+    """
+    kind = declared(record)[field].kind
+    kind = kind.item if isinstance(kind, Nullable) else kind
+    words = descriptions(record)[field].rstrip(".")
+    settings = {"dest": field, "help": words[:1].lower() + words[1:] + condition, **settings}
+    if isinstance(kind, Choice):
+        settings |= {"choices": kind.names}
+    elif isinstance(kind, Flag):
+        settings |= {"action": argparse.BooleanOptionalAction}
+    elif isinstance(kind, Number):
+        settings |= {"type": checked(kind, option)}
+    return argument(option, **settings)
 
 
-KEYPOINT_FILES = argument(
-    "--keypoints",
-    metavar="FILE",
-    type=Path,
-    action="append",
-    help="file or folder of keypoints that a detector has found in the clip; may be given several times; "
-    "by default TAKE/keypoints.json where it is there",
-)
-"""Keypoint files of one take."""
+def checked(kind: Number | Whole, option: str) -> Callable[[str], float]:
+    """The type of an option whose value is a number of a kind; `none` is 0, where 0 is valid."""
+
+    def number(text: str) -> float:
+        value: float | str = text
+        with suppress(ValueError):  # the kind says what is valid
+            value = 0.0 if text == "none" and kind.low == 0.0 else float(text)
+        return kind.read(value, WHERE, option)
+
+    return number
 
 
-REFERENCE_FILE = argument(
-    "--reference",
-    metavar="FILE",
-    type=Path,
-    help="3D motion of the same performance from elsewhere, as a neural network's, that is mended by the "
-    "footage; by default the one that the take names",
-)
+def jobs_option(most: int, words: str) -> Argument:
+    """How many takes are worked on at a time."""
+    return argument("--jobs", "-j", metavar="N", type=checked(Whole(1, most), "--jobs"), help=words)
 
 
 def _kinds(text: str) -> tuple[str, ...] | None:
     """The kinds of evidence; None for an empty text, which farms pass for a setting that is not filled in."""
-    if not text:
-        return None
     kinds = [kind.strip().replace("-", "_") for kind in text.split(",")]
-    mistake = evidence_mistake(kinds)
-    if mistake is not None:
-        raise argparse.ArgumentTypeError(f"evidence is {text}; {mistake}")
-    return in_order(kinds)
+    return EvidenceKinds().read(kinds, WHERE, "--evidence") if text else None
 
 
 def _name_in_take(text: str) -> Path | None:
     """A path within a take; None for an empty text, as above."""
-    if not text:
-        return None
-    path = PureWindowsPath(text)  # it reads both kinds of slash
-    if path.anchor or Path(text).is_absolute() or ".." in path.parts or not path.name:
-        raise argparse.ArgumentTypeError(
-            f"keypoints is {text}; the name that the file has in every take is valid, as in keypoints.json"
-        )
-    return Path(text)
+    valid = "the name that the file has in every take, as in keypoints.json"
+    name: Path | None = relative_path(valid).read(text, WHERE, "--keypoints") if text else None
+    return name
 
 
-def _auto(text: str) -> str | None:
-    """The word for finding keyframes; None for an empty text, as above."""
-    if text not in ("", EVERY_LIBRARY):
-        raise argparse.ArgumentTypeError(
-            f"keyframes is {text}; {EVERY_LIBRARY} is valid: a keyframe file is a take's own, named in its "
-            "description"
-        )
-    return text or None
+def setting_options(*names: str, condition: str = "", **changes: dict[str, Any]) -> tuple[Argument, ...]:
+    """The options of settings of a conversion; `changes` are those of an option."""
+    made = []
+    for name in names:
+        option, settings = SETTINGS[name]
+        settings = settings | changes.get(name, {})
+        made.append(field_option(ConversionSettings, name, option, condition, **settings))
+    return tuple(made)
 
 
-SHOOT_OPTIONS = (
-    argument(
-        "--keypoints",
-        metavar="NAME",
-        type=_name_in_take,
-        action="append",
-        help="name of the keypoint file or folder of every take where nothing in SHOOT names one: "
-        "TAKE/NAME, or CLIP.NAME beside a clip; may be given several times; by default keypoints.json where "
-        "it is there",
-    ),
-    evidence_option(" where nothing in SHOOT says it"),
-    argument(
-        "--keyframes",
-        metavar="auto",
-        type=_auto,
-        help="auto: find keyframes in the footage with all libraries there are, beside those that a take has "
-        "posed, where nothing in SHOOT says how",
-    ),
-    argument(
-        "--library",
-        metavar="NAME|FILE|auto",
-        type=lambda text: text or None,
-        help="find keyframes by matching takes with this keyframe library alone where nothing in SHOOT says "
-        "how; auto is --keyframes auto",
-    ),
-    argument(
-        "--floor",
-        metavar="HEIGHT",
-        type=float,
-        help="height of the floor in meters where nothing in SHOOT says it",
-    ),
-    argument("--method", choices=METHODS, help="method where nothing in SHOOT names one; map is the default"),
+SETTINGS: dict[str, tuple[str, dict[str, Any]]] = {
+    "keyframes": ("--keyframes", {"metavar": "FILE|auto"}),
+    "keypoints": ("--keypoints", {"metavar": "FILE", "type": Path, "action": "append"}),
+    "reference": ("--reference", {"metavar": "FILE", "type": Path}),
+    "evidence": ("--evidence", {"metavar": ",".join(EVIDENCE), "type": _kinds}),
+    "library": ("--library", {"metavar": "NAME|FILE|auto"}),
+    "floor_m": ("--floor", {"metavar": "HEIGHT"}),
+    "method": ("--method", {}),
+}
+"""Option of each setting, and what it does not take from the declaration."""
+PICTURES = argument(
+    "--no-report", dest="pictures", action="store_const", const=False, help="draw no pictures"
 )
-"""For takes whose shoot does not say it."""
+SHOOT_OPTIONS = setting_options(
+    *("keypoints", "evidence", "keyframes", "library", "floor_m", "method"),
+    condition="; counts where nothing in SHOOT says it",
+    keypoints={"metavar": "NAME", "type": _name_in_take},
+    keyframes={"metavar": EVERY_LIBRARY, "choices": (EVERY_LIBRARY, "")},
+)
+"""For takes whose shoot does not say it; a keyframe file is a take's own."""
 RETARGET_OPTIONS = (
     argument(
         "--limbs",
-        choices=LIMB_KEYS,
+        choices=declared(RetargetOptions)["arms"].kind.names,  # type: ignore[attr-defined]
         help="controls of arms and legs that are keyed; both, the default, shows IK. A limb without IK "
         "controls is keyed in FK",
     ),
-    argument("--arms", choices=LIMB_KEYS, help="of the arms, where it is not that of --limbs"),
-    argument("--legs", choices=LIMB_KEYS, help="of the legs, where it is not that of --limbs"),
-    argument(
-        "--root-motion",
-        choices=ROOT_MOTIONS,
-        default=ROOT_MOTIONS[0],
-        help="where the way over the ground goes: on the hips, nowhere, or on the root bone "
-        "(default: %(default)s)",
-    ),
-    argument(
-        "--place",
-        choices=PLACEMENTS,
-        default=PLACEMENTS[0],
-        help="where the character performs: where the performer stood and faced, or where it stands itself "
-        "(default: %(default)s)",
-    ),
-    argument("--no-plant-feet", action="store_true", help="let resting feet move"),
-    argument("--no-reach-hands", action="store_true", help="let hands miss what the performer's reached"),
-    argument(
-        "--tolerance",
-        metavar="MM|none",
-        default="5",
-        help="largest distance of any joint from the motion in millimeters, for few keys; none keeps a key "
-        "on every frame (default: %(default)s)",
+    *(
+        field_option(RetargetOptions, name, f"--{name.removesuffix('_mm').replace('_', '-')}", **settings)
+        for name, settings in (
+            *((name, {}) for name in ("arms", "legs", "root_motion", "place", "plant_feet", "reach_hands")),
+            ("tolerance_mm", {"metavar": "MM|none"}),
+        )
     ),
 )
 """How a motion is put onto a character."""
+MAP = argument(
+    "--map",
+    metavar="TITLE|FILE|auto|none",
+    default="auto",
+    help="character map, by title or file; auto, the default: a saved one that knows the character's bones, "
+    "else recognition; none: recognition",
+)
 
 
-def character_options(arguments: argparse.Namespace) -> CharacterOptions:
-    """How a motion is put onto a character, by the command line."""
-    usual = CharacterOptions()
-    return CharacterOptions(
-        root_motion=arguments.root_motion,
-        place=arguments.place,
-        arms=arguments.arms or arguments.limbs or usual.arms,
-        legs=arguments.legs or arguments.limbs or usual.legs,
-        plant_feet=not arguments.no_plant_feet,
-        reach_hands=not arguments.no_reach_hands,
-        tolerance_mm=_tolerance_mm(arguments.tolerance),
-    )
+def character_options(*, required: bool = False) -> tuple[Argument, ...]:
+    """The character that gets the motion, its map, and how the motion is put onto it."""
+    named = argument("--character", "-c", metavar="FILE[:OBJECT]", required=required, help=CHARACTER_HELP)
+    return (named, MAP, *RETARGET_OPTIONS)
 
 
-def _tolerance_mm(text: str) -> float:
-    if text.strip().lower() == "none":
-        return 0.0
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0.0 < value <= LARGEST_TOLERANCE_MM:
-        raise UsageError(
-            f"--tolerance is {text}; millimeters above 0 and up to {LARGEST_TOLERANCE_MM:g} are valid, "
-            "or none for a key on every frame"
-        )
-    return value
+def character_settings(arguments: argparse.Namespace) -> CharacterSettings | None:
+    """The character of the command line, None where it names none, and how the motion is put onto it."""
+    if arguments.character is None:
+        return None
+    file = CharacterFile.parse(arguments.character)
+    values = {name: getattr(arguments, name) for name in declared(RetargetOptions)}
+    for limbs in ("arms", "legs"):
+        values[limbs] = values[limbs] or arguments.limbs
+    options = RetargetOptions.from_json(values, WHERE)
+    return CharacterSettings(file=file.path, object=file.object, map=arguments.map, **vars(options))
 
 
 def given_settings(arguments: argparse.Namespace) -> ConversionSettings:
     """What the command line says of a conversion; None for what it leaves out, or is empty."""
-    given = vars(arguments)
-    keyframes, library, floor_m = (given.get(name) for name in ("keyframes", "library", "floor"))
+    values = {name: vars(arguments).get(name) or None for name in declared(ConversionSettings)}
+    keyframes, library = values["keyframes"], values["library"]
     if keyframes == EVERY_LIBRARY and library not in (None, EVERY_LIBRARY):
         raise UsageError(
             f"--keyframes {keyframes} finds keyframes with all libraries, --library {library} with one; give "
             "one of them"
         )
-    if floor_m is not None and not abs(floor_m) <= HIGHEST_FLOOR_M:
-        raise UsageError(f"--floor is {floor_m:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
-    every = keyframes == EVERY_LIBRARY
+    if keyframes == EVERY_LIBRARY:
+        values |= {"keyframes": None, "library": EVERY_LIBRARY}
+    elif keyframes is not None:
+        values["keyframes"] = Path(keyframes)
     return ConversionSettings(
-        keyframes=Path(keyframes) if keyframes and not every else None,
-        library=EVERY_LIBRARY if every else library,
-        floor_m=floor_m,
-        method=given.get("method"),
-        pictures=False if given.get("no_report") else None,
-        keypoints=tuple(filter(None, given.get("keypoints") or ())) or None,
-        evidence=given.get("evidence"),
-        reference=given.get("reference"),
+        **values
+        | {
+            "floor_m": vars(arguments).get("floor_m"),
+            "pictures": vars(arguments).get("pictures"),
+            "character": character_settings(arguments) if values["character"] else None,
+            "keypoints": tuple(filter(None, values["keypoints"] or ())) or None,
+        }
     )

@@ -1,9 +1,8 @@
 """JSON Schemas of records and of kinds of values, from their declarations."""
 
-import ast
 import inspect
 import re
-from functools import cache, singledispatch
+from functools import singledispatch
 from typing import Any
 
 from keymark.core.body.posture import PostureValues
@@ -14,16 +13,12 @@ from keymark.core.detect.keypoint_file import OwnFile
 from keymark.core.detect.layouts import OWN
 from keymark.core.files import kinds, records
 from keymark.core.files.kinds import Kind, NumberArray
-from keymark.core.files.records import Record, declared
+from keymark.core.files.records import Record, declared, descriptions
 from keymark.core.markers.ignored_regions import RegionFields
 from keymark.core.prior.library import LibraryMotion, TravelKind
 from keymark.core.retarget.maps.character_map import PropertyValue, Turn
-from keymark.core.take.conversion_settings import (
-    CharacterFields,
-    EvidenceKinds,
-    KeypointFiles,
-    SettingsFields,
-)
+from keymark.core.take.character_settings import CharacterSettings
+from keymark.core.take.conversion_settings import ConversionSettings, EvidenceKinds, KeypointFiles
 from keymark.core.take.evidence import DEPTH_HINTS, EVIDENCE, KEYPOINTS
 from keymark.core.take.keyframe_file import KeyframeRow
 from keymark.core.take.motion import Diagnostic
@@ -34,7 +29,7 @@ Schema = dict[str, Any]
 
 COMMENT: Schema = {"^//": {"description": "A comment of any type."}}
 
-INHERITED = (TakeFields, SettingsFields, CameraFields, CharacterFields, ActorFields, MarkerFields)
+INHERITED = (TakeFields, ConversionSettings, CameraFields, CharacterSettings, ActorFields, MarkerFields)
 """Records of which each field may come from another file."""
 
 
@@ -119,21 +114,10 @@ def object_schema(record: type[Record], defs: dict[str, Schema], strict: bool) -
     return whole | ({"additionalProperties": False} if strict else {})
 
 
-@cache
 def docstrings(record: type[Record]) -> dict[str, str]:
-    """The docstrings of a record's fields, its bases' included, each in one line."""
-    told: dict[str, str] = {}
-    for one in reversed(record.__mro__):
-        if one in (object, Record) or not issubclass(one, Record):
-            continue
-        body = ast.parse(inspect.getsource(one)).body[0]
-        assert isinstance(body, ast.ClassDef)
-        for field, after in zip(body.body, body.body[1:], strict=False):
-            if isinstance(field, ast.AnnAssign) and isinstance(after, ast.Expr):
-                assert isinstance(field.target, ast.Name) and isinstance(after.value, ast.Constant)
-                words = " ".join(str(after.value.value).split()).replace("None", "null")
-                told[field.target.id] = re.sub(r"; see `\w+`|`", "", words)
-    return told
+    """The docstrings of a record's fields as descriptions of JSON."""
+    words = descriptions(record).items()
+    return {name: re.sub(r"; see `\w+`|`", "", text.replace("None", "null")) for name, text in words}
 
 
 def inherited_schema(record: type[Record], defs: dict[str, Schema]) -> Schema:

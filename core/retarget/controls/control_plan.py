@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
+from ...take.character_settings import LimbKeys, RetargetOptions, RootMotion
 from ..character import LIMBS, ROLES, Character, joint_roles
 from ..maps.character_map import CharacterMap
-from ..options import LimbKeys, RetargetOptions, RootMotion
 
 
 class ControlKind(Enum):

@@ -11,7 +11,7 @@ from ...files.fields import listed
 from ...files.json_file import ENDING, is_other_format, is_path, json_files, read_json
 from ...prior.library import LARGEST_BYTES
 from ...prior.texts import identifier_from, name_key
-from ...take.conversion_settings import AUTO, NO_MAP
+from ...take.character_settings import AUTO, NO_MAP
 from ..character import REQUIRED, Character
 from ..recognition.recognize import recognize
 from ..retarget_record import GIVEN, RECOGNIZED, SAVED

@@ -115,19 +115,14 @@ def _nearest_parents(
         there = (apart < SAME_PLACE * size) & (ends < 10 * SAME_PLACE * size)
         return [int(twin) for twin in table[there][np.argsort(apart[there], kind="stable")]]
 
-    def line(bone: int) -> list[int]:
-        found = []
-        while (bone := above[bone]) >= 0:
-            found.append(bone)
-        return found
-
     outside = np.setdiff1d(np.arange(len(above)), number)
     parents = np.full(len(number), -1, dtype=np.intp)
     for index, place in row.items():
         ways = []
         for start in [index, *(twins(index, outside) if above[index] < 0 else [])]:
-            for steps, bone in enumerate(line(start)):
-                beside = [twin for twin in twins(bone, number) if twin != index and index not in line(twin)]
+            for steps, bone in enumerate(character.ancestors(start)):
+                here = (twin for twin in twins(bone, number) if twin != index)
+                beside = [twin for twin in here if index not in character.ancestors(twin)]
                 if bone in row or beside:
                     ways.append((steps, row[bone if bone in row else beside[0]]))
                     break

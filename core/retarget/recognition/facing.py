@@ -77,9 +77,9 @@ def find_root(character: Character, character_map: CharacterMap, up: Array) -> s
     height = max(float(character.bone(hips).head @ up) - ground, 1e-9)
     keyed = [name for role in character_map.roles for name in character_map.keyed_bones(role)]
     keyed += [name for ik in character_map.ik.values() for name in (ik.goal, ik.pole)]
-    above = [set(_ancestors(character, character.index[name])) for name in keyed if name is not None]
+    above = [set(character.ancestors(character.index[name])) for name in keyed if name is not None]
     moving = next((name for name in character_map.keyed_bones("hips") if name is not None), hips)
-    for bone in _ancestors(character, character.index[moving]):
+    for bone in character.ancestors(character.index[moving]):
         carries = all(bone in each for each in above)
         # A root's head is no higher above the feet than this share of the hips' height.
         low = float(character.bones[bone].head @ up) - ground < 0.15 * height
@@ -87,10 +87,3 @@ def find_root(character: Character, character_map: CharacterMap, up: Array) -> s
         if carries and (low or named):
             return character.bones[bone].name
     return None
-
-
-def _ancestors(character: Character, bone: int) -> list[int]:
-    found = []
-    while (bone := character.bones[bone].parent) >= 0:
-        found.append(bone)
-    return found

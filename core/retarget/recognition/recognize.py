@@ -219,13 +219,10 @@ def _head(character: Character, role: RoleBones) -> Array:
 def _neck_carries_arms(character: Character, character_map: CharacterMap) -> bool:
     """Whether a bone of the neck carries an upper arm although its name does not say neck."""
     arm = character_map.bone("upper_arm.L")
-    above = -1 if arm is None else character.index[arm]
-    while above >= 0:
-        name = character.bones[above].name
-        if name in character_map.bones("neck") and "neck" not in name.casefold():
-            return True
-        above = character.bones[above].parent
-    return False
+    start = None if arm is None else character.index[arm]
+    above = [] if start is None else [start, *character.ancestors(start)]
+    names = {character.bones[bone].name for bone in above}
+    return any("neck" not in name.casefold() for name in names.intersection(character_map.bones("neck")))
 
 
 def _swapped(character_map: CharacterMap) -> CharacterMap:

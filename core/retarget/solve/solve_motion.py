@@ -10,10 +10,10 @@ from ...body.kinematics import SegmentMotion
 from ...body.posture import turn_headings_rad
 from ...body.skeleton import SIDES
 from ...progress import Job, Progress
+from ...take.character_settings import Placement, RetargetOptions, RootMotion
 from ..character import Character
 from ..character_motion import CharacterMotion, Similarity
 from ..maps.character_map import CharacterMap
-from ..options import Placement, RetargetOptions, RootMotion
 from .body_frames import rest_alignment
 from .foot_shape import foot_shape, performer_ground, rest_floor_m, sole_points
 from .hips import root_poses, smooth_headings_rad, smooth_way
@@ -58,7 +58,7 @@ def solve_motion(
     hands = solution.reach_with_hands() if arms else {}
     yield Progress("Going over the ground", 0.8)
     way, root, notes = _root_motion(solution, options)
-    filmed = options.placement is Placement.PERFORMER
+    filmed = options.place is Placement.PERFORMER
     to_world = stage.to_world(body.stance, character.scale) if filmed else object_space
     return CharacterMotion(
         poses=solution.poses(way),

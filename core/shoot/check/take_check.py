@@ -11,8 +11,9 @@ from ...files.fields import PLACED, Fields, child_location
 from ...markers.marker_check import MarkerReadout
 from ...posing.posing_input import check_followed
 from ...session.described import described, is_detected
+from ...take.character_settings import CharacterSettings
 from ...take.clip_check import open_footage
-from ...take.conversion_settings import METHODS, NO_SETTINGS, CharacterSettings, ConversionSettings
+from ...take.conversion_settings import METHODS, NO_SETTINGS, ConversionSettings
 from ...take.description import Description
 from ...take.evidence import CONTOURS, KEYPOINTS, MARKERS, in_order
 from ...take.take import Take, evidence_of

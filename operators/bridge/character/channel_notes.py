@@ -1,13 +1,15 @@
 """What stands in the way of keys on a character's bones: drivers, constraints, locks, connected bones."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import bpy
 import numpy as np
 
 from ....core.arrays import Array
 from ....core.errors import InputError
+from ....core.files.fields import listed
 from ....core.keys.hermite import Spline
+from ....core.retarget.controls.control_channels import Control
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, values_of
 from ....core.retarget.controls.control_plan import ControlKind
 from ..rotation_modes import bone_path, rotation_path
@@ -61,24 +63,27 @@ def channel_notes(
         "Constraints change the keyed pose of bone {}; mute them where it goes astray": astray["constrained"],
         "Locked and keyed all the same: bone {}; unlock it to change it by hand": astray["locked"],
         "Scaled in its pose: bone {}; the motion keys its scale at 1": scaled,
-        "Connected to its parent or not to be moved: bone {} stays off its place; disconnect it": _held_back(
-            motion
-        ),
-        "Constraints follow the carriers of bone {} only in part; it may be off its place": _adrift(motion),
+        "Connected to its parent or not to be moved: bone {} stays off its place; disconnect it": [
+            control.name
+            for control, _, off in _off(motion)
+            if not control.space.movable and off > ASTRAY * motion.size
+        ],
+        "Constraints follow the carriers of bone {} only in part; it may be off its place": [
+            control.name
+            for control, location, _ in _off(motion)
+            if location is None and control.space.residual > ADRIFT * motion.size
+        ],
     }
-    return tuple(note.format(_listed(names)) for note, names in notes.items() if names)
+    quoted = {note: [f"'{name}'" for name in names] for note, names in notes.items() if names}
+    return tuple(note.format(listed(names, MOST_NAMES)) for note, names in quoted.items())
 
 
 def require_placed_hips(armature_object: bpy.types.Object, motion: ControlMotion) -> None:
     """Raise InputError where the hips cannot go where the performer goes: the body would fold up instead."""
     bones = armature_object.data.bones
-    for control, channels in zip(motion.controls, motion.channels, strict=True):
-        off = np.linalg.norm(channels.place - motion.wanted[control.name][:, :3, 3], axis=-1).max()
-        if (
-            control.plan.kind is ControlKind.HIPS
-            and not control.space.movable
-            and off > LEFT_BEHIND * motion.size
-        ):
+    for control, _, off in _off(motion):
+        fixed = control.plan.kind is ControlKind.HIPS and not control.space.movable
+        if fixed and off > LEFT_BEHIND * motion.size:
             name, above = f"bone '{control.name}' of '{armature_object.name}'", bones[control.name].parent
             if bones[control.name].use_connect and above is not None:
                 raise InputError(
@@ -91,25 +96,8 @@ def require_placed_hips(armature_object: bpy.types.Object, motion: ControlMotion
             )
 
 
-def _listed(names: Sequence[str]) -> str:
-    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    return ", ".join(f"'{name}'" for name in names[:MOST_NAMES]) + more
-
-
-def _held_back(motion: ControlMotion) -> list[str]:
-    """Controls that cannot be moved and are off their places."""
-    found = []
+def _off(motion: ControlMotion) -> Iterator[tuple[Control, Array | None, float]]:
+    """Each control with its location, and how far its place is from where it is wanted [units]."""
     for control, channels in zip(motion.controls, motion.channels, strict=True):
-        off = np.linalg.norm(channels.place - motion.wanted[control.name][:, :3, 3], axis=-1).max()
-        if not control.space.movable and off > ASTRAY * motion.size:
-            found.append(control.name)
-    return found
-
-
-def _adrift(motion: ControlMotion) -> list[str]:
-    """Controls of whose places no other control can tell, and that cannot be moved to them."""
-    return [
-        control.name
-        for control, channels in zip(motion.controls, motion.channels, strict=True)
-        if channels.location is None and control.space.residual > ADRIFT * motion.size
-    ]
+        wanted = motion.wanted[control.name][:, :3, 3]
+        yield control, channels.location, float(np.linalg.norm(channels.place - wanted, axis=-1).max())

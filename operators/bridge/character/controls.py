@@ -12,7 +12,7 @@ from mathutils import Matrix
 from ....core.arrays import Array
 from ....core.retarget.controls.control_plan import limb_keys
 from ....core.retarget.maps.character_map import CharacterMap, Switch
-from ....core.retarget.options import LimbKeys, RetargetOptions
+from ....core.take.character_settings import LimbKeys, RetargetOptions
 from ..object_space import evaluated
 from ..scene_frames import showing_action
 

@@ -19,11 +19,11 @@ from ....core.retarget.controls.point_tolerances import ToleranceRules
 from ....core.retarget.controls.reduction import reduce_controls
 from ....core.retarget.maps.character_map import CharacterMap, Setting, Switch
 from ....core.retarget.maps.map_registry import check_map
-from ....core.retarget.options import Placement, RetargetOptions
 from ....core.retarget.quality import Measured, Quality
 from ....core.retarget.recognition.facing import find_root
 from ....core.retarget.solve.feet import floor_lifts
 from ....core.retarget.solve.solve_motion import solve_motion
+from ....core.take.character_settings import Placement, RetargetOptions
 from ..actions import assign_action
 from ..object_space import object_space
 from ..rotation_modes import rotation_values
@@ -137,7 +137,7 @@ def retarget(
     character = read_character(armature_object)
     check_map(character_map, character)
     here = object_space(armature_object)
-    placed = options.placement is Placement.PERFORMER
+    placed = options.place is Placement.PERFORMER
     if placed:
         require_placeable(armature_object)
     character_map, lacking = complete_map(armature_object, character, character_map)
@@ -212,7 +212,7 @@ class _Performance:
         require_placed_hips(armature_object, controls)
         yield Progress("Finding the keys", 0.0)
         keyed = yield from _keyed(controls, motion, self.source, self.scene_frames, options)
-        placed = options.placement is Placement.PERFORMER
+        placed = options.place is Placement.PERFORMER
         keys = RetargetedKeys(
             self.scene_frames,
             keyed,

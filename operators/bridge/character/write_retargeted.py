@@ -18,7 +18,7 @@ from ..keys import ensure_fcurve, write_linear_keys, write_smooth_keys
 from ..object_space import evaluated
 from ..rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
 from .channel_notes import driven_channels, keyed_paths
-from .controls import Property, Value, property_path
+from .controls import Property, Value, drivers, property_path
 
 ONE = (1.0, 1.0, 1.0)
 
@@ -69,9 +69,8 @@ def require_placeable(armature_object: bpy.types.Object) -> None:
             f"armature '{name}' stands where its constraint '{working[0]}' puts it; mute it, or let the "
             "motion begin where the character stands"
         )
-    data = armature_object.animation_data
-    drivers = () if data is None else [one.data_path for one in data.drivers if not one.mute]
-    driven = [path for path in drivers if path in ("location", *ALL_PATHS)]
+    paths = [one.data_path for one in drivers(armature_object)]
+    driven = [path for path in paths if path in ("location", *ALL_PATHS)]
     if driven:
         raise InputError(
             f"armature '{name}' has a driver on '{driven[0]}', which wins over keys; mute it, "

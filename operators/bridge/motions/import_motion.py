@@ -18,7 +18,7 @@ from ....core.retarget.maps.map_registry import ChosenMap
 from ....core.retarget.mended_armature import ArmaturePoints
 from ....core.retarget.solve.rest_body import RestBody
 from ....core.retarget.solve.two_bone import smallest_rotation
-from ....core.take.conversion_settings import CharacterFile
+from ....core.take.character_settings import CharacterFile
 from ....core.take.reference import ARMATURE_ENDINGS, ReferenceMotion
 from ..actions import assign_action, existing_channelbag
 from ..blend_files import own_scene, showing_scene

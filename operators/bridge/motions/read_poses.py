@@ -18,7 +18,7 @@ from ....core.retarget.maps.map_registry import ChosenMap, choose_map
 from ....core.retarget.mended_armature import ArmaturePoints, Poses
 from ....core.retarget.retarget_record import RECOGNIZED
 from ....core.retarget.solve.rest_body import RestBody
-from ....core.take.conversion_settings import AUTO
+from ....core.take.character_settings import AUTO
 from ..actions import existing_channelbag
 from ..actor_bones import is_actor
 from ..character.read_character import read_character

@@ -1,26 +1,22 @@
 """`keymark animate`: from a clip and the performer's height to a motion, and on to a character."""
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 
 from ....core.errors import InputError
-from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.description import ASSUMED, describe
 from ....core.take.take_file import USUAL_HEIGHT_M, check_height
 from ..console import arguments_console
 from ..conversion.character_result import FORMAT, check_exporters, export_formats
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
 from ..options import (
-    CHARACTER_HELP,
     HEIGHT,
-    KEYPOINT_FILES,
-    MAP_HELP,
-    RETARGET_OPTIONS,
+    PICTURES,
     bare_clip_fields,
     character_options,
     given_settings,
     output,
+    setting_options,
 )
 from ..parser import Command, UsageError, argument
 
@@ -41,9 +37,6 @@ def animate_command(arguments: argparse.Namespace) -> None:
         description = describe(clip, said, ASSUMED if height_m is None else HEIGHT)
         settings = given_settings(arguments).with_defaults(description.settings)
         if arguments.character is not None:
-            file = CharacterFile.parse(arguments.character)
-            character = CharacterSettings(file, arguments.map, character_options(arguments))
-            settings = replace(settings, character=character)
             check_exporters(formats)
         done = convert_take(description, arguments.output, console, settings, arguments.debug, formats)
         console.finish(conversion_summary(done), conversion_text(done))
@@ -65,13 +58,11 @@ ANIMATE = Command(
             type=float,
             help=f"the performer's height, as in 1.78; {USUAL_HEIGHT_M:g} is assumed without it",
         ),
-        argument("--character", "-c", metavar="FILE[:OBJECT]", help=CHARACTER_HELP),
-        argument("--map", metavar="TITLE|FILE|auto|none", default="auto", help=MAP_HELP),
-        KEYPOINT_FILES,
+        *setting_options("keypoints"),
         *output("OUT", "folder for the result, new or old"),
         FORMAT,
-        *RETARGET_OPTIONS,
-        argument("--no-report", action="store_true", help="draw no pictures"),
+        *character_options(),
+        PICTURES,
     ),
     run=animate_command,
 )

@@ -21,7 +21,7 @@ from ..batch.outcomes import BatchOutcomes
 from ..batch.worker_pool import WorkerPool
 from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, Job, worker_command_line
 from ..console import Console, arguments_console
-from ..options import SHOOT_HELP, SHOOT_OPTIONS, given_settings, output
+from ..options import PICTURES, SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option, output
 from ..parser import Command, UsageError, argument, require_blender
 
 WORKER_BYTES = 1.5 * 2**30
@@ -51,7 +51,7 @@ def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, c
     outcomes = BatchOutcomes(shoot, arguments.output, jobs, console)
     pool = WorkerPool(jobs, worker_command_line(), outcomes, HEARTBEAT_TIMEOUT_S, arguments.debug)
     try:
-        pool.run(_worker_count(arguments.jobs))
+        pool.run(arguments.jobs or _usual_workers())
         outcomes.finish()
     except KeyboardInterrupt:
         with suppress(KeyboardInterrupt):  # a second interrupt skips the summary
@@ -79,8 +79,6 @@ def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, c
 def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], ConversionSettings]:
     """The whole shoot, its takes to convert, and the settings of those that have none of their own."""
     part, parts = _parsed_part(arguments.part)
-    if arguments.jobs is not None and not 1 <= arguments.jobs <= MOST_JOBS:
-        raise UsageError(f"--jobs is {arguments.jobs}; a number from 1 to {MOST_JOBS} is valid")
     defaults = given_settings(arguments)
     if defaults.library is not None:
         from ..library_search_path import requested_libraries  # a batch that asks for none needs no SciPy
@@ -113,9 +111,7 @@ def _named_takes(shoot: Shoot, names: Sequence[str]) -> list[ShootTake]:
     return [take for take in shoot.takes if take.name in wanted]
 
 
-def _worker_count(requested: int | None) -> int:
-    if requested is not None:
-        return requested
+def _usual_workers() -> int:
     memory = available_memory_bytes()
     fitting_memory = MOST_JOBS if memory is None else int(memory // WORKER_BYTES)
     return max(1, min(processor_count(), fitting_memory))
@@ -133,13 +129,10 @@ BATCH = Command(
     arguments=(
         argument("shoot", metavar="SHOOT", type=Path, help=SHOOT_HELP),
         *output("DIR", "folder for all results, new or old"),
-        argument(
-            "--jobs",
-            "-j",
-            metavar="N",
-            type=int,
-            help="convert N takes at a time, each in a process of its own; by default one for each "
-            "processor, at most one for each 1.5 GB of memory",
+        jobs_option(
+            MOST_JOBS,
+            "convert N takes at a time, each in a process of its own; by default one for each processor, at "
+            "most one for each 1.5 GB of memory",
         ),
         argument(
             "--part",
@@ -154,7 +147,7 @@ BATCH = Command(
         ),
         argument("--again", action="store_true", help="convert takes anew that are converted already"),
         *SHOOT_OPTIONS,
-        argument("--no-report", action="store_true", help="draw no pictures of takes"),
+        PICTURES,
         argument(
             "--failed-takes",
             choices=("fail", "pass"),

@@ -6,10 +6,10 @@ from ....core.retarget.character import ROLES
 from ....core.retarget.maps.character_map import CharacterMap, IkControls, write_character_map
 from ....core.retarget.maps.map_registry import ChosenMap
 from ....core.retarget.retarget_record import GIVEN, SAVED
-from ....core.take.conversion_settings import CharacterFile
+from ....core.take.character_settings import CharacterFile
 from ..console import arguments_console, terminal_columns, wrapped
 from ..conversion.character_result import opened_character
-from ..options import CHARACTER_HELP, MAP_HELP, REPLACE_HELP, output
+from ..options import CHARACTER_HELP, MAP, REPLACE_HELP, output
 from ..parser import Command, argument, refuse_existing, require_blender
 
 UNSURE = 0.75
@@ -105,7 +105,7 @@ CHARACTER = Command(
     ),
     arguments=(
         argument("character", metavar="FILE[:OBJECT]", help=CHARACTER_HELP),
-        argument("--map", metavar="TITLE|FILE|auto|none", default="auto", help=MAP_HELP),
+        MAP,
         *output("FILE", "write its character map there", required=False, replace=REPLACE_HELP),
     ),
     run=character_command,

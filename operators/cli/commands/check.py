@@ -19,8 +19,8 @@ from ....core.take.evidence import KEYPOINTS
 from ..console import arguments_console, terminal_columns, wrapped
 from ..conversion.character_result import CharacterChecks
 from ..library_search_path import requested_libraries
-from ..options import SHOOT_HELP, SHOOT_OPTIONS, given_settings
-from ..parser import Command, UsageError, argument
+from ..options import SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option
+from ..parser import Command, argument
 
 MOST_JOBS = 64
 STAGE = "Looking at the takes"
@@ -37,14 +37,12 @@ NARROWEST_NAME = 12
 
 def check_command(arguments: argparse.Namespace) -> None:
     """Check the takes that the command line names, and list the problems of each."""
-    jobs = 1 if arguments.jobs is None else arguments.jobs
-    if not 1 <= jobs <= MOST_JOBS:
-        raise UsageError(f"--jobs is {jobs}; a number from 1 to {MOST_JOBS} is valid")
     defaults = given_settings(arguments)
     with arguments_console(arguments) as console:
         shoot = open_shoot(arguments.shoot)
         characters = CharacterChecks(shoot, arguments.debug)
-        checks = run(_check_takes(shoot, defaults, characters, jobs, arguments.debug), console.progress)
+        job = _check_takes(shoot, defaults, characters, arguments.jobs or 1, arguments.debug)
+        checks = run(job, console.progress)
         console.finish(check_summary(checks), check_text(shoot, checks, terminal_columns()))
     failing = sum(not check.converts for check in checks)
     if failing:
@@ -84,10 +82,6 @@ def _check_one(
 
 
 def _in_threads(tasks: Sequence[Callable[[], TakeCheck]], jobs: int) -> Iterator[tuple[int, TakeCheck]]:
-    if jobs == 1:
-        for index, task in enumerate(tasks):
-            yield index, task()
-        return
     pool = ThreadPoolExecutor(jobs)
     try:
         running = {pool.submit(task): index for index, task in enumerate(tasks)}
@@ -289,7 +283,7 @@ CHECK = Command(
     ),
     arguments=(
         argument("shoot", metavar="SHOOT", type=Path, help=f"{SHOOT_HELP}, or one take"),
-        argument("--jobs", "-j", metavar="N", type=int, help="look at N takes at a time"),
+        jobs_option(MOST_JOBS, "look at N takes at a time"),
         *SHOOT_OPTIONS,
     ),
     run=check_command,

@@ -5,12 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from ....core.shoot.discovery import take_path
-from ....core.take.conversion_settings import METHODS, ConversionSettings
+from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence import KEYPOINTS
 from ..console import arguments_console
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
-from ..options import KEYPOINT_FILES, REFERENCE_FILE, evidence_option, given_settings, output
+from ..options import PICTURES, SETTINGS, given_settings, output, setting_options
 from ..parser import Command, UsageError, argument
 
 
@@ -55,35 +55,8 @@ CONVERT = Command(
     arguments=(
         argument("take", metavar="TAKE", type=Path, help="folder with take.json, or a clip of a shoot"),
         *output("OUT", "folder for the result, new or old"),
-        argument(
-            "--keyframes",
-            metavar="FILE|auto",
-            help="keyframe file, by default TAKE/keyframes.json; or auto: nothing needs to be posed, "
-            "keyframes are found in the footage with all libraries there are",
-        ),
-        KEYPOINT_FILES,
-        REFERENCE_FILE,
-        evidence_option(),
-        argument(
-            "--library",
-            metavar="NAME|FILE|auto",
-            help="find keyframes by matching the footage with this keyframe library alone; auto is "
-            "--keyframes auto. --keyframes FILE beside it has posed keyframes, which stay",
-        ),
-        argument(
-            "--floor",
-            metavar="HEIGHT",
-            type=float,
-            help="height of the floor in meters where it is known, which says best how far away the "
-            "performer is; where keyframes are found",
-        ),
-        argument(
-            "--method",
-            choices=METHODS,
-            help="map: the whole clip at once (default); ekf: the filter of the paper; "
-            "interpolation: the keyframes alone",
-        ),
-        argument("--no-report", action="store_true", help="draw no pictures"),
+        *setting_options(*SETTINGS),
+        PICTURES,
     ),
     run=convert_command,
 )

@@ -13,8 +13,9 @@ from ....core.estimate.reconstruct import reconstruct
 from ....core.progress import run
 from ....core.review.score import Score, read_truth, score_points
 from ....core.session.pose import Posed
+from ....core.take.character_settings import CharacterSettings
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, REPORT
-from ....core.take.conversion_settings import CharacterFile, CharacterSettings, ConversionSettings
+from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import describe
 from ....core.take.evidence import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
 from ....core.take.examples import AEROBIC, GREETING, POSED_BY_HAND, example_folder
@@ -105,7 +106,7 @@ def _character(folder: Path) -> tuple[CharacterSettings | None, str]:
         write_demo_character(folder / CHARACTER_FILE)
     except ConversionError as error:
         return None, f"Without a character: {error}"
-    return CharacterSettings(CharacterFile(folder / CHARACTER_FILE)), ""
+    return CharacterSettings(file=folder / CHARACTER_FILE), ""
 
 
 def _score(take: Take, motion: Motion) -> Score:

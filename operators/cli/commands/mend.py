@@ -1,19 +1,19 @@
 """`keymark mend`: mend a motion from elsewhere, without footage."""
 
 import argparse
-import re
 from pathlib import Path
 
 from ....core.errors import InputError
+from ....core.files.kinds import Number
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import absolute_path, real_path
 from ....core.finish.mend_motion import Mended, MendOptions, mend_motion
 from ....core.progress import run
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.session.result import AS_MADE, changed_files, kept_note, write_made_digests
+from ....core.take.character_settings import CharacterFile, CharacterSettings
 from ....core.take.conversion_record import BVH, CHARACTER_BLEND, CHARACTER_PICTURE, MOTION
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
-from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.motion import write_motion
 from ....core.take.reference import REFERENCE_ENDINGS, read_reference
 from ..blender_silence import blender_silence
@@ -28,7 +28,7 @@ from ..conversion.character_result import (
     write_character_result,
 )
 from ..library_search_path import library_folders
-from ..options import CHARACTER_HELP, MAP_HELP, RETARGET_OPTIONS, character_options, output
+from ..options import character_options, character_settings, checked, output
 from ..parser import Command, UsageError, argument, require_blender
 
 FILES = (MOTION, BVH, CHARACTER_BLEND, RETARGET, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
@@ -38,10 +38,7 @@ USUAL_RATE = 30.0
 def mend_command(arguments: argparse.Namespace) -> None:
     """Mend the motion that the command line names, and list the files that were made."""
     require_blender("mending a motion needs")
-    settings = None
-    if arguments.character:
-        character = CharacterFile.parse(arguments.character)
-        settings = CharacterSettings(character, arguments.map, character_options(arguments))
+    settings = character_settings(arguments)
     formats = export_formats(arguments.format)
     posed = _posed(arguments.posed)
     file = _motion_file(arguments.motion)
@@ -49,8 +46,6 @@ def mend_command(arguments: argparse.Namespace) -> None:
     refuse_unsupported_output(folder)
     if (folder / CONVERSION).exists():
         raise InputError(f"{folder}: holds the result of a conversion; name another folder for the motion")
-    if arguments.fps is not None and not 1.0 <= arguments.fps <= 1000.0:
-        raise UsageError(f"--fps is {arguments.fps:g}; 1 to 1000 frames a second are valid")
     with arguments_console(arguments) as console:
         kept: dict[str, str] = {}
         notes: tuple[str, ...] = ()
@@ -102,7 +97,7 @@ def _mend_points(
     reference = read_reference(file.path)
     rate = arguments.fps or reference.fps or USUAL_RATE
     options = MendOptions(
-        tuple(frame - 1 for frame in posed), not arguments.no_plant_feet, not arguments.no_floor
+        tuple(frame - 1 for frame in posed), arguments.plant_feet is not False, not arguments.no_floor
     )
     try:
         return run(mend_motion(reference.points_m, rate, options), console.progress)
@@ -129,7 +124,7 @@ def _mend_armature(
     with own_scene("Motion") as scene, showing_scene(scene):
         with blender_silence(debug):
             imported, chosen = import_motion(file, scene, library_folders())
-        plant, floor = not arguments.no_plant_feet, not arguments.no_floor
+        plant, floor = arguments.plant_feet is not False, not arguments.no_floor
         job = mend_action(imported.armature, chosen.character_map, posed, plant, floor)
         try:
             found = run(silenced(job, debug), console.progress)
@@ -176,15 +171,7 @@ def _motion_file(text: str) -> CharacterFile:
     with blender_silence(False):
         from ...bridge.motions.import_motion import MOTION_ENDINGS
 
-    endings = "|".join(map(re.escape, (*MOTION_ENDINGS, *REFERENCE_ENDINGS)))
-    found = re.fullmatch(rf"(.*?(?:{endings}))(?::(.+))?", text, re.IGNORECASE | re.DOTALL)
-    if found is None:
-        raise InputError(
-            f"{text}: is no motion; it must be a file that ends in "
-            f"{', '.join((*MOTION_ENDINGS, *REFERENCE_ENDINGS))}, and after a colon the name of its armature "
-            "where it has several"
-        )
-    return CharacterFile(Path(found[1]), found[2])
+    return CharacterFile.parse(text, (*MOTION_ENDINGS, *REFERENCE_ENDINGS), "is no motion")
 
 
 def _posed(text: str) -> tuple[int, ...]:
@@ -212,8 +199,6 @@ MEND = Command(
             "where there are several; or points by name (.csv, .npy, .trc, .c3d), or a motion.json",
         ),
         *output("DIR", "folder for the result, new or old"),
-        argument("--character", "-c", metavar="FILE[:OBJECT]", help=CHARACTER_HELP),
-        argument("--map", metavar="TITLE|FILE|auto|none", default="auto", help=MAP_HELP),
         argument(
             "--posed",
             metavar="FRAMES",
@@ -224,12 +209,12 @@ MEND = Command(
         argument(
             "--fps",
             metavar="RATE",
-            type=float,
+            type=checked(Number(1.0, 1000.0, "frames a second"), "--fps"),
             help="frames a second of points whose file does not tell (default: 30)",
         ),
         argument("--no-floor", action="store_true", help="leave the motion at its height"),
         FORMAT,
-        *RETARGET_OPTIONS,
+        *character_options(),
     ),
     run=mend_command,
 )

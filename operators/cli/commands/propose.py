@@ -13,7 +13,7 @@ from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
 from ....core.take.take_file import read_described
 from ..console import arguments_console
-from ..options import KEYPOINT_FILES, evidence_option, given_settings
+from ..options import given_settings, setting_options
 from ..parser import Command, argument
 
 UNPOSED = "no keyframe is posed yet; pose these frames, or let convert find them with --keyframes auto"
@@ -62,8 +62,7 @@ PROPOSE = Command(
     ),
     arguments=(
         argument("take", metavar="TAKE", type=Path, help="take to pose, as in convert"),
-        KEYPOINT_FILES,
-        evidence_option(),
+        *setting_options("keypoints", "evidence"),
         argument("--count", metavar="N", type=int, help="number of keyframes; by default 10 per 100 frames"),
         argument("--largest-gap", metavar="N", type=int, help="most frames between two keyframes"),
     ),

@@ -10,9 +10,9 @@ from ....core.files.output_folder import output_folder
 from ....core.files.paths import absolute_path, real_path
 from ....core.retarget.retarget_record import RECORD_FILE, RetargetRecord, read_retarget_record
 from ....core.session.result import AS_MADE, changed_files, kept_note, write_made_digests
+from ....core.take.character_settings import CharacterSettings
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, CHARACTER_PICTURE, MOTION
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
-from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.motion import read_motion
 from ..console import Console, arguments_console
 from ..conversion.blender_files import refuse_unsupported_output
@@ -23,7 +23,7 @@ from ..conversion.character_result import (
     export_formats,
     write_character_result,
 )
-from ..options import CHARACTER_HELP, MAP_HELP, RETARGET_OPTIONS, character_options, output
+from ..options import character_options, character_settings, output
 from ..parser import Command, argument, require_blender
 
 RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
@@ -40,9 +40,8 @@ FIGURES = {
 def retarget_command(arguments: argparse.Namespace) -> None:
     """Put the motion that the command line names onto a character, and list the files that were made."""
     require_blender("a character needs")
-    settings = CharacterSettings(
-        CharacterFile.parse(arguments.character), arguments.map, character_options(arguments)
-    )
+    settings = character_settings(arguments)
+    assert settings is not None, "the option is required"
     formats = export_formats(arguments.format)
     motion_file, blend = _source(arguments.motion)
     output: Path = arguments.output
@@ -133,11 +132,9 @@ RETARGET = Command(
             type=Path,
             help="folder of a result, as convert writes it, or its motion",
         ),
-        argument("--character", "-c", metavar="FILE[:OBJECT]", required=True, help=CHARACTER_HELP),
-        argument("--map", metavar="TITLE|FILE|auto|none", default="auto", help=MAP_HELP),
         *output("DIR", "folder for the result, new or old"),
         FORMAT,
-        *RETARGET_OPTIONS,
+        *character_options(required=True),
     ),
     run=retarget_command,
 )

@@ -20,11 +20,10 @@ from ....core.report.canvas import write_png
 from ....core.retarget.character import LIMBS, Character
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.maps.map_registry import ChosenMap, choose_map, map_digests
-from ....core.retarget.options import retarget_options
 from ....core.retarget.retarget_record import RetargetRecord, UsedCharacter, UsedMap, write_retarget_record
 from ....core.shoot.discovery import Shoot
+from ....core.take.character_settings import CharacterFile, CharacterSettings
 from ....core.take.conversion_record import CHARACTER_BLEND, CHARACTER_PICTURE
-from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.motion import Motion
 from ....core.take.presence import named_limbs
 from ..blender_silence import blender_silence
@@ -142,20 +141,20 @@ def write_character_result(
     """
     staging_folder, output = folders
     console.stage("Opening the character")
-    with opened_character(settings.file, settings.map, debug) as (scene, opened):
+    with opened_character(settings.character_file, settings.map, debug) as (scene, opened):
         from ...bridge.character.import_character import write_character_files
         from ...bridge.character.retarget import retarget
 
         with blender_silence(debug):
             frames = show_footage(scene, motion)[motion.there]
-        character_map, options = opened.chosen.character_map, retarget_options(settings.options)
+        character_map, options = opened.chosen.character_map, settings.options
         character_map, note = _without_unseen(character_map, motion.unseen)
         armature = opened.imported.armature
         job = retarget(armature, motion_segments(motion), frames, character_map, options)
         try:
             retargeted = run(silenced(job, debug), console.progress)
         except InputError as error:
-            raise InputError(f"{settings.file.path}: {error}") from error
+            raise InputError(f"{settings.file}: {error}") from error
         console.stage("Writing the character")
         exports = {EXPORTS[word][0]: EXPORTS[word][1] for word in formats}
         names = (CHARACTER_BLEND, *exports.values())
@@ -169,16 +168,14 @@ def write_character_result(
         record = RetargetRecord(
             keymark=version(),
             take=take,
-            character=UsedCharacter(
-                settings.file.path.name, opened.character.name, content_digest(settings.file.path)
-            ),
+            character=UsedCharacter(settings.file.name, opened.character.name, content_digest(settings.file)),
             map=UsedMap(character_map.title, opened.chosen.origin, character_map.preset),
             action=action_name,
             frames=len(frames),
             frame_start=motion.frame_start,
             fps=rate,
             size=retargeted.size,
-            options=settings.options,
+            options=options,
             roles=character_map.roles,
             limbs=keyed_limbs(retargeted.character_map, settings),
             quality={**retargeted.quality.to_dict(), **dict.fromkeys(_unmeasured(motion.unseen))},
@@ -233,7 +230,7 @@ def keyed_limbs(character_map: CharacterMap, settings: CharacterSettings) -> Map
     keyed = {}
     for limb, roles in LIMBS.items():
         if any(role in character_map.roles for role in roles):
-            wanted = settings.options.arms if limb.startswith("arm") else settings.options.legs
+            wanted = settings.arms if limb.startswith("arm") else settings.legs
             keyed[limb] = wanted if limb in character_map.ik else "fk"
     return keyed
 
@@ -267,13 +264,13 @@ class CharacterChecks:
 
     def check(self, settings: CharacterSettings) -> Sequence[str]:
         """What is doubtful about a character."""
-        error, doubts = self._findings[settings.file, settings.map]
+        error, doubts = self._findings[settings.character_file, settings.map]
         if error is not None:
             raise error
         return doubts
 
     def _look_at(self, settings: CharacterSettings) -> None:
-        wanted = (settings.file, settings.map)
+        wanted = (settings.character_file, settings.map)
         if wanted in self._findings:
             return
         try:
@@ -284,15 +281,15 @@ class CharacterChecks:
             if self._debug:
                 raise
             what = describe_unexpected(error)
-            sentence = f"{settings.file.path}: the check failed unexpectedly ({what}); --debug shows where"
+            sentence = f"{settings.file}: the check failed unexpectedly ({what}); --debug shows where"
             self._findings[wanted] = InputError(sentence), ()
 
     def _doubts(self, settings: CharacterSettings) -> Sequence[str]:
-        file = settings.file.path
+        file = settings.file
         if importlib.util.find_spec("bpy") is None:
             regular_file_size(file, "a character file")
             map_digests(settings.map, library_folders())
             return (f"{file}: the character is not looked at, which needs Blender",)
-        with opened_character(settings.file, settings.map, self._debug) as (_, opened):
+        with opened_character(settings.character_file, settings.map, self._debug) as (_, opened):
             doubts = (*opened.imported.notes, *opened.chosen.doubts)
         return tuple(doubt if str(file) in doubt else f"{file}: {doubt}" for doubt in doubts)

@@ -88,7 +88,7 @@ def convert_if_changed(
             refuse_own_folder(description, output)
         if character is not None:
             console.stage("Opening the character")
-            with opened_character(character.file, character.map, debug):
+            with opened_character(character.character_file, character.map, debug):
                 pass  # what is wrong with it is better known before the work
         way = convert(description, settings, libraries, lambda file: _reference(file, debug))
         session = run(way, console.progress)

@@ -8,7 +8,7 @@ from _character_maps import full_map
 from keymark.core.retarget.character import LIMBS, ROLES
 from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones, read_character_map
 from keymark.core.retarget.maps.presets import SHIPPED, read_preset
-from keymark.core.retarget.options import RetargetOptions
+from keymark.core.take.character_settings import RetargetOptions
 from keymark.operators.character.map_conversion import map_of, show_map
 from keymark.operators.character.retarget import options_of
 from keymark.operators.shell.takes import active_take
@@ -49,10 +49,7 @@ def test_the_map_is_in_the_file(character: bpy.types.PropertyGroup, tmp_path: Pa
 
 
 def test_the_defaults_are_cores(character: bpy.types.PropertyGroup) -> None:
-    shown, wanted = options_of(character.options), RetargetOptions()
-    assert shown.tolerance_m == pytest.approx(wanted.tolerance_m)
-    for name in ("root_motion", "placement", "arms", "legs", "plant_feet", "reach_hands"):
-        assert getattr(shown, name) == getattr(wanted, name)
+    assert options_of(character.options) == RetargetOptions()
     character.options.keys, character.options.arms = "EVERY_FRAME", "FK"
     assert options_of(character.options).tolerance_m is None
     assert options_of(character.options).arms.name == "FK"

@@ -89,7 +89,7 @@ def test_an_armature_gets_its_own_motion_back_and_a_character_the_same(
     [
         (["--posed", "5,soon"], "--posed is 5,soon; frames with commas"),
         (["--posed", "99"], "posed frame 99 is not in the motion, whose frames are 1 to 30"),
-        (["--fps", "0"], "--fps is 0; 1 to 1000"),
+        (["--fps", "0"], "--fps is 0.0; it must be a number from 1 to 1000"),
         (["--format", "mp3"], "--format is mp3; bvh, fbx"),
     ],
 )

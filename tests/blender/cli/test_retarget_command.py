@@ -143,8 +143,8 @@ def test_a_motion_needs_no_footage(retarget: Retarget, result: Path, output: Pat
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--tolerance", "0"], "--tolerance is 0; millimeters above 0 and up to 1000 are valid, or none"),
-        (["--tolerance", "few"], "--tolerance is few"),
+        (["--tolerance", "2000"], "--tolerance is 2000.0; it must be a number from 0 to 1000 mm"),
+        (["--tolerance", "few"], "--tolerance is 'few'"),
         (["--tolerance", "nan"], "--tolerance is nan"),
         (["--format", "obj"], "--format is obj; bvh, fbx, glb, usd, trc, c3d are valid"),
         (["--legs", "wheels"], "--legs"),

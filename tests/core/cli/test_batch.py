@@ -227,7 +227,7 @@ def test_a_list_says_which_takes_and_how(studio: Studio) -> None:
         (["--part", "two"], "--part is two"),
         (["--take", "tak1"], "--take is tak1 (is take1 meant?)"),
         (["--library", "no_such_library"], "no_such_library"),
-        (["--keyframes", "posed.json"], "keyframes is posed.json; auto is valid"),
+        (["--keyframes", "posed.json"], "--keyframes: invalid choice: 'posed.json'"),
         (["--keyframes", "auto", "--library", "walking"], "--library walking with one; give one of them"),
         (["--floor", "nan"], "--floor is nan"),
         (["--method", "magic"], "magic"),

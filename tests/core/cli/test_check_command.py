@@ -211,7 +211,7 @@ def test_options_that_contradict_each_other_are_one_line(
             ["--keyframes", "auto", "--library", "waving"],
             "--keyframes auto finds keyframes with all libraries",
         ),
-        (["--keyframes", "posed.json"], "keyframes is posed.json; auto is valid"),
+        (["--keyframes", "posed.json"], "--keyframes: invalid choice: 'posed.json'"),
     ):
         assert main(["check", str(shoot), *words]) == 2
         (line,) = capsys.readouterr().err.splitlines()

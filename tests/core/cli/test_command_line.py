@@ -16,13 +16,11 @@ import pytest
 from _command_line import one_line, tree
 from _synthetic_take import SIZE, write_json, write_synthetic_take
 from keymark.core.errors import ConversionError
-from keymark.core.estimate.reconstruct import METHODS
 from keymark.core.session.result import RESULT_FILES
 from keymark.core.take.conversion_record import EARLIER_PICTURES
 from keymark.core.take.motion import read_motion
 from keymark.operators.cli import parser as usage
 from keymark.operators.cli.commands import SUMMARIES
-from keymark.operators.cli.commands import convert as convert_arguments
 from keymark.operators.cli.conversion import convert_take
 from keymark.operators.cli.main import main
 
@@ -52,7 +50,7 @@ def convert(take: Path, out: Path, *more: str) -> int:
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        ([], "no command is given"),
+        ([], "arguments are required: COMMAND"),
         (["bogus"], "bogus"),
         (["convert"], "TAKE"),
         (["convert", "somewhere"], "--output"),
@@ -97,12 +95,6 @@ def test_every_file_of_a_command_is_on_the_list(repository: Path, capsys: pytest
     assert main(["--help"]) == 0
     helped = capsys.readouterr().out
     assert all(re.search(rf"\n    {name}\s", helped) for name in shown) and "\n    worker" not in helped
-    assert main([]) == 2
-    assert f"{', '.join(shown[:-1])} and {shown[-1]} are valid" in one_line(capsys.readouterr().err)
-
-
-def test_the_methods_offered_are_the_methods_there_are() -> None:
-    assert set(convert_arguments.METHODS) == set(METHODS)
 
 
 CHARACTER_FILES = ("character.blend", "retarget.json", "report/character.png")

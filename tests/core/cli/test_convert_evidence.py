@@ -57,7 +57,7 @@ def test_any_clothes_convert(pristine: Path, tmp_path: Path) -> None:
         (["--method", "ekf", "--library", "waving"], "method is ekf"),
         (["--evidence", "markers"], "names markers, which this take has not got"),
         (["--evidence", "keypoints"], "names keypoints, which this take has not got"),
-        (["--evidence", "sound"], "evidence is sound; it must be a list of one or more of markers"),
+        (["--evidence", "sound"], "--evidence is ['sound']; it must be a list of one or more of markers"),
         (["--evidence", "depth-hints"], "need keypoints beside them"),
         (["--keypoints", "{take}/none.json"], "none.json"),
         (["--keypoints", "{take}/take.json"], "take.json"),

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from keymark.core.shoot.discovery import VIDEOS, find_takes
-from keymark.operators.cli.parser import build_parser
+from keymark.operators.cli.main import build_parser
 
 NODE = shutil.which("node")
 pytestmark = pytest.mark.skipif(NODE is None, reason="there is no Node, in which the job type is compiled")

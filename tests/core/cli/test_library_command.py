@@ -150,7 +150,7 @@ def test_different_libraries_become_a_new_one(
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        ([], "list, show, check"),
+        ([], "COMMAND"),
         (["bogus"], "bogus"),
         (["show"], "LIBRARY"),
         (["show", "small_step"], "'small_step'.*is 'small_steps' meant"),

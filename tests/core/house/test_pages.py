@@ -24,6 +24,7 @@ from keymark.core.retarget.character import LIMBS, ROLES, SOURCES
 from keymark.core.retarget.maps import character_map
 from keymark.core.shoot import discovery
 from keymark.core.take import (
+    character_settings,
     conversion_record,
     conversion_settings,
     description,
@@ -193,15 +194,16 @@ def test_characters_have_every_option_and_field_and_an_example(tmp_path: Path) -
         parser = argparse.ArgumentParser()
         for names, settings in command.arguments:
             parser.add_argument(*names, **settings)
-        options = [max(action.option_strings) for action in parser._actions if action.option_strings]
-        assert [one for one in options if one not in ("--help", "--replace") and one not in text] == []
-    assert [end for end in conversion_settings.CHARACTER_ENDINGS if f"`{end}`" not in text] == []
+        options = [action.option_strings for action in parser._actions if action.option_strings]
+        known = ("--help", "--replace")
+        assert [names for names in options if not any(name in text or name in known for name in names)] == []
+    assert [end for end in character_settings.CHARACTER_ENDINGS if f"`{end}`" not in text] == []
     section = text.split("## In a shoot")[1]
-    assert [name for name in conversion_settings.CharacterFields.ORDER if f"`{name}`" not in section] == []
-    assert f"{conversion_settings.CharacterOptions().tolerance_mm:g} by default" in section
+    assert [name for name in character_settings.CharacterSettings.ORDER if f"`{name}`" not in section] == []
+    assert f"{character_settings.RetargetOptions().tolerance_mm:g} by default" in section
     example(section, tmp_path, "shoot.json")
     said = description.describe(write_synthetic_take(tmp_path / "take", 3)).settings.character
-    assert said is not None and said.file.object == "rig" and said.options.tolerance_mm == 2.0
+    assert said is not None and said.object == "rig" and said.options.tolerance_mm == 2.0
     assert said.options.legs == "ik" and said.map_file == tmp_path / "cast" / "anna.json"
 
 

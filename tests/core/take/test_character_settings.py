@@ -5,9 +5,10 @@ from pathlib import Path
 import pytest
 from _synthetic_take import write_json, write_synthetic_take
 from keymark.core.errors import InputError
-from keymark.core.retarget.options import LimbKeys, Placement, RootMotion
-from keymark.core.take import conversion_settings as character_words
-from keymark.core.take.conversion_settings import CharacterFile, CharacterOptions
+from keymark.core.take.character_settings import (
+    CharacterFile,
+    RetargetOptions,
+)
 from keymark.core.take.description import describe
 
 
@@ -36,15 +37,6 @@ def test_what_names_no_character_is_refused(text: str) -> None:
         CharacterFile.parse(text)
 
 
-def test_words_are_those_of_the_options() -> None:
-    for words, kind in (
-        (character_words.ROOT_MOTIONS, RootMotion),
-        (character_words.PLACEMENTS, Placement),
-        (character_words.LIMB_KEYS, LimbKeys),
-    ):
-        assert [word.replace("-", "_") for word in words] == [one.value for one in kind]
-
-
 @pytest.fixture
 def take(tmp_path: Path) -> Path:
     """A take two folders below a shoot that names a character."""
@@ -55,12 +47,12 @@ def take(tmp_path: Path) -> Path:
 
 def test_a_take_inherits_the_character_field_by_field(take: Path, tmp_path: Path) -> None:
     settings = describe(take).settings.character
-    assert settings is not None and settings.options == CharacterOptions()
-    assert settings.file == CharacterFile(tmp_path / "cast" / "anna.blend", "rig")
+    assert settings is not None and settings.options == RetargetOptions()
+    assert settings.character_file == CharacterFile(tmp_path / "cast" / "anna.blend", "rig")
     assert settings.map_file == tmp_path / "cast" / "anna.json"
     write_json(tmp_path / "day" / "shoot.json", {"character": {"map": "own.json", "legs": "fk", "//": "x"}})
     settings = describe(take).settings.character
-    assert settings is not None and settings.file.path == tmp_path / "cast" / "anna.blend"
+    assert settings is not None and settings.file == tmp_path / "cast" / "anna.blend"
     assert settings.map_file == tmp_path / "day" / "own.json" and settings.options.legs == "fk"
     write_json(tmp_path / "day" / "shoot.json", {"character": None})
     assert describe(take).settings.character is None

@@ -15,9 +15,8 @@ from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.maps.character_map import CharacterMap
-from keymark.core.retarget.options import RetargetOptions, RootMotion
 from keymark.core.retarget.recognition.recognize import recognize
-from keymark.core.take.conversion_settings import CharacterFile
+from keymark.core.take.character_settings import CharacterFile, RetargetOptions, RootMotion
 from keymark.operators.bridge.character.import_character import import_character, skins
 from keymark.operators.bridge.character.read_character import read_character
 from keymark.operators.bridge.character.retarget import Retargeted, retarget
@@ -197,7 +196,7 @@ def test_the_root_carries_hips_that_are_connected_to_it(
     source: SegmentMotion, lowest: str, root_motion: RootMotion
 ) -> None:
     character, known = connected(lowest)
-    made = performed(character, known, source, root_motion=root_motion, tolerance_m=None)
+    made = performed(character, known, source, root_motion=root_motion, tolerance_mm=0.0)
     worst = 0.0
     for index, frame in enumerate(made.keys.frames):
         bpy.context.scene.frame_set(int(frame))

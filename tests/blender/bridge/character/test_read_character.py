@@ -12,8 +12,8 @@ from _performances import performance, stepping
 from _rigify import add_rig
 from keymark.core.errors import InputError
 from keymark.core.progress import run
-from keymark.core.retarget.options import RetargetOptions
 from keymark.core.retarget.recognition.recognize import recognize
+from keymark.core.take.character_settings import RetargetOptions
 from keymark.operators.bridge.character.read_character import make_override, needs_override, read_character
 from keymark.operators.bridge.character.retarget import retarget
 

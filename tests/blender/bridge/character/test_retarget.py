@@ -15,15 +15,15 @@ from keymark.core.keys.hermite import Spline
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.maps.character_map import CharacterMap
-from keymark.core.retarget.options import LimbKeys, Placement, RetargetOptions, RootMotion
 from keymark.core.retarget.recognition.recognize import recognize
+from keymark.core.take.character_settings import LimbKeys, Placement, RetargetOptions, RootMotion
 from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.character.read_character import read_character
 from keymark.operators.bridge.character.retarget import Retargeted, retarget
 from scipy.spatial.transform import Rotation
 
 FRAMES = 40
-DENSE = RetargetOptions(tolerance_m=None)
+DENSE = RetargetOptions(tolerance_mm=0.0)
 
 
 @pytest.fixture(scope="module")
@@ -184,7 +184,7 @@ def test_the_character_stands_where_the_performer_does(source: SegmentMotion) ->
     character, known = plain()
     character.location = (3.0, 1.0, 0.0)
     bpy.context.view_layer.update()
-    made = retargeted(character, known, source, replace(DENSE, placement=Placement.CHARACTER))
+    made = retargeted(character, known, source, replace(DENSE, place=Placement.CHARACTER))
     assert made.keys.placement == ()
     assert tuple(character.location) == (3.0, 1.0, 0.0)
 
@@ -340,7 +340,7 @@ def test_bad_input_is_refused(source: SegmentMotion) -> None:
     character.constraints.new("LIMIT_LOCATION").name = "Fence"
     with pytest.raises(InputError, match="'Fence'"):
         run(retarget(character, source, frames, known, DENSE))
-    run(retarget(character, source, frames, known, replace(DENSE, placement=Placement.CHARACTER)))
+    run(retarget(character, source, frames, known, replace(DENSE, place=Placement.CHARACTER)))
     bpy.data.objects.remove(character)
     with pytest.raises(InputError, match="deleted meanwhile"):
         made.write(bpy.context.scene, "Steps")

@@ -10,7 +10,7 @@ from _characters import plain_character
 from _performances import steps
 from keymark.core.progress import run
 from keymark.core.retarget.maps.map_registry import choose_map
-from keymark.core.retarget.options import LimbKeys, Placement, RetargetOptions
+from keymark.core.take.character_settings import LimbKeys, Placement, RetargetOptions
 from keymark.operators.bridge.character.read_character import read_character
 from keymark.operators.bridge.character.retarget import retarget
 from keymark.operators.bridge.keys import mark_generated
@@ -35,7 +35,7 @@ def shaken() -> bpy.types.Object:
     )
     character_map = choose_map(read_character(made), "none", ()).character_map
     options = RetargetOptions(
-        placement=Placement.CHARACTER, arms=LimbKeys.FK, legs=LimbKeys.FK, plant_feet=False, tolerance_m=None
+        place=Placement.CHARACTER, arms=LimbKeys.FK, legs=LimbKeys.FK, plant_feet=False, tolerance_mm=0.0
     )
     frames = np.arange(1.0, FRAMES + 1.0)
     run(retarget(made, short, frames, character_map, options)).write(bpy.context.scene, "Network")

@@ -26,7 +26,7 @@ from keymark.core.retarget.controls.point_tolerances import (
 )
 from keymark.core.retarget.controls.reduction import FollowingControls, control_stages
 from keymark.core.retarget.maps.character_map import CharacterMap
-from keymark.core.retarget.options import LimbKeys, RetargetOptions, RootMotion
+from keymark.core.take.character_settings import LimbKeys, RetargetOptions, RootMotion
 
 FRAMES = 30
 

@@ -24,8 +24,8 @@ from keymark.core.retarget.controls.control_plan import ControlKind, PlannedCont
 from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
 from keymark.core.retarget.controls.point_tolerances import ToleranceRules
 from keymark.core.retarget.controls.reduction import reduce_controls
-from keymark.core.retarget.options import LimbKeys, RetargetOptions
 from keymark.core.retarget.solve.solve_motion import solve_motion
+from keymark.core.take.character_settings import LimbKeys, RetargetOptions
 
 FRAMES = 60
 TIMES = 1.0 + np.arange(FRAMES)

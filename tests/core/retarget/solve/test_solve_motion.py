@@ -24,9 +24,9 @@ from keymark.core.feet.natural_extremities import natural_extremities
 from keymark.core.retarget.character import LONG_BONES, Character
 from keymark.core.retarget.character_motion import Similarity
 from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones
-from keymark.core.retarget.options import Placement, RetargetOptions, RootMotion
 from keymark.core.retarget.quality import direction_errors_deg
 from keymark.core.retarget.recognition.recognize import recognize
+from keymark.core.take.character_settings import Placement, RetargetOptions, RootMotion
 
 FREE = RetargetOptions(plant_feet=False, reach_hands=False)
 LYING = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
@@ -166,7 +166,7 @@ def test_a_smaller_character_goes_a_smaller_way() -> None:
 def test_the_character_may_stay_where_it_is() -> None:
     character, character_map = SHAPES["T"]()
     here = Similarity(yaw_rotation(np.array(0.4)), np.array([5.0, 6.0, 0.5]), 1.0)
-    options = RetargetOptions(placement=Placement.CHARACTER)
+    options = RetargetOptions(place=Placement.CHARACTER)
     motion = solved(character, character_map, steps_elsewhere(), options, here)
     assert motion.to_world is here
     figures = quality(character, character_map, steps_elsewhere(), motion)

@@ -9,7 +9,7 @@ from _control_rigs import control_rig
 from _performances import performance, stepping
 from keymark.core.progress import run
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, Setting, Switch
-from keymark.core.retarget.options import LimbKeys, RetargetOptions
+from keymark.core.take.character_settings import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.read_character import read_character
 from keymark.operators.bridge.character.retarget import complete_map, retarget
 
