@@ -3,13 +3,12 @@
 PROPERTIES = ("marker_properties", "keypoint_properties")
 MODULES = (
     "marker_list",
+    "marker_search",
     "pick_marker_color",
     "ignore_region",
     "panel",
-    "marker_panel",
     "load_keypoints",
     "click_points",
     "tracks",
     "camera_from_lines",
-    "keypoint_panel",
 )

@@ -1,5 +1,6 @@
 """Find the camera from lines drawn over the footage, and from the performer upright at several places."""
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -7,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError, KeymarkError
 from ..footage.drawn_lines import (
     CLICKED_PX,
@@ -24,16 +26,8 @@ from ..footage.found_camera import fit_take, values, write_fit
 from ..footage.properties import KINDS, still_camera
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.fields import SKIP_SAVE, Choice
-from ..shell.footage_clicks import NAVIGATION, footage_is_shown
-from ..shell.footage_view import (
-    FootageRequest,
-    FootageView,
-    ask,
-    follow_mouse,
-    stop_asking,
-    view_of_footage_under,
-)
-from ..shell.job_operator import cancel_click
+from ..shell.footage_clicks import ClickSequence
+from ..shell.footage_view import FootageRequest, FootageView, follow_mouse, view_of_footage_under
 from ..shell.requirements import camera, footage, idle
 from ..shell.takes import active_take, footage_of, redraw_sidebars_soon
 from .evidence import has_keypoints, scene_evidence
@@ -77,7 +71,7 @@ WALK_REQUEST = ("Keypoints show the camera", f"Enter takes it; or click {FEET_AN
 KEYS = "Tab: Other Lines   |   X: Remove   |   Enter: Take   |   Esc: Cancel"
 
 
-class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
+class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operator):
     """Find the camera from lines that you draw over the picture; the floor's grid shows the result"""
 
     bl_label = "Camera from Lines"
@@ -87,7 +81,7 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
 
     _drawing: Any = None
     _upright: Any = None  # Body height, and moments in which keypoints show somebody of that height upright
-    _place: tuple[int, int] = (0, 0)
+    _mouse: Any = None  # (2,) [window px]
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
@@ -99,63 +93,58 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
             )
         return "Find the camera from lines that you draw over the picture; the floor's grid shows the result"
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        take = active_take(context.scene)
-        if not footage_is_shown(self, context, take):
-            return {"CANCELLED"}
+    def prepare(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
         of_performer = self.kind == HEIGHT
         self._drawing = Drawing(
             self.kind, of_performer, read_lines(take), stature_m=take.stature, of_performer=of_performer
         )
         show(self._drawing)
-        self._place = event.mouse_x, event.mouse_y
-        self._find(context)
-        context.window.cursor_modal_set("CROSSHAIR")
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if cancel_click(self, context, event):
-            return {"CANCELLED"}
-        self._place = event.mouse_x, event.mouse_y
-        follow_mouse(context, event)
         drawing, pressed = self._drawing, event.value == "PRESS"
-        if pressed and event.type in {"RET", "NUMPAD_ENTER"}:
-            return self._finish(context)
-        if event.type == "MOUSEMOVE" or event.type == "LEFTMOUSE":
+        self._mouse = np.array([event.mouse_x, event.mouse_y], dtype=np.float64)
+        if event.type in ("MOUSEMOVE", "LEFTMOUSE"):
+            follow_mouse(context, event)
             return self._point(context, event)
-        if pressed and event.type == "TAB":
-            drawing.next_kind()
-        elif pressed and event.type in {"X", "DEL"}:
+        if pressed and event.type in ("X", "DEL"):
             drawing.remove(self._distance_of_line(context))
-        elif pressed and event.type == "BACK_SPACE":
-            if not drawing.type("\b"):
-                drawing.remove(self._distance_of_line(context))
         elif pressed and event.unicode and event.unicode in "0123456789.":
             drawing.type(event.unicode)
         else:
-            return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
-        self._find(context)
+            return super().modal(context, event)
+        self.ask(context)
         return {"RUNNING_MODAL"}
+
+    def go_on(self, context: bpy.types.Context) -> None:
+        self._drawing.next_kind()
+
+    def go_back(self, context: bpy.types.Context) -> None:
+        if not self._drawing.type("\b"):
+            self._drawing.remove(self._distance_of_line(context))
 
     def _point(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         drawing, view = self._drawing, self._view(context)
-        if view is None:
-            return {"PASS_THROUGH"} if event.type == "MOUSEMOVE" else {"RUNNING_MODAL"}
-        pixel = self._pixel(view)
-        if event.type == "MOUSEMOVE":
-            if drawing.held is None:
-                return {"PASS_THROUGH"}
+        action = "MOVE" if event.type == "MOUSEMOVE" else event.value
+        if view is None or (action == "MOVE" and drawing.held is None):
+            return {"PASS_THROUGH"} if action == "MOVE" else {"RUNNING_MODAL"}
+        x, y = view.to_footage(self._in_region(view))
+        pixel = float(x), float(y)
+
+        def apart(one: Pixel, other: Pixel = pixel) -> float:
+            """Distance in the region of two pixels, as a share of how near is near."""
+            return float(np.linalg.norm(view.to_region(one) - view.to_region(other))) / _scaled(NEAR_PX)
+
+        if action == "PRESS":
+            drawing.press(pixel, context.scene.frame_current, apart)
+        elif action in ("MOVE", "RELEASE"):
             drawing.move(pixel)
-        elif event.value == "PRESS":
-            drawing.press(pixel, context.scene.frame_current, self._distance(view))
-        elif event.value == "RELEASE":
-            drawing.move(pixel)
-            drawing.release(lambda one, other: _apart(view, one, other) / (CLICKED_PX * _scale(context)))
-        self._find(context)
+        if action == "RELEASE":
+            drawing.release(lambda one, other: apart(one, other) * NEAR_PX / CLICKED_PX)
+        self.ask(context)
         return {"RUNNING_MODAL"}
 
-    def _find(self, context: bpy.types.Context) -> None:
+    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+        """Find the camera by what is drawn so far, and say what to draw next."""
         drawing = self._drawing
         drawing.fit = None
         try:
@@ -165,9 +154,9 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         wanted = REQUESTS[drawing.kind]
         if drawing.of_performer and drawing.kind == HEIGHT:
             wanted = PERFORMER_REQUEST if drawing.lines or drawing.fit is None else WALK_REQUEST
-        ask(context, FootageRequest(*wanted, mouse=self._place), KEYS)
+        return FootageRequest(*wanted), KEYS
 
-    def _finish(self, context: bpy.types.Context) -> set[str]:
+    def done(self, context: bpy.types.Context) -> set[str]:
         """Keep the lines and set the camera; if they say nothing of it, everything is as before."""
         take, lines = active_take(context.scene), self._drawing.complete
         before = read_lines(take), take.stature
@@ -185,7 +174,7 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
 
     def cancel(self, context: bpy.types.Context) -> None:
         show(None)
-        stop_asking(context)
+        super().cancel(context)
         redraw_sidebars_soon()
 
     def run(self, context: bpy.types.Context) -> None:
@@ -208,38 +197,29 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return fit_take(take, evidence) if lines or len(evidence.uprights) else None
 
     def _view(self, context: bpy.types.Context) -> FootageView | None:
-        return view_of_footage_under(context, active_take(context.scene), *self._place)
+        """The view of the footage under the mouse, which may lie beside the picture."""
+        x, y = self._mouse
+        return view_of_footage_under(context, active_take(context.scene), int(x), int(y))
 
-    def _pixel(self, view: FootageView) -> Pixel:
-        """The footage pixel under the mouse, which may lie beside the picture."""
-        x, y = view.to_footage((self._place[0] - view.region.x, self._place[1] - view.region.y))
-        return float(x), float(y)
+    def _in_region(self, view: FootageView) -> Array:
+        return np.asarray(self._mouse - (view.region.x, view.region.y))
 
-    def _distance(self, view: FootageView) -> Any:
-        scale = NEAR_PX * _scale(bpy.context)
-        return lambda pixel: _apart(view, pixel, self._pixel(view)) / scale
-
-    def _distance_of_line(self, context: bpy.types.Context) -> Any:
+    def _distance_of_line(self, context: bpy.types.Context) -> Callable[[DrawnLine], float]:
+        """Tells the distance from the mouse to a line in the region, as a share of how near is near."""
         view = self._view(context)
-        if view is None:
-            return lambda line: np.inf
-        mouse = np.array(self._place, dtype=np.float64) - (view.region.x, view.region.y)
-        scale = NEAR_PX * _scale(context)
 
         def distance(line: DrawnLine) -> float:
+            if view is None:
+                return np.inf
+            mouse = self._in_region(view)
             start, end = view.to_region(np.array(line.ends))
             along = end - start
             share = float((mouse - start) @ along / max(float(along @ along), 1e-9))
             nearest = start + min(max(share, 0.0), 1.0) * along
-            return float(np.linalg.norm(mouse - nearest)) / scale
+            return float(np.linalg.norm(mouse - nearest)) / _scaled(NEAR_PX)
 
         return distance
 
 
-def _apart(view: FootageView, one: Pixel, other: Pixel) -> float:
-    """Distance of two pixels of the footage in the region [px]."""
-    return float(np.linalg.norm(view.to_region(one) - view.to_region(other)))
-
-
-def _scale(context: bpy.types.Context) -> float:
-    return float(context.preferences.system.ui_scale) or 1.0
+def _scaled(length_px: float) -> float:
+    return length_px * (float(bpy.context.preferences.system.ui_scale) or 1.0)

@@ -9,7 +9,7 @@ import bpy
 from ..bridge.footage_camera import may_move
 from ..bridge.scene_evidence import ClickedPoint, SceneEvidence, file_state
 from ..shell.takes import find_take, footage_of
-from .ignored_regions import ignored_regions
+from .marker_properties import ignored_regions
 from .marker_styles import marker_styles
 from .tracks import assigned_tracks
 
@@ -67,8 +67,7 @@ def clip_frame(take: bpy.types.PropertyGroup) -> int:
 
 def clicked_here(take: bpy.types.PropertyGroup) -> list[str]:
     """The points that were clicked on in the current frame."""
-    here = clip_frame(take)
-    return [click.point for click in take.follow.clicks if click.frame == here]
+    return [click.point for click in take.follow.clicks if click.frame == clip_frame(take)]
 
 
 # --- Requirements of operators that follow the footage
@@ -93,9 +92,12 @@ def keypoint_files(context: bpy.types.Context) -> str | None:
 def points_to_follow(context: bpy.types.Context) -> str | None:
     """The take follows markers, keypoints or tracks; contours alone are not enough."""
     take = find_take(context.scene)
-    if take is None or _has_points(take):
-        return None
-    return "Load keypoints, assign tracks or add markers first; this needs more than contours"
+    missing = take is not None and not _has_points(take)
+    return (
+        "Load keypoints, assign tracks or add markers first; this needs more than contours"
+        if missing
+        else None
+    )
 
 
 def _has_points(take: bpy.types.PropertyGroup) -> bool:
@@ -153,9 +155,9 @@ def add_keypoint_file(take: bpy.types.PropertyGroup, path: Path, replace: bool =
     known = [keypoint_path(entry) for entry in follow.files]
     if path in known:
         follow.active_file = known.index(path)
-    elif not (replace and follow.active_file < len(follow.files)):
+    elif not (replace and follow.active_file < len(known)):
         follow.files.add()
-        follow.active_file = len(follow.files) - 1
+        follow.active_file = len(known)
     entry = follow.files[follow.active_file]
     entry.is_used = True
     entry.filepath, entry.absolute_path = stored_path(path), str(real_path(path))

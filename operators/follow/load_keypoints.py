@@ -9,7 +9,7 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import run
-from ..shell.base_operator import BaseOperator, browse, chosen_path, warn
+from ..shell.base_operator import BaseOperator, browse, chosen_path, remove_active, warn
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import footage, idle
@@ -53,29 +53,20 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Read the keypoints and hold them against the clip, and only then add them to the take."""
+        from ..bridge.scene_evidence import read_keypoint_file
+        from ..bridge.take_from_scene import clip_frames
+
         take = active_take(context.scene)
-        path = _whole(chosen_path(self))
-        people = _read(context.scene, take, path)
-        add_keypoint_file(take, path, self.replace)
-        take.follow.use_keypoints = True
-        clear_readings()
-        redraw_footage(context)
+        path, source = _whole(chosen_path(self)), footage_of(context.scene, take)
+        frames = run(clip_frames(source, scene_evidence(take), reading_of(take)))
+        size = source.clip.size[0], source.clip.size[1]
+        people = read_keypoint_file(path, len(frames), size, source.rate, source.first_frame)
+        follow_file(take, path, self.replace)
         for note in people.notes:
             warn(self, note)
         loaded = f"Loaded {len(people.names)} points of {people.source}"
         seen = sum(len(frame.pixel) > 0 for frame in people.frames)
         self.report({"INFO"}, f"{loaded}, in {seen} of {len(people.frames)} frames")
-
-
-def _read(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, path: Path) -> "People":
-    """Read keypoints and hold them against the clip."""
-    from ..bridge.scene_evidence import read_keypoint_file
-    from ..bridge.take_from_scene import clip_frames
-
-    source = footage_of(scene, take)
-    frames = run(clip_frames(source, scene_evidence(take), reading_of(take)))
-    size = source.clip.size
-    return read_keypoint_file(path, len(frames), (size[0], size[1]), source.rate, source.first_frame)
 
 
 def _whole(path: Path) -> Path:
@@ -91,19 +82,22 @@ def _whole(path: Path) -> Path:
     return path.parent if is_one_frame(read_json_value(path, LARGEST_BYTES)) else path
 
 
+def follow_file(take: bpy.types.PropertyGroup, path: Path, replace: bool = False) -> None:
+    """Let a take follow the keypoints in a file, with `replace` in place of the chosen one's."""
+    add_keypoint_file(take, path, replace)
+    take.follow.use_keypoints = True
+    clear_readings()
+    redraw_footage(bpy.context)
+
+
 class KEYMARK_OT_remove_keypoints(BaseOperator, bpy.types.Operator):
     """Remove the chosen keypoints from the take; their file stays on disk"""
 
-    bl_idname = "keymark.remove_keypoints"
     bl_label = "Remove Keypoints"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (keypoint_files, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        follow = active_take(context.scene).follow
-        index = min(follow.active_file, len(follow.files) - 1)
-        follow.files.remove(index)
-        follow.active_file = max(0, index - 1)
+        remove_active(active_take(context.scene).follow, "files", "active_file")
         redraw_footage(context)
 
 
@@ -146,28 +140,17 @@ def keep_detected(scene: bpy.types.Scene, found: Detected) -> str:
     return f"{seen}; the keypoints are in {found.output.name}"
 
 
-def follow_file(take: bpy.types.PropertyGroup, path: Path) -> None:
-    """Let a take follow the keypoints in a file."""
-    add_keypoint_file(take, path)
-    take.follow.use_keypoints = True
-    clear_readings()
-    redraw_footage(bpy.context)
-
-
 class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
     """Find points of the body of everybody in the whole clip"""
 
-    bl_idname = "keymark.detect_keypoints"
     bl_label = "Detect Keypoints"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Detected]":
-        return (yield from detect(scene))
+        return detect(scene)
 
     def finish(self, scene: bpy.types.Scene, result: Detected) -> None:
-        said = keep_detected(scene, result)
-        self.report({"INFO"}, said)
+        self.report({"INFO"}, keep_detected(scene, result))
 
 
 def _output(take: bpy.types.PropertyGroup, clip: Path) -> Path:

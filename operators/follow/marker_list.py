@@ -1,41 +1,40 @@
-"""New markers of a take: the segment the next one goes on, and its name."""
+"""Operators of the lists of markers and of regions that are never one, and the switch of their masks."""
 
 import bpy
 
 from ...core.errors import InputError
-from ..shell.base_operator import BaseOperator
+from ..shell.base_operator import BaseOperator, Unchanged, remove_active
 from ..shell.requirements import footage, idle, markers, picked_color
-from ..shell.takes import active_take, ensure_take, redraw_footage, unique_name
+from ..shell.takes import active_take, ensure_take, find_take, redraw_footage
 from .marker_properties import SEGMENTS, clear_readouts
+from .marker_styles import USUAL_SEGMENTS, append_marker, append_usual_markers
 from .mask_previews import preview_of, update_masks
 
-USUAL_SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
-"""The five segments whose markers help most, in the order in which they are offered."""
+
+class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
+    """Add a marker on the next body part that usually wears one"""
+
+    bl_label = "Add Marker"
+
+    def run(self, context: bpy.types.Context) -> None:
+        take = ensure_take(context.scene)
+        marked = {marker.segment for marker in take.markers}
+        free = [segment for segment in (*USUAL_SEGMENTS, *SEGMENTS) if segment not in marked]
+        if not free:
+            raise InputError("every body part has a marker already")
+        append_marker(take, free[0])
 
 
-def next_segment(take: bpy.types.PropertyGroup) -> str | None:
-    """Return the segment to mark next; None if all have markers."""
-    marked = {marker.segment for marker in take.markers}
-    return next((segment for segment in (*USUAL_SEGMENTS, *SEGMENTS) if segment not in marked), None)
+class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
+    """Add the five markers that help most: trunk, both forearms and both shins"""
 
+    bl_label = "Add Usual Five"
 
-def append_marker(take: bpy.types.PropertyGroup, segment: str) -> bpy.types.PropertyGroup:
-    """Add a marker with a unique name after its segment, and make it the active one."""
-    name = unique_name(segment, (marker.name for marker in take.markers))
-    marker = take.markers.add()
-    marker.segment, marker.name = segment, name
-    marker.named_after = segment
-    take.active_marker = len(take.markers) - 1
-    return marker
-
-
-def append_usual_markers(take: bpy.types.PropertyGroup) -> None:
-    """Add those of the usual five that are missing; the first of them becomes the active one."""
-    marked, first = {marker.segment for marker in take.markers}, len(take.markers)
-    for segment in USUAL_SEGMENTS:
-        if segment not in marked:
-            append_marker(take, segment)
-    take.active_marker = first
+    def run(self, context: bpy.types.Context) -> None:
+        take = ensure_take(context.scene)
+        if {marker.segment for marker in take.markers}.issuperset(USUAL_SEGMENTS):
+            raise Unchanged("trunk, forearms and shins have markers already")
+        append_usual_markers(take)
 
 
 class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
@@ -46,17 +45,33 @@ class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         take = active_take(context.scene)
-        index = min(take.active_marker, len(take.markers) - 1)
-        if take.markers[index].is_picked:
+        if take.markers[min(take.active_marker, len(take.markers) - 1)].is_picked:
             clear_readouts(take)
-        take.markers.remove(index)
-        take.active_marker = max(0, index - 1)
+        remove_active(take, "markers", "active_marker")
+
+
+def some_ignored(context: bpy.types.Context) -> str | None:
+    """Some region of the picture is ignored."""
+    take = find_take(context.scene)
+    return None if take and len(take.ignored_regions) else "No region of the picture is left out"
+
+
+class KEYMARK_OT_remove_ignored_region(BaseOperator, bpy.types.Operator):
+    """Search the chosen region of the picture for markers again"""
+
+    bl_label = "Remove Region"
+    requirements = (some_ignored, idle)
+
+    def run(self, context: bpy.types.Context) -> None:
+        take = active_take(context.scene)
+        remove_active(take, "ignored_regions", "active_ignored")
+        clear_readouts(take)
+        redraw_footage(context)
 
 
 class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
     """Highlight the markers' colors over the footage, in the camera view and the Movie Clip editor"""
 
-    bl_idname = "keymark.show_masks"
     bl_label = "Show Masks"
     bl_options = {"REGISTER"}
     requirements = (footage, markers, picked_color, idle)
@@ -77,36 +92,3 @@ def _check_markers() -> None:
         bpy.ops.keymark.check_markers("INVOKE_DEFAULT")
     except RuntimeError as error:
         raise InputError(str(error).removeprefix("Error: ").strip()) from error
-
-
-class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
-    """Add a marker on the next body part that usually wears one"""
-
-    bl_idname = "keymark.add_marker"
-    bl_label = "Add Marker"
-    bl_options = {"REGISTER", "UNDO"}
-
-    def run(self, context: bpy.types.Context) -> set[str] | None:
-        take = ensure_take(context.scene)
-        segment = next_segment(take)
-        if segment is None:
-            self.report({"ERROR"}, "Every body part has a marker already")
-            return {"CANCELLED"}
-        append_marker(take, segment)
-        return None
-
-
-class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
-    """Add the five markers that help most: trunk, both forearms and both shins"""
-
-    bl_idname = "keymark.add_usual_markers"
-    bl_label = "Add Usual Five"
-    bl_options = {"REGISTER", "UNDO"}
-
-    def run(self, context: bpy.types.Context) -> set[str] | None:
-        take = ensure_take(context.scene)
-        if {marker.segment for marker in take.markers}.issuperset(USUAL_SEGMENTS):
-            self.report({"INFO"}, "Trunk, forearms and shins have markers already")
-            return {"CANCELLED"}
-        append_usual_markers(take)
-        return None

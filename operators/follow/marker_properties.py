@@ -1,46 +1,56 @@
 """Properties of colored markers, and of regions of the picture that are never a marker."""
 
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
 import bpy
 
 from ...core.body.human import HUMAN
 from ..shell.fields import HIDDEN, Choice, Entries, Integer, Number, Switch, Text, Vector
-from ..shell.takes import footage_of
+from ..shell.takes import footage_of, unique_name
+
+if TYPE_CHECKING:
+    from ...core.markers.ignored_regions import IgnoredRegion
+
+
+def take_of(entry: bpy.types.PropertyGroup, entries: str) -> bpy.types.PropertyGroup | None:
+    """The take in whose list of that name an entry is."""
+    takes = entry.id_data.keymark.takes
+    return next((take for take in takes if any(each == entry for each in getattr(take, entries))), None)
+
+
+def clear_readouts(take: bpy.types.PropertyGroup | None) -> None:
+    """Clear the readouts of a take's markers: each depends on all markers, and on what is ignored."""
+    for marker in take.markers if take is not None else ():
+        marker.sampled = 0
+
+
+# --- Regions of the picture that are never a marker
 
 
 def _changed(region: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """What was found of the markers depends on what is ignored."""
-    for take in region.id_data.keymark.takes:
-        if any(other == region for other in take.ignored_regions):
-            clear_readouts(take)
+    clear_readouts(take_of(region, "ignored_regions"))
 
 
-def _clip_start(region: bpy.types.PropertyGroup) -> int:
-    """Scene frame of the first frame of the clip of the region's take; 1 without a clip."""
-    scene = region.id_data
-    for take in scene.keymark.takes:
-        if take.clip is not None and any(other == region for other in take.ignored_regions):
-            return footage_of(scene, take).first_frame
-    return 1
+def _scene_frame(name: str, description: str, counted: str) -> Any:
+    """A region's first or last frame, `counted` from the clip's first, as the scene's frame."""
 
+    def clip_start(region: bpy.types.PropertyGroup) -> int:
+        take = take_of(region, "ignored_regions")
+        has_clip = take is not None and take.clip is not None
+        return footage_of(region.id_data, take).first_frame if has_clip else 1
 
-def _shown_first(region: bpy.types.PropertyGroup) -> int:
-    return int(region.first) + _clip_start(region)
+    def shown(region: bpy.types.PropertyGroup) -> int:
+        return int(getattr(region, counted)) + clip_start(region)
 
+    def choose(region: bpy.types.PropertyGroup, frame: int) -> None:
+        chosen = max(frame - clip_start(region), 0)
+        setattr(region, counted, chosen)
+        if region.last < region.first:
+            region.first = region.last = chosen
+        _changed(region, bpy.context)
 
-def _shown_last(region: bpy.types.PropertyGroup) -> int:
-    return int(region.last) + _clip_start(region)
-
-
-def _set_first(region: bpy.types.PropertyGroup, frame: int) -> None:
-    region.first = max(frame - _clip_start(region), 0)
-    region.last = max(region.last, region.first)
-    _changed(region, bpy.context)
-
-
-def _set_last(region: bpy.types.PropertyGroup, frame: int) -> None:
-    region.last = max(frame - _clip_start(region), 0)
-    region.first = min(region.first, region.last)
-    _changed(region, bpy.context)
+    return Integer(name, description, get=shown, set=choose)
 
 
 class KEYMARK_PG_stroke_point(bpy.types.PropertyGroup):
@@ -66,18 +76,52 @@ class KEYMARK_PG_ignored_region(bpy.types.PropertyGroup):
     )
     first: Integer("First", "Its first frame, counted from the clip's first", options=HIDDEN)
     last: Integer("Last", "Its last frame, counted from the clip's first", options=HIDDEN)
-    first_frame: Integer(
-        "First Frame",
-        "First frame of the scene in which the region is left out",
-        get=_shown_first,
-        set=_set_first,
+    first_frame: _scene_frame(
+        "First Frame", "First frame of the scene in which the region is left out", "first"
     )
-    last_frame: Integer(
-        "Last Frame",
-        "Last frame of the scene in which the region is left out",
-        get=_shown_last,
-        set=_set_last,
-    )
+    last_frame: _scene_frame("Last Frame", "Last frame of the scene in which the region is left out", "last")
+
+
+PLACES = 2  # Decimals of a pixel that files keep: Blender's own numbers are of single precision
+
+
+def ignored_regions(take: bpy.types.PropertyGroup) -> "tuple[IgnoredRegion, ...]":
+    """The regions of a take."""
+    from ...core.markers.ignored_regions import IgnoredRegion
+
+    def rounded(numbers: Iterable[float]) -> tuple[Any, ...]:
+        return tuple(round(float(value), PLACES) for value in numbers)
+
+    regions = []
+    for region in take.ignored_regions:
+        frames = (int(region.first), int(region.last)) if region.some_frames else None
+        if len(region.stroke):
+            stroke = tuple(rounded(point.pixel) for point in region.stroke)
+            radius_px = round(float(region.radius), PLACES)
+            regions.append(IgnoredRegion(stroke=stroke, radius_px=radius_px, frames=frames))
+        else:
+            regions.append(IgnoredRegion(box=rounded(region.box), frames=frames))
+    return tuple(regions)
+
+
+def add_ignored_regions(take: bpy.types.PropertyGroup, regions: "Iterable[IgnoredRegion]") -> None:
+    """Add regions to a take; the last becomes the active one."""
+    length = take.clip.frame_duration if take.clip is not None else 1
+    for region in regions:
+        name = "Brushed" if region.box is None else "Still Area"
+        made = take.ignored_regions.add()
+        made.name = unique_name(name, [each.name for each in take.ignored_regions if each != made])
+        if region.box is not None:
+            made.box = region.box
+        for pixel in region.stroke:
+            made.stroke.add().pixel = pixel
+        made.radius = region.radius_px
+        made.first, made.last = region.frames or (0, max(length - 1, 0))
+        made.some_frames = region.frames is not None
+        take.active_ignored = len(take.ignored_regions) - 1
+
+
+# --- Markers
 
 
 SEGMENTS = ("trunk", *(each.name for each in HUMAN.segments if not each.name.startswith("girdle")))
@@ -90,16 +134,9 @@ def segment_title(segment: str) -> str:
     return part.replace("_", " ").title() + {"L": " Left", "R": " Right", "": ""}[side]
 
 
-def clear_readouts(take: bpy.types.PropertyGroup) -> None:
-    """Clear the readouts of a take's markers: each depends on all markers."""
-    for marker in take.markers:
-        marker.sampled = 0
-
-
 def _on_changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    for take in marker.id_data.keymark.takes:
-        if marker.is_picked and any(other == marker for other in take.markers):
-            clear_readouts(take)
+    if marker.is_picked:
+        clear_readouts(take_of(marker, "markers"))
 
 
 def _on_segment_changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:

@@ -12,16 +12,13 @@ import bpy
 from ...core.arrays import Array, Image, SingleArray
 from ..bridge.footage import Footage
 from ..shell.takes import find_take, footage_of, redraw_footage
-from .ignored_regions import ignored_pixels_key, ignored_regions
+from .marker_properties import ignored_regions
 
 if TYPE_CHECKING:
     from ...core.markers.ignored_regions import IgnoredRegion
     from ...core.markers.marker_check import MarkerCheck
     from ...core.markers.region_tracks import MarkerStyle
     from ...core.video.clip import FrameReader
-
-
-Key = tuple[str, tuple[tuple[str, tuple[float, ...]], ...], tuple[object, ...]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +44,7 @@ class Preview:
     masks: tuple[ColorMask, ...] = field(default=())
 
 
-_previews: dict[Key, Preview] = {}
+_previews: dict[object, Preview] = {}
 _picked: dict[str, Preview] = {}
 """Preview of colors that are being picked and are not the take's yet, by the take's identifier."""
 
@@ -95,12 +92,6 @@ def update_masks(scene: bpy.types.Scene) -> Preview | None:
     preview.masks = _masks(preview, footage, ignored_mask(take))
     preview.time_s = footage.shown_s
     return preview
-
-
-def update_shown_masks(scene: bpy.types.Scene) -> None:
-    """Make the masks of the current frame if they are shown."""
-    if bpy.context.window_manager.keymark_show_masks:
-        update_masks(scene)
 
 
 def show_masks(context: bpy.types.Context, shown: bool) -> bool:
@@ -153,7 +144,7 @@ def _preview(styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck") -> Preview
     return Preview(check, labels, tuple((red, green, blue) for red, green, blue in colors))
 
 
-def _key(take: bpy.types.PropertyGroup) -> Key:
+def _key(take: bpy.types.PropertyGroup) -> tuple[object, ...]:
     """Return the key: the footage's digest, names and colors of markers that have one, what is ignored."""
     picked = tuple((marker.name, tuple(marker.color)) for marker in take.markers if marker.is_picked)
-    return take.clip_state.contents, picked, ignored_pixels_key(take)
+    return take.clip_state.contents, picked, ignored_regions(take)

@@ -1,4 +1,4 @@
-"""Pick the colors of markers, of all one after the other or of one, and check how well they are found."""
+"""Pick the colors of markers, of all one after the other or of one, and look how well they are found."""
 
 from collections.abc import Generator
 from time import monotonic
@@ -9,21 +9,14 @@ import bpy
 from ...core.errors import InputError
 from ..shell.base_operator import reported, warn
 from ..shell.fields import SKIP_SAVE, Entries, Integer, Vector
-from ..shell.footage_clicks import NAVIGATION, ClickSequence, footage_is_shown
-from ..shell.footage_view import FootageRequest, ask, follow_mouse, pixel_under, stop_asking
-from ..shell.job_operator import SHORTEST_SLICE_S, TIMER_S, JobOperator, cancel_click
-from ..shell.requirements import footage, idle, markers, picked_color
+from ..shell.footage_clicks import ClickSequence
+from ..shell.footage_view import FootageRequest, side_of, stop_asking
+from ..shell.job_operator import SHORTEST_SLICE_S, TIMER_S, JobOperator
+from ..shell.requirements import footage, idle, markers
 from ..shell.takes import active_take, footage_of, take_by_identifier
-from .ignored_regions import ignored_regions
-from .marker_list import USUAL_SEGMENTS
-from .marker_styles import (
-    MarkerSearch,
-    find_markers,
-    request_for,
-    search_markers,
-    styles_with_colors,
-    write_search,
-)
+from .marker_properties import ignored_regions, segment_title
+from .marker_search import MarkerSearch, find_markers, search_markers, write_and_warn, write_search
+from .marker_styles import USUAL_SEGMENTS, styles_with_colors
 from .mask_previews import end_picked, show_masks, show_picked, update_masks
 
 if TYPE_CHECKING:
@@ -32,10 +25,43 @@ if TYPE_CHECKING:
     from ...core.progress import Job
 
 
+class MarkerTool(ClickSequence, JobOperator):
+    """Base of tools that take clicks, then look for the markers; `prepare` of a subclass shows the masks."""
+
+    masks_before: bool | None = None  # Whether masks were shown before; None in a script, which shows none
+
+    def prepare(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+        self.masks_before = bool(context.window_manager.keymark_show_masks)
+        context.window_manager.keymark_progress.show("", 0.0)
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        return (ClickSequence if self._job is None else JobOperator).modal(self, context, event)
+
+    def look(self, context: bpy.types.Context) -> set[str]:
+        """Begin to look for the markers; what `modal` returns."""
+        stop_asking(context)
+        with reported(self):
+            self.begin(context)
+            return {"RUNNING_MODAL"}
+        self.cancel(context)
+        return {"CANCELLED"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        stop_asking(context)
+        if self.masks_before is not None:
+            show_masks(context, self.masks_before)
+        JobOperator.cancel(self, context)
+
+
+def request_for(segment: str) -> FootageRequest:
+    """The request for the marker on a segment; left and right are the performer's own."""
+    return FootageRequest(f"Click on: {segment_title(segment)}", side_of(segment))
+
+
 KEYS = "{number} of {count}   |   Backspace: Back   |   Tab: Skip   |   Enter: Done   |   Esc: Cancel"
 
 
-class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
+class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
     """Click on one marker after the other in the footage; without a list they are the usual five"""
 
     bl_label = "Pick Markers"
@@ -49,8 +75,7 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         options=SKIP_SAVE,
     )
 
-    _masks_before: bool | None = None  # Whether masks were shown before; None in a script
-    _asked: Any = ()
+    _wanted: Any = ()
     """Names and segments of the markers that are asked for, in order; Blender would evaluate a type."""
     _here: int = 0  # Which of them is asked for now
     _colors: Any = None
@@ -59,42 +84,35 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
     _looking: Generator[Any, None, Any] | None = None
     """The search for the colors picked so far, whose masks are then shown."""
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def prepare(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
         """Ask for the markers without a color, for all where each has one, or for the usual five."""
-        take = active_take(context.scene)
-        if not footage_is_shown(self, context, take):
-            return {"CANCELLED"}
+        super().prepare(context, take)
         markers = [marker for marker in take.markers if not marker.is_picked] or list(take.markers)
         usual = [(segment, segment) for segment in USUAL_SEGMENTS]
-        self._asked = [(marker.name, marker.segment) for marker in markers] or usual
+        self._wanted = [(marker.name, marker.segment) for marker in markers] or usual
         self._here, self._colors = 0, {}
-        self._masks_before = bool(context.window_manager.keymark_show_masks)
         self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
-        context.window_manager.keymark_progress.show("", 0.0)
-        return self.wait_for_clicks(context)
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if self._job is not None:
-            return super().modal(context, event)
-        if event.type == "TIMER":
-            self._look(context)
+        if self._job is None and event.type == "TIMER":
+            self._go_on_looking(context)
             return {"PASS_THROUGH"}
-        return self.take_event(context, event)
+        return super().modal(context, event)
 
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
-        keys = KEYS.format(number=len(self._colors) + 1, count=len(self._asked))
-        return request_for(self._asked[self._here][1]), keys
+        keys = KEYS.format(number=len(self._colors) + 1, count=len(self._wanted))
+        return request_for(self._wanted[self._here][1]), keys
 
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
         from ..bridge.footage import footage_color
 
-        name = self._asked[self._here][0]
+        name = self._wanted[self._here][0]
         with reported(self):
             color = footage_color(footage_of(context.scene, active_take(context.scene)), pixel)
             self._colors[name] = color
             click = self.clicks.add()
             click.name, click.loc, click.time = name, pixel, context.scene.frame_current
-            if len(self._colors) == len(self._asked):
+            if len(self._colors) == len(self._wanted):
                 return self.done(context)
             self._begin_to_look(context)
             self.go_on(context)
@@ -102,16 +120,16 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def go_on(self, context: bpy.types.Context) -> None:
-        count = len(self._asked)
+        count = len(self._wanted)
         after = [(self._here + step) % count for step in range(1, count + 1)]
-        self._here = next((one for one in after if self._asked[one][0] not in self._colors), self._here)
+        self._here = next((one for one in after if self._wanted[one][0] not in self._colors), self._here)
 
     def go_back(self, context: bpy.types.Context) -> None:
         if not self._colors:
             return
-        name, _ = self._colors.popitem()
+        last, _ = self._colors.popitem()
         self.clicks.remove(len(self.clicks) - 1)
-        self._here = [asked for asked, _ in self._asked].index(name)
+        self._here = [name for name, _ in self._wanted].index(last)
         if self._colors:
             self._begin_to_look(context)
         else:
@@ -121,24 +139,15 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
     def done(self, context: bpy.types.Context) -> set[str]:
         """Look for all markers with a color; without a click nothing has happened."""
         if not self._colors:
-            self.cancel(context)
-            return {"CANCELLED"}
+            return super().done(context)
         self._stop_looking()
-        stop_asking(context)
         context.window_manager.event_timer_remove(self._timer)
         self._timer = None
-        with reported(self):
-            self.begin(context)
-            return {"RUNNING_MODAL"}
-        self.cancel(context)
-        return {"CANCELLED"}
+        return self.look(context)
 
     def cancel(self, context: bpy.types.Context) -> None:
         self._stop_looking()
         end_picked()
-        stop_asking(context)
-        if self._masks_before is not None:
-            show_masks(context, self._masks_before)
         super().cancel(context)
 
     def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
@@ -152,8 +161,7 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         return (yield from search_markers(scene, colors))
 
     def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
-        for sentence in write_search(scene, result, masks=self._colors is not None):
-            warn(self, sentence)
+        write_and_warn(self, scene, result, masks=self._colors is not None)
         self.report({"INFO"}, f"{len(result.colors)} markers are picked")
 
     def _begin_to_look(self, context: bpy.types.Context) -> None:
@@ -163,7 +171,7 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         search = find_markers(footage_of(context.scene, take), styles, ignored_regions(take))
         self._looking = _seen(take.identifier, styles, search)
 
-    def _look(self, context: bpy.types.Context) -> None:
+    def _go_on_looking(self, context: bpy.types.Context) -> None:
         """Go on looking for the colors picked so far; at the end show their masks."""
         if self._looking is None:
             return
@@ -189,13 +197,13 @@ def _seen(identifier: str, styles: "tuple[MarkerStyle, ...]", search: "Job[Marke
     show_picked(identifier, styles, (yield from search))
 
 
-class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
+class KEYMARK_OT_pick_marker_color(MarkerTool, bpy.types.Operator):
     """Click on this one marker in the footage, to take its color from there and look for it in the clip"""
 
-    bl_idname = "keymark.pick_marker_color"
     bl_label = "Pick Marker Color"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, markers, idle)
+    cursor = "EYEDROPPER"
+    ends_beside = False
 
     pixel: Vector(
         "Pixel", "Where to pick, in pixels of the footage from its top left corner", size=2, options=SKIP_SAVE
@@ -204,51 +212,16 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         "Row", "Row of the marker in the list, from 0; -1 for the active one", default=-1, options=SKIP_SAVE
     )
 
-    _masks_before: bool | None = None
-    """Whether masks were shown before the eyedropper; None in a script, which shows none."""
+    def prepare(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+        super().prepare(context, take)
+        show_masks(context, False)  # the footage itself is what is clicked on
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        take = active_take(context.scene)
-        if not footage_is_shown(self, context, take):
-            return {"CANCELLED"}
-        segment = self._marker(take).segment
-        context.window_manager.keymark_progress.show("", 0.0)
-        self._masks_before = show_masks(context, False)  # the footage itself is what is clicked on
-        context.window.cursor_modal_set("EYEDROPPER")
-        ask(context, request_for(segment), "Esc: Cancel")
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
+    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+        return request_for(self._marker(active_take(context.scene)).segment), "Esc: Cancel"
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if self._job is not None:
-            return super().modal(context, event)
-        if cancel_click(self, context, event):
-            return {"CANCELLED"}
-        follow_mouse(context, event)
-        if event.type == "LEFTMOUSE" and event.value == "PRESS":
-            return self._clicked(context, event)
-        # Navigation: the animator may zoom in on the marker or go to another frame.
-        return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
-
-    def _clicked(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
-        if pixel is None:
-            sentence = "That is not on the footage; click on a marker in it   |   Esc: Cancel"
-            context.workspace.status_text_set(sentence)
-            return {"RUNNING_MODAL"}
+    def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
         self.pixel = pixel
-        stop_asking(context)
-        with reported(self):
-            self.begin(context)
-            return {"RUNNING_MODAL"}
-        self.cancel(context)
-        return {"CANCELLED"}
-
-    def cancel(self, context: bpy.types.Context) -> None:
-        stop_asking(context)
-        if self._masks_before is not None:
-            show_masks(context, self._masks_before)
-        super().cancel(context)
+        return self.look(context)
 
     def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
         """The color is read from the clip's file: the viewport's has gone through color management."""
@@ -259,7 +232,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         return (yield from search_markers(scene, {name: color}))
 
     def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
-        write_search(scene, result, masks=self._masks_before is not None)
+        write_search(scene, result, masks=self.masks_before is not None)
         ((name, color),) = result.colors.items()
         marker = next(each for each in take_by_identifier(scene, result.take).markers if each.name == name)
         for sentence in marker.warning.splitlines():
@@ -270,22 +243,3 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
     def _marker(self, take: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
         row = int(take.active_marker) if self.row < 0 else self.row
         return take.markers[min(row, len(take.markers) - 1)]
-
-
-class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
-    """Look for the markers in frames all over the clip: how large, distinct and reliably found each one is"""
-
-    bl_idname = "keymark.check_markers"
-    bl_label = "Check Markers"
-    bl_options = {"REGISTER", "UNDO"}
-    requirements = (footage, markers, picked_color, idle)
-
-    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
-        return search_markers(scene)
-
-    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
-        warnings = write_search(scene, result)
-        for sentence in warnings:
-            warn(self, sentence)
-        if not warnings:
-            self.report({"INFO"}, f"All {len(result.styles)} markers with a color are found well")

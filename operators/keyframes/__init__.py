@@ -9,6 +9,6 @@ MODULES = (
     "drag_joints",
     "panel",
     "pose_all",
+    "candidates",
     "change_match",
-    "found_panel",
 )

@@ -1,14 +1,15 @@
-"""A corrected pose: what is shown now, and how a correction is set and kept."""
+"""A corrected pose: how a correction is set and kept; copying a neighbor, turning, flipping depth."""
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
-from ...core.body.human import HUMAN
+from ...core.body.human import HUMAN, TRUNK, limb_of
 from ...core.errors import InputError
 from ..follow.evidence import points_to_follow, scene_evidence
-from ..shell.base_operator import BaseOperator
+from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.fields import SKIP_SAVE, Choice, Switch
 from ..shell.job_progress import job_is_running
 from ..shell.keyed_frames import (
@@ -21,10 +22,9 @@ from ..shell.keyed_frames import (
 )
 from ..shell.requirements import actor, camera, footage, idle, keyframes
 from ..shell.results import reading_of
-from ..shell.takes import active_take, footage_of, redraw_footage
-from .flip_ways import TITLES, limb_selected, next_way, selected_limbs
+from ..shell.takes import active_take, find_take, footage_of, redraw_footage
 from .found_keyframes import known_matches
-from .store_keyframe import key_pose, note_corrected
+from .store_keyframe import SAME_POSE, key_pose, note_corrected
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -55,6 +55,11 @@ def camera_now(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Camera
     return read_camera(footage_of(scene, take), np.array([scene.frame_current_final]))
 
 
+def is_keyed(take: bpy.types.PropertyGroup, frame: float) -> bool:
+    """Whether a frame holds a keyframe."""
+    return take.keyframe_action is not None and has_frame(keyframes_of(take), frame)
+
+
 def set_corrected(
     operator: bpy.types.Operator,
     context: bpy.types.Context,
@@ -74,7 +79,7 @@ def set_corrected(
     invalidate_keyed_frames()
     redraw_footage(context)
     frame = context.scene.frame_current_final
-    if take.keyframe_action is None or not has_frame(keyframes_of(take), frame):
+    if not is_keyed(take, frame):
         note_corrected(take, frame, in_depth)
         return
     improved = key_pose(context, take, depth_found=not in_depth and depth_is_found(take, frame))
@@ -97,9 +102,7 @@ def put_right(
     where the points lie in the view, by name.
     """
     frame = scene.frame_current_final
-    if take.keyframe_action is None or not has_frame(keyframes_of(take), frame):
-        return shown
-    if not depth_is_found(take, frame):
+    if not is_keyed(take, frame) or not depth_is_found(take, frame):
         return shown
     from ...core.posing import picture_depth
     from ..library.registry_files import named_libraries
@@ -129,9 +132,9 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        return next(text for name, _, text in DIRECTIONS if name == properties.direction)
+        return {name: text for name, _, text in DIRECTIONS}[properties.direction]
 
-    def run(self, context: bpy.types.Context) -> set[str] | None:
+    def run(self, context: bpy.types.Context) -> None:
         """Copy everything but the place."""
         from ...core.body.posture import Posture
         from ..bridge.pose import read_posture
@@ -139,11 +142,14 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
 
         take, scene = active_take(context.scene), context.scene
         invalidate_keyed_frames()
-        neighbor = _neighbor(keyframes_of(take), scene.frame_current_final, self.direction)
+        now, keyed = scene.frame_current_final, keyframes_of(take)
+        if self.direction == "NEXT":
+            neighbor = min((frame for frame in keyed if frame > now + SAME_FRAME), default=None)
+        else:
+            neighbor = max((frame for frame in keyed if frame < now - SAME_FRAME), default=None)
         if neighbor is None:
             side = "after" if self.direction == "NEXT" else "before"
-            self.report({"INFO"}, f"There is no keyframe {side} this frame")
-            return {"CANCELLED"}
+            raise Unchanged(f"there is no keyframe {side} this frame")
         body, here = shown_pose(take)
         with showing_action(take.armature, take.keyframe_action), at_scene_frame(scene) as go_to:
             go_to(neighbor)
@@ -151,14 +157,6 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
         posture = Posture(HUMAN, here.translation, there.rotations, there.angles)
         set_corrected(self, context, take, posture, in_depth=not depth_is_found(take, neighbor))
         self.report({"INFO"}, f"Pose of frame {neighbor:g}, at the place of this one")
-        return None
-
-
-def _neighbor(frames: tuple[float, ...], here: float, direction: str) -> float | None:
-    """The nearest keyed frame on one side of a frame."""
-    if direction == "NEXT":
-        return min((frame for frame in frames if frame > here + SAME_FRAME), default=None)
-    return max((frame for frame in frames if frame < here - SAME_FRAME), default=None)
 
 
 FACINGS = (
@@ -178,9 +176,7 @@ SIDES = (
 class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
     """Turn the performer to face this way, at the same place, and fit the pose to the footage again"""
 
-    bl_idname = "keymark.turn_performer"
     bl_label = "Turn"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, camera, actor, idle)
 
     facing: Choice("Facing", "Where the performer faces", items=FACINGS)
@@ -193,8 +189,8 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        said = next(text for name, _, text in FACINGS if name == properties.facing)
-        return f"{said}, at the same place; the pose is fitted to the footage again"
+        facing = {name: text for name, _, text in FACINGS}[properties.facing]
+        return f"{facing}, at the same place; the pose is fitted to the footage again"
 
     def run(self, context: bpy.types.Context) -> None:
         from ...core.posing.turned import Facing, Sides, facing_of, turned
@@ -202,17 +198,17 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
         take, scene = active_take(context.scene), context.scene
         seen = camera_now(scene, take)
         body, posture = shown_pose(take)
-        wanted = list(Sides) if self.sides == "AUTO" else [Sides[self.sides]]
         facing = Facing[self.facing]
+        wanted = list(Sides) if self.sides == "AUTO" else [Sides[self.sides]]
         ways = [turned(body, posture, seen, facing, sides) for sides in wanted]
         found = _fitted(context, take, ways) if self.fit and points_to_follow(context) is None else []
         # A fit may turn the performer on: what faces elsewhere is not what was asked for.
         fitted = next((each for each in found if facing_of(each, seen) is facing), None)
         chosen = fitted or min(ways, key=lambda way: way.strain).posture
         set_corrected(self, context, take, chosen, in_depth=True)
-        said = next(name for value, name, _ in FACINGS if value == self.facing)
-        fits = f"Turned and fitted: {said}"
-        self.report({"INFO"}, fits if fitted is not None else f"Turned: {said}; not fitted to the footage")
+        title = {name: title for name, title, _ in FACINGS}[self.facing]
+        fits = f"Turned and fitted: {title}"
+        self.report({"INFO"}, f"Turned: {title}; not fitted to the footage" if fitted is None else fits)
 
 
 def _fitted(
@@ -241,17 +237,67 @@ def _fitted(
     return [posture for _, posture in sorted(found, key=lambda each: each[0])]
 
 
+# --- Flipping the depth of a part of the body
+
+
+LIMBS = {
+    "arm.L": "left arm",
+    "arm.R": "right arm",
+    "leg.L": "left leg",
+    "leg.R": "right leg",
+    TRUNK: "trunk",
+}
+"""Names of the parts of the body, the performer's own left and right."""
+
+
+def selected_limbs(take: bpy.types.PropertyGroup) -> list[str]:
+    """The parts of the body of which a bone is selected, in the order of `LIMBS`; the active one alone.
+
+    With all bones of the actor selected, as by A, nothing is meant in particular but the active bone.
+    """
+    active = take.armature.data.bones.active
+    chosen = {
+        limb_of(bone.name)
+        for bone in take.armature.pose.bones
+        # Blender 5.0 moved the selection from bones to pose bones.
+        if (bone.select if hasattr(bone, "select") else bone.bone.select)
+    }
+    if len(chosen) == len(LIMBS):
+        return [limb_of(active.name)] if active is not None else []
+    return [name for name in LIMBS if name in chosen]
+
+
 def limb_chosen(context: bpy.types.Context) -> str | None:
-    """A limb is selected, or joints are being dragged, where the one under the mouse counts."""
-    return None if job_is_running(context, DRAGGING) else limb_selected(context)
+    """A bone is selected in Pose Mode, or joints are being dragged, where the one under the mouse counts."""
+    take = find_take(context.scene)
+    if job_is_running(context, DRAGGING) or take is None or take.armature is None:
+        return None  # without an actor another requirement's
+    if take.armature.mode != "POSE" or not selected_limbs(take):
+        return "Select a bone of an arm, a leg or the trunk in Pose Mode first"
+    return None
+
+
+@dataclass(frozen=True, eq=False)
+class Ways:
+    """A posture and the ways to flip it, the most plausible first."""
+
+    key: tuple[int, float, str]  # Number of the armature in this session, scene frame, part of the body
+    postures: "tuple[Posture, ...]"  # The first is the one that was flipped
+
+    def shown(self, posture: "Posture") -> int | None:
+        """Which of the ways a posture is; None where it is none of them."""
+        apart = [float(np.abs(posture.minus(way)).max()) for way in self.postures]
+        nearest = int(np.argmin(apart))
+        return nearest if apart[nearest] < SAME_POSE else None
+
+
+_last: dict[str, Ways] = {}  # The last ways by part of the body
 
 
 class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
     """Lean the selected limb away from the camera, not toward it, or back; press again for other ways"""
 
-    bl_idname = "keymark.flip_depth"
     bl_label = "Flip Depth"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, camera, actor, limb_chosen, idle)
 
     limb: Choice(
@@ -259,12 +305,15 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
         "The part of the body that is flipped",
         items=[
             ("SELECTED", "Selected", "The part of which a bone is selected"),
-            *((name, title, "This part of the body") for name, title in TITLES.items()),
+            *((name, words.title(), "This part of the body") for name, words in LIMBS.items()),
         ],
         options=SKIP_SAVE,
     )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Show of each part the way after the one that is shown, from the last back to the first."""
+        from ...core.posing.depth_flip import flipped
+
         take, scene = active_take(context.scene), context.scene
         limbs = selected_limbs(take) if self.limb == "SELECTED" else [self.limb]
         if not limbs:
@@ -272,19 +321,24 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
             return {"CANCELLED"}
         seen = camera_now(scene, take)
         body, posture = shown_pose(take)
-        said = []
+        words = []
         for limb in limbs:
-            found = next_way(take.armature, scene.frame_current_final, limb, body, posture, seen)
-            if found is not None:
-                posture, number, count = found
-                said.append(
-                    f"{TITLES[limb]}: way {number} of {count}" if number else f"{TITLES[limb]} as it was"
-                )
-        if not said:
+            key, ways = (take.armature.session_uid, scene.frame_current_final, limb), _last.get(limb)
+            shown = None if ways is None or ways.key != key else ways.shown(posture)
+            if ways is None or shown is None:
+                ways, shown = Ways(key, (posture, *flipped(body, posture, seen, limb))), 0
+                _last[limb] = ways
+            count = len(ways.postures)
+            if count > 1:
+                number = (shown + 1) % count
+                posture = ways.postures[number]
+                way = f": way {number} of {count - 1}" if number else " as it was"
+                words.append(f"{LIMBS[limb].title()}{way}")
+        if not words:
             self.report(
                 {"WARNING"}, "The selected part lies flat in the picture, or its joints allow no other way"
             )
             return {"CANCELLED"}
         set_corrected(self, context, take, posture, in_depth=True)
-        self.report({"INFO"}, "; ".join(said))
+        self.report({"INFO"}, "; ".join(words))
         return None

@@ -7,15 +7,13 @@ import bpy
 import numpy as np
 
 from ..follow.evidence import points_to_follow, scene_evidence
-from ..overlays.candidates import look_at
 from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
-from ..shell.fields import Choice, Integer
-from ..shell.keyed_frames import offered_at, show_keyframes
+from ..shell.fields import Choice
+from ..shell.keyed_frames import show_keyframes
 from ..shell.requirements import actor, camera, footage, idle
 from ..shell.results import reading_of
-from ..shell.takes import active_take, find_take, footage_of
-from .candidate_buttons import candidate_title
+from ..shell.takes import active_take, footage_of
 from .found_keyframes import known_matches
 from .store_keyframe import note_corrected
 
@@ -35,52 +33,10 @@ def offer_poses(take: bpy.types.PropertyGroup, frame: float, candidates: Sequenc
         add_candidate(offered, each.posture, each.name, each.mirrored, each.confidence)
 
 
-class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
-    """Pose the actor like this; nothing is keyed until you store it"""
-
-    bl_label = "Show Candidate"
-    requirements = (actor, idle)
-
-    candidate: Integer("Candidate", "Index of the pose; 0 is the likeliest", default=0, min=0)
-
-    @classmethod
-    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        take = find_take(context.scene)
-        offered = None if take is None else offered_at(take, context.scene.frame_current_final)
-        if offered is None or properties.candidate >= len(offered.candidates):
-            return str(cls.__doc__)
-        look_at(context, properties.candidate)
-        said = candidate_title(offered, offered.candidates[properties.candidate])
-        return f"{said}. Pose the actor like this; nothing is keyed until you store it"
-
-    def run(self, context: bpy.types.Context) -> set[str] | None:
-        from ..bridge.keyframes import candidate_posture
-        from ..bridge.pose import write_posture
-
-        take, frame = active_take(context.scene), context.scene.frame_current_final
-        offered = offered_at(take, frame)
-        if offered is None:
-            self.report({"ERROR"}, f"Frame {frame:g} offers no poses; fit it to the footage first")
-            return {"CANCELLED"}
-        if self.candidate >= len(offered.candidates):
-            count = len(offered.candidates)
-            sentence = f"Frame {frame:g} offers {count} poses; candidate must be 0 to {count - 1}"
-            self.report({"ERROR"}, sentence)
-            return {"CANCELLED"}
-        show_keyframes(take)
-        write_posture(take.armature, candidate_posture(offered.candidates[self.candidate]))
-        if offered.chosen != self.candidate:
-            note_contradictions(take, frame, ())
-        offered.chosen = self.candidate
-        return None
-
-
 class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
     """Pose the actor so that markers and keypoints lie where this frame has them; you decide what is keyed"""
 
-    bl_idname = "keymark.fit_pose"
     bl_label = "Fit Pose to Footage"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, camera, actor, points_to_follow, idle)
 
     start: Choice(

@@ -1,24 +1,80 @@
 """The panel of the third step: poses found or posed, the choice for a frame, and corrections."""
 
 import bpy
+from bpy.types import Context, PropertyGroup, UILayout
 
+from ...core.prior.texts import COMPOSED
+from ..overlays.drawing import candidate_icon
+from ..shell.contradictions import contradictions_at
 from ..shell.job_progress import job_is_running, steady_frame
 from ..shell.keyed_frames import (
+    DOUBTFUL,
+    count_found,
     has_frame,
     keyframes_of,
     matched_frames,
     offered_at,
     posed_frames,
     proposed_frames,
+    state_of,
     unposed_proposals,
 )
-from ..shell.panel import Popover, draw_contradictions, draw_progress, draw_sentence, side_by_side
+from ..shell.panel import (
+    Popover,
+    RowList,
+    draw_contradictions,
+    draw_progress,
+    draw_sentence,
+    right_end,
+    side_by_side,
+)
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
-from .candidate_buttons import draw_candidates, draw_candidates_head
-from .corrections import DRAGGING
-from .flip_ways import TITLES, selected_limbs
-from .found_panel import draw_found
+from .candidates import candidate_title
+from .corrections import DRAGGING, LIMBS, selected_limbs
+
+MOST_SHOWN = 4  # candidates, the likeliest; with more the step would not fit the sidebar of a small screen
+STATES = {"POSED": ("KEYFRAME_HLT", "posed"), "GONE": ("X", "no key")}
+"""Icon and words of what is no found keyframe any more."""
+
+
+class KEYMARK_UL_matches(RowList, bpy.types.UIList):
+    """Found keyframes: frame, posture and confidence."""
+
+    def draw_row(self, context: Context, layout: UILayout, item: PropertyGroup) -> None:
+        take = active_take(context.scene)
+        state = state_of(take, item)
+        row = layout.row(align=True)
+        row.active = state != "GONE"
+        number = row.row()
+        number.ui_units_x = 1.6
+        number.label(text=f"{item.frame:g}", translate=False)
+        is_found = state == "FOUND"
+        icon, words = _how_sure(take, item) if is_found else STATES[state]
+        shown = item.candidate
+        named = is_found and item.library != COMPOSED  # a composed one has the name of any that it resembles
+        row.label(text=shown.name if named else words, icon=icon, translate=False)
+        if named and shown.mirrored:
+            row.label(text="", icon="MOD_MIRROR")
+        if is_found:
+            _draw_percent(row, item.confidence)
+
+
+def _how_sure(take: PropertyGroup, match: PropertyGroup) -> tuple[str, str]:
+    """Icon and words of a found keyframe: chosen by hand, contradicted, sure, fair or doubtful."""
+    if match.by_hand:
+        return "VIEW_PAN", "chosen"
+    if contradictions_at(take, match.frame):
+        return "ERROR", "contradicted"
+    if match.confidence < DOUBTFUL:
+        return "QUESTION", "doubtful"
+    return ("CHECKMARK", "sure") if match.confidence >= 0.8 else ("DOT", "likely")
+
+
+def _draw_percent(row: UILayout, share: float) -> None:
+    end = right_end(row)
+    end.ui_units_x = 2.1
+    end.label(text=f"{100.0 * share:.0f} %", translate=False)
 
 
 class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
@@ -29,16 +85,14 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
     options = "KEYMARK_PT_keyframes_options"
 
     @classmethod
-    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+    def summary(cls, take: PropertyGroup) -> str:
         return f"{len(keyframes_of(take))} keyed" if take.keyframe_action else ""
 
     @classmethod
-    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+    def action(cls, take: PropertyGroup) -> tuple[str, str]:
         return ("keymark.pose_all", "Pose All") if take.keyframe_action is None else ("", "")
 
-    def draw_step(
-        self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup
-    ) -> None:
+    def draw_step(self, context: Context, body: UILayout, take: PropertyGroup) -> None:
         column = body.column()
         everything = column.row(align=True)
         everything.scale_y = 1.4
@@ -46,16 +100,66 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
             everything.operator("keymark.pose_all", icon="OUTLINER_OB_ARMATURE")
             everything.popover("KEYMARK_PT_libraries", text="", icon="ASSET_MANAGER")
         if len(take.matching.matches):
-            draw_found(column, context, take)
+            _draw_found(column, context, take)
         else:
             _draw_proposed(column, context, take)
         _draw_here(column, context, take)
         _draw_corrections(column, context, take)
 
 
-def _draw_proposed(
-    column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-) -> None:
+def _draw_found(column: UILayout, context: Context, take: PropertyGroup) -> None:
+    """Draw found keyframes, the way to the next doubtful one, and the choice among a frame's candidates."""
+    matching = take.matching
+    source = (matching, "matches", matching, "shown_match")
+    column.template_list("KEYMARK_UL_matches", "", *source, rows=3, maxrows=3)
+    count, doubtful = count_found(take)
+    row = column.row(align=True)
+    going = row.row(align=True)
+    going.enabled = doubtful > 0
+    words = f"Next Doubtful ({doubtful} of {count})" if doubtful else f"None of {count} Doubtful"
+    jump = going.operator("keymark.jump_to_match", text=words, translate=False, icon="NEXT_KEYFRAME")
+    jump.direction, jump.only_doubtful = "NEXT", True
+    _draw_side_view(row, context)
+    if matching.shown_match >= len(matching.matches):
+        return
+    match = matching.matches[matching.shown_match]
+    box = column.column(align=True)
+    is_found = state_of(take, match) == "FOUND"
+    _draw_candidates(box, match, "keymark.replace_match", is_found)
+    row = column.row(align=True)
+    accept = row.row(align=True)
+    accept.enabled = is_found
+    accept.operator("keymark.accept_match", icon="CHECKMARK")
+    row.operator("keymark.remove_match", icon="X")
+
+
+def _draw_side_view(row: UILayout, context: Context) -> None:
+    """Draw the button that looks at candidates from the side."""
+    aside = context.space_data.region_3d.view_perspective != "CAMERA"
+    row.operator("keymark.look_from_side", text="", icon="AXIS_SIDE", depress=aside)
+
+
+def _draw_candidates(layout: UILayout, match: PropertyGroup, operator: str, is_shown: bool = True) -> None:
+    """Draw a row for each of a frame's likeliest candidates; its button calls an operator with its index.
+
+    None is marked where the frame was posed in another way.
+    """
+    for index, candidate in enumerate(match.candidates[:MOST_SHOWN]):
+        row = layout.row(align=True)
+        button = row.operator(
+            operator,
+            text=f"{index + 1}  {candidate_title(match, candidate)}",
+            translate=False,
+            icon=candidate_icon(index),
+            depress=is_shown and index == match.chosen,
+        )
+        button.candidate = index
+        if candidate.mirrored and match.library != COMPOSED:
+            row.label(text="", icon="MOD_MIRROR")
+        _draw_percent(row, candidate.confidence)
+
+
+def _draw_proposed(column: UILayout, context: Context, take: PropertyGroup) -> None:
     """Draw how many of the proposed frames are posed and the way to the next, or the button that proposes."""
     proposed, left, posed = len(proposed_frames(take)), len(unposed_proposals(take)), len(posed_frames(take))
     if not proposed:
@@ -71,13 +175,13 @@ def _draw_proposed(
     row.operator("keymark.jump_to_proposal", text="", icon="NEXT_KEYFRAME").direction = "NEXT"
 
 
-def _draw_propose(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def _draw_propose(layout: UILayout, context: Context) -> None:
     """Draw the button that proposes frames, or the progress of its job."""
     if not draw_progress(layout, context, "keymark.propose_keyframes"):
         layout.operator("keymark.propose_keyframes", icon="MARKER_HLT")
 
 
-def _draw_here(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+def _draw_here(column: UILayout, context: Context, take: PropertyGroup) -> None:
     """Draw what this frame holds, what contradicts in it, and how its pose is fitted and stored."""
     frame = round(steady_frame(context))
     data = take.armature.animation_data if take.armature is not None else None
@@ -101,30 +205,24 @@ def _draw_here(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy
         row.operator("keymark.store_keyframe", icon="KEY_HLT")
     offered = offered_at(take, context.scene.frame_current_final)
     if offered is not None:
-        draw_candidates_head(posing, context, offered)
-        draw_candidates(posing, offered, "keymark.show_offered")
+        head = posing.row(align=True)
+        head.label(text=f"Frame {offered.frame:g} may show", translate=False)
+        _draw_side_view(head, context)
+        _draw_candidates(posing, offered, "keymark.show_offered")
 
 
-def _draw_corrections(
-    column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-) -> None:
+def _draw_corrections(column: UILayout, context: Context, take: PropertyGroup) -> None:
     """Draw dragging joints, flipping depth, turning the performer, and copying a neighbor."""
     correcting = column.column(align=True)
     running = job_is_running(context, DRAGGING)
     correcting.operator(DRAGGING, icon="EMPTY_ARROWS", depress=running)
     row = side_by_side(correcting)
-    row.operator("keymark.flip_depth", text=_flipped(take), translate=False, icon="MOD_MIRROR")
+    posing = take.armature is not None and take.armature.mode == "POSE"
+    limbs = selected_limbs(take) if posing else []
+    flip = f"Flip {LIMBS[limbs[0]].title()}" if len(limbs) == 1 else "Flip Depth"
+    row.operator("keymark.flip_depth", text=flip, translate=False, icon="MOD_MIRROR")
     row.operator_menu_enum("keymark.turn_performer", "facing", icon="FILE_REFRESH")
     correcting.operator_menu_enum("keymark.copy_neighbor", "direction", icon="COPYDOWN")
-
-
-def _flipped(take: bpy.types.PropertyGroup) -> str:
-    """What the button says that flips depth: the part of the body, where one alone is selected."""
-    if take.armature is not None and take.armature.mode == "POSE":
-        limbs = selected_limbs(take)
-        if len(limbs) == 1:
-            return f"Flip {TITLES[limbs[0]]}"
-    return "Flip Depth"
 
 
 class KEYMARK_PT_keyframes_options(Popover, bpy.types.Panel):
@@ -132,7 +230,7 @@ class KEYMARK_PT_keyframes_options(Popover, bpy.types.Panel):
 
     bl_label = "Options of Poses"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         take, column = active_take(context.scene), self.column()
         matching = take.matching
         if matching.reason:

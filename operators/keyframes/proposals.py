@@ -8,7 +8,7 @@ import bpy
 from ...core.progress import within
 from ..bridge.scene_frames import scene_frames
 from ..follow.evidence import scene_evidence
-from ..shell.base_operator import BaseOperator, warn
+from ..shell.base_operator import BaseOperator, Unchanged, warn
 from ..shell.fields import Choice, Switch
 from ..shell.job_operator import JobOperator
 from ..shell.keyed_frames import invalidate_keyed_frames, proposed_frames, unposed_proposals
@@ -89,9 +89,7 @@ def proposals(context: bpy.types.Context) -> str | None:
 class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
     """Go to the next or the previous proposed keyframe"""
 
-    bl_idname = "keymark.jump_to_proposal"
     bl_label = "Jump to Proposed Keyframe"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (proposals,)
 
     direction: Choice(
@@ -114,22 +112,18 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
             return "Go to the next proposed keyframe that is not posed yet"
         return f"Go to the {properties.direction.lower()} proposed keyframe"
 
-    def run(self, context: bpy.types.Context) -> set[str] | None:
+    def run(self, context: bpy.types.Context) -> None:
         scene, take = context.scene, find_take(context.scene)
         invalidate_keyed_frames()
         frames = unposed_proposals(take) if self.skip_posed else proposed_frames(take)
         if not frames:
-            self.report({"INFO"}, "All proposed keyframes are posed")
-            return {"CANCELLED"}
+            raise Unchanged("all proposed keyframes are posed")
         ahead = [frame for frame in frames if frame > scene.frame_current]
         behind = [frame for frame in frames if frame < scene.frame_current]
         if self.skip_posed:  # wraps around the ends
             ahead, behind = ahead or frames, behind or frames
         is_next = self.direction == "NEXT"
         if not (ahead if is_next else behind):
-            self.report(
-                {"INFO"}, f"There is no proposed keyframe {'after' if is_next else 'before'} this frame"
-            )
-            return {"CANCELLED"}
+            side = "after" if is_next else "before"
+            raise Unchanged(f"there is no proposed keyframe {side} this frame")
         scene.frame_set(ahead[0] if is_next else behind[-1])
-        return None

@@ -12,7 +12,7 @@ from ...core.errors import KeymarkError
 from ...core.progress import run
 from ..bridge.actions import assign_action
 from ..follow.evidence import followed_markers
-from ..follow.ignored_regions import ignored_regions
+from ..follow.marker_properties import ignored_regions
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.contradictions import note_contradictions
 from ..shell.keyed_frames import (

@@ -9,11 +9,9 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
-from ..bridge.camera_placement import read_lens
-from ..shell.footage_view import FootageView, footage_view
 from ..shell.keyed_frames import match_at, offered_at, shows_keyframes, state_of
 from ..shell.results import LruCache
-from ..shell.takes import find_take, footage_of, redraw_footage
+from ..shell.takes import find_take, redraw_footage
 from . import drawing
 from .drawing import (
     CANDIDATE_COLORS,
@@ -26,10 +24,9 @@ from .drawing import (
     Stroke,
     Style,
     body_scale,
-    paint,
 )
 from .figures import limb_lines
-from .views import world_view
+from .views import motion_view
 
 _points: "LruCache[Array]" = LruCache()
 """(N, 13, 3) points of a found keyframe's candidates, by what they depend on."""
@@ -60,29 +57,21 @@ def candidate_color(index: int) -> Color:
     return (red, green, blue, GHOST)
 
 
-def draw(context: bpy.types.Context) -> None:
-    """Draw into the region that Blender is drawing."""
-    scene, space = context.scene, context.space_data
+def draw(context: bpy.types.Context) -> list[Item]:
+    """The figure of the candidate, at a frame that nobody has decided on."""
+    scene = context.scene
     settings, take = scene.keymark.overlays, find_take(scene)
-    hidden = space.type == "VIEW_3D" and not space.overlay.show_overlays
-    if take is None or hidden or not settings.show_candidates or context.screen.is_animation_playing:
-        return
+    if take is None or not settings.show_candidates or context.screen.is_animation_playing:
+        return []
     candidate = looked_at(scene)
     if candidate < 0 or take.armature is None or not shows_keyframes(take):
-        return
-    match = _shown(take, scene.frame_current_final)
+        return []
+    match, view = _shown(take, scene.frame_current_final), motion_view(context, take)
     # The frame may have got other candidates since.
-    if match is None or candidate == match.chosen or candidate >= len(match.candidates):
-        return
-    points = candidate_points(take.armature, match)
-    footage = footage_view(scene, take, context.area, context.region)
-    if space.type == "VIEW_3D":
-        positions = world_view(context.region, context.region_data, footage).project(points)
-    elif footage is not None and take.camera is not None:
-        positions = over_footage(scene, take, footage, points)
-    else:
-        return
-    paint(picture(positions, candidate, match.chosen, settings))
+    if match is None or view is None or candidate == match.chosen or candidate >= len(match.candidates):
+        return []
+    positions = view.project(candidate_points(take.armature, match))
+    return picture(positions, candidate, match.chosen, settings)
 
 
 def _shown(take: bpy.types.PropertyGroup, frame: float) -> bpy.types.PropertyGroup | None:
@@ -110,16 +99,6 @@ def candidate_points(armature_object: bpy.types.Object, match: bpy.types.Propert
     points = _points.get(key, found)
     assert points is not None
     return points
-
-
-def over_footage(
-    scene: bpy.types.Scene, take: bpy.types.PropertyGroup, footage: FootageView, points: Array
-) -> Array:
-    """Region pixels (..., 2) of points (..., 3) as the take's camera sees them; NaN behind it."""
-    source = footage_of(scene, take)
-    to_camera = np.array(source.camera.matrix_world.normalized().inverted(), dtype=np.float64)
-    pixels, depth = read_lens(source).project(points @ to_camera[:3, :3].T + to_camera[:3, 3])
-    return footage.to_region(np.where((depth > 0.0)[..., None], pixels, np.nan))
 
 
 def picture(positions: Array, candidate: int, chosen: int, settings: bpy.types.PropertyGroup) -> list[Item]:

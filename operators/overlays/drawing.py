@@ -54,45 +54,36 @@ def lines(segments: Array, color: ArrayLike, width: float = 1.5, halo: float = 0
 
 def _polyline(segments: Array, color: ArrayLike, width: float) -> None:
     colors = np.asarray(color, dtype=np.float32)
-    each = colors.ndim > 1
-    shader = gpu.shader.from_builtin("POLYLINE_SMOOTH_COLOR" if each else "POLYLINE_UNIFORM_COLOR")
-    content = {"pos": _positions(segments)}
-    if each:
-        content["color"] = np.repeat(colors, 2, axis=0)
-    batch = batch_for_shader(shader, "LINES", content)
+    kind = "POLYLINE_SMOOTH_COLOR" if colors.ndim > 1 else "POLYLINE_UNIFORM_COLOR"
+    shader = gpu.shader.from_builtin(kind)
+    each = np.repeat(colors, 2, axis=0) if colors.ndim > 1 else colors
+    batch = _batch(shader, "LINES", segments, each)
     shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
     shader.uniform_float("lineWidth", width * ui_scale())
-    if not each:
-        shader.uniform_float("color", tuple(colors.tolist()))
     batch.draw(shader)
 
 
 def polygons(corners: ArrayLike, color: ArrayLike) -> None:
     """Fill convex polygons (N, K, D), without those that are not finite; colors are (4,) or (N, 4)."""
     points = np.asarray(corners, dtype=np.float64)
-    if not len(points):
-        return
     colors = np.asarray(color, dtype=np.float32)
     whole = np.isfinite(points).all(axis=(-2, -1))
-    content = {"pos": _positions(triangles(points[whole]))}
-    if not len(content["pos"]):
+    if not whole.any():
         return
-    if colors.ndim == 1:
-        shader = gpu.shader.from_builtin("UNIFORM_COLOR")
-        batch = batch_for_shader(shader, "TRIS", content)
-        shader.uniform_float("color", tuple(colors.tolist()))
-    else:
-        shader = gpu.shader.from_builtin("SMOOTH_COLOR")
-        content["color"] = np.repeat(colors[whole], 3 * (points.shape[-2] - 2), axis=0)
-        batch = batch_for_shader(shader, "TRIS", content)
-    batch.draw(shader)
+    if colors.ndim > 1:
+        colors = np.repeat(colors[whole], 3 * (points.shape[-2] - 2), axis=0)
+    shader = gpu.shader.from_builtin("SMOOTH_COLOR" if colors.ndim > 1 else "UNIFORM_COLOR")
+    _batch(shader, "TRIS", triangles(points[whole]), colors).draw(shader)
 
 
-def _positions(points: Array) -> SingleArray:
-    """Vertices (V, 3): the polyline shaders take no plane coordinates."""
-    flat = np.zeros((points.size // points.shape[-1], 3), dtype=np.float32)
+def _batch(shader: gpu.types.GPUShader, kind: str, points: Array, colors: SingleArray) -> gpu.types.GPUBatch:
+    """Points (..., D) with one color (4,), or one each, as a batch of a shader that is now in use."""
+    flat = np.zeros((points.size // points.shape[-1], 3), dtype=np.float32)  # polylines take no plane ones
     flat[:, : points.shape[-1]] = points.reshape(-1, points.shape[-1])
-    return flat
+    batch = batch_for_shader(shader, kind, {"pos": flat} | ({"color": colors} if colors.ndim > 1 else {}))
+    if colors.ndim == 1:
+        shader.uniform_float("color", tuple(colors.tolist()))
+    return batch
 
 
 def texture(pixels: ArrayLike) -> gpu.types.GPUTexture:
@@ -249,9 +240,19 @@ class Label:
     y: float
     color: Color = INK
     align: Literal["left", "middle", "right"] = "left"
+    size: float = TEXT_SIZE  # in points, scaled with the user interface
 
 
-Item = Stroke | Fill | Label
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A texture, cut into triangles."""
+
+    texture: gpu.types.GPUTexture
+    corners: Array  # (N, 3, 2) region pixels
+    shares: Array  # (N, 3, 2) the same in the texture: of its width from the left, of its height from the top
+
+
+Item = Stroke | Fill | Label | Picture
 
 
 def paint(items: Iterable[Item]) -> None:
@@ -261,8 +262,22 @@ def paint(items: Iterable[Item]) -> None:
             lines(item.segments, item.color, item.width, item.halo)
         elif isinstance(item, Fill):
             polygons(item.corners, item.color)
+        elif isinstance(item, Picture):
+            _draw_picture(item)
         else:
-            text(item.words, item.x, item.y, item.color, align=item.align)
+            text(item.words, item.x, item.y, item.color, item.size, item.align)
+
+
+def _draw_picture(picture: Picture) -> None:
+    vertices = np.zeros((picture.corners.size // 2, 3), dtype=np.float32)
+    vertices[:, :2] = picture.corners.reshape(-1, 2)
+    # Textures begin at the bottom.
+    ends = (picture.shares.reshape(-1, 2) * [1.0, -1.0] + [0.0, 1.0]).astype(np.float32)
+    shader = gpu.shader.from_builtin("IMAGE_COLOR")
+    batch = batch_for_shader(shader, "TRIS", {"pos": vertices, "texCoord": ends})
+    shader.uniform_sampler("image", picture.texture)
+    shader.uniform_float("color", (1.0, 1.0, 1.0, 1.0))
+    batch.draw(shader)
 
 
 def merged(items: Iterable[Item]) -> list[Item]:
@@ -286,7 +301,7 @@ def merged(items: Iterable[Item]) -> list[Item]:
 def _kind(item: Item) -> tuple[object, ...]:
     if isinstance(item, Stroke):
         return ("stroke", item.width, item.halo)
-    return ("fill", item.corners.shape[-2]) if isinstance(item, Fill) else ("label",)
+    return ("fill", item.corners.shape[-2]) if isinstance(item, Fill) else (type(item).__name__,)
 
 
 def _joined(parts: list[tuple[Array, ArrayLike]]) -> tuple[Array, Array]:

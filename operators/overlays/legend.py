@@ -1,5 +1,6 @@
 """Legend in a corner of a region."""
 
+from dataclasses import dataclass
 from enum import Enum
 from functools import lru_cache
 
@@ -14,6 +15,7 @@ from .drawing import (
     RIGHT,
     SOURCES,
     THROWN_OUT,
+    Color,
     Fill,
     Item,
     Label,
@@ -30,25 +32,37 @@ VIEW_NAME = 40.0  # height of Blender's two lines on the view in the same corner
 THIN, THICK = 1.5, 3.6
 
 
+@dataclass(frozen=True)
+class Look:
+    """What a sample looks like."""
+
+    figure: str = ""  # line, limb, ring, cross or diamond; empty for none
+    color: Color = MIDDLE
+    dashed: bool = False
+    dotted: bool = False
+    hollow: bool = False
+    slanting: bool = False
+    framed: bool = False
+
+
 class Sample(Enum):
     """The sample at the start of a row."""
 
-    NONE = "none"
-    SOLID = "solid"
-    DASHED = "dashed"
-    PAST = "past"
-    FUTURE = "future"
-    LEFT = "left"
-    RIGHT = "right"
-    RING = "ring"
-    DIAMOND = "diamond"
-    SOURCE_1 = "first source"
-    SOURCE_2 = "second source"
-    SOURCE_3 = "third source"
-    SOURCE_4 = "fourth source"
-    EXPECTED = "expected"
-    THROWN_OUT = "thrown out"
-    SWAPPED = "swapped"
+    NONE = Look()
+    SOLID = Look("line")
+    DASHED = Look("line", dashed=True)
+    PAST = Look("line", dotted=True)
+    FUTURE = Look("line", dashed=True, dotted=True)
+    LEFT = Look("limb", LEFT)
+    RIGHT = Look("limb", RIGHT, hollow=True)
+    RING = EXPECTED = Look("ring")
+    DIAMOND = Look("diamond")
+    SOURCE_1 = Look("cross", SOURCES[0])
+    SOURCE_2 = Look("cross", SOURCES[1])
+    SOURCE_3 = Look("cross", SOURCES[2])
+    SOURCE_4 = Look("cross", SOURCES[3])
+    THROWN_OUT = Look("cross", THROWN_OUT, slanting=True)
+    SWAPPED = Look("cross", framed=True)
 
 
 SOURCE_SAMPLES = (Sample.SOURCE_1, Sample.SOURCE_2, Sample.SOURCE_3, Sample.SOURCE_4)
@@ -71,7 +85,7 @@ def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Ite
     y -= len(rows) * LINE * style.scale
     for row, (sample, words) in enumerate(reversed(rows)):
         base = y + row * LINE * style.scale
-        drawn = _sample(sample, x, base + 4.0 * style.scale, style)  # the letters' middle
+        drawn = _sample(sample.value, x, base + 4.0 * style.scale, style)  # the letters' middle
         strokes += [item for item in drawn if isinstance(item, Stroke)]
         fills += [item for item in drawn if isinstance(item, Fill)]
         indent = (SAMPLE + GAP_AFTER) * style.scale if drawn else 0.0
@@ -85,44 +99,31 @@ def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Ite
     return (Fill(ground, style.color(GROUND)), *strokes, *fills, *labels)
 
 
-def _sample(sample: Sample, x: float, y: float, style: Style) -> list[Item]:
-    color = style.color(MIDDLE)
-    line = np.array([[x, y], [x + SAMPLE * style.scale, y]])
+def _sample(look: Look, x: float, y: float, style: Style) -> list[Item]:
+    color, scale = style.color(look.color), style.scale
+    line = np.array([[x, y], [x + SAMPLE * scale, y]])
     middle = line.mean(axis=0, keepdims=True)
-    whole = line[None]
-    if sample in (Sample.LEFT, Sample.RIGHT):
-        limb = Stroke(whole, style.color(LEFT if sample is Sample.LEFT else RIGHT), THICK, style.halo)
-        core = Stroke(whole, style.color(CORE), style.core * THICK)
-        return [limb] if sample is Sample.LEFT else [limb, core]
-    if sample in (Sample.RING, Sample.EXPECTED):
-        rim = segments(circles(middle, style.joint * style.scale, 16), closed=True)
-        return [Stroke(rim, color, THIN, style.halo)]
-    if sample in (*SOURCE_SAMPLES, Sample.THROWN_OUT, Sample.SWAPPED):
-        return _keypoint_sample(sample, middle[0], style)
-    if sample is Sample.DIAMOND:
-        marks = diamonds(middle, style.diamond * style.scale)
-        return [Stroke(segments(marks, closed=True), color, THIN, style.halo), Fill(marks, color)]
-    if sample is Sample.NONE:
-        return []
-    dashed = sample in (Sample.DASHED, Sample.FUTURE)
-    parts = dashes(line, style.dash * style.scale, style.gap * style.scale) if dashed else whole
-    items: list[Item] = [Stroke(parts, color, THIN, style.halo)]
-    if sample in (Sample.PAST, Sample.FUTURE):
-        dots = np.linspace(line[0], line[1], 5)[1:-1]
-        items.append(Fill(circles(dots, (style.dot + 1.0) * style.scale, 8), color))
-    return items
 
+    def thin(parts: Array) -> Stroke:
+        return Stroke(parts, color, THIN, style.halo)
 
-def _keypoint_sample(sample: Sample, middle: Array, style: Style) -> list[Item]:
-    color = style.color(THROWN_OUT if sample is Sample.THROWN_OUT else MIDDLE)
-    if sample in SOURCE_SAMPLES:
-        color = style.color(SOURCES[SOURCE_SAMPLES.index(sample)])
-    arms = style.joint * style.scale * (SLANTING if sample is Sample.THROWN_OUT else UPRIGHT)
-    items: list[Item] = [Stroke(middle + np.stack([-arms, arms], axis=1), color, THIN, style.halo)]
-    if sample is Sample.SWAPPED:
-        square = squares(middle[None], 1.1 * style.joint * style.scale)
-        items.append(Stroke(segments(square, closed=True), color, THIN, style.halo))
-    return items
+    if look.figure == "limb":
+        core = Stroke(line[None], style.color(CORE), style.core * THICK)
+        return [Stroke(line[None], color, THICK, style.halo), *([core] if look.hollow else [])]
+    if look.figure == "ring":
+        return [thin(segments(circles(middle, style.joint * scale, 16), closed=True))]
+    if look.figure == "cross":
+        arms = style.joint * scale * (SLANTING if look.slanting else UPRIGHT)
+        square = segments(squares(middle, 1.1 * style.joint * scale), closed=True)
+        return [thin(middle + np.stack([-arms, arms], axis=1)), *([thin(square)] if look.framed else [])]
+    if look.figure == "diamond":
+        marks = diamonds(middle, style.diamond * scale)
+        return [thin(segments(marks, closed=True)), Fill(marks, color)]
+    if look.figure == "line":
+        dots = circles(np.linspace(*line, 5)[1:-1], (style.dot + 1.0) * scale, 8)
+        drawn = dashes(line, style.dash * scale, style.gap * scale) if look.dashed else line[None]
+        return [thin(drawn), *([Fill(dots, color)] if look.dotted else [])]
+    return []
 
 
 def corner(area: bpy.types.Area, region: bpy.types.Region, scale: float) -> tuple[float, float]:

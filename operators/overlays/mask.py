@@ -1,13 +1,12 @@
 """Overlays of color masks, and of the regions that are never a marker."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from time import monotonic
 
 import bpy
 import gpu
 import numpy as np
 from bpy.app.handlers import persistent
-from gpu_extras.batch import batch_for_shader
 
 from ...core.arrays import Image, SingleArray
 from ...core.errors import KeymarkError
@@ -23,7 +22,7 @@ from ..follow.mask_previews import (
 )
 from ..shell.footage_view import FootageView, footage_view, shown_request
 from ..shell.takes import find_take
-from . import drawing
+from .drawing import INK, Item, Label, Picture, Stroke, text_size, texture, ui_scale
 from .figures import segments
 
 DARKENING = 0.5
@@ -33,38 +32,38 @@ LARGEST_SHARE = 0.2
 take at most a third."""
 STRIPES = (0.0, 0.0, 0.0, 0.65), (1.0, 1.0, 1.0, 0.55)  # of no marker's look
 
-_drawn: dict[int, tuple[tuple[ColorMask, ...], float, gpu.types.GPUTexture]] = {}
-"""Cache of one: the masks that were drawn last, how dark all else was, and their texture."""
-_ignored: dict[int, tuple[Image, gpu.types.GPUTexture]] = {}
-"""Cache of one: the ignored regions that were drawn last, and their texture."""
+_textures: dict[str, tuple[object, gpu.types.GPUTexture]] = {}
+"""By what it shows, the texture that was drawn last, and what it was made of."""
 
 
-def draw(context: bpy.types.Context) -> None:
-    """Draw the masks of the scene's frame."""
+def draw(context: bpy.types.Context) -> list[Item]:
+    """The masks of the scene's frame."""
     take = find_take(context.scene)
     if take is None or not context.window_manager.keymark_show_masks:
-        return
+        return []
     preview = preview_of(take)
     if preview is None or not preview.masks or not is_of_frame(preview, context.scene):
-        return
+        return []
     view = footage_view(context.scene, take, context.area, context.region)
-    if view is not None:
-        draw_masks(preview, view)
+    return [] if view is None else mask_items(preview, view)
 
 
-def draw_masks(preview: Preview, view: FootageView) -> None:
-    """Draw the masks of a preview over its footage, with their outlines and names."""
-    _draw_picture(_texture(preview), view)
-    for mask in preview.masks:
-        for outline in mask.outlines:
-            drawing.lines(segments(view.to_region(outline), closed=True), drawing.INK, 1.5, 0.8)
-    _draw_names(preview.masks, view)
+def mask_items(preview: Preview, view: FootageView) -> list[Item]:
+    """The masks of a preview over its footage, with their outlines and names."""
+    # What is still to be clicked on is not darkened.
+    darkening = DARKENING if shown_request() is None else 0.0
+    drawn = _texture(f"masks {darkening}", preview.masks, lambda: tinted(preview.masks, darkening))
+    outlines = [
+        Stroke(segments(view.to_region(outline), closed=True), INK, 1.5, 0.8)
+        for mask in preview.masks
+        for outline in mask.outlines
+    ]
+    return [over_footage(drawn, view), *outlines, *_names(preview.masks, view)]
 
 
 def tinted(masks: Sequence[ColorMask], darkening: float = DARKENING) -> SingleArray:
     """The masks as a picture (rows, columns, 4) of red, green, blue, alpha in 0 to 1, top row first."""
-    rows, columns = masks[0].coverage.shape
-    picture = np.zeros((rows, columns, 4), dtype=np.float32)
+    picture = np.zeros((*masks[0].coverage.shape, 4), dtype=np.float32)
     picture[..., 3] = darkening
     for mask in masks:
         share = mask.coverage[..., None]
@@ -72,48 +71,37 @@ def tinted(masks: Sequence[ColorMask], darkening: float = DARKENING) -> SingleAr
     return picture.astype(np.float32)
 
 
-def _texture(preview: Preview) -> gpu.types.GPUTexture:
-    """The texture of a preview's masks, cached; what is still to be clicked on is not darkened."""
-    darkening = DARKENING if shown_request() is None else 0.0
-    if 0 not in _drawn or _drawn[0][0] is not preview.masks or _drawn[0][1] != darkening:
-        _drawn[0] = (preview.masks, darkening, drawing.texture(tinted(preview.masks, darkening)))
-    return _drawn[0][2]
+def _texture(what: str, made_of: object, make: Callable[[], SingleArray]) -> gpu.types.GPUTexture:
+    """The texture of a picture, the last one of which is kept."""
+    if what not in _textures or _textures[what][0] is not made_of:
+        _textures[what] = made_of, texture(make())
+    return _textures[what][1]
 
 
-def _draw_picture(texture: gpu.types.GPUTexture, view: FootageView) -> None:
-    """Draw a texture over the footage, distorted as the view shows the footage."""
+def over_footage(drawn: gpu.types.GPUTexture, view: FootageView) -> Picture:
+    """A texture over the footage, distorted as the view shows the footage."""
     cells = 24 if view.lens is not None else 1  # they follow the lens distortion
     steps = np.linspace(0.0, 1.0, cells + 1)
-    across, down = np.meshgrid(steps, steps)
-    shares = np.stack([across, down], axis=-1)
+    shares = np.stack(np.meshgrid(steps, steps), axis=-1)
     corners = np.stack([shares[:-1, :-1], shares[:-1, 1:], shares[1:, 1:], shares[1:, :-1]], axis=-2)
-    triangles = corners.reshape(-1, 4, 2)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 2)
-    vertices = np.zeros((len(triangles), 3), dtype=np.float32)
-    vertices[:, :2] = view.to_region(triangles * view.size)
-    # Textures begin at the bottom.
-    ends = (triangles * [1.0, -1.0] + [0.0, 1.0]).astype(np.float32)
-    shader = gpu.shader.from_builtin("IMAGE_COLOR")
-    batch = batch_for_shader(shader, "TRIS", {"pos": vertices, "texCoord": ends})
-    shader.uniform_sampler("image", texture)
-    shader.uniform_float("color", (1.0, 1.0, 1.0, 1.0))
-    batch.draw(shader)
+    triangles = corners.reshape(-1, 4, 2)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3, 2)
+    return Picture(drawn, view.to_region(triangles * view.size), triangles)
 
 
-def _draw_names(masks: Sequence[ColorMask], view: FootageView) -> None:
-    """Write each mask's name above its larger outlines, higher where another name is."""
-    scale = drawing.ui_scale()
-    boxes: list[tuple[float, float, float, float]] = []
+def _names(masks: Sequence[ColorMask], view: FootageView) -> list[Label]:
+    """Each mask's name above its larger outlines, higher where another name is."""
+    labels, boxes, gap = [], [], NAME_GAP * ui_scale()
     for mask in masks:
-        width, height = drawing.text_size(mask.label)
+        width, height = text_size(mask.label)
         longest = len(mask.outlines[0]) if mask.outlines else 0
         for outline in mask.outlines:
             if len(outline) >= 0.25 * longest:
                 points = view.to_region(outline)
-                x, y = float(points[:, 0].mean()), float(points[:, 1].max()) + NAME_GAP * scale
-                left, tall = x - 0.5 * width, height + NAME_GAP * scale
-                y = free_height((left, y, width, tall), boxes)
-                boxes.append((left, y, width, tall))
-                drawing.text(mask.label, x, y, align="middle")
+                x, y = float(points[:, 0].mean()), float(points[:, 1].max()) + gap
+                y = free_height((x - 0.5 * width, y, width, height + gap), boxes)
+                boxes.append((x - 0.5 * width, y, width, height + gap))
+                labels.append(Label(mask.label, x, y, align="middle"))
+    return labels
 
 
 def free_height(
@@ -131,20 +119,16 @@ def free_height(
 # --- Regions that are never a marker
 
 
-def draw_ignored(context: bpy.types.Context) -> None:
-    """Draw the regions that are never a marker, with the masks and while they are painted."""
+def draw_ignored(context: bpy.types.Context) -> list[Item]:
+    """The regions that are never a marker, with the masks and while they are painted."""
     take, brush = find_take(context.scene), brush_at_work()
     if take is None or (brush is None and not context.window_manager.keymark_show_masks):
-        return
+        return []
     view = footage_view(context.scene, take, context.area, context.region)
-    if view is None:
-        return
-    mask = ignored_mask(take, () if brush is None else brush.regions())
-    if mask is None:
-        return
-    if 0 not in _ignored or _ignored[0][0] is not mask:
-        _ignored[0] = (mask, drawing.texture(hatched(mask)))
-    _draw_picture(_ignored[0][1], view)
+    mask = None if view is None else ignored_mask(take, () if brush is None else brush.regions())
+    if view is None or mask is None:
+        return []
+    return [over_footage(_texture("ignored", mask, lambda: hatched(mask)), view)]
 
 
 def hatched(mask: Image) -> SingleArray:
@@ -207,6 +191,5 @@ def unregister() -> None:
     if _frame_changed in bpy.app.handlers.frame_change_post:
         bpy.app.handlers.frame_change_post.remove(_frame_changed)
         bpy.app.handlers.animation_playback_post.remove(_stopped)
-    _drawn.clear()
-    _ignored.clear()
+    _textures.clear()
     clear_previews()

@@ -1,5 +1,6 @@
 """Overlay of the reconstructed motion: body, markers, keypoints, paths, and their legend."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,6 @@ from ..follow.frame_keypoints import FrameKeypoints, keypoints_at
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.results import review_of
 from ..shell.takes import find_take
-from . import drawing
 from .drawing import (
     CORE,
     PATH_POINTS,
@@ -23,8 +23,8 @@ from .drawing import (
     Stroke,
     Style,
     body_scale,
-    paint,
     side_color,
+    ui_scale,
 )
 from .figures import circles, limb_lines, segments
 from .keypoint_marks import all_sources, compared_marks, not_yet_compared, seen_marks
@@ -37,10 +37,9 @@ from .outlines import (
     predicted_outlines,
     window,
 )
-from .views import MotionView, clip_view, world_view
+from .views import MotionView, motion_view
 
 if TYPE_CHECKING:
-    from ...core.review.compared_keypoints import ComparedKeypoints
     from ...core.review.review import Review
 
 
@@ -84,28 +83,7 @@ def _deviations(positions: Array, radii: Array, colors: Array, style: Style) -> 
     return Stroke(parts, np.repeat(colors[seen], 24, axis=0), 1.0, style.halo)
 
 
-# --- Rows of the legend that explain keypoints
-
-
-def keypoint_rows(
-    keypoints: "ComparedKeypoints", index: int, seen: tuple[FrameKeypoints, ...]
-) -> tuple[Row, ...]:
-    """Rows for what a frame shows of keypoints: those of a motion, and others that a take's sources see."""
-    rows = list(source_rows(all_sources(keypoints, seen)))
-    if keypoints.names:
-        rows.append((Sample.EXPECTED, "Where the motion puts it"))
-    if keypoints.thrown_out[index].any():
-        rows.append((Sample.THROWN_OUT, "Keypoint not believed"))
-    if keypoints.swapped[index].any():
-        rows.append((Sample.SWAPPED, "Left and right exchanged"))
-    return tuple(rows)
-
-
-def source_rows(sources: tuple[str, ...]) -> tuple[Row, ...]:
-    """A row for each source of keypoints, as far as their colors differ."""
-    return tuple(
-        (sample, f"Keypoint of {source}") for sample, source in zip(SOURCE_SAMPLES, sources, strict=False)
-    )
+# --- Parts of the picture: the items of each, and the rows of the legend that explain them
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +93,85 @@ class Shown:
     take: bpy.types.PropertyGroup
     review: "Review"
     index: int  # index in the clip of the scene's current frame
+
+
+Part = tuple[list[Item], list[Row]]
+
+
+def _paths(what: Shown, view: MotionView, style: Style) -> Part:
+    review = what.review
+    frames = window(what.index, len(review.frames))
+    chosen = [point for point, name in enumerate(review.point_names) if name in PATH_POINTS]
+    names = [review.point_names[point] for point in chosen]
+    positions = np.swapaxes(view.point_positions(review, frames)[:, chosen], 0, 1)
+    rows = [(Sample.PAST, "Path so far"), (Sample.FUTURE, "Path to come"), (Sample.DIAMOND, "Keyframe")]
+    return paths(names, positions, frames, what.index, review.keyframe_indices, style), rows
+
+
+def _observed(what: Shown, view: MotionView, style: Style) -> Part:
+    assert view.footage is not None
+    review, index = what.review, what.index
+    hidden = [review.marker_names[marker] for marker in hidden_markers(review, index)]
+    rows = [(Sample.NONE, f"Hidden: {', '.join(hidden)}")] if hidden else []
+    rows += [(Sample.SOLID, "Marker as seen")] if review.marker_names else []
+    return observed_outlines(review, index, view.footage.to_region, _marker_colors(what), style), rows
+
+
+def _predicted(what: Shown, view: MotionView, style: Style) -> Part:
+    assert view.footage is not None
+    review, index, to_region = what.review, what.index, view.footage.to_region
+    rows = [(Sample.DASHED, "Marker as the motion predicts it")] if review.marker_names else []
+    rows += [(Sample.DASHED, "Contour as the motion predicts it")] if review.contours.shape[1] else []
+    items = predicted_outlines(review, index, to_region, _marker_colors(what), style)
+    return items + predicted_contours(review, index, to_region, style), rows
+
+
+def _marker_colors(what: Shown) -> list[tuple[float, float, float]]:
+    chosen = {marker.name: tuple(marker.color) for marker in what.take.markers}
+    return [chosen.get(name, (0.8, 0.8, 0.8)) for name in what.review.marker_names]
+
+
+def _skeleton(what: Shown, view: MotionView, style: Style) -> Part:
+    review, index = what.review, what.index
+    (positions,) = view.point_positions(review, np.array([index]))
+    rows = [(Sample.LEFT, "Performer's left"), (Sample.RIGHT, "Performer's right")]
+    rows += [(Sample.RING, "Uncertain point")] if (review.sigma_m[index] > UNCERTAIN_M).any() else []
+    return skeleton(review, index, positions, view.pixels_per_meter(review, index), style), rows
+
+
+def _keypoints(what: Shown, view: MotionView, style: Style) -> Part:
+    """Those of the motion, and others that the take's sources see."""
+    assert view.footage is not None
+    compared, index, to_region = what.review.keypoints, what.index, view.footage.to_region
+    frame = round(float(what.review.frames[index]))
+    seen = not_yet_compared(keypoints_at(what.take, frame), compared, index)
+    sources = all_sources(compared, seen)
+    rows = list(source_rows(sources))
+    rows += [(Sample.EXPECTED, "Where the motion puts it")] if compared.names else []
+    rows += [(Sample.THROWN_OUT, "Keypoint not believed")] if compared.thrown_out[index].any() else []
+    rows += [(Sample.SWAPPED, "Left and right exchanged")] if compared.swapped[index].any() else []
+    items = compared_marks(compared, index, to_region, sources, style)
+    return items + seen_marks(seen, to_region, sources, style), rows
+
+
+def source_rows(sources: tuple[str, ...]) -> tuple[Row, ...]:
+    """A row for each source of keypoints, as far as their colors differ."""
+    return tuple(
+        (sample, f"Keypoint of {source}") for sample, source in zip(SOURCE_SAMPLES, sources, strict=False)
+    )
+
+
+PARTS: dict[str, Callable[[Shown, MotionView, Style], Part]] = {
+    "paths": _paths,
+    "observed": _observed,
+    "predicted": _predicted,
+    "skeleton": _skeleton,
+    "keypoints": _keypoints,
+}
+"""By the switch that each has, the lowest first."""
+ON_FOOTAGE = {"observed", "predicted", "keypoints"}
+EXPLAINED = ("keypoints", "observed", "predicted", "skeleton", "paths")
+"""The same from the top of the legend down."""
 
 
 def shown(scene: bpy.types.Scene) -> Shown | None:
@@ -128,121 +185,45 @@ def shown(scene: bpy.types.Scene) -> Shown | None:
     return Shown(take, review, index) if away[index] <= 0.75 else None
 
 
+def draw(context: bpy.types.Context) -> list[Item]:
+    """The motion in the scene's frame."""
+    what = shown(context.scene)
+    view = None if what is None else motion_view(context, what.take)
+    return [] if view is None else picture(context, what, view, context.scene.keymark.overlays)
+
+
 def picture(
     context: bpy.types.Context, what: Shown, view: MotionView, settings: bpy.types.PropertyGroup
 ) -> list[Item]:
     """All enabled items, and their legend."""
-    scale = drawing.ui_scale()
+    scale = ui_scale()
     meter = view.pixels_per_meter(what.review, what.index)
     style = Style(settings.opacity, scale, body_scale(meter, scale))
-    items: list[Item] = []
-    if settings.show_paths:
-        items += _paths(what, view, style)
-    if view.footage is not None:
-        items += _outlines(what, view.footage, settings, style)
-    seen = _seen(what) if view.footage is not None and settings.show_keypoints else ()
-    if settings.show_skeleton:
-        (positions,) = view.point_positions(what.review, np.array([what.index]))
-        items += skeleton(what.review, what.index, positions, meter, style)
-    if view.footage is not None and settings.show_keypoints:
-        sources, to_region = all_sources(what.review.keypoints, seen), view.footage.to_region
-        items += compared_marks(what.review.keypoints, what.index, to_region, sources, style)
-        items += seen_marks(seen, to_region, sources, style)
+    parts = {
+        name: part(what, view, style)
+        for name, part in PARTS.items()
+        if getattr(settings, f"show_{name}") and (view.footage is not None or name not in ON_FOOTAGE)
+    }
+    items = [item for drawn, _ in parts.values() for item in drawn]
     if settings.show_legend:
-        rows = _rows(what, view, settings, seen)
+        rows = tuple(row for name in EXPLAINED if name in parts for row in parts[name][1])
         items += legend(rows, *corner(context.area, context.region, scale), style)
     return items
-
-
-def _outlines(
-    what: Shown, footage: FootageView, settings: bpy.types.PropertyGroup, style: Style
-) -> list[Item]:
-    chosen = {marker.name: tuple(marker.color) for marker in what.take.markers}
-    colors = [chosen.get(name, (0.8, 0.8, 0.8)) for name in what.review.marker_names]
-    items: list[Item] = []
-    if settings.show_observed:
-        items += observed_outlines(what.review, what.index, footage.to_region, colors, style)
-    if settings.show_predicted:
-        items += predicted_outlines(what.review, what.index, footage.to_region, colors, style)
-        items += predicted_contours(what.review, what.index, footage.to_region, style)
-    return items
-
-
-def _seen(what: Shown) -> tuple[FrameKeypoints, ...]:
-    """Keypoints of the frame that the motion was not held against."""
-    frame = round(float(what.review.frames[what.index]))
-    return not_yet_compared(keypoints_at(what.take, frame), what.review.keypoints, what.index)
-
-
-def _paths(what: Shown, view: MotionView, style: Style) -> list[Item]:
-    review = what.review
-    frames = window(what.index, len(review.frames))
-    chosen = [point for point, name in enumerate(review.point_names) if name in PATH_POINTS]
-    names = [review.point_names[point] for point in chosen]
-    positions = np.swapaxes(view.point_positions(review, frames)[:, chosen], 0, 1)
-    return paths(names, positions, frames, what.index, review.keyframe_indices, style)
-
-
-def _rows(
-    what: Shown, view: MotionView, settings: bpy.types.PropertyGroup, seen: tuple[FrameKeypoints, ...]
-) -> tuple[Row, ...]:
-    """Rows of the legend, for drawn items only."""
-    rows: list[Row] = []
-    if view.footage is not None and settings.show_keypoints:
-        rows += keypoint_rows(what.review.keypoints, what.index, seen)
-    if view.footage is not None and what.review.marker_names:
-        if settings.show_observed:
-            hidden = [what.review.marker_names[marker] for marker in hidden_markers(what.review, what.index)]
-            if hidden:
-                rows.append((Sample.NONE, f"Hidden: {', '.join(hidden)}"))
-            rows.append((Sample.SOLID, "Marker as seen"))
-        if settings.show_predicted:
-            rows.append((Sample.DASHED, "Marker as the motion predicts it"))
-    if view.footage is not None and what.review.contours.shape[1] and settings.show_predicted:
-        rows.append((Sample.DASHED, "Contour as the motion predicts it"))
-    if settings.show_skeleton:
-        rows += [(Sample.LEFT, "Performer's left"), (Sample.RIGHT, "Performer's right")]
-        if (what.review.sigma_m[what.index] > UNCERTAIN_M).any():
-            rows.append((Sample.RING, "Uncertain point"))
-    if settings.show_paths:
-        rows += [(Sample.PAST, "Path so far"), (Sample.FUTURE, "Path to come"), (Sample.DIAMOND, "Keyframe")]
-    return tuple(rows)
-
-
-def draw_viewport(context: bpy.types.Context) -> None:
-    """Draw the motion into a 3D viewport."""
-    what = shown(context.scene)
-    if what is None or not context.space_data.overlay.show_overlays:
-        return
-    footage = footage_view(context.scene, what.take, context.area, context.region)
-    view = world_view(context.region, context.region_data, footage)
-    paint(picture(context, what, view, context.scene.keymark.overlays))
-
-
-def draw_clip_editor(context: bpy.types.Context) -> None:
-    """Draw the motion into a Movie Clip editor."""
-    scene, what = context.scene, shown(context.scene)
-    if what is None or context.space_data.view != "CLIP" or what.take.camera is None:
-        return
-    footage = footage_view(scene, what.take, context.area, context.region)
-    if footage is not None:
-        paint(picture(context, what, clip_view(scene, what.take, footage), scene.keymark.overlays))
 
 
 # --- Overlay of keypoints where there is no motion yet
 
 
-def draw_keypoints(context: bpy.types.Context) -> None:
-    """Draw the keypoints of the scene's frame."""
+def draw_keypoints(context: bpy.types.Context) -> list[Item]:
+    """The keypoints of the scene's frame."""
     scene = context.scene
     settings, take = scene.keymark.overlays, find_take(scene)
     hidden = context.space_data.type == "VIEW_3D" and not context.space_data.overlay.show_overlays
     if take is None or hidden or not settings.show_keypoints or shown(scene) is not None:
-        return
+        return []
     view = footage_view(scene, take, context.area, context.region)
     seen = () if view is None else keypoints_at(take, scene.frame_current)
-    if view is not None and seen:
-        paint(picture_keypoints(context, seen, view, settings))
+    return picture_keypoints(context, seen, view, settings) if view is not None and seen else []
 
 
 def picture_keypoints(
@@ -252,7 +233,7 @@ def picture_keypoints(
     settings: bpy.types.PropertyGroup,
 ) -> list[Item]:
     """The keypoints of a frame, and their legend."""
-    scale = drawing.ui_scale()
+    scale = ui_scale()
     rows = np.concatenate([view.to_region(each.pixel)[..., 1].ravel() for each in seen])
     height = np.ptp(rows[np.isfinite(rows)]) if np.isfinite(rows).any() else np.nan
     style = Style(settings.opacity, scale, body_scale(np.array([height / TALL_M]), scale))

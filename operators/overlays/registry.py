@@ -1,7 +1,7 @@
 """Registry of the overlays, and their draw handlers in Blender's editors."""
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,9 +10,11 @@ import gpu
 
 from ...core.errors import KeymarkError
 from ..shell.job_progress import job_is_running
+from ..shell.takes import FOOTAGE_EDITORS, redraw_editors
 from . import candidates, mask, motion, timeline, tools
+from .drawing import Item, paint
 
-DrawFunction = Callable[[bpy.types.Context], None]
+DrawFunction = Callable[[bpy.types.Context], Iterable[Item]]
 
 DRAGGING = "keymark.drag_joints"
 logger = logging.getLogger(__name__)
@@ -20,7 +22,7 @@ logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Overlay:
-    """A draw function, and the editor it draws in."""
+    """What is drawn over an editor: a function gives the items, in the region that Blender is drawing."""
 
     name: str  # as users see it
     draw: DrawFunction
@@ -40,8 +42,7 @@ OVERLAYS = (
     *_in_both("Ignored Regions", mask.draw_ignored),
     *_in_both("Keypoints", motion.draw_keypoints, correcting=False),
     *_in_both("Candidates", candidates.draw, correcting=False),
-    Overlay("Motion in the Viewport", motion.draw_viewport, "SpaceView3D"),
-    Overlay("Motion in the Clip Editor", motion.draw_clip_editor, "SpaceClipEditor"),
+    *_in_both("Motion", motion.draw),
     *_in_both("Floor Grid", tools.draw_floor_grid),
     *_in_both("Camera's Lines", tools.draw_camera_lines),
     *_in_both("Requests", tools.draw_request),
@@ -65,7 +66,7 @@ def guarded(overlay: Overlay) -> Callable[[], None]:
             return
         gpu.state.blend_set("ALPHA")
         try:
-            overlay.draw(bpy.context)
+            paint(overlay.draw(bpy.context))
         except KeymarkError:
             pass  # a camera of an unsupported type, for example: nothing can be drawn until that is changed
         except Exception as error:
@@ -89,10 +90,7 @@ def try_again() -> None:
 
 def redraw(context: bpy.types.Context) -> None:
     """Redraw every editor that shows an overlay."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if any(isinstance(area.spaces.active, getattr(bpy.types, it.space)) for it in OVERLAYS):
-                area.tag_redraw()
+    redraw_editors(context, *FOOTAGE_EDITORS, "DOPESHEET_EDITOR")
 
 
 def register() -> None:

@@ -12,8 +12,7 @@ from ..bridge.scene_frames import scene_frames
 from ..shell.keyed_frames import doubtful_matches, have_frames, matched_frames, posed_frames
 from ..shell.results import FootageSpeed, LruCache, reading_of, review_of, speed_of
 from ..shell.takes import find_take, footage_of
-from . import drawing
-from .drawing import Color, Fill, Item, Label, Stroke, faded, paint
+from .drawing import Color, Fill, Item, Label, Stroke, faded, ui_scale
 from .figures import diamonds, segments, squares
 
 if TYPE_CHECKING:
@@ -164,16 +163,12 @@ def timeline_of(region: bpy.types.Region, pixel: float) -> Timeline | None:
     return None
 
 
-def draw(context: bpy.types.Context) -> None:
-    """Draw into the region that Blender is drawing."""
-    if context.space_data.mode not in MODES:
-        return
-    take = find_take(context.scene)
-    timeline = timeline_of(context.region, drawing.ui_scale())
-    if take is None or timeline is None:
-        return
-    if context.scene.keymark.overlays.show_timeline:
-        paint(picture(context.scene, take, timeline))
+def draw(context: bpy.types.Context) -> list[Item]:
+    """What a take has to show in Timeline and Dope Sheet."""
+    take, timeline = find_take(context.scene), None
+    if context.space_data.mode in MODES and context.scene.keymark.overlays.show_timeline:
+        timeline = timeline_of(context.region, ui_scale())
+    return [] if take is None or timeline is None else picture(context.scene, take, timeline)
 
 
 def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Timeline) -> list[Item]:

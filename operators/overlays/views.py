@@ -7,8 +7,9 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array, IndexArray
+from ...core.camera.camera import Camera
 from ..bridge.camera_placement import read_lens
-from ..shell.footage_view import FootageView
+from ..shell.footage_view import FootageView, footage_view
 from ..shell.takes import footage_of
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ class ClipView:
 
     footage: FootageView
     to_camera: Array  # (4, 4) from the world to the footage's camera
-    focal_px: float  # focal length of that camera [px of the footage]
+    lens: Camera  # of that camera
 
     def point_positions(self, review: "Review", indices: IndexArray) -> Array:
         """Region pixels (I, 13, 2) of the points, each as the camera of its own frame saw it."""
@@ -74,14 +75,27 @@ class ClipView:
         """Size (13,) of a meter across the view at each point."""
         depth = -(review.points[index] @ self.to_camera[2, :3] + self.to_camera[2, 3])
         magnified = abs(self.footage.extent[0]) / self.footage.size[0]
-        return np.asarray(magnified * self.focal_px / np.where(depth > 0.0, depth, np.nan))
+        return np.asarray(magnified * self.lens.focal_px / np.where(depth > 0.0, depth, np.nan))
 
-
-def clip_view(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, footage: FootageView) -> ClipView:
-    """A region of a Movie Clip editor as a view of a take's motion."""
-    source = footage_of(scene, take)
-    to_camera = np.array(source.camera.matrix_world.normalized().inverted(), dtype=np.float64)
-    return ClipView(footage, to_camera, read_lens(source).focal_px)
+    def project(self, points: Array) -> Array:
+        """Region pixels (..., 2) of points (..., 3) as the camera sees them now; NaN behind it."""
+        pixels, depth = self.lens.project(points @ self.to_camera[:3, :3].T + self.to_camera[:3, 3])
+        return self.footage.to_region(np.where((depth > 0.0)[..., None], pixels, np.nan))
 
 
 MotionView = WorldView | ClipView
+
+
+def motion_view(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> MotionView | None:
+    """The region that is drawn as a view of a take's motion; None where overlays are off or show nothing."""
+    space = context.space_data
+    footage = footage_view(context.scene, take, context.area, context.region)
+    if space.type == "VIEW_3D":
+        return (
+            world_view(context.region, context.region_data, footage) if space.overlay.show_overlays else None
+        )
+    if footage is None or take.camera is None:
+        return None
+    source = footage_of(context.scene, take)
+    to_camera = np.array(source.camera.matrix_world.normalized().inverted(), dtype=np.float64)
+    return ClipView(footage, to_camera, read_lens(source))

@@ -5,11 +5,12 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from ...core.body.human import HUMAN
+from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..bridge.object_space import evaluated
 from ..bridge.scene_frames import at_scene_frame, showing_action
 from ..footage.camera_view import look_through, viewports
-from ..shell.base_operator import BaseOperator
+from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.fields import Choice
 from ..shell.keyed_frames import (
     depth_is_found,
@@ -45,7 +46,7 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
             "PREVIOUS": "Go to the previous frame of the list; the worst comes first",
         }[properties.direction]
 
-    def run(self, context: bpy.types.Context) -> set[str] | None:
+    def run(self, context: bpy.types.Context) -> None:
         review = active_take(context.scene).review
         step = {"CHOSEN": 0, "NEXT": 1, "PREVIOUS": -1}[self.direction]
         # At first, the worst frame itself is the next one.
@@ -54,21 +55,16 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
             step = 0
         wanted = review.active_weak_frame + step
         if wanted < 0:
-            self.report({"INFO"}, "This is the weakest frame")
-            return {"CANCELLED"}
+            raise Unchanged("this is the weakest frame")
         if wanted >= len(review.weak_frames):
-            self.report({"INFO"}, "This is the last frame of the list")
-            return {"CANCELLED"}
+            raise Unchanged("this is the last frame of the list")
         review.active_weak_frame = wanted  # which goes there
-        return None
 
 
 class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
     """Store the reconstructed pose as a keyframe and show the keyframes, so that it only needs correcting"""
 
-    bl_idname = "keymark.pose_from_motion"
     bl_label = "Add Keyframe Here"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, motion, idle)
 
     where: Choice(
@@ -80,7 +76,7 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         ],
     )
 
-    def run(self, context: bpy.types.Context) -> set[str] | None:
+    def run(self, context: bpy.types.Context) -> None:
         """Key the motion's pose in the keyframe Action, and let that animate the actor."""
         from ..bridge.keyframes import store_pose
 
@@ -89,8 +85,7 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         review, frame = take.review, float(scene.frame_current_final)
         if self.where == "WEAK":
             if not 0 <= review.active_weak_frame < len(review.weak_frames):
-                self.report({"ERROR"}, "No weak frame is chosen; reconstruct the motion first")
-                return {"CANCELLED"}
+                raise InputError("no weak frame is chosen; reconstruct the motion first")
             frame = float(review.weak_frames[review.active_weak_frame].frame)
         action = take.keyframe_action or new_keyframe_action(take.armature)
         with showing_action(take.armature, take.motion_action), at_scene_frame(scene) as go_to:
@@ -103,13 +98,11 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         scene.frame_set(whole, subframe=frame - whole)
         invalidate_keyed_frames()
         self.report({"INFO"}, f"Stored the reconstructed pose at frame {frame:g}; now correct it")
-        return None
 
 
 class KEYMARK_OT_look_from_side(BaseOperator, bpy.types.Operator):
     """Look at the actor from the camera's right, where depth shows; once more, through the camera again"""
 
-    bl_idname = "keymark.look_from_side"
     bl_label = "Side View"
     bl_options = {"REGISTER"}
     requirements = (camera, actor)

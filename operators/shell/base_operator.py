@@ -69,6 +69,7 @@ class BaseOperator:
     `KEYMARK_OT_load_take` is called `keymark.load_take`, and is a step of undo unless it says otherwise.
     """
 
+    bl_idname: str
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
     report: Callable[[set[str], str], None]  # Blender's, of the Operator this is mixed into
     requirements: ClassVar[tuple[Requirement, ...]] = ()
@@ -94,6 +95,13 @@ class BaseOperator:
     @abstractmethod
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Do the work; without a change raise `Unchanged`, or return {"CANCELLED"}, for no step of undo."""
+
+
+def remove_active(owner: bpy.types.PropertyGroup, entries: str, active: str) -> None:
+    """Remove the active entry of an owner's list, by the names of both; the one before it becomes active."""
+    index = min(getattr(owner, active), len(getattr(owner, entries)) - 1)
+    getattr(owner, entries).remove(index)
+    setattr(owner, active, max(0, index - 1))
 
 
 # --- Asking for a file: the browser opens where it was left

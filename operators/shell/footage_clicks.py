@@ -9,6 +9,7 @@ import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d, region_2d_to_location_3d, region_2d_to_vector_3d
 
 from ...core.arrays import Array
+from ...core.errors import InputError
 from .base_operator import reported
 from .footage_view import FootageRequest, ask, follow_mouse, pixel_under, shows_footage, stop_asking
 from .job_operator import cancel_click
@@ -19,20 +20,6 @@ NAVIGATION = frozenset(
     "RIGHT_ARROW UP_ARROW DOWN_ARROW NUMPAD_PLUS NUMPAD_MINUS".split()
 )
 """Events that move the view or change the frame; the operator passes them on to Blender."""
-
-
-def footage_is_shown(
-    operator: bpy.types.Operator, context: bpy.types.Context, take: bpy.types.PropertyGroup
-) -> bool:
-    """Whether an editor of the window shows the take's footage; if not, an error is reported."""
-    with reported(operator):
-        if shows_footage(context, take):
-            return True
-        operator.report(
-            {"ERROR"},
-            "Look through the take's camera first (Numpad 0), or open the clip in a Movie Clip editor",
-        )
-    return False
 
 
 # --- The 3D view under the mouse
@@ -63,19 +50,23 @@ class WorldInRegion:
 
 def view_under(context: bpy.types.Context, mouse_x: int, mouse_y: int) -> WorldInRegion | None:
     """The 3D view under the mouse [window px]; None over another editor, a sidebar or a header."""
-    for area in context.screen.areas:
-        if area.type != "VIEW_3D":
-            continue
-        under = [region for region in area.regions if _contains(region, mouse_x, mouse_y)]
-        # Sidebars and headers lie over the view.
-        if under and all(region.type == "WINDOW" for region in under):
-            return WorldInRegion(under[0], under[0].data)
-    return None
+    area = area_under(context, mouse_x, mouse_y)
+    if area is None or area.type != "VIEW_3D":
+        return None
+    under = [region for region in area.regions if _contains(region, mouse_x, mouse_y)]
+    # Sidebars and headers lie over the view.
+    covering = [region for region in under if region.type in ("UI", "TOOLS", "HEADER", "TOOL_HEADER")]
+    views = [region for region in under if region.type == "WINDOW"]
+    return WorldInRegion(views[0], views[0].data) if views and not covering else None
 
 
-def _contains(region: bpy.types.Region, x: int, y: int) -> bool:
-    within = region.x <= x < region.x + region.width and region.y <= y < region.y + region.height
-    return within and region.type in ("WINDOW", "UI", "TOOLS", "HEADER", "TOOL_HEADER")
+def area_under(context: bpy.types.Context, x: int, y: int) -> bpy.types.Area | None:
+    """The editor under the mouse [window px]; None between them."""
+    return next((area for area in context.screen.areas if _contains(area, x, y)), None)
+
+
+def _contains(box: bpy.types.Region | bpy.types.Area, x: int, y: int) -> bool:
+    return box.x <= x < box.x + box.width and box.y <= y < box.y + box.height
 
 
 # --- Operators that ask for one click on the footage after another
@@ -101,13 +92,16 @@ class ClickSequence:
         """Take everything back, and stop asking; Blender calls this as well."""
         stop_asking(context)
 
+    def prepare(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+        """Note what is now, before anything is asked for."""
+
     @abstractmethod
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
         """What to click on next, and the keys for the status bar."""
 
-    @abstractmethod
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
         """Take a click on a pixel of the footage; what `modal` returns."""
+        return {"RUNNING_MODAL"}
 
     def done(self, context: bpy.types.Context) -> set[str]:
         """Keep what was clicked on, by default nothing; what `modal` returns."""
@@ -121,27 +115,23 @@ class ClickSequence:
         """Take the last click back."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Begin to ask, where the footage is shown."""
-        shown = footage_is_shown(self, context, active_take(context.scene))
-        return self.wait_for_clicks(context) if shown else {"CANCELLED"}
+        """Begin to ask, where an editor of the window shows the footage."""
+        take = active_take(context.scene)
+        with reported(self):
+            if not shows_footage(context, take):
+                raise InputError(
+                    "look through the take's camera first (Numpad 0), or open the clip in a Movie Clip editor"
+                )
+            self.prepare(context, take)
+            context.window.cursor_modal_set(self.cursor)
+            self.ask(context)
+            follow_mouse(context, event)
+            context.window_manager.modal_handler_add(self)
+            return {"RUNNING_MODAL"}
+        return {"CANCELLED"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Take an event."""
-        return self.take_event(context, event)
-
-    def wait_for_clicks(self, context: bpy.types.Context) -> set[str]:
-        """Begin to ask; what `invoke` returns."""
-        context.window.cursor_modal_set(self.cursor)
-        self.ask(context)
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
-
-    def ask(self, context: bpy.types.Context) -> None:
-        """Show what is asked for now."""
-        ask(context, *self.request(context))
-
-    def take_event(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """What `modal` returns for an event."""
         if cancel_click(self, context, event):
             return {"CANCELLED"}
         follow_mouse(context, event)
@@ -156,18 +146,18 @@ class ClickSequence:
                 return self._pressed(context, event)
         return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
 
+    def ask(self, context: bpy.types.Context) -> None:
+        """Show what is asked for now."""
+        ask(context, *self.request(context))
+
     def _pressed(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
         if pixel is not None:
             return self.clicked(context, pixel)
-        if _kind_under(context, event) in SCRUBBED:
+        area = area_under(context, event.mouse_x, event.mouse_y)
+        if area is not None and area.type in SCRUBBED:
             return {"PASS_THROUGH"}
-        return {*self.done(context), "PASS_THROUGH"} if self.ends_beside else {"RUNNING_MODAL"}
-
-
-def _kind_under(context: bpy.types.Context, event: bpy.types.Event) -> str:
-    """The kind of editor under the mouse; empty between them."""
-    for area in context.screen.areas:
-        if 0 <= event.mouse_x - area.x < area.width and 0 <= event.mouse_y - area.y < area.height:
-            return str(area.type)
-    return ""
+        if self.ends_beside:
+            return {*self.done(context), "PASS_THROUGH"}
+        context.workspace.status_text_set("That is not on the footage; click in it   |   Esc: Cancel")
+        return {"RUNNING_MODAL"}

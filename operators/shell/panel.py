@@ -84,18 +84,18 @@ class RowList:
         """Draw one item."""
 
 
-def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, job: str = "") -> bool:
-    """Draw the progress of the running job, of any or of one operator, on one line; return whether one runs.
+def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, *jobs: str) -> bool:
+    """Draw the progress of the running job, of any or these operators', on one line; return whether one runs.
 
     It replaces one line, so that nothing moves when a job begins or ends: where panels change their height,
     Blender draws them over each other for a moment. An eyedropper that waits for a click has no progress.
     """
     progress = context.window_manager.keymark_progress
-    if not progress.stage or not job_is_running(context, job):
+    if not progress.stage or not any(job_is_running(context, job) for job in jobs or ("",)):
         return False
     row = layout.row(align=True)
     percent = f"{100.0 * progress.fraction:.0f}%  {progress.stage}"  # a narrow sidebar cuts the end off
-    row.progress(factor=progress.fraction, text=(job and progress.time_left) or percent)
+    row.progress(factor=progress.fraction, text=(jobs and progress.time_left) or percent)
     escape = row.row()
     escape.ui_units_x = 2.9
     escape.label(text="Esc", icon="CANCEL")
@@ -159,11 +159,16 @@ def draw_contradictions(
         draw_sentence(layout, context, f"Unexplained: {', '.join(names)}", "ERROR", most_lines=1)
 
 
-def draw_readout(layout: bpy.types.UILayout, text: str) -> None:
-    """Draw what is seen in this frame, at the right end of a header, if it does not lie on the name there."""
-    if not is_roomy(bpy.context) and len(text) > 7:
-        return
+def right_end(layout: bpy.types.UILayout) -> bpy.types.UILayout:
+    """The right end of a row."""
     row = layout.row()
     row.alignment = "RIGHT"
-    row.active = False
-    row.label(text=text, translate=False)
+    return row
+
+
+def draw_readout(layout: bpy.types.UILayout, text: str) -> None:
+    """Draw what is seen in this frame, at the right end of a header, if it does not lie on the name there."""
+    if is_roomy(bpy.context) or len(text) <= 7:
+        row = right_end(layout)
+        row.active = False
+        row.label(text=text, translate=False)

@@ -14,7 +14,7 @@ from keymark.core.take.take_file import read_take
 from keymark.operators.bridge.take_from_scene import read_scene_take
 from keymark.operators.follow.evidence import scene_evidence
 from keymark.operators.follow.ignore_region import Brush
-from keymark.operators.follow.ignored_regions import add_ignored_regions, ignored_regions
+from keymark.operators.follow.marker_properties import add_ignored_regions, ignored_regions
 from keymark.operators.follow.mask_previews import ignored_mask, preview_of, update_masks
 from keymark.operators.overlays.mask import hatched
 from keymark.operators.shell.takes import active_take, footage_of
@@ -164,12 +164,13 @@ def test_proposals_read_the_clip_anew_where_something_is_ignored(cluttered: bpy.
     assert take.reading_key != first
 
 
-def test_a_brush_keeps_what_can_be_seen_of_a_path() -> None:
+def test_a_brush_keeps_what_can_be_seen_of_a_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("keymark.core.markers.ignored_regions.MOST_POINTS", 20)
     tool = Brush(200)
     assert tool.radius_px == 6.0
     tool.press((10.0, 10.0))
     for step in range(100):
-        tool.move((10.0 + 0.5 * step, 10.0), 20)
+        tool.move((10.0 + 0.5 * step, 10.0))
     points = [len(region.stroke) for region in tool.regions()]
     assert len(points) == 2 and max(points) == 20
     assert tool.regions()[1].stroke[0] == tool.regions()[0].stroke[-1]

@@ -15,8 +15,7 @@ from keymark.operators.bridge.keyframes import keyed_frames, unchanged_keyframes
 from keymark.operators.bridge.keys import PICTURED
 from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.bridge.pose import write_posture
-from keymark.operators.keyframes.corrections import camera_now
-from keymark.operators.keyframes.flip_ways import selected_limbs
+from keymark.operators.keyframes.corrections import camera_now, selected_limbs
 from keymark.operators.shell.keyed_frames import matched_frames, posed_frames
 from keymark.operators.shell.takes import active_take
 

@@ -9,7 +9,7 @@ import pytest
 from _found import shown
 from _scene_state import differences, scene_state
 from keymark.core.take.motion import Motion
-from keymark.operators.keyframes.candidate_buttons import candidate_title
+from keymark.operators.keyframes.candidates import candidate_title
 from keymark.operators.keyframes.found_keyframes import known_matches
 from keymark.operators.overlays.drawing import Fill, Stroke
 from keymark.operators.overlays.timeline import ROOMY, Timeline, picture

@@ -9,9 +9,9 @@ from _found import made_up_frames
 from keymark.core.body.human import HUMAN
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.camera_placement import read_camera
-from keymark.operators.keyframes.change_match import KEYMARK_OT_replace_match
+from keymark.operators.keyframes.candidates import KEYMARK_OT_replace_match
 from keymark.operators.keyframes.match_edits import add_candidate, add_match, key_matches
-from keymark.operators.overlays import candidates
+from keymark.operators.overlays import candidates, views
 from keymark.operators.overlays.drawing import Label, Stroke, candidate_icon
 from keymark.operators.shell.footage_view import FootageView
 from keymark.operators.shell.takes import active_take, footage_of
@@ -32,6 +32,20 @@ def match(opened: bpy.types.Scene, wave_motion: Motion) -> Group:
     return take.matching.matches[0]
 
 
+@pytest.fixture(autouse=True)
+def footage_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(views, "footage_view", lambda *_: FOOTAGE)
+
+
+def context_of(scene: bpy.types.Scene, playing: bool = False) -> SimpleNamespace:
+    space, screen = SimpleNamespace(type="CLIP_EDITOR"), SimpleNamespace(is_animation_playing=playing)
+    return SimpleNamespace(scene=scene, space_data=space, screen=screen, area=None, region=None)
+
+
+def view_of(scene: bpy.types.Scene) -> views.MotionView:
+    return views.motion_view(context_of(scene), active_take(scene))
+
+
 def test_figures_stand_where_the_candidates_would(
     match: Group, opened: bpy.types.Scene, wave_motion: Motion
 ) -> None:
@@ -39,10 +53,9 @@ def test_figures_stand_where_the_candidates_would(
     points = candidates.candidate_points(take.armature, match)
     assert points == pytest.approx(wave_motion.points[[3, 9]], abs=1e-4)
     seen = read_camera(footage_of(opened, take), np.array([4.0])).project(points)[0]
-    over = candidates.over_footage(opened, take, FOOTAGE, points)
-    assert over == pytest.approx(FOOTAGE.to_region(seen), abs=1e-3)
-    behind = candidates.over_footage(opened, take, FOOTAGE, points - [0.0, 20.0, 0.0])
-    assert np.isnan(behind).all()
+    view = view_of(opened)
+    assert view.project(points) == pytest.approx(FOOTAGE.to_region(seen), abs=1e-3)
+    assert np.isnan(view.project(points - [0.0, 20.0, 0.0])).all()
 
 
 def test_they_are_found_anew_only_where_something_changed(match: Group, opened: bpy.types.Scene) -> None:
@@ -57,7 +70,7 @@ def test_they_are_found_anew_only_where_something_changed(match: Group, opened: 
 
 def test_each_has_the_color_and_the_number_of_its_button(match: Group, opened: bpy.types.Scene) -> None:
     points = candidates.candidate_points(active_take(opened).armature, match)
-    positions = candidates.over_footage(opened, active_take(opened), FOOTAGE, points)
+    positions = view_of(opened).project(points)
     settings = SimpleNamespace(opacity=0.5)
     for chosen, other in ((0, 1), (1, 0)):
         lines, cores, number = candidates.picture(positions, other, chosen, settings)
@@ -92,11 +105,8 @@ REASONS += ["fewer since", "the motion is shown"]
 
 @pytest.mark.parametrize("reason", REASONS)
 def test_the_one_under_the_mouse_is_drawn_at_an_undecided_frame_alone(
-    match: Group, opened: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, reason: str
+    match: Group, opened: bpy.types.Scene, reason: str
 ) -> None:
-    painted = []
-    monkeypatch.setattr(candidates, "paint", painted.append)
-    monkeypatch.setattr(candidates, "footage_view", lambda *_: FOOTAGE)
     assert tooltip(0 if reason == "the chosen one" else 1)
     if reason == "another frame":
         opened.frame_set(6)
@@ -110,12 +120,4 @@ def test_the_one_under_the_mouse_is_drawn_at_an_undecided_frame_alone(
         candidates.look_at(bpy.context, len(match.candidates))
     if reason == "the motion is shown":
         active_take(opened).armature.animation_data.action = bpy.data.actions.new("Motion")
-    context = SimpleNamespace(
-        scene=opened,
-        space_data=SimpleNamespace(type="CLIP_EDITOR"),
-        screen=SimpleNamespace(is_animation_playing=reason == "playing"),
-        area=None,
-        region=None,
-    )
-    candidates.draw(context)
-    assert len(painted) == (reason == "nothing")
+    assert bool(candidates.draw(context_of(opened, reason == "playing"))) == (reason == "nothing")

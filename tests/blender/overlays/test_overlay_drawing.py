@@ -125,7 +125,7 @@ def test_masks_lie_where_the_view_shows_their_pixels(
     coverage[4:12, 4:14] = 1.0
     mask = ColorMask("trunk", (0.0, 1.0, 0.0), coverage, mask_outlines(coverage, 4.0))
     preview = Preview(SimpleNamespace(), ("trunk",), (mask.color,), masks=(mask,))
-    picture = drawn(lambda: mask_overlay.draw_masks(preview, view))
+    picture = drawn(lambda: drawing.paint(mask_overlay.mask_items(preview, view)))
     inside = view.to_region([[36.0, 32.0], [22.0, 22.0], [48.0, 42.0]])
     outside = view.to_region([[100.0, 100.0], [74.0, 32.0], [130.0, 20.0]])
     for x, y in inside:
@@ -144,11 +144,11 @@ def test_a_texture_is_made_anew_only_for_other_masks(drawn: Drawn) -> None:
         for level in (0.0, 1.0)
     ]
     preview = Preview(SimpleNamespace(), ("a",), ((1.0, 0.0, 0.0),), masks=masks[0])
-    drawn(lambda: mask_overlay.draw_masks(preview, view))
-    first = mask_overlay._drawn[0][1]
-    drawn(lambda: mask_overlay.draw_masks(preview, view))
-    assert mask_overlay._drawn[0][1] is first
+    drawn(lambda: drawing.paint(mask_overlay.mask_items(preview, view)))
+    first = mask_overlay._textures["masks 0.5"][1]
+    drawn(lambda: drawing.paint(mask_overlay.mask_items(preview, view)))
+    assert mask_overlay._textures["masks 0.5"][1] is first
     preview.masks = masks[1]
-    assert drawn(lambda: mask_overlay.draw_masks(preview, view))[32, 48, 0] > 0.5
+    assert drawn(lambda: drawing.paint(mask_overlay.mask_items(preview, view)))[32, 48, 0] > 0.5
     mask_overlay.unregister()
-    assert not mask_overlay._drawn
+    assert not mask_overlay._textures

@@ -94,7 +94,7 @@ def context_of() -> SimpleNamespace:
 def rows(scene: bpy.types.Scene, frame: int) -> list[str]:
     """The legend's words in a frame, from the top down."""
     scene.frame_set(frame)
-    view = ClipView(FOOTAGE, np.eye(4), 400.0)
+    view = ClipView(FOOTAGE, np.eye(4), SimpleNamespace(focal_px=400.0))
     items = motion.picture(context_of(), motion.shown(scene), view, scene.keymark.overlays)
     return [item.words for item in items if isinstance(item, Label)][::-1]
 

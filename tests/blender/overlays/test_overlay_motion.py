@@ -22,7 +22,7 @@ from mathutils import Matrix, Vector
 FRAMES = 40
 STYLE = Style(opacity=1.0, scale=1.0)
 FOOTAGE = FootageView(None, (320, 240), np.array([10.0, 490.0]), np.array([640.0, -480.0]), None)
-CAMERA_VIEW = ClipView(FOOTAGE, np.eye(4), 400.0)
+CAMERA_VIEW = ClipView(FOOTAGE, np.eye(4), SimpleNamespace(focal_px=400.0))
 
 
 @pytest.fixture
@@ -206,7 +206,7 @@ def test_a_far_body_is_drawn_finer() -> None:
 
 def test_a_legend_stands_on_a_ground_that_holds_all_of_it() -> None:
     assert legend((), 40.0, 30.0, STYLE) == ()
-    rows = [(sample, f"Like {sample.value}, explained at length") for sample in Sample]
+    rows = [(sample, f"Like {sample.name}, explained at length") for sample in Sample]
     ground, *rest = legend(tuple(rows), 40.0, 30.0, STYLE)
     assert len(words(rest)) == len(rows)
     low, high = ground.corners[0].min(axis=0), ground.corners[0].max(axis=0)

@@ -49,7 +49,7 @@ def test_another_overlay_goes_on(blending: list[str]) -> None:
         raise ValueError
 
     guarded(overlay(draw))()
-    guarded(Overlay("Sound", calls.append, "SpaceView3D"))()
+    guarded(Overlay("Sound", lambda context: calls.append(context) or (), "SpaceView3D"))()
     assert calls == [bpy.context]
     assert registry.failures() == {"Broken": "ValueError"}
     assert blending == ["ALPHA", "NONE"] * 2
@@ -58,7 +58,8 @@ def test_another_overlay_goes_on(blending: list[str]) -> None:
 def test_what_is_not_dragged_is_hidden_meanwhile(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[bpy.types.Context] = []
     handlers = [
-        guarded(Overlay("Any", calls.append, "SpaceView3D", correcting)) for correcting in (True, False)
+        guarded(Overlay("Any", lambda context: calls.append(context) or (), "SpaceView3D", correcting))
+        for correcting in (True, False)
     ]
     for handler in handlers:
         handler()
