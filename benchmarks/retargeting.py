@@ -21,9 +21,12 @@ from trials import read_trial
 
 load_project()
 
-from _armatures import build_character  # noqa: E402
+from _armatures import (  # noqa: E402
+    add_rig,
+    build_character,  # noqa: E402
+    rigify_file,
+)
 from _characters import plain_character, shared_characters  # noqa: E402
-from _rigify import add_rig, rigify_file  # noqa: E402
 from _varied import varied  # noqa: E402
 from keymark.core.body.kinematics import SegmentMotion, segment_motion  # noqa: E402
 from keymark.core.errors import InputError  # noqa: E402

@@ -168,7 +168,7 @@ def _unposed(folder: Path) -> Any:
 
 
 def _character(folder: Path) -> Any:
-    from _rigify import add_rig
+    from _armatures import add_rig
 
     return add_rig(folder.parent / CHARACTER)
 
@@ -226,7 +226,7 @@ def make_take(folder: Path, source: str, width: str, height: str, frames: str) -
 def make_character(folder: Path) -> None:
     """Make the character that all motions are retargeted to."""
     load_project()
-    from _rigify import rigify_file
+    from _armatures import rigify_file
 
     rigify_file(folder).replace(folder / CHARACTER)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from _character_maps import full_map, full_record
+from _characters import full_map, full_record
 from _libraries import small_library
 from _synthetic_take import BODY, SIZE, true_postures, write_json, write_keypoints, write_synthetic_take
 from keymark.core.body.posture import posture_to_json

@@ -1,4 +1,4 @@
-"""The package's modules and imports, read from its source: what the rules of the house are held against."""
+"""The package's modules, imports and sentences, read from its source."""
 
 import ast
 from collections.abc import Iterator
@@ -43,3 +43,31 @@ def imports(name: str, is_package: bool, source: str, known: set[str]) -> Iterat
             for alias in node.names:
                 deeper = f"{base}.{alias.name}" if base else alias.name
                 yield node.lineno, deeper if deeper in known else base
+
+
+# --- Sentences that people meet, read from the source: every literal, with braces where values go
+
+
+def sentences(source: str) -> Iterator[str]:
+    """The literals of a module; a value that is filled in is `{}`."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.JoinedStr):
+            parts = (part.value if isinstance(part, ast.Constant) else "{}" for part in node.values)
+            yield "".join(map(str, parts))
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield without_names(node.value)
+
+
+def without_names(template: str) -> str:
+    """A template without the names of its values."""
+    result, depth = "", 0
+    for letter in template:
+        depth += (letter == "{") - (letter == "}")
+        result += letter if letter == "{" or not depth else ""
+    return result
+
+
+def all_sentences(repository: Path) -> set[str]:
+    """Those of the whole program."""
+    files = modules(repository, "core", "operators").values()
+    return {said for file in files for said in sentences(file.read_text(encoding="utf-8"))}

@@ -1,5 +1,6 @@
-"""Performances for tests of retargeting: what a performer does, and a character after him."""
+"""Motions for tests: what a performer does, networks' motions, corrected postures and reviews of numbers."""
 
+import csv
 import json
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,9 +11,11 @@ import numpy as np
 from _characters import plain_character, plain_map
 from keymark.core.arrays import Array
 from keymark.core.body.actor import Actor
+from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body, SegmentMotion, segment_motion
 from keymark.core.body.posture import Posture, turned_and_shifted
 from keymark.core.body.posture_fit import fit_posture
+from keymark.core.camera.camera import Camera
 from keymark.core.feet.natural_extremities import natural_extremities
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character
@@ -20,6 +23,8 @@ from keymark.core.retarget.character_motion import CharacterMotion, Similarity
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.quality import Quality, measured
 from keymark.core.retarget.solve.solve_motion import solve_motion
+from keymark.core.review.compared_keypoints import ComparedKeypoints
+from keymark.core.review.review import Reason, Review, WeakFrame
 from keymark.core.take.character_settings import RetargetOptions
 
 DEMO = Path(__file__).resolve().parents[1] / "presets" / "demo" / "aerobic"
@@ -132,3 +137,166 @@ def quality(
     return measured(
         source_joints(source), motion, joints(character_map, motion), soles(character, character_map, motion)
     ).quality
+
+
+# --- Motions as a network of somebody else's gives them: jittering, biased for a while, badly placed
+
+
+RATE = 30.0
+HIPS = [HUMAN.point_names.index(f"hip.{side}") for side in "LR"]
+ANKLES = [HUMAN.point_names.index(f"ankle.{side}") for side in "LR"]
+MHR = {"head": ("left_ear", "right_ear")}
+
+
+def about_hips(points: Array) -> Array:
+    """Points (F, 13, 3) relative to the hips' middle."""
+    return np.asarray(points - points[:, HIPS].mean(axis=1, keepdims=True))
+
+
+def seen_by_network(points: Array, seed: int = 0, bias_m: float = 0.03, place_m: float = 0.04) -> Array:
+    """Points whose error wanders (AR(1), 0.4 s) and is partly new in each frame, and whose place jumps."""
+    rng = np.random.default_rng(seed)
+    keep = np.exp(-1.0 / (RATE * 0.4))
+    bias = np.zeros(points.shape)
+    bias[0] = bias_m * rng.normal(size=points.shape[1:])
+    for frame in range(1, len(points)):
+        fresh = bias_m * np.sqrt(1.0 - keep**2) * rng.normal(size=points.shape[1:])
+        bias[frame] = keep * bias[frame - 1] + fresh
+    grain = 0.004 * rng.normal(size=points.shape)
+    place = place_m * rng.normal(size=(len(points), 1, 3)) * [0.2, 1.0, 0.2]
+    return np.asarray(points + bias + grain + place)
+
+
+def jitter_mm(points: Array) -> float:
+    """Mean length of second differences."""
+    return 1e3 * float(np.linalg.norm(np.diff(points, n=2, axis=0), axis=-1).mean())
+
+
+def error_mm(points: Array, truth: Array) -> float:
+    """Mean distance of points from true ones, about the hips."""
+    return 1e3 * float(np.linalg.norm(about_hips(points) - about_hips(truth), axis=-1).mean())
+
+
+def write_mhr70(path: Path, points: Array) -> None:
+    """A csv like MHR-70's, in a camera's axes."""
+    columns: dict[str, Array] = {}
+    for index, name in enumerate(HUMAN.point_names):
+        stem, dot, side = name.partition(".")
+        names = (f"{'left' if side == 'L' else 'right'}_{stem}",) if dot else MHR[name]
+        columns |= dict.fromkeys(names, points[:, index])
+    with path.open("w", newline="") as file:
+        rows = csv.writer(file)
+        rows.writerow([f"{name}_3D{axis}" for name in columns for axis in "XYZ"])
+        for frame in range(len(points)):
+            places = [columns[name][frame] for name in columns]
+            rows.writerow([f"{value:.6f}" for x, y, z in places for value in (x, -z, y)])
+
+
+# --- Postures within their joint limits, cameras around them, and what is asked of a corrected pose
+
+
+BODY = Body(Actor.from_stature(1.75))
+COLUMN = {name: i for i, name in enumerate(HUMAN.dof_names)}
+POINT = {name: i for i, name in enumerate(HUMAN.point_names)}
+
+
+def natural_posture(seed: int, share: float = 0.7) -> Posture:
+    """A posture anywhere in the inner share of its joint limits, near the origin and facing anywhere."""
+    rng = np.random.default_rng(seed)
+    lower, upper = HUMAN.limits.T
+    vector = np.zeros(HUMAN.dof_count)
+    bounded = np.isfinite(lower)
+    lower, upper = lower[bounded], upper[bounded]
+    middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
+    vector[bounded] = middle + share * half * rng.uniform(-1.0, 1.0, int(bounded.sum()))
+    vector[:6] = [*rng.normal(0.0, 0.2, 2), 1.0, 0.0, 0.0, rng.uniform(-np.pi, np.pi)]
+    return Posture.from_vector(HUMAN, vector)
+
+
+def camera_around(seed: int) -> Camera:
+    """A camera at 3 to 6 m in any direction, from knee height to above the head, which looks at the body."""
+    rng = np.random.default_rng(seed)
+    angle, away, height = rng.uniform(0.0, 2.0 * np.pi), rng.uniform(3.0, 6.0), rng.uniform(0.5, 2.5)
+    return camera_at(np.array([away * np.sin(angle), -away * np.cos(angle), height]))
+
+
+def camera_at(eye: Array) -> Camera:
+    """A camera at a place (3,) that looks at the body's middle."""
+    back = eye - np.array([0.0, 0.0, 1.0])
+    back /= np.linalg.norm(back)
+    right = np.cross([0.0, 0.0, 1.0], back)
+    right /= np.linalg.norm(right)
+    matrix = np.eye(4)
+    matrix[:3] = np.column_stack([right, np.cross(back, right), back, eye])
+    return Camera(35.0, 36.0, (1280, 720), matrix)
+
+
+def points(posture: Posture) -> Array:
+    """(13, 3) the principal points [m]."""
+    return BODY.points(BODY.pose(posture))
+
+
+def pixels(posture: Posture, camera: Camera) -> Array:
+    """(13, 2) their images [px]."""
+    return camera.project(points(posture))[0]
+
+
+def segment_lengths(posture: Posture) -> Array:
+    """Length of every segment of a posture [m]."""
+    pose = BODY.pose(posture)
+    ends = [BODY.segment_ends(pose, segment.name) for segment in HUMAN.segments]
+    return np.array([np.linalg.norm(end - start) for start, end in ends])
+
+
+def beyond_limits_rad(posture: Posture) -> Array:
+    """(D,) how far each degree of freedom is beyond its limits [m, rad]."""
+    values = posture.to_vector()
+    lower, upper = HUMAN.limits.T
+    return np.abs(values - np.clip(values, lower, upper))
+
+
+# --- Reviews of numbers that are made up
+
+
+def made_up_review(frames: int = 13, first: float = 1.0) -> Review:
+    """F frames of two markers: confidence falls towards the middle, one marker is hidden for some frames."""
+    rng = np.random.default_rng(4)
+    middle = np.sin(np.pi * np.arange(frames) / (frames - 1))
+    observed = rng.normal(size=(frames, 2, 8, 2))
+    reprojection = rng.uniform(size=(frames, 2))
+    observed[2, 1], reprojection[2, 1], reprojection[3] = np.nan, np.nan, np.nan
+    return Review(
+        frames=np.arange(frames) + first,
+        size=(160, 120),
+        marker_names=("trunk", "Ärmel"),
+        point_names=HUMAN.point_names,
+        observed=observed,
+        predicted=rng.normal(size=(frames, 2, 12, 2)),
+        points=rng.normal(size=(frames, 13, 3)),
+        image_points=rng.normal(size=(frames, 13, 2)),
+        sigma_m=0.01 + 0.02 * middle[:, None] * rng.uniform(0.5, 1.0, size=(frames, 13)),
+        reprojection_px=reprojection,
+        nearness=1.0 - middle,
+        speed=5.0 + 3.0 * middle,
+        confidence=1.0 - 0.6 * middle,
+        keyframe_indices=np.array([0, frames - 1]),
+        weak_frames=(WeakFrame(frames // 2, Reason.HIDDEN, 1.0, 1), WeakFrame(3, Reason.FAR, 0.25)),
+        contours=rng.uniform(20.0, 100.0, size=(frames, 6, 4, 2)),
+        keypoints=made_up_keypoints(frames),
+    )
+
+
+def made_up_keypoints(frames: int = 13) -> ComparedKeypoints:
+    """F frames of a wrist and a knee of one source, and the same wrist of another, a pixel from the motion.
+
+    The first wrist is thrown out in frame 1, hidden in frame 2, and taken for the other one in frame 4.
+    """
+    seen = np.random.default_rng(5).uniform(20.0, 100.0, size=(frames, 3, 2))
+    seen[2, 0] = np.nan
+    predicted, thrown_out, swapped = seen + [1.0, 0.0], *np.zeros((2, frames, 3), dtype=bool)
+    predicted[1, 0] += 30.0
+    thrown_out[1, 0], swapped[4, 0] = True, True
+    score = np.where(np.isfinite(seen[..., 0]), 0.9, 0.0)
+    distance, expected = np.linalg.norm(seen - predicted, axis=-1), np.full((frames, 3), 2.0)
+    names, sources = ("wrist.L", "knee.R", "wrist.L"), ("a detector", "a detector", "Blender's tracks")
+    return ComparedKeypoints(names, sources, seen, predicted, score, distance, expected, thrown_out, swapped)

@@ -1,13 +1,23 @@
-"""A performer of average size before a fixed camera, and regions predicted without any picture."""
+"""A performer before a fixed camera: regions and keypoints of known motions, and albums drawn of them."""
 
+from collections.abc import Mapping
+from functools import cache
+from types import MappingProxyType
+
+import cv2
 import numpy as np
 from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera
+from keymark.core.detect.keypoints import Keypoints, mirrored_point
 from keymark.core.markers.region_tracks import RegionTracks
+from keymark.core.terms.contours import ContourModel, part_map
+from keymark.core.terms.keypoints import KeypointModel
 from keymark.core.terms.region_model import MarkerPlacement, RegionModel
+from keymark.core.video.album import Album
+from numpy.typing import ArrayLike
 
 SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 BODY = Body(Actor.from_stature(1.75))
@@ -59,3 +69,133 @@ def film(posture: Posture, noise_px: float = 0.0, seed: int = 0, model: RegionMo
 def point_error_m(estimate: Posture, truth: Posture) -> np.ndarray:
     """Distance (F, 13) between the principal points of two batches [m]."""
     return np.linalg.norm(BODY.points(BODY.pose(estimate)) - BODY.points(BODY.pose(truth)), axis=-1)
+
+
+# --- An album of the performer of `_scene`, drawn part by part before a static, cluttered background
+
+
+FRAMES = 46
+FRAME = np.arange(FRAMES)
+POSED = np.array([0, 15, 30, 45])
+"""The frames of the keyframes."""
+TRUTH = exercise(FRAMES)
+NOTHING: Mapping[str, ArrayLike] = MappingProxyType({})
+NOISE_LEVELS = 3.0
+FINER = 3
+
+
+def part_colors(count: int) -> np.ndarray:
+    """(count + 1, 3) distinct colors; limbs look alike in pairs, the last is not used."""
+    rng = np.random.default_rng(7)
+    return rng.uniform(20.0, 235.0, size=(count + 1, 3))
+
+
+def background(rng: np.random.Generator) -> np.ndarray:
+    """(240, 320, 3) blocks of dull colors."""
+    blocks = rng.uniform(90.0, 200.0, size=(12, 16, 1)) + rng.uniform(-15.0, 15.0, size=(12, 16, 3))
+    return np.kron(blocks, np.ones((20, 20, 1)))
+
+
+def photograph(
+    posture: Posture, shake_px: int = 0, seed: int = 3, painted: Mapping[str, ArrayLike] = NOTHING
+) -> Album:
+    """An album of F postures.
+
+    `shake_px` moves the background about as a hand-held camera does; `painted` segments have own colors.
+    """
+    rng = np.random.default_rng(seed)
+    frames = posture.batch[0]
+    place = background(rng)
+    model = ContourModel.average(BODY, CAMERA)
+    parts = model.part_outlines(BODY.pose(posture), np.arange(frames))
+    colors = part_colors(len(model.parts.segments))
+    for segment, color in painted.items():
+        colors[model.parts.segments.index(segment)] = color
+    place, colors = place.astype(np.float32), colors.astype(np.float32)
+    album = Album()
+    for frame in range(frames):
+        shift = tuple(rng.integers(-shake_px, shake_px + 1, size=2))
+        label = part_map(parts, frame, (320 * FINER, 240 * FINER), 1.0 / FINER)
+        drawn = np.roll(place, shift, axis=(0, 1)).repeat(FINER, axis=0).repeat(FINER, axis=1)
+        drawn[label >= 0] = colors[label[label >= 0]]
+        image = cv2.resize(drawn, (320, 240), interpolation=cv2.INTER_AREA)
+        image = image + rng.normal(0.0, NOISE_LEVELS, size=image.shape)
+        album.add(frame, np.clip(np.round(image), 0, 255).astype(np.uint8))
+    return album
+
+
+@cache
+def album() -> Album:
+    """Pictures of the true motion."""
+    return photograph(TRUTH)
+
+
+# --- A synthetic detector: keypoints of a known motion with errors that last, and what may go wrong with it
+
+
+LAYOUT = (
+    "nose",
+    *(
+        f"{part}.{side}"
+        for part in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
+        for side in ("L", "R")
+    ),
+)
+SOURCE = "detector"
+
+
+def detect(
+    posture: Posture,
+    error_m: float = 0.012,
+    seed: int = 0,
+    names: tuple[str, ...] = LAYOUT,
+    place_error_m: float = 0.015,
+    hint_error_m: float | None = None,
+    camera: Camera = CAMERA,
+    body: Body = BODY,
+) -> Keypoints:
+    """What a detector sees of F postures: points at places of its own, with errors that last 0.2 s."""
+    rng = np.random.default_rng(seed)
+    frames = np.arange(posture.batch[0])
+    usual = KeypointModel.usual(body, camera, names)
+    model = usual.changed(place_error_m * rng.normal(size=usual.place.shape), camera)
+    pose = body.pose(posture)
+    pixel, depth = camera.project(model.world(pose), frames[:, None])
+    scale = camera.focal_px / depth
+    pixel = pixel + error_m * lasting(rng, (*depth.shape, 2)) * scale[..., None]
+    hint = np.full((*depth.shape, 3), np.nan)
+    if hint_error_m is not None:
+        own = depth - camera.depth(pose.origin[:, 0], frames)[:, None]
+        hint[..., :2], hint[..., 2] = 0.0, own + hint_error_m * lasting(rng, depth.shape)
+    return Keypoints(names, (SOURCE,) * len(names), pixel, np.ones(depth.shape), hint)
+
+
+def lasting(rng: np.random.Generator, shape: tuple[int, ...]) -> np.ndarray:
+    """First-order processes of unit variance over the first axis, of six frames' memory."""
+    kept = np.exp(-1.0 / 6.0)
+    noise = rng.normal(size=shape)
+    for frame in range(1, len(noise)):
+        noise[frame] = kept * noise[frame - 1] + np.sqrt(1.0 - kept**2) * noise[frame]
+    return noise
+
+
+def changed(keypoints: Keypoints, pixel: np.ndarray) -> Keypoints:
+    """The same keypoints elsewhere."""
+    return Keypoints(keypoints.names, keypoints.sources, pixel, keypoints.score, keypoints.hint_m)
+
+
+def in_order(keypoints: Keypoints, order: np.ndarray) -> Keypoints:
+    """The keypoints of other frames."""
+    return Keypoints(
+        keypoints.names,
+        keypoints.sources,
+        keypoints.pixel[order],
+        keypoints.score[order],
+        keypoints.hint_m[order],
+    )
+
+
+def sides_exchanged(keypoints: Keypoints, frames: np.ndarray) -> Keypoints:
+    """Left for right in some frames (F,)."""
+    partner = [keypoints.names.index(mirrored_point(name)) for name in keypoints.names]
+    return changed(keypoints, np.where(frames[:, None, None], keypoints.pixel[:, partner], keypoints.pixel))

@@ -1,6 +1,7 @@
-"""A small take made on the spot: a figure of thick lines, filmed as numbered images."""
+"""Small takes and shoots made on the spot: a figure of thick lines, filmed as numbered images."""
 
 import json
+import shutil
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -9,9 +10,11 @@ from typing import Any
 import cv2
 import numpy as np
 from keymark.core.body.actor import Actor
+from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera
+from keymark.core.video.clip import Clip
 
 SIZE = (160, 120)
 COLORS = {
@@ -126,3 +129,90 @@ def write_images(folder: Path, posture: Posture) -> None:
     folder.mkdir(parents=True)
     for frame, image in enumerate(drawn_frames(posture)):
         cv2.imwrite(str(folder / f"{frame + 1:04d}.png"), image)
+
+
+# --- A small shoot: clips of one performer, described by one file
+
+
+FPS = 30.0
+
+
+def shoot_fields() -> dict[str, Any]:
+    """Fields that all takes inherit; rate and size come from their clips."""
+    return {
+        "schema_version": 1,
+        "root": True,
+        "camera": {name: value for name, value in CAMERA.items() if name != "resolution"},
+        "markers": {name: {"color_srgb": list(color)} for name, color in COLORS.items()},
+        "actor": {"height_m": 1.75},
+        "method": "interpolation",
+        "pictures": False,
+    }
+
+
+def write_shoot(folder: Path, takes: int = 3, frames: int = 8) -> Path:
+    """Write a shoot whose takes are `day1/take01`, `day1/take02` and so on; returns the folder.
+
+    Every third take is a folder with `take.json` and images; the others are bare videos with their keyframe
+    files. Each shows another part of the same movement, so that no two give the same motion.
+    """
+    day = folder / "day1"
+    day.mkdir(parents=True)
+    write_json(folder / "shoot.json", shoot_fields())
+    every = true_postures(frames + takes)
+    for take in range(takes):
+        posture = every[take : take + frames]
+        points = BODY.points(BODY.pose(posture))
+        name = f"take{take + 1:02d}"
+        if take % 3 == 2:
+            write_images(day / name / "frames", posture)
+            write_json(day / name / "take.json", {"clip": "frames", "fps": FPS, "frame_count": frames})
+            write_keyframes(day / name / "keyframes.json", points, 4)
+        else:
+            write_video(day / f"{name}.mp4", posture, seed=take)
+            write_keyframes(day / f"{name}.keyframes.json", points, 4)
+    return folder
+
+
+def write_video(path: Path, posture: Posture, seed: int = 7) -> None:
+    """Film postures as a video."""
+    write_frames(path, list(drawn_frames(posture, seed)))
+
+
+def gliding(frames: int = 40) -> Posture:
+    """Somebody glides toward the camera, upright."""
+    ways = np.linspace(-0.2, 0.3, frames), np.linspace(0.9, -0.2, frames)
+    return Posture.stack([standing_posture(BODY, np.array([x, y, 0.0])) for x, y in zip(*ways, strict=True)])
+
+
+def write_frames(path: Path, images: list[np.ndarray]) -> None:
+    """Write pictures as a video of 30 frames per second."""
+    size = (images[0].shape[1], images[0].shape[0]) if images else SIZE
+    video = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"mp4v"), FPS, size)
+    assert video.isOpened()
+    for image in images:
+        video.write(image)
+    video.release()
+
+
+# --- The demonstration with a panel of a sleeve's color on its wall, which nobody wears
+
+
+PANEL = (8, 60, 60, 150)
+"""Left, top, right, bottom in pixels of the demonstration, beside the performer."""
+SLEEVE = "forearm.L"
+
+
+def panelled_take(demo: Path, folder: Path) -> Path:
+    """Write the demonstration anew as images; returns the take's folder."""
+    fields = json.loads((demo / "take.json").read_text(encoding="utf-8"))
+    (folder / "frames").mkdir(parents=True)
+    left, top, right, bottom = PANEL
+    for index, _, image in Clip.open(demo / "clip.mp4").frames():
+        image[top:bottom, left:right] = fields["markers"][SLEEVE]["color_srgb"][::-1]
+        cv2.imwrite(str(folder / "frames" / f"{index + 1:04d}.png"), image)
+    for name in ("keyframes.json", "truth.json"):
+        shutil.copy(demo / name, folder)
+    fields["clip"] = "frames"
+    (folder / "take.json").write_text(json.dumps(fields), encoding="utf-8")
+    return folder

@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from _body_plan import SIDES, Builder, Plan
-from _worn import WORN
+from _body_plan import SIDES, WORN, Builder, Plan
 from keymark.core.arrays import Array
 from keymark.core.retarget.character import Character, CharacterBone
 

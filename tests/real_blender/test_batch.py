@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from _shoot import write_shoot
+from _synthetic_take import write_shoot
 from installed_blender import Blender
 
 NAMES = ("day1/take01", "day1/take02", "day1/take03")

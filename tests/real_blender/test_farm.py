@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from _character_glb import write_glb
 from _characters import plain_character
-from _shoot import write_shoot
+from _synthetic_take import write_shoot
 from installed_blender import Blender
 
 OPENJD = Path(sys.executable).with_name("openjd.exe" if os.name == "nt" else "openjd")

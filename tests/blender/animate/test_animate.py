@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from _armatures import build_character
 from _characters import plain_character
-from _shoot import gliding, write_video
-from _synthetic_take import BODY, true_postures, write_keypoints
+from _synthetic_take import BODY, gliding, true_postures, write_keypoints, write_video
 from bpy.types import Object, PropertyGroup
 from keymark.core.camera.camera_fields import CameraPlacement
 from keymark.core.prior.learning import LibraryMetadata, learn_library

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import _add_rigify_human
 import bpy
 import pytest
-from _rigify import run_script
+from _armatures import run_script
 from bpy.types import Object, PropertyGroup
 from keymark.operators.bridge.character import rigify_human
 from keymark.operators.character import add_character as add_rigify_human

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _character_maps import full_map
+from _characters import full_map
 from keymark.core.retarget.character import LIMBS, ROLES
 from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones, read_character_map
 from keymark.core.retarget.maps.presets import SHIPPED, read_preset

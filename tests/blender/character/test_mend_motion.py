@@ -4,8 +4,7 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _elsewhere import seen_by_network, write_mhr70
-from _performances import stepping
+from _performances import seen_by_network, stepping, write_mhr70
 from keymark.operators.bridge.actor_bones import is_actor, moves_an_actor
 from keymark.operators.bridge.motions.mend_action import SOURCE
 

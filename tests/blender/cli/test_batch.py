@@ -13,8 +13,7 @@ from typing import Any
 import bpy
 import pytest
 from _libraries import small_library
-from _shoot import write_shoot
-from _synthetic_take import true_postures, write_json, write_keypoints
+from _synthetic_take import true_postures, write_json, write_keypoints, write_shoot
 from keymark.core.files.json_file import read_json
 from keymark.core.prior.library import write_library
 from keymark.core.take.conversion_record import read_record

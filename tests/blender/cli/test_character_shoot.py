@@ -7,11 +7,10 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _character_maps import full_map
-from _characters import plain_character, plain_map
+from _characters import full_map, plain_character, plain_map
 from _command_line import one_line, tree
-from _results import is_whole
-from _shoot import write_shoot
+from _scene_state import is_whole
+from _synthetic_take import write_shoot
 from keymark.core.retarget.maps.character_map import write_character_map
 from keymark.core.retarget.retarget_record import read_retarget_record
 from keymark.core.take.conversion_record import read_record

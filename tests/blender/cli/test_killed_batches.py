@@ -14,8 +14,8 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _results import blend_is_of, finished_folders, hidden_files, is_whole, same_in_every_run
-from _shoot import write_shoot
+from _scene_state import blend_is_of, finished_folders, hidden_files, is_whole, same_in_every_run
+from _synthetic_take import write_shoot
 
 pytestmark = [
     pytest.mark.faults,

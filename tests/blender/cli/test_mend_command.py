@@ -8,8 +8,7 @@ import bpy
 import numpy as np
 import pytest
 from _command_line import one_line, tree
-from _elsewhere import jitter_mm, seen_by_network, write_mhr70
-from _performances import stepping
+from _performances import jitter_mm, seen_by_network, stepping, write_mhr70
 from keymark.core.take.motion import read_motion
 from keymark.core.take.point_files import read_points
 from keymark.operators.cli.main import main

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _shoot import write_shoot
+from _synthetic_take import write_shoot
 from keymark.operators.cli.main import main
 
 OPENJD = Path(sys.executable).with_name("openjd.exe" if os.name == "nt" else "openjd")

@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from _fake_network import MiddleNetwork
+from _drawn_clip import MiddleNetwork
 from keymark.core.detect.keypoint_file import write_keypoints
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from _found import made_up_frames, wave_library
+from _scene_state import made_up_frames, wave_library
 from keymark.core.posing import pose_clip as posing
 from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.progress import Progress

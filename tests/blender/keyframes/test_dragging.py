@@ -6,9 +6,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from _found import shown
-from _posed import posture_of
-from _scene_state import differences, scene_state
+from _scene_state import differences, posture_of, scene_state, shown
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.operators.bridge.keyframes import unchanged_keyframes

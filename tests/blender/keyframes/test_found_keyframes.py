@@ -6,8 +6,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from _found import shown
-from _scene_state import differences, scene_state
+from _scene_state import differences, scene_state, shown
 from keymark.core.take.motion import Motion
 from keymark.operators.keyframes.candidates import candidate_title
 from keymark.operators.keyframes.found_keyframes import known_matches

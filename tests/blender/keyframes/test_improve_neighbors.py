@@ -5,9 +5,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from _found import shown
-from _posed import posture_of
-from _scene_state import differences, scene_state
+from _scene_state import differences, posture_of, scene_state, shown
 from keymark.core.body.human import HUMAN
 from keymark.core.errors import InputError
 from keymark.core.markers.ignored_regions import IgnoredRegion

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from _found import shown, wave_library
+from _scene_state import shown, wave_library
 from keymark.core.prior.library import LibraryMotion, MotionStep, write_library
 from keymark.core.take.motion import Motion
 from keymark.operators.library import registry_files

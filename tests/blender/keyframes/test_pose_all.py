@@ -6,8 +6,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from _found import shown
-from _scene_state import differences, scene_state
+from _scene_state import differences, scene_state, shown
 from keymark.core.errors import InputError
 from keymark.core.prior.texts import COMPOSED
 from keymark.core.take.motion import Motion

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from _review import made_up_keypoints, made_up_review
+from _performances import made_up_keypoints, made_up_review
 from keymark.core.review.review import Review
 from keymark.operators.follow.frame_keypoints import FrameKeypoints
 from keymark.operators.overlays import motion

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from _review import made_up_keypoints
+from _performances import made_up_keypoints
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from keymark.core.body.human import HUMAN
 from keymark.core.review.review import Review

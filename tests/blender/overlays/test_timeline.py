@@ -5,7 +5,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from _review import made_up_review
+from _performances import made_up_review
 from keymark.core.markers.reading import Reading
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.take.take import Take

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from _review import made_up_review
+from _performances import made_up_review
 from keymark.core.body.human import HUMAN
 from keymark.core.review.compared_keypoints import ComparedKeypoints
 from keymark.core.review.weak_frames import Reason, WeakFrame

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _shoot import write_shoot
+from _synthetic_take import write_shoot
 from keymark.core.errors import InputError
 from keymark.core.shoot.discovery import take_path
 from keymark.core.take.take_file import read_take

@@ -9,8 +9,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _shoot import gliding, write_frames, write_video
-from _synthetic_take import BODY, drawn_frames, true_postures, write_json, write_keypoints
+from _synthetic_take import (
+    BODY,
+    drawn_frames,
+    gliding,
+    true_postures,
+    write_frames,
+    write_json,
+    write_keypoints,
+    write_video,
+)
 from keymark.core.detect.keypoint_file import read_keypoints
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.prior.library import write_library

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _shoot import write_frames, write_shoot
-from _synthetic_take import MATRIX_WORLD, drawn_frames, true_postures
+from _synthetic_take import MATRIX_WORLD, drawn_frames, true_postures, write_frames, write_shoot
 from keymark.core.shoot.check.take_check import TakeCheck
 from keymark.core.shoot.discovery import Shoot, ShootTake
 from keymark.operators.cli.commands import check as command

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _shoot import write_shoot
-from _synthetic_take import BODY, SIZE, true_postures, write_json, write_keypoints
+from _synthetic_take import BODY, SIZE, true_postures, write_json, write_keypoints, write_shoot
 from keymark.core.detect.keypoints import mirrored_point
 from keymark.core.shoot.check.take_check import estimate_cost
 from keymark.operators.cli.main import main

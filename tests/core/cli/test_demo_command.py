@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from _characters import plain_character
-from _shoot import gliding, write_video
-from _synthetic_take import BODY, SIZE, true_postures, write_synthetic_take
+from _synthetic_take import BODY, SIZE, gliding, true_postures, write_synthetic_take, write_video
 from _synthetic_take import write_keypoints as write_keypoints_of
 from keymark.core.detect.keypoint_file import read_keypoints, write_keypoints
 from keymark.core.detect.keypoints import People, SeenPeople

@@ -8,9 +8,8 @@ import cv2
 import numpy as np
 import pytest
 from _command_line import one_line, tree
-from _fake_network import MiddleNetwork
-from _shoot import write_shoot, write_video
-from _synthetic_take import SIZE, true_postures, write_synthetic_take
+from _drawn_clip import MiddleNetwork
+from _synthetic_take import SIZE, true_postures, write_shoot, write_synthetic_take, write_video
 from keymark.core.detect.keypoint_file import read_keypoints
 from keymark.core.take.take_file import read_take
 from keymark.operators.cli.main import main

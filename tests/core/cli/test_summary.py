@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from _outcomes import FILES, RECORD, converted, failed, waiting
+from _command_line import FILES, RECORD, converted, failed, waiting
 from keymark.core.errors import ConversionError
 from keymark.core.shoot.discovery import Shoot, ShootTake
 from keymark.core.shoot.outcomes import Failure, Outcome, Status, read_failures, write_failure

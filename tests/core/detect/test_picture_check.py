@@ -7,8 +7,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from _drawn_clip import Drawn
-from _fake_network import SHAPE, FakeNetwork, MiddleNetwork, draw_people
+from _drawn_clip import SHAPE, Drawn, FakeNetwork, MiddleNetwork, draw_people
 from keymark.core.arrays import Array
 from keymark.core.detect.keypoints import People, SeenPeople, mirrored_point
 from keymark.core.detect.picture_check import PictureFinding, applied, check_by_pictures

@@ -9,8 +9,7 @@ from typing import Any, cast
 import cv2
 import numpy as np
 import pytest
-from _drawn_clip import Drawn
-from _fake_network import SHAPE, FakeNetwork, draw_people
+from _drawn_clip import SHAPE, Drawn, FakeNetwork, draw_people
 from keymark.core.detect.keypoint_file import read_keypoints
 from keymark.core.detect.keypoints import People
 from keymark.core.detect.pose_network import (

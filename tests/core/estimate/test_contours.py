@@ -5,8 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from _filmed import FRAME, FRAMES, POSED, TRUTH, album, photograph
-from _scene import BODY, CAMERA, SEGMENTS, film, point_error_m
+from _scene import BODY, CAMERA, FRAME, FRAMES, POSED, SEGMENTS, TRUTH, album, film, photograph, point_error_m
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.detect.keypoints import Keypoints

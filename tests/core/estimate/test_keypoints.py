@@ -5,8 +5,21 @@ from functools import cache
 
 import numpy as np
 import pytest
-from _detector import LAYOUT, SOURCE, changed, detect, in_order, lasting, sides_exchanged
-from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
+from _scene import (
+    BODY,
+    CAMERA,
+    LAYOUT,
+    SEGMENTS,
+    SOURCE,
+    changed,
+    detect,
+    exercise,
+    film,
+    in_order,
+    lasting,
+    point_error_m,
+    sides_exchanged,
+)
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera

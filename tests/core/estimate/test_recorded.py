@@ -4,13 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from _detector import detect, lasting, sides_exchanged
-from _filmed import FRAMES as FILMED_FRAMES
-from _filmed import POSED as FILMED_POSED
-from _filmed import TRUTH as FILMED
-from _filmed import album
 from _recorded import assert_recorded
-from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film
+from _scene import BODY, CAMERA, MODEL, SEGMENTS, album, detect, exercise, film, lasting, sides_exchanged
+from _scene import FRAMES as FILMED_FRAMES
+from _scene import POSED as FILMED_POSED
+from _scene import TRUTH as FILMED
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_problem import uncalibrated
 from keymark.core.estimate.keyframe_error import posing_covariance

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from _detector import detect, lasting, sides_exchanged
 from _recorded import assert_recorded
-from _scene import BODY, CAMERA, exercise
+from _scene import BODY, CAMERA, detect, exercise, lasting, sides_exchanged
 from keymark.core.api import reconstruct
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN

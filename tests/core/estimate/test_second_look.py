@@ -4,9 +4,8 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from _filmed import FRAMES, POSED, TRUTH, photograph
 from _recorded import assert_recorded
-from _scene import BODY, CAMERA, MODEL, SEGMENTS, film
+from _scene import BODY, CAMERA, FRAMES, MODEL, POSED, SEGMENTS, TRUTH, film, photograph
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.second_look import seen_tracks
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip

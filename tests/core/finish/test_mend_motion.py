@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from _elsewhere import ANKLES, HIPS, RATE, about_hips, error_mm, jitter_mm, seen_by_network
-from _performances import stepping
+from _performances import ANKLES, HIPS, RATE, about_hips, error_mm, jitter_mm, seen_by_network, stepping
 from keymark.core.arrays import Array
 from keymark.core.body.body_volume import sole_offsets
 from keymark.core.errors import InputError

@@ -1,8 +1,7 @@
 """Motions finished and mended, number by number."""
 
 import numpy as np
-from _elsewhere import RATE, seen_by_network
-from _performances import performance, stepping
+from _performances import RATE, performance, seen_by_network, stepping
 from _recorded import assert_recorded
 from keymark.core.body.posture import turned_and_shifted
 from keymark.core.feet.contacts import find_contacts

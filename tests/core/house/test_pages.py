@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from _boot import ROOT
-from _sentences import all_sentences, sentences, without_names
+from _house import all_sentences, sentences, without_names
 from _synthetic_take import write_synthetic_take
 from keymark.core import MOST_PIXELS
 from keymark.core.body import posture

@@ -5,8 +5,7 @@ import shlex
 from pathlib import Path
 
 import pytest
-from _shoot import write_video
-from _synthetic_take import BODY, true_postures, write_images, write_keyframes
+from _synthetic_take import BODY, true_postures, write_images, write_keyframes, write_video
 from keymark.core.take.description import describe
 from keymark.core.take.take_file import read_take
 from keymark.operators.cli.main import main

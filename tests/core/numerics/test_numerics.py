@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from _elsewhere import jitter_mm, seen_by_network
+from _performances import jitter_mm, seen_by_network
 from keymark.core.arrays import Array
 from keymark.core.numerics.markov_chain import cheapest_pairs, cheapest_path, path_posteriors
 from keymark.core.numerics.robust import (

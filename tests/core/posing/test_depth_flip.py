@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from _corrections import (
+from _performances import (
     BODY,
     COLUMN,
     POINT,

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from _corrections import BODY as CORRECTED
-from _corrections import camera_around, natural_posture, points
+from _performances import BODY as CORRECTED
+from _performances import camera_around, natural_posture, points
 from _performed import BODY
 from _recorded import assert_recorded
 from keymark.core.posing.depth_flip import FLIPPABLE, flipped

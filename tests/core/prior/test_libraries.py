@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from _fuzz import libraries
 from _libraries import ACTOR, random_posture, small_library
-from _library_strategies import libraries
 from hypothesis import HealthCheck, given, settings
 from keymark.core.body.actor import Actor
 from keymark.core.body.body_volume import sole_heights_m

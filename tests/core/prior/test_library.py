@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _fuzz import changed
+from _fuzz import changed, libraries
 from _libraries import small_library
-from _library_strategies import libraries
 from hypothesis import HealthCheck, given, settings
 from keymark.core.errors import InputError
 from keymark.core.prior.library import LARGEST_BYTES, Library, read_library, write_library

@@ -6,7 +6,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from _review import made_up_keypoints
+from _performances import made_up_keypoints
 from _synthetic_take import BODY, CAMERA, SIZE, true_postures, write_synthetic_take
 from keymark.core.camera.camera import Camera
 from keymark.core.markers.region_tracks import RegionTracks

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _outcomes import converted, failed, waiting
+from _command_line import converted, failed, waiting
 from keymark.core.report.canvas import write_png
 from keymark.core.report.summary.page import summary_page
 

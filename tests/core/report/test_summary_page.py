@@ -8,8 +8,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
-from _outcomes import RECORD, converted, failed, waiting
-from _page import Page
+from _command_line import RECORD, Page, converted, failed, waiting
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core.report.summary.page import STYLE, summary_page

@@ -4,8 +4,7 @@ from functools import cache
 
 import numpy as np
 from _characters import plain_character, plain_map
-from _elsewhere import RATE, jitter_mm
-from _performances import solved, steps
+from _performances import RATE, jitter_mm, solved, steps
 from _recorded import assert_recorded
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from _character_maps import full_record
+from _characters import full_record
 from keymark.core.errors import InputError
 from keymark.core.retarget.retarget_record import RECORD_FILE, read_retarget_record, write_retarget_record
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from _review import made_up_keypoints
+from _performances import made_up_keypoints
 from keymark.core.detect.keypoints import BODY_POINTS
 from keymark.core.review.compared_keypoints import ComparedKeypoints, part_of
 from keymark.core.review.frame_evidence import ContourSight, MarkerSight, believed_misfits, frame_evidence

@@ -4,7 +4,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from _review import made_up_review
+from _performances import made_up_review
 from _synthetic_take import write_synthetic_take
 from keymark.core.api import reconstruct
 from keymark.core.detect.keypoints import Keypoints, People, SeenPeople

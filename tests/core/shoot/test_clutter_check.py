@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from _panelled_take import PANEL, SLEEVE, panelled_take
+from _synthetic_take import PANEL, SLEEVE, panelled_take
 from keymark.core.progress import run
 from keymark.core.shoot.check.evidence_check import Findings
 from keymark.core.shoot.check.footage_check import check_footage

@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from _shoot import write_shoot
-from _synthetic_take import true_postures, write_json, write_keypoints
+from _synthetic_take import true_postures, write_json, write_keypoints, write_shoot
 from keymark.core.errors import InputError
 from keymark.core.shoot.discovery import open_shoot
 from keymark.core.take.conversion_digest import conversion_digest

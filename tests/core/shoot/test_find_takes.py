@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from _outcomes import RECORD
+from _command_line import RECORD
 from keymark.core.errors import InputError
 from keymark.core.shoot import discovery, outcomes
 from keymark.core.shoot.discovery import check_output, find_takes, open_shoot

@@ -10,8 +10,16 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from _shoot import shoot_fields, write_frames, write_shoot
-from _synthetic_take import BODY, drawn_frames, true_postures, write_keyframes, write_keypoints
+from _synthetic_take import (
+    BODY,
+    drawn_frames,
+    shoot_fields,
+    true_postures,
+    write_frames,
+    write_keyframes,
+    write_keypoints,
+    write_shoot,
+)
 from keymark.core.take.motion import read_motion
 from keymark.operators.cli.main import main
 

@@ -8,8 +8,7 @@ from typing import Any, cast
 import cv2
 import numpy as np
 import pytest
-from _drawn_clip import SIZE, Drawn
-from _fake_network import SHAPE, FakeNetwork
+from _drawn_clip import SHAPE, SIZE, Drawn, FakeNetwork
 from _synthetic_take import write_synthetic_take
 from keymark.core.arrays import Array
 from keymark.core.detect.keypoints import Keypoints, People, SeenPeople

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from _shoot import write_shoot
+from _synthetic_take import write_shoot
 from keymark.core.errors import InputError
 from keymark.core.take.conversion_digest import conversion_digest
 from keymark.core.take.conversion_record import (

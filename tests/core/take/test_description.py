@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from _shoot import shoot_fields as usual_fields
-from _shoot import write_shoot
-from _synthetic_take import write_json, write_synthetic_take
+from _synthetic_take import shoot_fields as usual_fields
+from _synthetic_take import write_json, write_shoot, write_synthetic_take
 from keymark.core.errors import InputError
 from keymark.core.take.conversion_settings import ConversionSettings
 from keymark.core.take.description import (

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _shoot import write_shoot
-from _synthetic_take import SIZE, write_json, write_synthetic_take
+from _synthetic_take import SIZE, write_json, write_shoot, write_synthetic_take
 from keymark.core.errors import InputError
 from keymark.core.markers.ignored_regions import MOST_POINTS, MOST_REGIONS, IgnoredRegion
 from keymark.core.prior.keyframes import interpolate

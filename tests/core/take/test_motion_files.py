@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _elsewhere import write_mhr70
-from _performances import stepping
+from _performances import stepping, write_mhr70
 from _synthetic_take import BODY, true_postures
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN

@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from _detector import LAYOUT, detect
-from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film
+from _scene import BODY, CAMERA, LAYOUT, MODEL, SEGMENTS, detect, exercise, film
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.numerics.block_banded import BlockBanded

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from _panelled_take import PANEL, panelled_take
 from _profile_take import profile_take
+from _synthetic_take import PANEL, panelled_take
 from installed_blender import Blender
 from keymark.core.body.human import HUMAN
 from keymark.core.review.score import Score, read_truth, score_points

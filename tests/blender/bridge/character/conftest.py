@@ -5,7 +5,7 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _rigify import add_rig, rigify_file
+from _armatures import add_rig, rigify_file
 
 
 @pytest.fixture(scope="session")

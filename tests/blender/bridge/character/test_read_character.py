@@ -6,10 +6,9 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from _armatures import build_character
+from _armatures import add_rig, build_character
 from _characters import plain_character
 from _performances import performance, stepping
-from _rigify import add_rig
 from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.retarget.recognition.recognize import recognize

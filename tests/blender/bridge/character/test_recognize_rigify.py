@@ -5,8 +5,8 @@ from pathlib import Path
 import _metarigs
 import bpy
 import pytest
+from _armatures import run_script
 from _characters import renamed
-from _rigify import run_script
 from keymark.core.errors import InputError
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.character_motion import find_stance

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from _elsewhere import jitter_mm
+from _performances import jitter_mm
 from keymark.core.arrays import Array
 from keymark.core.errors import InputError
 from keymark.core.progress import run

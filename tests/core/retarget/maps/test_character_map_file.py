@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _character_maps import full_map
-from _characters import plain_character, plain_map
+from _characters import full_map, plain_character, plain_map
 from _fuzz import FUZZ, changed
 from hypothesis import HealthCheck, given, settings
 from keymark.core.errors import InputError

@@ -4,8 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from _character_maps import full_map
-from _characters import plain_character, plain_map
+from _characters import full_map, plain_character, plain_map
 from _libraries import small_library
 from keymark.core.errors import InputError
 from keymark.core.prior.library import write_library

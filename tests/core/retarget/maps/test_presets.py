@@ -7,8 +7,7 @@ from typing import Any
 
 import jsonschema
 import pytest
-from _characters import plain_character
-from _conventions import convention_names
+from _characters import convention_names, plain_character
 from keymark.core.errors import InputError
 from keymark.core.retarget.character import REQUIRED, Character
 from keymark.core.retarget.maps.presets import SHIPPED, find_preset, preset_from_json, shipped_presets

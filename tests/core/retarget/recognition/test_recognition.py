@@ -6,8 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _body_plan import Plan
-from _characters import plain_character, plain_map, renamed, shared_characters
-from _conventions import CONVENTIONS, PRESET_OF, convention_names
+from _characters import (
+    CONVENTIONS,
+    PRESET_OF,
+    convention_names,
+    plain_character,
+    plain_map,
+    renamed,
+    shared_characters,
+)
 from _varied import Varied, build, nameless, varied
 from keymark.core.arrays import Array
 from keymark.core.body.posture import yaw_rotation

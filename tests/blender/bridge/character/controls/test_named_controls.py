@@ -5,7 +5,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from _control_rigs import control_rig
+from _armatures import control_rig
 from _performances import performance, stepping
 from keymark.core.progress import run
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, Setting, Switch
