@@ -6,7 +6,6 @@ import numpy as np
 
 from ..arrays import Array
 from ..numerics.robust import levenberg_marquardt
-from ..numerics.vectors import across as any_across
 from ..numerics.vectors import unit
 from . import rotations
 from .kinematics import Body
@@ -18,23 +17,13 @@ def _frame(x: Array, y: Array, z: Array) -> Array:
     return np.stack([x, y, z], axis=-1)
 
 
-def _least_turn(start: Array, goal: Array) -> Array:
-    """The smallest rotation taking unit vector `start` (3,) to unit vectors `goal` (N, 3)."""
-    axis = np.cross(start, goal)
-    sine = np.linalg.norm(axis, axis=-1, keepdims=True)
-    angle = np.arctan2(sine, np.sum(start * goal, axis=-1, keepdims=True))
-    # Opposite vectors leave the axis free; any axis perpendicular to `start` will do.
-    axis = np.where(sine > 1e-6, axis / np.maximum(sine, 1e-9), any_across(start))
-    return rotations.exponential(axis * angle)
-
-
 def _limb(start: Array, upper: Array, lower: Array, bend: float) -> tuple[Array, Array]:
     """Rotation (N, 3, 3) and flexion (N,) of a two-part limb that rests along `start`.
 
     `upper` and `lower` are unit directions (N, 3) in the limb's parent frame; when flexed the lower
     part moves towards `bend` times the limb's own y axis.
     """
-    default = _least_turn(start, upper)
+    default = rotations.smallest(start, upper)
     across = lower - np.sum(lower * upper, axis=-1, keepdims=True) * upper
     # Sine of a limb's bend below which its plane is that of the rest pose rather than of the bend.
     y = bend * across + 0.15 * default[..., :, 1]
@@ -61,7 +50,9 @@ def guess_posture(body: Body, points: Array) -> Posture:
     level = unit(level - np.sum(level * trunk, axis=-1, keepdims=True) * trunk)
     chest = _frame(level, np.cross(trunk, level), trunk)
     turns = {"pelvis": pelvis, "waist": np.swapaxes(pelvis, -1, -2) @ chest}
-    turns["neck"] = _least_turn(np.array([0.0, 0.0, 1.0]), _in_frame(chest, unit(point["head"] - shoulders)))
+    turns["neck"] = rotations.smallest(
+        np.array([0.0, 0.0, 1.0]), _in_frame(chest, unit(point["head"] - shoulders))
+    )
     angles: dict[str, Array] = {}
     for side, out in zip(SIDES, (1.0, -1.0), strict=True):
         for ball, middle, end, above, start, bend in (

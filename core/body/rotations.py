@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..arrays import Array, BoolArray
+from ..numerics.vectors import unit
 
 
 def exponential(rotation_vector: Array) -> Array:
@@ -68,6 +69,20 @@ def right_jacobian_inverse(rotation_vector: Array) -> Array:
 def hinge(axis: Array, angle: Array) -> Array:
     """Rotations by `angle` (...,) [rad] about a fixed unit `axis` (3,), as (..., 3, 3)."""
     return exponential(np.asarray(angle)[..., None] * np.asarray(axis))
+
+
+def smallest(source: Array, target: Array) -> Array:
+    """(..., 3, 3) the smallest rotations of unit vectors to others, about any axis for opposite ones."""
+    axis = cross(source, target)
+    cos = np.sum(source * target, axis=-1)[..., None, None]
+    K = cross_matrix(axis)
+    smallest = np.eye(3) + K + K @ K / np.maximum(1.0 + cos, 1e-9)
+    if np.all(cos > -1.0 + 1e-9):
+        return np.asarray(smallest)
+    across = np.where(np.abs(source[..., :1]) < 0.7, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+    half = unit(cross(source, across))
+    about = 2.0 * half[..., :, None] * half[..., None, :] - np.eye(3)
+    return np.asarray(np.where(cos > -1.0 + 1e-9, smallest, about))
 
 
 def to_quaternions(rotation: Array) -> Array:

@@ -7,7 +7,9 @@ import numpy as np
 from scipy.ndimage import convolve1d, maximum_filter1d
 
 from ..arrays import Array
+from ..body import rotations
 from ..numerics.vectors import columns_at, gaussian, usual_step
+from .contacts import Contact
 
 FADE_S = 0.2  # time in which a correction fades on either side of a hold
 
@@ -58,6 +60,15 @@ def _fading(hold: Hold, edge: int, time_s: Array, frames: slice, end: float) -> 
     span = end - times[edge]
     s = np.clip((time_s[frames] - times[edge]) / span, 0.0, 1.0)[:, None]
     return np.asarray((1.0 - s) ** 2 * ((1.0 + 2.0 * s) * hold.offset[edge] + s * span * rate))
+
+
+def held_turns(turns: Array, rests: Sequence[Contact], held: Sequence[Array], time_s: Array) -> Array:
+    """Turns (F, 3, 3) that are one (3, 3) throughout each rest; what that changes fades beside it."""
+    holds = [
+        Hold(rest.first, rotations.logarithm(own @ np.swapaxes(turns[rest.frames], -1, -2)))
+        for rest, own in zip(rests, held, strict=True)
+    ]
+    return np.asarray(rotations.exponential(faded(holds, time_s)) @ turns)
 
 
 def ease(value: Array, start: float, end: float) -> Array:

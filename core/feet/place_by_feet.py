@@ -7,9 +7,9 @@ ones, beside the place that was given.
 """
 
 import numpy as np
-from scipy.linalg import solveh_banded
 
 from ..arrays import Array, IndexArray
+from ..numerics.block_banded import BlockBanded
 from ..numerics.robust import student_weight
 from ..numerics.vectors import weighted_median
 
@@ -22,6 +22,7 @@ BEND_M_S2 = 4.0  # usual acceleration of the hips
 GIVEN_S = 0.5  # time over which the given place is believed in its changes
 EXACT_M = 1e-4  # how far the hips may move in frames in which their place is exact
 FLOOR_M = 0.02  # spread of the heights in which feet stand on a level floor
+EVERY = slice(None)
 
 
 def place_by_feet(
@@ -32,68 +33,46 @@ def place_by_feet(
     `given_m` is the usual error of the places given (F, 3); infinite where none are. Those of the `exact`
     frames stay.
     """
-    pins = np.zeros(0, dtype=np.intp) if exact is None else exact
     height = feet[..., 2] - feet[..., 2].min(axis=1, keepdims=True)
     low = np.maximum(height[1:], height[:-1])
     may_stand = 1.0 / (1.0 + (low / LOW_M) ** 4)  # (F-1, 2)
     step = np.diff(feet, axis=0)  # (F-1, 2, 3)
+    beliefs = _near(len(hips), rate, given_m, exact)
+    near = beliefs.multiply(hips)
+    beliefs.add_combination(EVERY, (1.0, -2.0, 1.0), np.array((BEND_M_S2 / rate**2) ** -2))
     place = np.array(hips)
-    std = STANDING_M_S / rate
     for width in WIDTHS:
+        variance = (width * STANDING_M_S / rate) ** 2
         travel = np.diff(place, axis=0)[:, None] + step
-        squared = (travel**2).sum(axis=-1) / (width * std) ** 2
-        weight = may_stand * student_weight(squared, DEGREES, 1) / (width * std) ** 2
-        lowest = _floor_m(place, feet, weight)
-        for axis in range(3):
-            band, right = _beliefs(hips[:, axis], rate, given_m)
-            band[0, pins] += EXACT_M**-2
-            right[pins] += EXACT_M**-2 * hips[pins, axis]
-            total, wanted = weight.sum(axis=1), -(weight * step[..., axis]).sum(axis=1)
-            band[0, :-1] += total
-            band[0, 1:] += total
-            band[1, :-1] -= total
-            right[:-1] -= wanted
-            right[1:] += wanted
-            if axis == 2:
-                stands = np.zeros(feet.shape[:2])
-                stands[1:] += weight
-                stands[:-1] += weight
-                stands *= (0.5 * (width * std) ** 2) / FLOOR_M**2
-                off = place[:, None, 2] + feet[..., 2] - lowest
-                stands *= student_weight((off / FLOOR_M) ** 2, DEGREES, 1)
-                band[0] += stands.sum(axis=1)
-                right += (stands * (lowest - feet[..., 2])).sum(axis=1)
-            place[:, axis] = solveh_banded(band, right, lower=True, check_finite=False)
+        weight = may_stand * student_weight((travel**2).sum(axis=-1) / variance, DEGREES, 1) / variance
+        system, right = BlockBanded(*hips.shape), near.copy()
+        system.add(beliefs)
+        system.add_combination(EVERY, (-1.0, 1.0), weight.sum(axis=1)[:, None])
+        pull = (weight[..., None] * step).sum(axis=1)
+        right[:-1] += pull
+        right[1:] -= pull
+        # Most of what stands is on one height.
+        heights = place[:, None, 2] + feet[..., 2]
+        lowest = weighted_median(heights[1:].ravel(), weight.ravel())
+        stands = np.zeros(feet.shape[:2])
+        stands[1:] += weight
+        stands[:-1] += weight
+        stands *= 0.5 * variance / FLOOR_M**2
+        stands *= student_weight(((heights - lowest) / FLOOR_M) ** 2, DEGREES, 1)
+        system.diagonal[:, 2, 2] += stands.sum(axis=1)
+        right[:, 2] += (stands * (lowest - feet[..., 2])).sum(axis=1)
+        place = system.factorize().solve(right)
     return place
 
 
-def _floor_m(place: Array, feet: Array, weight: Array) -> float:
-    """Height on which most of the standing feet stand [m]."""
-    heights = place[1:, None, 2] + feet[1:, :, 2]
-    return weighted_median(heights.ravel(), weight.ravel())
-
-
-def _beliefs(given: Array, rate: float, given_m: float) -> tuple[Array, Array]:
-    """Band and right-hand side of the place given and of a steady way."""
-    frames = len(given)
-    band = np.zeros((3, frames))
-    bend = (BEND_M_S2 / rate**2) ** -2
-    if frames > 2:
-        band[0, :-2] += bend
-        band[0, 1:-1] += 4.0 * bend
-        band[0, 2:] += bend
-        band[1, :-2] -= 2.0 * bend
-        band[1, 1:-1] -= 2.0 * bend
-        band[2, :-2] += bend
-    keep = np.exp(-1.0 / (rate * GIVEN_S))
+def _near(frames: int, rate: float, given_m: float, exact: IndexArray | None) -> BlockBanded:
+    """How near the places are to those given: their error wanders, and is none in exact frames."""
     std = given_m if np.isfinite(given_m) else 1e3
-    fresh = (1.0 - keep**2) * std**2
-    own = np.full(frames, (1.0 + keep**2) / fresh)
-    own[[0, -1]] = 1.0 / fresh
-    beside = np.full(frames, -keep / fresh)
-    band[0] += own
-    band[1, :-1] += beside[:-1]
-    right = own * given
-    right[:-1] += beside[:-1] * given[1:]
-    right[1:] += beside[:-1] * given[:-1]
-    return band, right
+    keep = np.exp(-1.0 / (rate * GIVEN_S))
+    found = BlockBanded(frames, 3)
+    found.add_combination(EVERY, (-keep, 1.0), np.array(1.0 / ((1.0 - keep**2) * std**2)))
+    known = np.zeros((frames, 1))
+    known[0] = std**-2
+    known[exact if exact is not None else []] += EXACT_M**-2
+    found.add_combination(EVERY, (1.0,), known)
+    return found

@@ -4,7 +4,7 @@ Thirteen points go in and a motion of the skeleton comes out. Posed frames are e
 them is what it is there and wanders from it (`core/numerics/wandering`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -232,4 +232,4 @@ def _on_floor(
     own = float(Soles.of(body).flat_m.mean()) if ankle_m is None else ankle_m
     shift = np.array([0.0, 0.0, own - height])
     moved = Posture(posture.skeleton, posture.translation + shift, posture.rotations, posture.angles)
-    return moved, tuple(Contact(one.point, one.first, one.last, one.place + shift) for one in contacts)
+    return moved, tuple(replace(one, place=one.place + shift) for one in contacts)

@@ -61,18 +61,12 @@ class KeyedBody:
 
     def update(self) -> None:
         """Evaluate all curves and the pose they give."""
-        values: dict[int, Array] = {}
-        for group, spline in enumerate(self.splines):
-            values |= self._by_bone(group, spline.evaluate(self.times, 0, len(self.times) - 1))
-        self.pose = self.rig.pose([values[bone] for bone in range(len(self.rig.bones))])
+        last = len(self.times) - 1
+        self.pose = self.rig.pose([one.evaluate(self.times, 0, last) for one in self.bone_splines()])
 
     def error_m(self) -> Array:
         """(F, P) distance of each point from its target [m]."""
         return np.asarray(np.linalg.norm(self.pose.points - self.target.points, axis=-1))
-
-    def normalized_error(self) -> Array:
-        """(F, P) the error in units of each point's tolerance."""
-        return self.error_m() / self.tolerance_m
 
     def bone_splines(self) -> tuple[Spline, ...]:
         """The keys of each bone, in the order of the rig's."""
@@ -145,12 +139,8 @@ class KeyedBody:
             shift = (self.pose.place(rig, bone, every) - self.target.place(rig, bone, every))[:, None]
             if above >= 0:
                 shift = shift @ np.swapaxes(self.target.rotation[above], -1, -2)
-        carried = np.concatenate(
-            [
-                np.arange(where.start, where.stop)
-                for where in (rig.point_slices[b] for b in rig.subtrees[bone])
-            ]
-        )
+        rows = [rig.point_slices[below] for below in rig.subtrees[bone]]
+        carried = np.concatenate([np.arange(where.start, where.stop) for where in rows])
         arm = self.target.points[:, carried] - self.target.points[:, joint, None]
         moved = np.zeros(self.target.points.shape[:2])
         moved[:, carried] = np.linalg.norm(rotations.cross(vector, arm) + shift, axis=-1)
@@ -213,17 +203,17 @@ def _add_keys(body: KeyedBody) -> Generator[float, None, None]:
     most = 0
     for number in count():
         # Share of the tolerance that added keys must reach; removal then chooses among them.
-        off = body.normalized_error() > 0.5
+        off = body.error_m() > 0.5 * body.tolerance_m
         frames_off = int(off.any(axis=1).sum())
         if not frames_off:
             return
         most = max(most, frames_off)
         done = 1.0 - frames_off / most
-        influence = np.empty((len(body.groups), len(body.times)))
+        influence = []
         for group in range(len(body.groups)):
-            influence[group] = body.influence(group, off)
+            influence.append(body.influence(group, off))
             yield done
-        for group, frames in enumerate(_frames_for_keys(body, influence)):
+        for group, frames in enumerate(_frames_for_keys(body, np.array(influence))):
             if len(frames):
                 # Rounds in which all keys are fitted anew; later ones fit only the new keys' neighbors.
                 body.insert(group, frames, everywhere=number < 3)

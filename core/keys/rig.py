@@ -68,42 +68,37 @@ class Rig:
 
     def pose(self, values: list[Array]) -> "RigPose":
         """Forward kinematics of every bone's values."""
-        frames = len(values[0])
-        count = self.point_slices[-1].stop
+        frames, count = len(values[0]), self.point_slices[-1].stop
         pose = RigPose(np.empty((len(self.bones), frames, 3, 3)), np.empty((frames, count, 3)))
-        self._fill(pose, values, range(len(self.bones)))
+        for index, own in enumerate(values):
+            self._place(pose, index, *self._local(index, own))
         return pose
 
     def pose_changed(self, pose: "RigPose", frames: slice, changed: dict[int, Array]) -> "RigPose":
         """The pose at some frames when some bones take other values (N, C) there."""
         part = RigPose(pose.rotation[:, frames].copy(), pose.points[frames].copy())
         touched = sorted({index for bone in changed for index in self.subtrees[bone]})
-        kept = {
-            index: (pose.local(self, index, frames), pose.place(self, index, frames))
+        local = {
+            index: self._local(index, changed[index])
+            if index in changed
+            else (pose.local(self, index, frames), pose.place(self, index, frames))
             for index in touched
-            if index not in changed
         }
         for index in touched:
-            turn, place = kept[index] if index in kept else self._local(index, changed[index])
-            self._fill_bone(part, index, turn, place)
+            self._place(part, index, *local[index])
         return part
 
-    def _fill(self, pose: "RigPose", values: list[Array], bones: range) -> None:
-        for index in bones:
-            self._fill_bone(pose, index, *self._local(index, values[index]))
-
-    def _fill_bone(self, pose: "RigPose", index: int, turn: Array, place: Array) -> None:
+    def _place(self, pose: "RigPose", index: int, turn: Array, place: Array) -> None:
+        """Put a bone's joint and points where its turn and place in the frames of others have them."""
         bone, where = self.bones[index], self.point_slices[index]
-        pose.rotation[index] = turn if bone.turner < 0 else pose.rotation[bone.turner] @ turn
-        if bone.parent < 0:
-            pose.points[:, where.start] = place
-        else:
-            above, start = pose.rotation[bone.parent], pose.points[:, self.point_slices[bone.parent].start]
-            pose.points[:, where.start] = start + _turned(above, place)
+        own = turn if bone.turner < 0 else pose.rotation[bone.turner] @ turn
+        pose.rotation[index] = own
+        if bone.parent >= 0:
+            start = pose.points[:, self.point_slices[bone.parent].start]
+            place = start + _turned(pose.rotation[bone.parent], place)
+        pose.points[:, where.start] = place
         joint = pose.points[:, where.start, None]
-        pose.points[:, where.start + 1 : where.stop] = joint + bone.points @ np.swapaxes(
-            pose.rotation[index], -1, -2
-        )
+        pose.points[:, where.start + 1 : where.stop] = joint + bone.points @ np.swapaxes(own, -1, -2)
 
     def _local(self, index: int, values: Array) -> tuple[Array, Array]:
         """A bone's turn (F, 3, 3) and place, (F, 3) or (3,) without location, in the frames of others."""
@@ -111,13 +106,8 @@ class Rig:
         place = bone.origin
         if bone.location_axes is not None:
             place = bone.origin + values[:, -3:] @ bone.location_axes.T
-        return self._turn(index, values), place
-
-    def _turn(self, index: int, values: Array) -> Array:
-        """(F, 3, 3) the joint's frame in its parent's joint's frame."""
-        bone = self.bones[index]
-        channels = values[:, : channel_count(bone.mode)]
-        return np.asarray(bone.left @ rotation_matrices(channels, bone.mode) @ bone.right)
+        turn = rotation_matrices(values[:, : channel_count(bone.mode)], bone.mode)
+        return np.asarray(bone.left @ turn @ bone.right), place
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,15 +10,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray
+from ..body import rotations
 from ..body.human import HUMAN
 from ..body.posture_fit import nearest_rotation
 from ..body.skeleton import SIDES
-from ..feet.fading import FADE_S
+from ..feet.fading import held_turns
 from ..finish.mend_motion import Mended
 from ..numerics.vectors import unit
 from ..numerics.wandering import smooth_path
 from .solve.rest_body import RestBody
-from .solve.two_bone import smallest_rotation
 
 Poses = Mapping[str, Array]
 """(F, 4, 4) by name of bone."""
@@ -105,9 +105,11 @@ def mended_poses(points: ArmaturePoints, poses: Poses, mended: Mended, posed: In
             rest = body.character.bone(bone.name).rest
             along = unit((end - rest[:3, 3]) @ rest[:3, :3])
             way = unit(goals[AIMS[bone.role]] - pose[:, :3, 3])
-            pose[:, :3, :3] = smallest_rotation(pose[:, :3, :3] @ along, way) @ pose[:, :3, :3]
+            pose[:, :3, :3] = rotations.smallest(pose[:, :3, :3] @ along, way) @ pose[:, :3, :3]
         elif bone.role.startswith("foot"):
-            pose[:, :3, :3] = _resting(pose[:, :3, :3], bone.role, mended)
+            rests = [rest for rest in mended.contacts if SIDES[rest.point] == bone.role[-1]]
+            still = [nearest_rotation(pose[rest.frames, :3, :3].mean(axis=0)[None])[0] for rest in rests]
+            pose[:, :3, :3] = held_turns(pose[:, :3, :3], rests, still, mended.motion.time_s)
     return found
 
 
@@ -125,19 +127,3 @@ def _hips_head(points: ArmaturePoints, hips: str, turns: Array, goals: Mapping[s
     rest = character.bone(hips).rest
     at_rest = np.mean([points.places[HUMAN.point_names.index(f"hip.{side}")] for side in SIDES], axis=0)
     return np.asarray(middle - turns @ (character.scale * (at_rest - rest[:3, 3]) @ rest[:3, :3]))
-
-
-def _resting(turns: Array, role: str, mended: Mended) -> Array:
-    """A foot's turns (F, 3, 3), the same over each of its rests; the change fades beside them."""
-    time_s = mended.motion.time_s
-    still = np.array(turns)
-    for contact in mended.contacts:
-        if SIDES[contact.point] != role[-1]:
-            continue
-        rest = slice(contact.first, contact.last + 1)
-        mean = nearest_rotation(turns[rest].mean(axis=0)[None])[0]
-        gap = np.maximum(time_s[contact.first] - time_s, time_s - time_s[contact.last])
-        share = np.clip(1.0 - gap / FADE_S, 0.0, 1.0)
-        share = (share * share * (3.0 - 2.0 * share))[:, None, None]
-        still = nearest_rotation((1.0 - share) * still + share * mean)
-    return still

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array
 from ..body.skeleton import SIDES
 from .character import LONG_BONES
 from .character_motion import CharacterMotion, FootRest
@@ -59,16 +59,15 @@ def direction_errors_deg(
 
     The performer's are turned as the character faces.
     """
-    there = [bone for bone in bones if all(role in paths for role in bone for paths in (source, shown))]
-    if not there:
-        return np.empty((0, 0))
     angles = []
-    for start, end in there:
+    for start, end in bones:
+        if not all(role in paths for role in (start, end) for paths in (source, shown)):
+            continue
         first, second = source[end] - source[start], shown[end] - shown[start]
         # The angle from both sine and cosine: the arc cosine alone is blind below a hundredth of a degree.
         sine = np.linalg.norm(np.cross(first, second), axis=-1)
         angles.append(np.degrees(np.arctan2(sine, np.sum(first * second, axis=-1))))
-    return np.stack(angles, axis=1)
+    return np.stack(angles, axis=1) if angles else np.empty((0, 0))
 
 
 def skate_mm(feet: Mapping[str, Array], rests: Sequence[FootRest], sole_m: float) -> Array:
@@ -100,16 +99,6 @@ def depths_m(heights_m: Mapping[str, Array], ground_m: Mapping[str, Array]) -> d
             depth = ground_m[limb] - heights.min(axis=1)
             found[limb] = np.maximum(found.get(limb, depth), depth)
     return found
-
-
-def hand_distances_mm(
-    wrists: Mapping[str, Array], goals: Mapping[str, Array], counted: Mapping[str, BoolArray]
-) -> Array:
-    """(N,) distance of wrists (F, 3) by side from their goals where those count (F,)."""
-    found = [
-        np.linalg.norm(wrists[side] - goals[side], axis=-1)[counted[side]] for side in goals if side in wrists
-    ]
-    return 1000.0 * np.concatenate(found) if found else np.empty(0)
 
 
 def farthest_mm(
@@ -154,32 +143,21 @@ def measured(
 
     carried = {role: canonical(path) + motion.way_m for role, path in shown.items()}
     under = {role: canonical(points) for role, points in soles.items()}
-    feet = {
-        f"leg.{side}": np.concatenate(
-            [
-                carried[f"foot.{side}"][:, None],
-                *(
-                    points + np.expand_dims(motion.way_m, -2)
-                    for role, points in under.items()
-                    if role[-1] == side
-                ),
-            ],
-            axis=1,
-        )
-        for side in SIDES
-        if f"foot.{side}" in carried
-    }
+    feet = {}
+    for side in SIDES:
+        if f"foot.{side}" in carried:
+            own = [points + motion.way_m[..., None, :] for role, points in under.items() if role[-1] == side]
+            feet[f"leg.{side}"] = np.concatenate([carried[f"foot.{side}"][:, None], *own], axis=1)
     skate = skate_mm(feet, motion.rests, SOLE_M * motion.size)
     depth_m = depths_m({role: points[..., 2] for role, points in under.items()}, motion.ground_m)
     deepest = max((float(depth.max()) for depth in depth_m.values()), default=None)
-    wrists = {side: carried[f"hand.{side}"] for side in SIDES if f"hand.{side}" in carried}
-    places = {side: goal.place_m for side, goal in motion.hands.items()}
-    full = {side: (goal.share >= FULL_SHARE) & goal.in_reach for side, goal in motion.hands.items()}
-    hands = hand_distances_mm(wrists, places, full)
-    heights = {side: path * [0.0, 0.0, 1.0] for side, path in wrists.items()}
-    floors = {side: place * [0.0, 0.0, 1.0] for side, place in places.items()}
-    at_floor = {side: full[side] & (goal.floor_share >= FULL_SHARE) for side, goal in motion.hands.items()}
-    floor = hand_distances_mm(heights, floors, at_floor)
+    hands, floor = [], []
+    for side, goal in motion.hands.items():
+        if f"hand.{side}" in carried:
+            off = carried[f"hand.{side}"] - goal.place_m
+            full = (goal.share >= FULL_SHARE) & goal.in_reach
+            hands.append(1000.0 * np.linalg.norm(off, axis=-1)[full])
+            floor.append(1000.0 * np.abs(off[full & (goal.floor_share >= FULL_SHARE), 2]))
     quality = Quality(
         arms_deg=_mean(arms),
         arms_worst_deg=_most(arms),
@@ -188,16 +166,16 @@ def measured(
         skate_mm=_mean(skate),
         skate_worst_mm=_most(skate),
         penetration_mm=None if deepest is None else 1000.0 * max(deepest, 0.0),
-        hands_mm=_mean(hands),
-        hands_worst_mm=_most(hands),
-        hands_floor_mm=_most(floor),
+        hands_mm=_mean(*hands),
+        hands_worst_mm=_most(*hands),
+        hands_floor_mm=_most(*floor),
     )
     return Measured(quality, depth_m)
 
 
-def _mean(values: Array) -> float | None:
-    return float(values.mean()) if values.size else None
+def _mean(*values: Array) -> float | None:
+    return float(np.concatenate(values).mean()) if any(one.size for one in values) else None
 
 
-def _most(values: Array) -> float | None:
-    return float(values.max()) if values.size else None
+def _most(*values: Array) -> float | None:
+    return max((float(one.max()) for one in values if one.size), default=None)

@@ -64,17 +64,16 @@ def ordered_controls(controls: Sequence[Control]) -> tuple[Control, ...]:
     for index in range(len(controls)):
         visit(index, frozenset())
     place = {index: number for number, index in enumerate(order)} | {NOTHING: NOTHING}
-    return tuple(_placed(controls[index], place, number) for number, index in enumerate(order))
-
-
-def _placed(control: Control, place: Mapping[int, int], number: int) -> Control:
-    """A control with the new numbers of others, where they come before its own."""
-    space = control.space
-    turner, carrier = (
-        other if other < number else NOTHING for other in (place[space.turner], place[space.carrier])
-    )
-    residual = space.residual if carrier == place[space.carrier] else np.inf
-    return replace(control, space=replace(space, turner=turner, carrier=carrier, residual=residual))
+    found = []
+    for number, index in enumerate(order):
+        space = controls[index].space
+        turner, carrier = (
+            above if above < number else NOTHING for above in (place[space.turner], place[space.carrier])
+        )
+        residual = space.residual if carrier == place[space.carrier] else np.inf
+        space = replace(space, turner=turner, carrier=carrier, residual=residual)
+        found.append(replace(controls[index], space=space))
+    return tuple(found)
 
 
 def control_channels(
@@ -110,7 +109,9 @@ def control_channels(
         goal = pose[:, :3, 3] if held is None else wanted[held.name][:, :3, 3] - turn @ held.space.origin
         apart = goal - place
         location = None
-        if space.movable and _is_moved(control, apart, size):
+        # Share of the character's size from which a bone that usually only turns is moved as well.
+        must = control.displaced or np.linalg.norm(apart, axis=-1).max() > 0.005 * size
+        if space.movable and (must or control.plan.kind in ALWAYS_MOVED):
             local = (np.swapaxes(axes, -1, -2) @ apart[..., None])[..., 0]
             location = np.linalg.solve(space.axes, local.T).T
         if location is not None or not space.is_placed(size):  # where none can tell, as wanted
@@ -125,10 +126,3 @@ def _held_hips(controls: Sequence[Control], index: int) -> Control | None:
         return None
     hips = (control for control in controls if control.plan.kind is ControlKind.HIPS)
     return next((one for one in hips if one.space.carrier == index and not one.space.movable), None)
-
-
-def _is_moved(control: Control, apart: Array, size: float) -> bool:
-    if control.plan.kind in ALWAYS_MOVED or control.displaced:
-        return True
-    # Distance [shares of the character's size] from which a bone that usually only turns is moved as well.
-    return bool(np.linalg.norm(apart, axis=-1).max() > 0.005 * size)

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...body import rotations
+from ...body.posture_fit import nearest_rotation
 
 NOTHING = -1  # instead of the index of a control: the armature itself
 RIGID = 1e-3  # residual [rad, or shares of the character's size] below which a space is rigid
@@ -91,8 +92,7 @@ def unscaled(matrices: Array) -> Array:
 
 def constant_turn(turns: Array) -> tuple[Array, float]:
     """The turn (3, 3) nearest to all of (S, 3, 3), and the largest angle to one of them [rad]."""
-    left, _, right = np.linalg.svd(turns.mean(axis=0))
-    mean = left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right
+    mean = nearest_rotation(turns.mean(axis=0)[None])[0]
     return mean, float(np.linalg.norm(rotations.logarithm(mean.T @ turns), axis=-1).max())
 
 

@@ -7,6 +7,8 @@ from enum import Enum
 import numpy as np
 
 from ...arrays import Array, BoolArray
+from ...feet.contacts import over_lowest
+from ...keys.tolerances import FLOOR_M, NEAR_FLOOR_M, RESTING_M
 from ...numerics.vectors import across, unit
 from ..character import LIMBS, MIDDLE, Character
 from ..character_motion import CharacterMotion
@@ -72,23 +74,17 @@ def _limb_points(
             places = [(bone.head, kind), (end, PointKind.BODY)]
             places.append((end + LEVER * length * across(along), PointKind.BODY))
             places += [(point, PointKind.SOLE) for point in soles.get(role, ())]
-            found += [HeldPoint(bone.name, _local(bone.rest, place), kind, limb) for place, kind in places]
+            turn = bone.rest[:3, :3]
+            found += [HeldPoint(bone.name, (place - bone.head) @ turn, kind, limb) for place, kind in places]
     return found
-
-
-def _local(rest: Array, place: Array) -> Array:
-    return np.asarray((place - rest[:3, 3]) @ rest[:3, :3])
 
 
 # --- How far key reduction may move a character's points
 
 
 # In meters for a character of the performer's size; smaller and larger ones have them in proportion.
-FLOOR_M = 0.0015  # largest error of a sole near the floor
-SHOWN_REST_M = 0.00008  # largest error of a resting foot that is shown: it must not slide
 SWITCH_M = 0.0008  # largest distance of wrists and ankles between IK and FK
 LEAST_M = 0.0002  # of a limb's ends where it is all but straight: less would bring keys and no likeness
-LOW_M = 0.03  # height over its lowest place nearby at which a sole must not pass the floor
 CARRIED_SHARE = 0.5  # share of the tolerance for a limb's root, and as much for elbow or knee on it
 POLE_RAD = 0.04  # turn of a limb about its own line that a pole's error may make [rad]
 
@@ -117,9 +113,11 @@ class ToleranceRules:
         if point.kind is PointKind.END:
             allowed[:] = min(ends_m, self.general_m)
         if point.kind is PointKind.SOLE:
-            allowed[self._near_floor(path)] = min(FLOOR_M, self.general_m)
+            allowed[over_lowest(path @ self.up, self.time_s) < NEAR_FLOOR_M * self.motion.size] = min(
+                FLOOR_M, self.general_m
+            )
         if shown and point.kind is not PointKind.BODY:
-            allowed[self.resting(point.limb)] = min(SHOWN_REST_M, self.general_m)
+            allowed[self.resting(point.limb)] = min(RESTING_M, self.general_m)
         elif point.kind is PointKind.END:
             allowed[self.resting(point.limb)] = min(SWITCH_M, self.general_m)
         return allowed * self.motion.size
@@ -132,11 +130,6 @@ class ToleranceRules:
                 rests[rest.first : rest.last + 1] = True
         return rests
 
-    def _near_floor(self, path: Array) -> BoolArray:
-        height = path @ self.up
-        low = [height[np.abs(self.time_s - now) <= 1.0].min() for now in self.time_s]
-        return np.asarray(height - low < LOW_M * self.motion.size)
-
     def reach_m(self, joints: tuple[Array, Array, Array], share: float = 1.0) -> Array:
         """(F,) error of a limb's length between root and end that moves elbow or knee by the tolerance [m].
 
@@ -144,12 +137,9 @@ class ToleranceRules:
         """
         root, middle, end = joints
         general_m, least_m = share * self.body_m, LEAST_M * self.motion.size
-        line = end - root
-        length = np.linalg.norm(line, axis=-1)
-        along = ((middle - root) * line).sum(axis=-1) / np.maximum(length, least_m)
-        out = np.linalg.norm(
-            middle - root - along[:, None] * line / np.maximum(length, least_m)[:, None], axis=-1
-        )
+        line, length = unit(end - root), np.linalg.norm(end - root, axis=-1)
+        along = ((middle - root) * line).sum(axis=-1)
+        out = np.linalg.norm(np.cross(middle - root, line), axis=-1)
         longer = np.maximum(np.maximum(along, length - along), least_m)
         return np.asarray(np.clip(general_m * out / longer, min(least_m, general_m), general_m))
 

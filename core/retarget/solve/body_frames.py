@@ -21,7 +21,6 @@ from ...feet.fading import ease
 from ...numerics.vectors import unit
 from .rest_body import RestBody
 from .stage import Stage
-from .two_bone import smallest_rotation
 
 CLEAR_BEND_RAD = (np.radians(12.0), np.radians(30.0))
 """Bend of a resting elbow or knee from which its plane begins to count, and counts in full."""
@@ -29,7 +28,11 @@ CLEAR_BEND_RAD = (np.radians(12.0), np.radians(30.0))
 
 def rest_alignment(body: RestBody) -> Mapping[str, Array]:
     """(3, 3) by role: the turn from the character's rest, in canonical axes, to the performer's."""
-    turns = {role: _correction(body, role) for role in body.first}
+    turns = {role: np.eye(3) for role in body.first}
+    for role, quaternion in body.character_map.rest_corrections.items():
+        if role in turns:
+            turn = Rotation.from_quat(np.roll(quaternion, -1)).as_matrix()
+            turns[role] = body.stance @ turn @ body.stance.T
     for side in SIDES:
         out = 1.0 if side == "L" else -1.0
         arm = [f"{part}.{side}" for part in ("upper_arm", "forearm", "hand")]
@@ -41,14 +44,6 @@ def rest_alignment(body: RestBody) -> Mapping[str, Array]:
     return turns
 
 
-def _correction(body: RestBody, role: str) -> Array:
-    given = body.character_map.rest_corrections.get(role)
-    if given is None:
-        return np.eye(3)
-    turn = Rotation.from_quat(np.roll(given, -1)).as_matrix()
-    return np.asarray(body.stance @ turn @ body.stance.T)
-
-
 def _align(body: RestBody, turns: dict[str, Array], limb: list[str], along: Array, hinge: Array) -> None:
     """Align a limb's two long bones: `along` and `hinge` are its direction and axis in the T pose."""
     upper, lower, end = limb
@@ -57,11 +52,11 @@ def _align(body: RestBody, turns: dict[str, Array], limb: list[str], along: Arra
     tip = body.joint(end) if end in body.first else body.tip(lower)
     second = first if tip is None else unit(tip - middle)
     corrected = turns[upper] @ first
-    turn = smallest_rotation(corrected, along) @ turns[upper]
+    turn = rotations.smallest(corrected, along) @ turns[upper]
     turn = _with_hinge(turn @ first, turn @ second, along, hinge) @ turn
     turns[upper] = turn
     bent = turn @ turns[lower] @ second
-    turns[lower] = smallest_rotation(bent, along) @ turn @ turns[lower]
+    turns[lower] = rotations.smallest(bent, along) @ turn @ turns[lower]
 
 
 def _with_hinge(first: Array, second: Array, along: Array, hinge: Array) -> Array:

@@ -18,12 +18,12 @@ from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
 from ...feet.contacts import RELEASE_SPEED_M_S, Contact, speeds
-from ...feet.fading import Hold, ease, faded, smooth_above
+from ...feet.fading import Hold, ease, faded, held_turns, smooth_above
 from ...feet.ground import Ground
 from .foot_shape import FootShape, is_rigid
 from .hips import straightness
 from .stage import Stage
-from .two_bone import LimbPose, smallest_rotation
+from .two_bone import LimbPose
 
 FLAT_RAD = (np.radians(15.0), np.radians(30.0))
 """Tilt of a resting sole up to which it lies flat, and from which it stays as it is (on tiptoe, kneeling)."""
@@ -65,7 +65,7 @@ def foot_turns(source: SegmentMotion, stage: Stage, ground: Ground, side: str) -
 
 def leveled(turn: Array, share: Array) -> Array:
     """Turns (F, 3, 3) of feet tilted back toward flat soles by shares (F,), headings kept."""
-    tilt = rotations.logarithm(smallest_rotation(turn[..., :, 2], np.broadcast_to(UP, turn.shape[:-1])))
+    tilt = rotations.logarithm(rotations.smallest(turn[..., :, 2], np.broadcast_to(UP, turn.shape[:-1])))
     return np.asarray(rotations.exponential(share[..., None] * tilt) @ turn)
 
 
@@ -84,11 +84,7 @@ def plan_foot(
     turn = _rolled(source, stage, ground, shape, side, ankle[:, 2] - ground_m)
     rests = [rest for rest in ground.rests if rest.point == point]
     stands = [_standing(turn[rest.frames]) for rest in rests]
-    turning = [
-        Hold(rest.first, rotations.logarithm(stand @ np.swapaxes(turn[rest.frames], -1, -2)))
-        for rest, stand in zip(rests, stands, strict=True)
-    ]
-    turn = np.asarray(rotations.exponential(faded(turning, time_s)) @ turn)
+    turn = held_turns(turn, rests, stands, time_s)
     depth_m = sole_depth_m(turn, shape)
     planted = np.zeros(len(time_s), dtype=bool)
     holds = []

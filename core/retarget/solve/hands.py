@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ...arrays import Array, BoolArray
+from ...arrays import Array
 from ...body import rotations
 from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
@@ -23,7 +23,7 @@ from ..character_motion import HandGoal
 from .body_frames import distances_m, in_segment, part_shapes, places_by_part
 from .rest_body import RestBody
 from .stage import Stage
-from .two_bone import LimbPose, reach_for, smallest_rotation, stretched_m
+from .two_bone import LimbPose, reach_for, stretched_m
 
 NEAR_M = (0.03, 0.065)
 """Distance of a hand from the own body up to which its place there counts in full, and from which not at all;
@@ -36,7 +36,6 @@ LINGER_S = 0.25
 """Standard deviation in time of the smoothing of that speed: a hand that turns round in its swing swings."""
 OF_STATURE_M = 1.75
 CHANGE_S = 0.1  # standard deviation in time of the smoothing of what counts how much
-ARM_SOFT = 0.97  # share of its length from which an arm resists being stretched
 FULL_SHARE = 0.2
 """Share of a goal from which the arm is solved for it; below, it is between that and its directions."""
 
@@ -97,12 +96,20 @@ def hand_goals(
     if len(arms) == len(SIDES):
         between = source.start["hand.R"] - source.start["hand.L"]
         together = _near(source, np.linalg.norm(between, axis=-1), TOGETHER_M)
-        apart = _arm_ratio(body, source) * between @ stage.turn.T
+        bones = (*LONG_BONES["arm.L"], *LONG_BONES["arm.R"])
+        lengths = source.body.actor.segments_m
+        longer = sum(body.length_m(*ends) for ends in bones) / sum(lengths[start] for start, _ in bones)
+        apart = longer * between @ stage.turn.T
         goals = _brought_together(goals, arms, apart, together)
         shares = {side: 1.0 - (1.0 - share) * (1.0 - together) for side, share in shares.items()}
     return {
-        side: HandGoal(goals[side], shares[side], floors[side], _in_reach(arms[side], goals[side]))
-        for side in arms
+        side: HandGoal(
+            goals[side],
+            shares[side],
+            floors[side],
+            np.linalg.norm(_reachable(arm, goals[side]) - goals[side], axis=-1) <= 1e-6,
+        )
+        for side, arm in arms.items()
     }
 
 
@@ -117,7 +124,7 @@ def floor_goals(
 
 def reach(arm: LimbPose, goal: Array, share: Array) -> LimbPose:
     """An arm that reaches for a goal where that counts, and keeps its directions where not."""
-    solved = reach_for(arm, arm.start, goal, ARM_SOFT)
+    solved = reach_for(arm, arm.start, goal)
     blend = ease(share, 0.0, FULL_SHARE)[:, None]
     upper, lower = (
         rotations.exponential(blend * rotations.logarithm(new @ np.swapaxes(old, -1, -2))) @ old
@@ -142,7 +149,7 @@ def above_floor(turn: Array, wrist_m: Array, along: Array) -> Array:
     # Part of the back of the hand in the heading of fingers.
     level = (fingers + 0.02 * turn[..., 2]) * [1.0, 1.0, 0.0]
     level = unit(level) * np.sqrt(1.0 - least**2)[:, None] + least[:, None] * UP
-    bent = smallest_rotation(fingers, unit(level)) @ turn
+    bent = rotations.smallest(fingers, unit(level)) @ turn
     return np.where((fingers[:, 2] < least)[:, None, None], bent, turn)
 
 
@@ -161,19 +168,8 @@ def _brought_together(
 
 
 def _reachable(arm: LimbPose, goal: Array) -> Array:
+    """(F, 3) the place nearest to a goal that an arm reaches [m]."""
     way = goal - arm.start
     wanted_m = np.linalg.norm(way, axis=-1)
-    reached_m = stretched_m(wanted_m, arm.extension_m, arm.length_m, ARM_SOFT)
+    reached_m = stretched_m(wanted_m, arm.extension_m, arm.length_m)
     return np.asarray(arm.start + unit(way) * reached_m[:, None])
-
-
-def _in_reach(arm: LimbPose, goal: Array) -> BoolArray:
-    """(F,) whether an arm reaches a goal without resisting."""
-    wanted_m = np.linalg.norm(goal - arm.start, axis=-1)
-    return np.asarray(stretched_m(wanted_m, arm.extension_m, arm.length_m, ARM_SOFT) >= wanted_m - 1e-6)
-
-
-def _arm_ratio(body: RestBody, source: SegmentMotion) -> float:
-    lengths = source.body.actor.segments_m
-    bones = (*LONG_BONES["arm.L"], *LONG_BONES["arm.R"])
-    return sum(body.length_m(*ends) for ends in bones) / sum(lengths[start] for start, _ in bones)

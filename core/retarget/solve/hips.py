@@ -1,15 +1,13 @@
-"""What moves the hips: legs that stand and must reach, and the way over the ground."""
+"""What moves the hips: legs that stand, and limbs that must reach."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from ...arrays import Array, BoolArray
-from ...body.posture import yaw_rotation
-from ...feet.fading import ease, smooth_above, smoothed
+from ...feet.fading import ease, smoothed
 from .two_bone import STRAIGHTEST, LimbPose
 
-LEG_SOFT = 0.988  # share of its length from which a leg resists being stretched
 SINK_S = 0.12  # time over which the hips go down and up again
 CARRY_S = 0.08  # standard deviation in time of the smoothing of what they are moved by with the feet
 MOMENT_S = 0.07  # standard deviation in time of the smoothing of how far a limb may be stretched
@@ -50,35 +48,3 @@ def raised_m(
         weights += weight
     limit = DEEPEST_SHARE * leg_m
     return np.clip(smoothed(total / weights, time_s, CARRY_S, ends_kept=False), -limit, limit)
-
-
-def lowered_m(needed: list[Array], time_s: Array, leg_m: float) -> Array:
-    """(F,) how much lower the hips go, smoothly, for what their limbs need [m]."""
-    highest = np.minimum(np.maximum.reduce(needed), DEEPEST_SHARE * leg_m)
-    return smooth_above(highest, time_s, SINK_S)
-
-
-# --- The way over the ground
-
-
-WAY_S = 0.4  # standard deviation in time of what counts as the way and heading; faster changes are sway
-
-
-def smooth_way(hips: Array, time_s: Array) -> Array:
-    """(F, 3) the smoothed way of the hips over the ground from where they begin [m]; heights are 0."""
-    way = smoothed(hips - hips[0], time_s, WAY_S) * [1.0, 1.0, 0.0]
-    return way - way[0]
-
-
-def smooth_headings_rad(headings_rad: Array, time_s: Array) -> Array:
-    """(F,) smoothed headings from the first one."""
-    return smoothed(np.unwrap(headings_rad) - headings_rad[0], time_s, WAY_S)
-
-
-def root_poses(rest: Array, stand: Array, way: Array, heading_rad: Array) -> Array:
-    """(F, 4, 4) poses of a root bone that goes along a way (F, 3) from where it stands, and turns [m]."""
-    turn = yaw_rotation(heading_rad)
-    poses = np.broadcast_to(np.eye(4), (len(way), 4, 4)).copy()
-    poses[:, :3, :3] = turn @ rest[:3, :3]
-    poses[:, :3, 3] = stand + way + turn @ (rest[:3, 3] - stand)
-    return poses

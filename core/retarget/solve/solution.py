@@ -9,17 +9,18 @@ from ...arrays import Array
 from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
+from ...feet.fading import smooth_above
 from ...feet.ground import Ground
 from ..character import LIMBS, joint_roles
 from ..character_motion import FootRest, HandGoal
 from .body_frames import bone_turns, joint_places
 from .feet import FootPath, foot_turns, plan_foot, toe_bends
 from .foot_shape import FootShape
-from .hands import ARM_SOFT, above_floor, floor_goals, hand_goals, reach
-from .hips import LEG_SOFT, lowered_m, needed_drop_m, raised_m
+from .hands import above_floor, floor_goals, hand_goals, reach
+from .hips import DEEPEST_SHARE, SINK_S, needed_drop_m, raised_m
 from .rest_body import RestBody
 from .stage import Stage
-from .two_bone import LimbPose, reach_for
+from .two_bone import ARM_SOFT, LEG_SOFT, LimbPose, reach_for
 
 HINGES = {
     "arm.L": (0.0, 0.0, -1.0),
@@ -114,7 +115,8 @@ class Solution:
             goal, share = floor_goals(self.source, self.stage, self.ground, arm, side)
             moved = goal - raised[:, None] * UP
             needed.append(share * needed_drop_m(arm, moved, share > 0.0, ARM_SOFT, time_s))
-        self.hips = self.hips + (raised - lowered_m(needed, time_s, leg_m))[:, None] * UP
+        lowered = np.minimum(np.maximum.reduce(needed), DEEPEST_SHARE * leg_m)
+        self.hips = self.hips + (raised - smooth_above(lowered, time_s, SINK_S))[:, None] * UP
 
     def plant(self, feet: Mapping[str, FootPath], shapes: Mapping[str, FootShape]) -> None:
         """Bring legs to where the feet belong."""

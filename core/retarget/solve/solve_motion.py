@@ -7,8 +7,9 @@ import numpy as np
 
 from ...arrays import Array
 from ...body.kinematics import SegmentMotion
-from ...body.posture import turn_headings_rad
+from ...body.posture import turn_headings_rad, yaw_rotation
 from ...body.skeleton import SIDES
+from ...feet.fading import smoothed
 from ...progress import Job, Progress
 from ...take.character_settings import Placement, RetargetOptions, RootMotion
 from ..character import Character
@@ -16,10 +17,11 @@ from ..character_motion import CharacterMotion, Similarity
 from ..maps.character_map import CharacterMap
 from .body_frames import rest_alignment
 from .foot_shape import foot_shape, performer_ground, rest_floor_m, sole_points
-from .hips import root_poses, smooth_headings_rad, smooth_way
 from .rest_body import RestBody, rest_notes
 from .solution import Solution
 from .stage import find_stage
+
+WAY_S = 0.4  # standard deviation in time of what counts as the way and heading; faster changes are sway
 
 
 def solve_motion(
@@ -85,18 +87,19 @@ def _root_motion(solution: Solution, options: RetargetOptions) -> tuple[Array, A
     none = np.zeros_like(solution.hips)
     if options.root_motion is RootMotion.AS_FILMED:
         return none, None, ()
-    way = smooth_way(solution.hips, time_s)
+    way = smoothed(solution.hips - solution.hips[0], time_s, WAY_S) * [1.0, 1.0, 0.0]
+    way -= way[0]
     if options.root_motion is RootMotion.IN_PLACE:
         return way, None, ()
     name, character = body.character_map.root, body.character
     if name is None or name not in character.index or name in {bone.name for bone in body.bones}:
         note = f"'{character.name}' has no root bone apart from its hips, which keep the way over the ground"
         return none, None, (note,)
-    heading = smooth_headings_rad(turn_headings_rad(solution.source.turn["pelvis"]), time_s)
-    rest = np.eye(4)
-    rest[:3, :3] = body.stance @ character.bone(name).rest[:3, :3]
-    rest[:3, 3] = character.scale * body.stance @ character.bone(name).head
-    poses = root_poses(rest, solution.stage.stand, way, heading)
-    poses[:, :3, :3] = body.stance.T @ poses[:, :3, :3]
-    poses[:, :3, 3] = poses[:, :3, 3] @ body.stance / character.scale
+    headings_rad = np.unwrap(turn_headings_rad(solution.source.turn["pelvis"]))
+    turn = yaw_rotation(smoothed(headings_rad - headings_rad[0], time_s, WAY_S))
+    rest, stand = body.stance @ character.bone(name).rest[:3], solution.stage.stand
+    poses = np.tile(np.eye(4), (len(way), 1, 1))
+    poses[:, :3, :3] = body.stance.T @ turn @ rest[:, :3]
+    place = stand + way + turn @ (character.scale * rest[:, 3] - stand)
+    poses[:, :3, 3] = place @ body.stance / character.scale
     return none, poses, ()

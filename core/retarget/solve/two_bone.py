@@ -12,7 +12,7 @@ from ...arrays import Array
 from ...body import rotations
 from ...numerics.vectors import unit
 
-SOFT = 0.97  # share of its length from which a limb resists being stretched further by a goal
+ARM_SOFT, LEG_SOFT = 0.97, 0.988  # shares of its length from which a limb resists being stretched further
 STRAIGHTEST = 0.9999
 """Largest extension as a share of a limb's length; beyond it the bend would have no direction left."""
 LEAST_M = 1e-6
@@ -57,7 +57,7 @@ class LimbPose:
         return unit(rotations.cross(line, across))
 
 
-def stretched_m(wanted_m: Array, own_m: Array, length_m: float, soft: float = SOFT) -> Array:
+def stretched_m(wanted_m: Array, own_m: Array, length_m: float, soft: float = ARM_SOFT) -> Array:
     """(F,) extension that a limb takes on for a goal, smooth where the goal goes out of reach [m].
 
     From the share `soft` of its length it resists; its own extension (F,) without a goal is always allowed.
@@ -70,7 +70,7 @@ def stretched_m(wanted_m: Array, own_m: Array, length_m: float, soft: float = SO
     return np.asarray(np.maximum(softly, np.minimum(np.minimum(wanted_m, own_m), limit)))
 
 
-def reach_for(limb: LimbPose, start: Array, goal: Array, soft: float = SOFT) -> LimbPose:
+def reach_for(limb: LimbPose, start: Array, goal: Array, soft: float = ARM_SOFT) -> LimbPose:
     """The limb from where its hip or shoulder is now (F, 3), its end at a goal or as near as it stretches.
 
     It resists from the share `soft` of its length.
@@ -98,23 +98,9 @@ def reach_for(limb: LimbPose, start: Array, goal: Array, soft: float = SOFT) -> 
     )
 
 
-def smallest_rotation(source: Array, target: Array) -> Array:
-    """(..., 3, 3) the smallest rotations of unit vectors to others, about any axis for opposite ones."""
-    axis = rotations.cross(source, target)
-    cos = np.sum(source * target, axis=-1)[..., None, None]
-    K = rotations.cross_matrix(axis)
-    smallest = np.eye(3) + K + K @ K / np.maximum(1.0 + cos, 1e-9)
-    if np.all(cos > -1.0 + 1e-9):
-        return np.asarray(smallest)
-    across = np.where(np.abs(source[..., :1]) < 0.7, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
-    half = unit(rotations.cross(source, across))
-    about = 2.0 * half[..., :, None] * half[..., None, :] - np.eye(3)
-    return np.asarray(np.where(cos > -1.0 + 1e-9, smallest, about))
-
-
 def _carried(old: Array, new: Array, axis: Array) -> Array:
     """Axes (F, 3) turned as the lines they are across were turned, and across the new ones again."""
-    turned = (smallest_rotation(old, new) @ axis[..., None])[..., 0]
+    turned = (rotations.smallest(old, new) @ axis[..., None])[..., 0]
     return np.asarray(turned - np.sum(turned * new, axis=-1, keepdims=True) * new)
 
 

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from ....core.body import rotations
 from ....core.errors import InputError
 from ....core.files.fields import listed
 from ....core.files.paths import real_path, regular_file_size
@@ -17,7 +18,6 @@ from ....core.progress import run
 from ....core.retarget.maps.map_registry import ChosenMap
 from ....core.retarget.mended_armature import ArmaturePoints
 from ....core.retarget.solve.rest_body import RestBody
-from ....core.retarget.solve.two_bone import smallest_rotation
 from ....core.take.character_settings import CharacterFile
 from ....core.take.reference import ARMATURE_ENDINGS, ReferenceMotion
 from ..actions import assign_action, existing_channelbag
@@ -93,7 +93,7 @@ def _stand_up(armature: bpy.types.Object, body: RestBody) -> None:
     turn = np.array(armature.matrix_world, dtype=np.float64)[:3, :3]
     up = unit(turn @ body.stance.T @ [0.0, 0.0, 1.0])
     if up[2] < np.cos(np.radians(45.0)):
-        upright = smallest_rotation(up, np.array([0.0, 0.0, 1.0]))
+        upright = rotations.smallest(up, np.array([0.0, 0.0, 1.0]))
         armature.matrix_world = Matrix(upright).to_4x4() @ armature.matrix_world
         bpy.context.view_layer.update()
 

@@ -1,16 +1,17 @@
 """Figures of a retargeted motion: each sees what it is there to see."""
 
+from dataclasses import replace
+
 import numpy as np
 from _characters import plain_character, plain_map
 from _performances import joints, quality, soles, solved, source_joints, steps
 from keymark.core.feet.ground import floor_notes
-from keymark.core.retarget.character_motion import FootRest
+from keymark.core.retarget.character_motion import FootRest, HandGoal
 from keymark.core.retarget.quality import (
     Quality,
     depths_m,
     direction_errors_deg,
     farthest_mm,
-    hand_distances_mm,
     measured,
     skate_mm,
 )
@@ -65,12 +66,17 @@ def test_a_foot_in_the_floor_is_named_with_its_frames_and_depth() -> None:
 def test_hands_and_limbs_are_compared_where_both_are() -> None:
     path = np.zeros((3, 3))
     moved = path + [0.0, 0.003, 0.0]
-    counted = np.array([True, False, True])
-    np.testing.assert_allclose(
-        hand_distances_mm({"L": path}, {"L": moved, "R": moved}, {"L": counted, "R": counted}), [3.0, 3.0]
-    )
     assert abs((farthest_mm({"foot.L": path}, {"foot.L": moved}, ["foot.L", "foot.R"]) or 0.0) - 3.0) < 1e-9
     assert farthest_mm({}, {}, ["foot.L"]) is None
+    motion = solved(plain_character(), plain_map(plain_character()), steps())
+    counts, place = np.arange(118) >= 60, np.tile([0.3, 0.0, 1.0], (118, 1))
+    goal = HandGoal(place, counts * 1.0, (np.arange(118) >= 90) * 1.0, np.arange(118) < 100)
+    motion = replace(motion, hands={"L": goal, "R": goal})
+    up = motion.to_world.rotation @ motion.stance.T
+    off = np.where(counts[:, None], [0.0, 0.003, 0.004], 1.0)
+    shown = {"hand.L": (place + off) @ up.T + motion.to_world.location}
+    found = measured(source_joints(steps()), motion, shown, {}).quality
+    np.testing.assert_allclose([found.hands_mm, found.hands_worst_mm, found.hands_floor_mm], [5.0, 5.0, 4.0])
 
 
 def test_a_spoiled_motion_has_worse_figures() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from _characters import plain_character, plain_map
 from _controls import with_ik
+from keymark.core.keys.tolerances import RESTING_M
 from keymark.core.retarget.character_motion import CharacterMotion, FootRest, Similarity
 from keymark.core.retarget.controls.control_channels import Control
 from keymark.core.retarget.controls.control_plan import (
@@ -17,7 +18,6 @@ from keymark.core.retarget.controls.control_plan import (
 from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
 from keymark.core.retarget.controls.control_targets import PoleSetting, pole_offset, pole_poses
 from keymark.core.retarget.controls.point_tolerances import (
-    SHOWN_REST_M,
     SWITCH_M,
     HeldPoint,
     PointKind,
@@ -109,7 +109,7 @@ def test_resting_and_low_feet_are_held_more_tightly() -> None:
     path[20:, 2] = 0.2
     ankle = HeldPoint("foot.L", np.zeros(3), PointKind.END, "leg.L")
     allowed = rules.of(ankle, path, True, SWITCH_M)
-    assert set(allowed[5:10]) == {SHOWN_REST_M}
+    assert set(allowed[5:10]) == {RESTING_M}
     assert set(np.delete(allowed, range(5, 10))) == {SWITCH_M}
     hidden = rules.of(ankle, path, False, 0.005)
     assert set(hidden[5:10]) == {SWITCH_M} and hidden[0] == 0.005

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from keymark.core.arrays import Array
+from keymark.core.body import rotations
 from keymark.core.body.rotations import exponential
-from keymark.core.retarget.solve.two_bone import LimbPose, reach_for, smallest_rotation, stretched_m, unit
+from keymark.core.retarget.solve.two_bone import LimbPose, reach_for, stretched_m, unit
 
 UPPER_M, LOWER_M = 0.4, 0.35
 
@@ -64,7 +65,7 @@ def test_a_limb_follows_freely_as_far_as_the_performers_is_stretched() -> None:
 @pytest.mark.parametrize("target", [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.6, 0.0, -0.8]])
 def test_smallest_rotations(target: list[float]) -> None:
     source = np.array([1.0, 0.0, 0.0])
-    turn = smallest_rotation(source, np.array(target))
+    turn = rotations.smallest(source, np.array(target))
     np.testing.assert_allclose(turn @ source, target, atol=1e-9)
     np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-9)
     assert np.linalg.det(turn) > 0.0
