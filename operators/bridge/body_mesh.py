@@ -14,7 +14,7 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import SIDES
 from ...core.markers.region_tracks import MarkerStyle
-from .actor_lengths import skeleton_bones
+from .actor_lengths import read_bones
 from .character.rigify_human import skinned
 
 SKIN = (178, 164, 150)
@@ -54,27 +54,31 @@ def build_body_mesh(
     The skin around a marker's segment, from joint to joint, has the marker's color, without shading from
     lights or view transform beyond what the renderer adds. `trunk` covers pelvis and chest.
     """
-    human = HumanMesh.read()
+    human, bones = HumanMesh.read(), read_bones(armature_object, body.skeleton)
     weights = human.on_bones(SEGMENTS)
     standing = human.fitted(body_joints(body))
-    # The joints' frames at the bones' rest, whatever the armature's rest pose is.
-    vertices = np.zeros_like(standing)
-    starts = _starts(body)
-    for model in skeleton_bones(armature_object, body.skeleton):
-        if model.name in weights:
-            rest = np.array(armature_object.data.bones[model.name].matrix_local, dtype=np.float64)
-            placed = rest[:3, 3] + (standing - starts[model.name]) @ model.axes @ rest[:3, :3].T
-            vertices += weights[model.name][:, None] * placed
+    pose, axes = body.pose(Posture.rest(body.skeleton)), {model.name: model.axes for model in bones.models}
+
+    def placed(segment: str, offset: Array) -> Array:
+        """Offsets (..., 3) from a segment's start, its joint's frame at the bone's rest, whatever that is."""
+        rest = bones.rest[segment]
+        return np.asarray(rest[:3, 3] + offset @ axes[segment] @ rest[:3, :3].T)
+
+    vertices = sum(
+        share[:, None] * placed(name, standing - body.segment_ends(pose, name)[0])
+        for name, share in weights.items()
+    )
     mesh = bpy.data.meshes.new(f"{armature_object.name} Body")
-    mesh.from_pydata(vertices.tolist(), [], human.triangles.tolist())
+    mesh.from_pydata(np.asarray(vertices).tolist(), [], human.triangles.tolist())
     mesh.polygons.foreach_set("use_smooth", np.ones(len(human.triangles), bool))
     mesh.materials.append(_material("Body", SKIN))
     body_object = skinned(armature_object, mesh, weights)
-    ends = {
-        part: _piece_ends(armature_object, body, part)
-        for marker in markers
-        for part in marker_parts(marker.segment)
-    }
+    ends = {}
+    for part in {part for marker in markers for part in marker_parts(marker.segment)}:
+        piece = segment_piece(body, part)
+        ends[part] = placed(
+            part, np.stack([piece.start, piece.end]) - body.local(body.skeleton.segment(part).start)
+        )
     _cut(mesh, [marker_parts(marker.segment) for marker in markers], ends, body.actor.stature_m)
     segments = _face_segments(body_object)
     centers = np.array([face.center for face in mesh.polygons], dtype=np.float64)
@@ -88,16 +92,15 @@ def build_body_mesh(
             worn = segments == part
             if part == "chest":
                 worn |= np.char.startswith(segments, "girdle")
-            colors[worn & ((share > 0.0) | (part != parts[0])) & ((share < 1.0) | (part != parts[-1]))] = (
-                number
-            )
+            worn &= ((share > 0.0) | (part != parts[0])) & ((share < 1.0) | (part != parts[-1]))
+            colors[worn] = number
     mesh.polygons.foreach_set("material_index", colors)
     return body_object
 
 
 def body_joints(body: Body) -> dict[str, Array]:
     """(3,) the joints of a body at rest, by the names of `HumanMesh.joints` [m]."""
-    pose = body.pose(Posture.from_vector(body.skeleton, np.zeros(body.skeleton.dof_count)))
+    pose = body.pose(Posture.rest(body.skeleton))
     ends = {segment.name: body.segment_ends(pose, segment.name) for segment in body.skeleton.segments}
     neck, along = ends["head"][0], ends["head"][1] - ends["head"][0]
     found = {"neck": neck, "head": neck + NECK * along, "crown": neck + CROWN * along}
@@ -111,28 +114,10 @@ def body_joints(body: Body) -> dict[str, Array]:
     return found
 
 
-def _starts(body: Body) -> dict[str, Array]:
-    """(3,) where each segment begins on the body at rest [m]."""
-    pose = body.pose(Posture.from_vector(body.skeleton, np.zeros(body.skeleton.dof_count)))
-    return {segment.name: body.segment_ends(pose, segment.name)[0] for segment in body.skeleton.segments}
-
-
-def _piece_ends(armature_object: bpy.types.Object, body: Body, part: str) -> tuple[Array, Array]:
-    """Where the volume of a segment begins and ends on the armature at rest."""
-    piece = segment_piece(body, part)
-    model = next(one for one in skeleton_bones(armature_object, body.skeleton) if one.name == part)
-    rest = np.array(armature_object.data.bones[part].matrix_local, dtype=np.float64)
-    own = body.local(next(one.start for one in body.skeleton.segments if one.name == part))
-    start, end = (
-        rest[:3, 3] + rest[:3, :3] @ model.axes.T @ (place - own) for place in (piece.start, piece.end)
-    )
-    return start, end
-
-
 def _cut(
     mesh: bpy.types.Mesh,
     worn: Sequence[tuple[str, ...]],
-    ends: Mapping[str, tuple[Array, Array]],
+    ends: Mapping[str, Array],
     stature_m: float,
 ) -> None:
     """Cut the faces straight where markers end, across their first and their last segment."""
@@ -170,7 +155,8 @@ def _face_segments(body_object: bpy.types.Object) -> NDArray[np.str_]:
 
 def _material(name: str, color_srgb: tuple[int, int, int]) -> bpy.types.Material:
     material = bpy.data.materials.new(name)
-    linear = (*_linear(color_srgb), 1.0)
+    level = np.array(color_srgb) / 255.0
+    linear = (*np.where(level <= 0.04045, level / 12.92, ((level + 0.055) / 1.055) ** 2.4).tolist(), 1.0)
     material.diffuse_color = linear
     if material.node_tree is None:  # Blender 5 gives every material its nodes
         material.use_nodes = True
@@ -178,9 +164,3 @@ def _material(name: str, color_srgb: tuple[int, int, int]) -> bpy.types.Material
     shader.inputs["Base Color"].default_value = linear
     shader.inputs["Roughness"].default_value = 0.9
     return material
-
-
-def _linear(color_srgb: tuple[int, int, int]) -> tuple[float, ...]:
-    share = np.array(color_srgb) / 255.0
-    curve = ((share + 0.055) / 1.055) ** 2.4
-    return tuple(float(value) for value in np.where(share <= 0.04045, share / 12.92, curve))

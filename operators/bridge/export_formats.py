@@ -77,22 +77,13 @@ def _written_by(exporter: str, **options: object) -> Callable[[bpy.types.Object,
     return write
 
 
-def _write_trc(armature_object: bpy.types.Object, path: Path) -> None:
+def _write_points(armature_object: bpy.types.Object, path: Path) -> None:
     """Write the joints of an armature over its scene's frames."""
-    from ...core.take.point_files import write_trc
+    from ...core.take import point_files
     from .motions.read_poses import joint_paths
 
-    points, rate = joint_paths(armature_object)
-    write_trc(path, points, rate)
-
-
-def _write_c3d(armature_object: bpy.types.Object, path: Path) -> None:
-    """Write the joints of an armature over its scene's frames."""
-    from ...core.take.point_files import write_c3d
-    from .motions.read_poses import joint_paths
-
-    points, rate = joint_paths(armature_object)
-    write_c3d(path, points, rate)
+    write = point_files.write_trc if path.suffix.lower() == ".trc" else point_files.write_c3d
+    write(path, *joint_paths(armature_object))
 
 
 def _write_keymark(armature_object: bpy.types.Object, path: Path) -> None:
@@ -174,14 +165,14 @@ FORMATS = {
         "TRC",
         ".trc",
         "Write the places of the joints for biomechanics: OpenSim, Pose2Sim and others",
-        _write_trc,
+        _write_points,
         built_in=True,
     ),
     "C3D": ExportFormat(
         "C3D",
         ".c3d",
         "Write the places of the joints as motion capture's own format has them",
-        _write_c3d,
+        _write_points,
         built_in=True,
     ),
 }

@@ -38,16 +38,11 @@ def mark_asset(asset: bpy.types.ID, details: AssetDetails, picture: Image | None
         data.tags.remove(tag)
     for name in details.tags:
         data.tags.new(name, skip_if_exists=True)
-    if picture is not None:
-        _set_preview(asset, picture)
-
-
-def _set_preview(asset: bpy.types.ID, picture: Image) -> None:
-    """Set a preview, which Blender stores from the bottom row up, red, green, blue, alpha from 0 to 1."""
-    rgba = cv2.cvtColor(picture, cv2.COLOR_BGR2RGBA)[::-1].astype(np.float32) / 255.0
-    preview = asset.preview_ensure()
-    preview.image_size = (picture.shape[1], picture.shape[0])
-    preview.image_pixels_float.foreach_set(np.ascontiguousarray(rgba).ravel())
+    if picture is not None:  # Blender keeps it from the bottom row up, red, green, blue, alpha from 0 to 1
+        rgba = cv2.cvtColor(picture, cv2.COLOR_BGR2RGBA)[::-1].astype(np.float32) / 255.0
+        preview = asset.preview_ensure()
+        preview.image_size = (picture.shape[1], picture.shape[0])
+        preview.image_pixels_float.foreach_set(np.ascontiguousarray(rgba).ravel())
 
 
 def action_picture(

@@ -22,15 +22,15 @@ from .marking import AssetDetails, mark_asset
 
 
 @dataclass(frozen=True, eq=False)
-class CharacterAsset:
-    """A character's Action with its details for the asset browser."""
+class MotionAsset:
+    """A motion with its details for the asset browser."""
 
     name: str
-    catalog: str  # path of its catalog below that of all characters, with slashes
+    catalog: str  # path of its catalog below that of its kind, with slashes
     description: str
     tags: tuple[str, ...]
-    motion: Motion  # what it was made of, for the picture
-    action: bpy.types.Action
+    motion: Motion
+    action: bpy.types.Action | None = None  # of a character, made from the motion
 
 
 def load_character_action(blend: Path, name: str, curves: str) -> bpy.types.Action:
@@ -60,17 +60,6 @@ MOTIONS, ACTORS, CHARACTERS = "Keymark", "Keymark Actors", "Keymark Characters"
 """Parents of the catalogs of all shoots."""
 
 
-@dataclass(frozen=True, eq=False)
-class MotionAsset:
-    """A motion with its details for the asset browser."""
-
-    name: str
-    catalog: str  # path of its catalog below `MOTIONS` and `ACTORS`, with slashes
-    description: str
-    tags: tuple[str, ...]
-    motion: Motion
-
-
 def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
     """Write a motion into an empty Action: a GENERATED key for each frame and channel."""
     motion = motion.without_absence()
@@ -82,7 +71,7 @@ def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
     action.frame_start, action.frame_end = float(frames[0]), float(frames[-1])
 
 
-def write_motion_library(path: Path, assets: Iterable[MotionAsset | CharacterAsset]) -> None:
+def write_motion_library(path: Path, assets: Iterable[MotionAsset]) -> None:
     """Write motions as assets into a .blend, and their catalogs into the file beside it, one at a time.
 
     Each is written twice: as an Action, for any actor; and as an actor that it animates, because only objects
@@ -93,21 +82,20 @@ def write_motion_library(path: Path, assets: Iterable[MotionAsset | CharacterAss
 
 
 def _motion_assets(
-    scene: bpy.types.Scene, assets: Iterable[MotionAsset | CharacterAsset]
+    scene: bpy.types.Scene, assets: Iterable[MotionAsset]
 ) -> Iterator[tuple[bpy.types.ID, str]]:
     """The Action and the actor of each motion, with their catalogs; motions of one body share an armature."""
     actors: dict[tuple[tuple[str, float], ...], bpy.types.Object] = {}
     for asset in assets:
         picture = thumbnail(asset.motion)
         details = AssetDetails("", asset.tags, author="", license="", description=asset.description)
-        if isinstance(asset, CharacterAsset):
-            asset.action.name = asset.name
-            mark_asset(asset.action, details, picture)
-            yield asset.action, f"{CHARACTERS}/{asset.catalog}"
-            continue
-        action = bpy.data.actions.new(asset.name)
-        write_motion_curves(action, asset.motion)
+        action = asset.action or bpy.data.actions.new(asset.name)
         mark_asset(action, details, picture)
+        if asset.action is not None:
+            action.name = asset.name
+            yield action, f"{CHARACTERS}/{asset.catalog}"
+            continue
+        write_motion_curves(action, asset.motion)
         yield action, f"{MOTIONS}/{asset.catalog}"
         body = asset.motion.body
         lengths = tuple(sorted(body.actor.segments_m.items()))

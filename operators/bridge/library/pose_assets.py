@@ -8,7 +8,7 @@ changes of an asset's curves, name and tags take precedence over the text.
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -42,35 +42,25 @@ def catalog_of(library: Library, posture: LibraryPosture) -> str:
 
 def add_assets(library: Library, data: bpy.types.BlendData | None = None) -> list[bpy.types.Action]:
     """Add an Action for each posture, in order, marked as asset, to a file; to the open one by default."""
-    made = []
+    made, body = [], _body(tuple(library.actor.segments_m.items()))
+    header = _text(replace(library, postures=()).to_json())
     for order, posture in enumerate(library.postures):
         action = (data or bpy.data).actions.new(posture.name)
-        write_posture_curves(action, _body(library), posture.posture)
-        _stamp_asset(action, library, posture, order)
+        write_posture_curves(action, body, posture.posture)
+        details = AssetDetails(
+            catalog=catalog_identifier(catalog_of(library, posture)),
+            tags=posture.tags,
+            author=library.author,
+            license=library.license,
+            description=library.description,
+        )
+        mark_asset(action, details, posture_picture(body, posture.posture))
+        alone = replace(library, postures=(posture,), motions=()).to_json()["postures"]
+        asset = {"name": action.name, "tags": _asset_tags(action)}
+        action[POSTURE] = _text({"order": order, "postures": alone, "asset": asset})
+        action[HEADER] = header
         made.append(action)
     return made
-
-
-def _stamp_asset(action: bpy.types.Action, library: Library, posture: LibraryPosture, order: int) -> None:
-    """Write into an Action which posture of which library it is, for people and for `library_from_assets`."""
-    details = AssetDetails(
-        catalog=catalog_identifier(catalog_of(library, posture)),
-        tags=posture.tags,
-        author=library.author,
-        license=library.license,
-        description=library.description,
-    )
-    mark_asset(action, details, posture_picture(_body(library), posture.posture))
-    alone = replace(library, postures=(posture,), motions=()).to_json()["postures"]
-    asset = {"name": action.name, "tags": _asset_tags(action)}
-    action[POSTURE] = _text({"order": order, "postures": alone, "asset": asset})
-    action[HEADER] = _header_text(library)
-
-
-@lru_cache(maxsize=4)
-def _header_text(library: Library) -> str:
-    """A library without its postures, as JSON."""
-    return _text(replace(library, postures=()).to_json())
 
 
 def is_posture(action: bpy.types.Action) -> bool:
@@ -78,29 +68,63 @@ def is_posture(action: bpy.types.Action) -> bool:
     return isinstance(action.get(HEADER), str) and isinstance(action.get(POSTURE), str)
 
 
-def read_asset(action: bpy.types.Action) -> LibraryPosture:
-    """Read the posture of an Action, the animator's changes included.
+@dataclass(frozen=True, eq=False)
+class PoseAsset:
+    """An Action of a library's posture with the texts that it stores."""
 
-    Raises:
-        InputError: The Action's properties are not what Keymark writes, or it has no curves of a posture.
-    """
-    header, own = _fields(action, HEADER), _fields(action, POSTURE)
-    where = _where(action)
-    library = Library.from_json({**header, "motions": [], "postures": own.get("postures")}, where)
-    if len(library.postures) != 1:
-        raise InputError(f"{where}: holds {len(library.postures)} postures; a pose asset holds one")
-    stored = library.postures[0]
-    shown = read_posture_curves(action, _body(library), stored.posture)
-    if shown is None:
-        raise InputError(f"{where}: none of its curves turns a bone of Keymark's actors")
-    asset = own.get("asset")
-    known = asset if isinstance(asset, Mapping) else {}
-    name, tags = stored.name, stored.tags
-    if not _is_named(action, known.get("name")) and not text_fault(action.name.strip(), LONGEST_NAME):
-        name = action.name.strip()
-    if known.get("tags") != _asset_tags(action):
-        tags = tuple(tag for tag in _asset_tags(action) if not text_fault(tag, LONGEST_TAG))
-    return LibraryPosture(name, shown, tags)
+    action: bpy.types.Action
+    header: dict[str, Any]  # the library's, not to be mutated
+    own: dict[str, Any]
+
+    @classmethod
+    def of(cls, action: bpy.types.Action) -> "PoseAsset":
+        """Parse the texts of an Action.
+
+        Raises:
+            InputError: They are not what Keymark writes.
+        """
+        return cls(action, _fields(action, HEADER), _fields(action, POSTURE))
+
+    @property
+    def order(self) -> float:
+        """Its place in the library."""
+        order = self.own.get("order")
+        return float(order) if isinstance(order, int) else float("inf")
+
+    @property
+    def stored_name(self) -> str:
+        """The name of its posture in the motions of its header."""
+        alone = self.own.get("postures")
+        first = alone[0] if isinstance(alone, list) and alone else {}
+        return str(first.get("name", "")) if isinstance(first, Mapping) else ""
+
+    def library(self) -> Library:
+        """The library of this posture alone, as stored, without motions."""
+        fields = {**self.header, "motions": [], "postures": self.own.get("postures")}
+        return Library.from_json(fields, _where(self.action))
+
+    def posture(self) -> LibraryPosture:
+        """The posture, the animator's changes included.
+
+        Raises:
+            InputError: Its texts are not what Keymark writes, or it has no curves of a posture.
+        """
+        library, where = self.library(), _where(self.action)
+        if len(library.postures) != 1:
+            raise InputError(f"{where}: holds {len(library.postures)} postures; a pose asset holds one")
+        stored = library.postures[0]
+        body = _body(tuple(library.actor.segments_m.items()))
+        shown = read_posture_curves(self.action, body, stored.posture)
+        if shown is None:
+            raise InputError(f"{where}: none of its curves turns a bone of Keymark's actors")
+        asset = self.own.get("asset")
+        known = asset if isinstance(asset, Mapping) else {}
+        name, tags, now = stored.name, stored.tags, self.action.name.strip()
+        if not _is_named(self.action, known.get("name")) and not text_fault(now, LONGEST_NAME):
+            name = now
+        if known.get("tags") != _asset_tags(self.action):
+            tags = tuple(tag for tag in _asset_tags(self.action) if not text_fault(tag, LONGEST_TAG))
+        return LibraryPosture(name, shown, tags)
 
 
 def library_from_assets(actions: Iterable[bpy.types.Action]) -> tuple[Library, ...]:
@@ -112,35 +136,29 @@ def library_from_assets(actions: Iterable[bpy.types.Action]) -> tuple[Library, .
     return tuple(_merged(members) for members in assets_by_library(actions).values())
 
 
-def assets_by_library(actions: Iterable[bpy.types.Action]) -> dict[str, list[bpy.types.Action]]:
+def assets_by_library(actions: Iterable[bpy.types.Action]) -> dict[str, list[PoseAsset]]:
     """The pose assets of each library, in its order, by its identifier; other Actions are ignored."""
-    found: dict[str, list[bpy.types.Action]] = {}
-    for action in actions:
-        if is_posture(action):
-            found.setdefault(str(_fields(action, HEADER).get("identifier")), []).append(action)
-    return {identifier: sorted(members, key=_order) for identifier, members in found.items()}
+    found: dict[str, list[PoseAsset]] = {}
+    for asset in (PoseAsset.of(action) for action in actions if is_posture(action)):
+        found.setdefault(str(asset.header.get("identifier")), []).append(asset)
+    return {name: sorted(members, key=lambda asset: asset.order) for name, members in found.items()}
 
 
-def _merged(actions: Sequence[bpy.types.Action]) -> Library:
-    header = max((_fields(action, HEADER) for action in actions), key=_version)
+def _merged(assets: Sequence[PoseAsset]) -> Library:
+    versions = [asset.header.get("version") for asset in assets]
+    known = [version if isinstance(version, int) else 0 for version in versions]
+    header = assets[known.index(max(known))].header
     postures: list[LibraryPosture] = []
-    now: dict[str, str] = {}
-    for action in actions:
-        posture = read_asset(action)
+    now: dict[str, str] = {}  # names of postures by those in the motions
+    for asset in assets:
+        posture = asset.posture()
         name = unique_name(posture.name, [other.name for other in postures])
-        now.setdefault(_stored_name(action), name)
+        now.setdefault(asset.stored_name, name)
         postures.append(replace(posture, name=name))
-    one = Library.from_json({**header, "motions": [], "postures": _alone(actions[0])}, _where(actions[0]))
+    one = replace(assets[0], header=header).library()
     document = replace(one, postures=tuple(postures)).to_json()
     motions = _present_motions(header.get("motions", []), now)
     return Library.from_json({**document, "motions": motions}, f"library {one.identifier!r}")
-
-
-def _stored_name(action: bpy.types.Action) -> str:
-    """The name of a pose asset's posture in the motions of its header."""
-    alone = _alone(action)
-    first = alone[0] if isinstance(alone, list) and alone else {}
-    return str(first.get("name", "")) if isinstance(first, Mapping) else ""
 
 
 def _present_motions(motions: Any, now: Mapping[str, str]) -> Any:
@@ -157,11 +175,10 @@ def _present_motions(motions: Any, now: Mapping[str, str]) -> Any:
             kept.append(motion)
             continue
         left = [{**step, "posture": now[step["posture"]]} for step in steps if step["posture"] in now]
-        if not left:
-            continue
-        begin = left[0]["time_s"]
-        left = [{**step, "time_s": step["time_s"] - begin} for step in left]
-        kept.append({**motion, "steps": left})
+        if left:
+            begin = left[0]["time_s"]
+            steps = [{**step, "time_s": step["time_s"] - begin} for step in left]
+            kept.append({**motion, "steps": steps})
     return kept
 
 
@@ -172,13 +189,13 @@ def _is_step(step: Any) -> bool:
 
 def _fields(action: bpy.types.Action, name: str) -> dict[str, Any]:
     """The parsed JSON of one of an Action's two properties."""
-    text = action.get(name)
+    text, where = action.get(name), f"{_where(action)}: its property {name}"
     if not isinstance(text, str) or len(text) > LONGEST_TEXT:
-        raise InputError(f"{_where(action)}: its property {name} is not what Keymark writes")
+        raise InputError(f"{where} is not what Keymark writes")
     if name == HEADER:
         with suppress(InputError):  # parsed again below, where the sentence names the Action
             return _parsed(text)
-    return parse_json(text, f"{_where(action)}: its property {name}")
+    return parse_json(text, where)
 
 
 @lru_cache(maxsize=4)
@@ -187,13 +204,9 @@ def _parsed(text: str) -> dict[str, Any]:
     return parse_json(text, "")
 
 
-def _body(library: Library) -> Body:
-    """The library's body; cached by lengths, so that bones and skin are made once."""
-    return _body_of(tuple(library.actor.segments_m.items()))
-
-
 @lru_cache(maxsize=4)
-def _body_of(lengths: tuple[tuple[str, float], ...]) -> Body:
+def _body(lengths: tuple[tuple[str, float], ...]) -> Body:
+    """The body of these lengths; cached, so that bones and skin are made once."""
     return Body(Actor(dict(lengths)))
 
 
@@ -204,20 +217,6 @@ def _is_named(action: bpy.types.Action, name: Any) -> bool:
         return action.name == name
     numbered = len(number) >= 3 and number.isdigit()
     return numbered and (stem == name or (len(stem.encode()) >= CUT_FROM and name.startswith(stem)))
-
-
-def _alone(action: bpy.types.Action) -> Any:
-    return _fields(action, POSTURE).get("postures")
-
-
-def _order(action: bpy.types.Action) -> float:
-    order = _fields(action, POSTURE).get("order")
-    return float(order) if isinstance(order, int) else float("inf")
-
-
-def _version(header: Mapping[str, Any]) -> int:
-    version = header.get("version")
-    return version if isinstance(version, int) else 0
 
 
 def _where(action: bpy.types.Action) -> str:

@@ -22,7 +22,7 @@ from ..options import output
 from ..parser import Command, argument, require_blender
 
 if TYPE_CHECKING:
-    from ...bridge.assets.motions import CharacterAsset, MotionAsset
+    from ...bridge.assets.motions import MotionAsset
 
 SUFFIX = ".blend"
 LONGEST_NAME_BYTES = 63
@@ -68,7 +68,7 @@ class MotionGathering:
         self.character_count = 0
         self._found, self._shoot, self._console = found, shoot, console
 
-    def assets(self) -> "Iterator[MotionAsset | CharacterAsset]":
+    def assets(self) -> "Iterator[MotionAsset]":
         """Yield the asset of every sound motion, one at a time: together they may not fit into memory."""
         from ...bridge.assets.motions import MotionAsset
 
@@ -98,9 +98,9 @@ class MotionGathering:
 
     def _character(
         self, result: Result, catalog: str, marks: tuple[str, ...], motion: Motion, names: set[str]
-    ) -> "Iterator[CharacterAsset]":
+    ) -> "Iterator[MotionAsset]":
         """The asset of a result's character, where it has one; a problem of the take where it is unusable."""
-        from ...bridge.assets.motions import CharacterAsset, load_character_action
+        from ...bridge.assets.motions import MotionAsset, load_character_action
 
         made = result.record.files
         if CHARACTER_BLEND not in made:
@@ -120,7 +120,7 @@ class MotionGathering:
         words = f"For the character '{record.character.object}' of {record.character.file}. "
         about = shortened(words + description(result))
         marks += _short_tags(record.character.object, record.map.preset)
-        yield CharacterAsset(name, catalog, about, marks, motion, action)
+        yield MotionAsset(name, catalog, about, marks, motion, action)
 
 
 def asset_name(take: str, taken: Collection[str]) -> str:

@@ -1,5 +1,7 @@
 """The actor's armature: its bones, freedoms and sizes."""
 
+from collections.abc import Callable
+
 import bpy
 import numpy as np
 import pytest
@@ -10,7 +12,6 @@ from keymark.core.errors import InputError
 from keymark.operators.bridge.actor_bones import recolor_earlier
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.overlays.drawing import SIDES
-from mathutils import Matrix
 
 
 def test_the_actor_stands_on_the_floor_in_a_t_pose(actor: bpy.types.Object, body: Body) -> None:
@@ -77,13 +78,13 @@ def test_sides_have_collections_and_colors(actor: bpy.types.Object) -> None:
 
 
 def test_actors_of_earlier_versions_get_the_colors_of_today(actor: bpy.types.Object) -> None:
-    bones = actor.data.bones
-    bones["hand.L"].color.palette, bones["hand.R"].color.palette = "THEME01", "THEME04"
-    bones["foot.L"].color.palette = "THEME06"
+    colors = {name: actor.data.bones[name].color for name in ("hand.L", "hand.R", "foot.L")}
+    for color, palette in zip(colors.values(), ("THEME01", "THEME04", "THEME06"), strict=True):
+        color.palette = palette
     recolor_earlier(actor.data)
-    assert tuple(bones["hand.L"].color.custom.select) == pytest.approx(SIDES["L"][:3], abs=0.01)
-    assert tuple(bones["hand.R"].color.custom.select) == pytest.approx(SIDES["R"][:3], abs=0.01)
-    assert bones["foot.L"].color.palette == "THEME06"
+    for side in "LR":
+        assert tuple(colors[f"hand.{side}"].custom.select) == pytest.approx(SIDES[side][:3], abs=0.01)
+    assert colors["foot.L"].palette == "THEME06"
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.4, 2.5])
@@ -96,43 +97,45 @@ def test_the_sizes_are_read_back_with_the_objects_scale(
     assert dict(lengths) == pytest.approx(expected, rel=1e-5)
 
 
-def test_an_edited_length_is_read(actor: bpy.types.Object, body: Body) -> None:
+def edited(actor: bpy.types.Object, change: Callable[[bpy.types.Armature], object]) -> None:
     bpy.context.view_layer.objects.active = actor
     bpy.ops.object.mode_set(mode="EDIT")
-    forearm = actor.data.edit_bones["forearm.L"]
+    change(actor.data)
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def lengthen(armature: bpy.types.Armature) -> None:
+    forearm, hand = (armature.edit_bones[f"{part}.L"] for part in ("forearm", "hand"))
     shift = 0.03 * (forearm.tail - forearm.head).normalized()
     forearm.tail += shift
-    actor.data.edit_bones["hand.L"].tail += shift
-    bpy.ops.object.mode_set(mode="OBJECT")
+    hand.tail += shift
+
+
+def displace(armature: bpy.types.Armature) -> None:
+    upper_arm = armature.edit_bones["upper_arm.L"]
+    upper_arm.use_connect = False
+    upper_arm.head.z -= 0.15
+
+
+def test_an_edited_length_is_read(actor: bpy.types.Object, body: Body) -> None:
+    edited(actor, lengthen)
     lengths = read_body(actor, HUMAN).actor.segments_m
     expected = {**body.actor.segments_m, "forearm.L": body.actor.segments_m["forearm.L"] + 0.03}
     assert dict(lengths) == pytest.approx(expected, abs=1e-5)
 
 
-def test_uneven_scale_is_refused_with_what_to_do(actor: bpy.types.Object) -> None:
-    actor.scale = (1.0, 1.0, 1.3)
-    with pytest.raises(InputError, match="scaled by 1, 1, 1.3.*apply the scale"):
-        read_body(actor, HUMAN)
-
-
-def test_a_mirrored_actor_is_refused(actor: bpy.types.Object) -> None:
-    actor.matrix_world = Matrix.Scale(-1.0, 4, (1.0, 0.0, 0.0))
-    with pytest.raises(InputError, match="mirrored"):
-        read_body(actor, HUMAN)
-
-
-def test_a_missing_bone_is_named(actor: bpy.types.Object) -> None:
-    actor.data.bones["shin.L"].name = "calf"
-    with pytest.raises(InputError, match=r"lacks the bones shin\.L"):
-        read_body(actor, HUMAN)
-
-
-def test_bones_that_lie_elsewhere_are_refused(actor: bpy.types.Object) -> None:
-    bpy.context.view_layer.objects.active = actor
-    bpy.ops.object.mode_set(mode="EDIT")
-    upper_arm = actor.data.edit_bones["upper_arm.L"]
-    upper_arm.use_connect = False
-    upper_arm.head.z -= 0.15
-    bpy.ops.object.mode_set(mode="OBJECT")
-    with pytest.raises(InputError, match="mm off Keymark's skeleton"):
+@pytest.mark.parametrize(
+    ("spoil", "sentence"),
+    [
+        (lambda actor: setattr(actor, "scale", (1.0, 1.0, 1.3)), "scaled by 1, 1, 1.3.*apply the scale"),
+        (lambda actor: setattr(actor, "scale", (-1.0, 1.0, 1.0)), "mirrored"),
+        (lambda actor: setattr(actor.data.bones["shin.L"], "name", "calf"), r"lacks the bones shin\.L"),
+        (lambda actor: edited(actor, displace), "mm off Keymark's skeleton"),
+    ],
+)
+def test_what_is_no_actor_any_more_is_refused_with_what_to_do(
+    actor: bpy.types.Object, spoil: Callable[[bpy.types.Object], None], sentence: str
+) -> None:
+    spoil(actor)
+    with pytest.raises(InputError, match=sentence):
         read_body(actor, HUMAN)

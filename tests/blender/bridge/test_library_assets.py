@@ -25,9 +25,9 @@ from keymark.operators.bridge.library.library_file import read_library_blend, wr
 from keymark.operators.bridge.library.pose_assets import (
     HEADER,
     POSTURE,
+    PoseAsset,
     add_assets,
     library_from_assets,
-    read_asset,
 )
 from keymark.operators.bridge.pose import read_posture
 
@@ -91,7 +91,7 @@ def test_a_library_file_comes_back_from_a_blend(library: Library, tmp_path: Path
 
 def test_what_the_animator_changes_in_an_asset_counts(library: Library) -> None:
     actions = add_assets(library)
-    stored = read_asset(actions[0]).posture
+    stored = PoseAsset.of(actions[0]).posture().posture
     fcurve = next(
         curve
         for curve in actions[0].layers[0].strips[0].channelbags[0].fcurves
@@ -100,7 +100,7 @@ def test_what_the_animator_changes_in_an_asset_counts(library: Library) -> None:
     fcurve.keyframe_points[0].co[1] += 0.25
     actions[0].name = "Heel Contact"
     actions[0].asset_data.tags.new("mine")
-    posture = read_asset(actions[0])
+    posture = PoseAsset.of(actions[0]).posture()
     assert posture.name == "Heel Contact" and posture.tags == ("mine",)
     flexion = HUMAN.dof_names.index("elbow.L.flexion")
     change = posture.posture.minus(stored)
@@ -203,7 +203,7 @@ def test_nonsense_in_curves_is_passed_over(library: Library) -> None:
     for curve in bag.fcurves:
         if "location" in curve.data_path or "quaternion" in curve.data_path:
             curve.keyframe_points[0].co[1] = float("nan")
-    posture = read_asset(action).posture
+    posture = PoseAsset.of(action).posture().posture
     assert np.isfinite(posture.to_vector()).all()
 
 
