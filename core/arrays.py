@@ -1,4 +1,6 @@
-"""Arrays: the types that signatures name, and long index arrays in chunks."""
+"""Arrays: the types that signatures name, long index arrays in chunks, and arrays that stay as they are."""
+
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,3 +20,17 @@ def chunks(index: IndexArray, longest: int) -> list[IndexArray]:
     Work on a chunk after the other needs the memory of one, and a job can yield in between.
     """
     return np.array_split(index, max(1, -(-len(index) // longest)))
+
+
+def freeze(owner: object, shapes: Mapping[str, tuple[int, ...]], flags: tuple[str, ...] = ()) -> None:
+    """Make fields of a frozen dataclass read-only copies: truth values where `flags` name them, else numbers.
+
+    Raises:
+        ValueError: One has another shape.
+    """
+    for name, shape in shapes.items():
+        array = np.array(getattr(owner, name), dtype=np.bool_ if name in flags else np.float64)
+        if array.shape != shape:
+            raise ValueError(f"{name} has the shape {array.shape}, not {shape}")
+        array.setflags(write=False)
+        object.__setattr__(owner, name, array)

@@ -122,8 +122,10 @@ class FloorGrid:
 def floor_grid(camera: Camera, frame: int | None = None) -> FloorGrid:
     """The grid of whole meters on the floor z = 0, about where the camera looks."""
     rotation, location = camera.pose(frame)
-    ahead = -rotation[:, 2]
-    middle = np.round(location[:2] + _reach(location[2], ahead) * _level(rotation))
+    ahead, reach = -rotation[:, 2], AHEAD_M
+    if ahead[2] < 0.0 < location[2]:  # where it looks at the floor
+        reach = min(location[2] * float(np.hypot(ahead[0], ahead[1])) / -float(ahead[2]), AHEAD_M)
+    middle = np.round(location[:2] + reach * _level(rotation))
     steps = np.arange(-REACH_M, REACH_M + 1, dtype=np.float64)
     along = np.arange(-REACH_M * PIECES, REACH_M * PIECES + 1) / PIECES
     first, second = np.meshgrid(steps, along, indexing="ij")
@@ -135,14 +137,6 @@ def floor_grid(camera: Camera, frame: int | None = None) -> FloorGrid:
     nearer = np.minimum(depth[:, :, :-1], depth[:, :, 1:]).ravel()
     shown = _in_picture(camera, pieces)
     return FloorGrid(pieces[shown], nearer[shown], _horizon(camera, frame))
-
-
-def _reach(height_m: float, ahead: Array) -> float:
-    """Distance over the floor to the part that is looked at [m]."""
-    level = float(np.hypot(ahead[0], ahead[1]))
-    if ahead[2] >= 0.0 or height_m <= 0.0:
-        return AHEAD_M
-    return min(height_m * level / -float(ahead[2]), AHEAD_M)
 
 
 def _level(rotation: Array) -> Array:

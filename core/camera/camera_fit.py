@@ -244,7 +244,8 @@ class _Problem:
         rise = np.maximum(location[2] - uprights.lower_m, LEAST_RISE_M)
         lower = location + (rise / np.maximum(-sight[:, 2], 1e-3))[:, None] * sight
         upper = lower + (longer * uprights.length_m)[:, None] * np.array([0.0, 0.0, 1.0])
-        shown = _in_front(camera, upper)
+        shown, _ = camera.project(upper)
+        shown = np.where(np.isfinite(shown), shown, camera.principal_point)  # of what is behind the camera
         drawn = uprights.upper_px - uprights.lower_px
         size = np.linalg.norm(drawn, axis=-1)
         upward = drawn / np.maximum(size, 1.0)[:, None]
@@ -270,9 +271,3 @@ def _line_residuals(camera: Camera, lines: Array, direction: Array) -> Array:
     shown = unit(shown)
     half = 0.5 * (lines[:, 1] - lines[:, 0])
     return np.asarray(np.sqrt(2.0) * (half[:, 0] * shown[:, 1] - half[:, 1] * shown[:, 0]))
-
-
-def _in_front(camera: Camera, points: Array) -> Array:
-    """Pixels (N, 2) of points; of those behind the camera, that of its location's foremost neighbor."""
-    pixel, _ = camera.project(points)
-    return np.where(np.isfinite(pixel), pixel, camera.principal_point)

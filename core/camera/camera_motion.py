@@ -121,7 +121,9 @@ def _followed(
             anchor, gray, corners[:, None], start[:, None].copy(), **WINDOW
         )
         ends = np.asarray(found, dtype=np.float32)
-        kept = (there[:, 0] > 0) & ~_covered(ends[:, 0], places[frame])
+        kept, box = there[:, 0] > 0, _box(places[frame])
+        if box is not None:
+            kept &= ~((ends[:, 0] > box[:2]) & (ends[:, 0] < box[2:])).all(axis=-1)
         if kept.sum() < FEWEST_CORNERS:
             return
         own, agree = _turned(corners[kept], ends[kept, 0], matrix)
@@ -144,13 +146,6 @@ def _box(places: Array) -> Array | None:
     low, high = known.min(axis=0), known.max(axis=0)
     margin = MARGIN * float((high - low).max())
     return np.concatenate([low - margin, high + margin])
-
-
-def _covered(points: NDArray[np.float32], places: Array) -> BoolArray:
-    box = _box(places)
-    if box is None:
-        return np.zeros(len(points), dtype=np.bool_)
-    return np.asarray(((points > box[:2]) & (points < box[2:])).all(axis=-1))
 
 
 def _corners(gray: Image, places: Array) -> NDArray[np.float32]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array, BoolArray, freeze
 from ..body.human import HUMAN
 from ..body.skeleton import SIDES
 
@@ -84,12 +84,7 @@ class Keypoints:
             raise ValueError(f"{len(self.sources)} sources for {len(self.names)} keypoints")
         frames, count = len(self.pixel), len(self.names)
         shapes = {"pixel": (frames, count, 2), "score": (frames, count), "hint_m": (frames, count, 3)}
-        for name, shape in shapes.items():
-            array = np.array(getattr(self, name), dtype=np.float64)
-            if array.shape != shape:
-                raise ValueError(f"{name} has the shape {array.shape}, not {shape}")
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
+        freeze(self, shapes)
 
     @classmethod
     def none(cls, frames: int) -> "Keypoints":

@@ -30,7 +30,9 @@ def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights
     pixel = np.where((principal.score >= 0.3)[..., None], principal.pixel, np.nan)
     ankle, hip, shoulder = (_middle(pixel, part) for part in ("ankle", "hip", "shoulder"))
     head = pixel[:, HUMAN.point_names.index("head")]
-    height = _heights(body)
+    points = body.points(body.pose(Posture.stack([standing_posture(body)])))[0]
+    # Of each kind of point above the floor of someone upright [m].
+    height = {name.split(".")[0]: float(z) for name, z in zip(HUMAN.point_names, points[:, 2], strict=True)}
     legs, trunk = hip - ankle, shoulder - hip
     usual = (height["hip"] - height["ankle"]) / (height["shoulder"] - height["hip"])
     straight = _along(legs, trunk, IN_LINE) & _along(trunk, head - shoulder, IN_LINE)
@@ -56,13 +58,6 @@ def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights
         common_lean_rad=COMMON_LEAN_RAD,
         doubtful=True,
     )
-
-
-def _heights(body: Body) -> dict[str, float]:
-    """Height of each kind of principal point above the floor of someone upright [m]."""
-    points = body.points(body.pose(Posture.stack([standing_posture(body)])))[0]
-    named = zip(HUMAN.point_names, points[:, 2], strict=True)
-    return {name.split(".")[0]: float(height) for name, height in named}
 
 
 def _middle(pixel: Array, part: str) -> Array:

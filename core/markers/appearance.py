@@ -99,17 +99,25 @@ def learn_appearance(images: list[Image], labels: list[NDArray[np.int8]], parts:
     body = np.stack([cv2.dilate((label != NO_PART).astype(np.uint8), wide) for label in labels]) > 0
     seen = [_seen(image, label, near, parts) for image, label, near in zip(images, labels, body, strict=True)]
     counts = _counts(seen, parts)
-    color, spread = _middle_and_spread(np.stack(images), ~body)
+    stack = np.stack(images)
+    color = _median(stack, ~body)
+    distance = _median(np.stack([cv2.absdiff(image, color) for image in stack]), ~body)
+    # That of the most variable channel.
+    spread = 1.48 * np.maximum(np.maximum(distance[..., 0], distance[..., 1]), distance[..., 2]).astype(
+        np.float32
+    )
     # Frames that must show a pixel's background for its Gaussian to be known.
     known = np.count_nonzero(~body, axis=0) >= 3
     steady = bool(known.any() and np.mean(spread[known] < STEADY) >= 0.9)
     deviation = np.clip(spread, 3.0, 12.0)  # of a background pixel, in levels
-    return Appearance(_log_densities(counts), color, deviation, known, steady)
+    return Appearance(_log_densities(counts), color.astype(np.float32), deviation, known, steady)
 
 
 def _seen(image: Image, label: NDArray[np.int8], near: BoolArray, parts: int) -> IndexArray:
     """Histogram cells of pixels inside parts and well outside them, offset by each part's index."""
-    rows, columns = np.nonzero(_interior(label) & (label != NO_PART))
+    kernel, shifted = np.ones((3, 3), dtype=np.uint8), (label + 1).astype(np.uint8)
+    interior = np.asarray(cv2.erode(shifted, kernel) == cv2.dilate(shifted, kernel))
+    rows, columns = np.nonzero(interior & (label != NO_PART))
     inside = label[rows, columns].astype(np.intp) * CELLS + _cells(image[rows, columns])
     sparse = slice(None, None, SPARSE), slice(None, None, SPARSE)
     return np.concatenate([inside, parts * CELLS + _cells(image[sparse][~near[sparse]])])
@@ -130,12 +138,6 @@ def _cells(pixels: Image) -> IndexArray:
     return histogram_cells(pixels, BITS)
 
 
-def _interior(label: NDArray[np.int8]) -> BoolArray:
-    kernel = np.ones((3, 3), dtype=np.uint8)
-    shifted = (label + 1).astype(np.uint8)
-    return np.asarray(cv2.erode(shifted, kernel) == cv2.dilate(shifted, kernel))
-
-
 def _log_densities(counts: IndexArray) -> Array:
     """Log densities per level³ of smoothed histograms (rows, cells)."""
     smoothed = counts.astype(np.float64).reshape(-1, LEVELS, LEVELS, LEVELS)
@@ -145,14 +147,6 @@ def _log_densities(counts: IndexArray) -> Array:
     share = smoothed / np.maximum(smoothed.sum(axis=1, keepdims=True), 1.0)
     density = np.log((1.0 - UNSEEN) * share / CELL_VOLUME + np.exp(UNSEEN_LOG_DENSITY))
     return np.asarray(density.astype(np.float32))
-
-
-def _middle_and_spread(stack: Image, free: BoolArray) -> tuple[Array, Array]:
-    """Median color (rows, columns, 3) of the free pixels, and the deviation of the most variable channel."""
-    color = _median(stack, free)
-    distance = _median(np.stack([cv2.absdiff(image, color) for image in stack]), free)
-    largest = np.maximum(np.maximum(distance[..., 0], distance[..., 1]), distance[..., 2])
-    return color.astype(np.float32), 1.48 * largest.astype(np.float32)
 
 
 def _median(stack: Image, free: BoolArray) -> Image:

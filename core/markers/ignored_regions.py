@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import cv2
 import numpy as np
 
-from ..arrays import Array, BoolArray, Image
+from ..arrays import BoolArray, Image
 from ..camera.camera_fields import LARGEST_SIDE_PX
 from ..errors import InputError, shown
 from ..files.kinds import Items, Number, Whole, refuse
@@ -93,18 +93,13 @@ def _draw(mask: Image, region: IgnoredRegion, step_px: float) -> None:
     radius = max(round(region.radius_px / step_px * SUBPIXELS), SUBPIXELS // 2)
     for x, y in path.tolist():
         cv2.circle(mask, (x, y), radius, (float(IGNORED),), -1, shift=SUBPIXEL_BITS)
-    for one, other in itertools.pairwise(path.astype(np.float64)):
-        _draw_between(mask, one, other, float(radius))
-
-
-def _draw_between(mask: Image, one: Array, other: Array, radius: float) -> None:
-    """Fill what a disc sweeps on its way between two points, all in parts of a pixel."""
-    along = other - one
-    length = float(np.linalg.norm(along))
-    if length > 0.0:
-        across = radius / length * np.array([-along[1], along[0]])
-        corners = np.round([one + across, other + across, other - across, one - across]).astype(np.int32)
-        cv2.fillConvexPoly(mask, corners, (float(IGNORED),), shift=SUBPIXEL_BITS)
+    for one, other in itertools.pairwise(path.astype(np.float64)):  # what the disc sweeps in between
+        along = other - one
+        length = float(np.linalg.norm(along))
+        if length > 0.0:
+            across = float(radius) / length * np.array([-along[1], along[0]])
+            corners = np.round([one + across, other + across, other - across, one - across])
+            cv2.fillConvexPoly(mask, corners.astype(np.int32), (float(IGNORED),), shift=SUBPIXEL_BITS)
 
 
 IGNORED_REGIONS = "ignored_regions"

@@ -118,21 +118,13 @@ class IndexedFrames:
                 mask.crop(covered)[:] |= mask.mask
             near = cv2.dilate(covered, KERNEL, iterations=3)
             total += np.bincount(image.ravel(), weights=1.0 - near.ravel(), minlength=len(self._table))
-        counts = np.zeros(CELL_COUNT)
+        counts, side = np.zeros(CELL_COUNT), CELLS_PER_CHANNEL
         counts[self._table] = total
-        return _spread(counts)
-
-
-def _spread(counts: Array) -> Array:
-    """Smooth a histogram (CELL_COUNT,) over neighboring cells."""
-    side = CELLS_PER_CHANNEL
-    # Two channels are rows and columns of an image with as many channels as cells in the third.
-    cube = cv2.sepFilter2D(
-        counts.reshape(side, side, side), -1, SPREAD, SPREAD, borderType=cv2.BORDER_REPLICATE
-    )
-    one = np.ones(1)
-    lines = cv2.sepFilter2D(cube.reshape(-1, side), -1, SPREAD, one, borderType=cv2.BORDER_REPLICATE)
-    return np.asarray(lines.ravel(), dtype=np.float64)
+        # Two channels are rows and columns of an image with as many channels as cells in the third.
+        cube, edge = counts.reshape(side, side, side), cv2.BORDER_REPLICATE
+        cube = np.asarray(cv2.sepFilter2D(cube, -1, SPREAD, SPREAD, borderType=edge))
+        lines = cv2.sepFilter2D(cube.reshape(-1, side), -1, SPREAD, np.ones(1), borderType=edge)
+        return np.asarray(lines.ravel(), dtype=np.float64)
 
 
 def _core_regions(label: Image, image: IndexArray, core: Image, marker: int) -> CroppedMask:

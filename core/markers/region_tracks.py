@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array, BoolArray, Image, IntArray
+from ..arrays import Array, BoolArray, Image, IntArray, freeze
 
 
 @dataclass(frozen=True)
@@ -38,12 +38,7 @@ class RegionTracks:
         frames, markers = len(self.time_s), len(self.names)
         tails = {"centroid": (2,), "second_moment": (2, 2), "area": (), "quality": (), "clipped": ()}
         shapes = {name: (frames, markers, *tail) for name, tail in tails.items()} | {"time_s": (frames,)}
-        for name, shape in shapes.items():
-            array = np.array(getattr(self, name), dtype=np.bool_ if name == "clipped" else np.float64)
-            if array.shape != shape:
-                raise ValueError(f"{name} has the shape {array.shape}, not {shape}")
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
+        freeze(self, shapes, flags=("clipped",))
 
     @classmethod
     def unmarked(cls, time_s: Array, size: tuple[int, int]) -> "RegionTracks":
@@ -96,15 +91,8 @@ class ExpectedRegions:
     radius: Array  # (F, M) px, a generous bound of the centroid's distance from the center
 
     def __post_init__(self) -> None:
-        center = np.array(self.center, dtype=np.float64)
-        radius = np.array(self.radius, dtype=np.float64)
-        if center.ndim != 3 or center.shape[-1] != 2 or radius.shape != center.shape[:2]:
-            raise ValueError(
-                f"center must be (F, M, 2) and radius (F, M), not {center.shape} and {radius.shape}"
-            )
-        for name, array in (("center", center), ("radius", radius)):
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
+        frames, markers = self.radius.shape
+        freeze(self, {"center": (frames, markers, 2), "radius": (frames, markers)})
 
 
 class Regions(NamedTuple):

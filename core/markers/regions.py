@@ -152,7 +152,8 @@ def _measure(
     image, color = atlas.image[first], atlas.color[first].astype(np.int64)
     order = np.lexsort((-moments[:, 0], color, image))
     order = order[moments[order, 0] >= FEWEST_PIXELS]
-    order = order[_rank(256 * image[order] + color[order]) < 8]  # bounds the memory of a clip
+    alike = 256 * image[order] + color[order]
+    order = order[np.arange(len(alike)) - np.searchsorted(alike, alike) < 8]  # bounds the memory of a clip
     every = Regions(color[order], moments[order], box[order], found.certainty[order], clipped[order])
     start = np.searchsorted(image[order], np.arange(images + 1)).tolist()
     return [every.part(a, b) for a, b in itertools.pairwise(start)]
@@ -166,11 +167,6 @@ def _moments(owner: NDArray[np.uint16], weight: SingleArray, x: Array, y: Array,
     moments[:, 3] += PIXEL_VARIANCE * moments[:, 0]
     moments[:, 5] += PIXEL_VARIANCE * moments[:, 0]
     return moments
-
-
-def _rank(ascending: IntArray) -> IntArray:
-    """Rank of each element among equal ones, in an ascending sequence."""
-    return np.arange(len(ascending)) - np.searchsorted(ascending, ascending)
 
 
 CORNERS = 32

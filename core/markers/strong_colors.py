@@ -64,7 +64,10 @@ def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
     left, least = counts[present][strong], LEAST_SHARE * counts.sum()
     found: list[tuple[float, StrongColor]] = []
     while left.sum() > least:
-        center = _densest(chroma, left)
+        square = np.round(chroma / 0.04).astype(np.int64)
+        _, index = np.unique(square[:, 0] * 10_000 + square[:, 1], return_inverse=True)
+        densest = index == int(np.bincount(index, left).argmax())
+        center = np.average(chroma[densest], axis=0, weights=left[densest])
         near = np.linalg.norm(chroma - center, axis=1) < 0.10
         share = float(left[near].sum() / counts.sum())
         if share > LEAST_SHARE:
@@ -75,14 +78,6 @@ def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
         left[near] = 0.0
     found.sort(key=lambda one: -one[0])
     return tuple(color for _, color in found[:12])  # markers, skin, and things in the room
-
-
-def _densest(chroma: Array, weight: Array) -> Array:
-    """The mode (2,) of the chromaticities."""
-    square = np.round(chroma / 0.04).astype(np.int64)
-    _, index = np.unique(square[:, 0] * 10_000 + square[:, 1], return_inverse=True)
-    inside = index == int(np.bincount(index, weight).argmax())
-    return np.asarray(np.average(chroma[inside], axis=0, weights=weight[inside]))
 
 
 def color_confusion(model: ColorModel) -> Array:

@@ -86,16 +86,13 @@ def bare_surfaces(common: Array, markers: Sequence[Surface | None], beside: Bool
     for color, near in zip(common, beside, strict=True):
         surface = Surface(color, PART_DEVIATION)
         known = np.array([one.color for one in (*worn, *bare)]).reshape(-1, 3)
-        if any(is_alike(surface, one) for one in worn) or _is_near(color, known):
+        is_known = (np.linalg.norm(known - color, axis=-1) < APART).any()
+        if is_known or any(is_alike(surface, one) for one in worn):
             continue
         neighbors = [one for one, there in zip(markers, near, strict=True) if there and one is not None]
         if not any(_is_blend(color, one, known) for one in neighbors):
             bare.append(surface)
     return bare
-
-
-def _is_near(color: Array, known: Array) -> bool:
-    return bool((np.linalg.norm(known - color, axis=-1) < APART).any())
 
 
 def _is_blend(color: Array, marker: Surface, known: Array) -> bool:

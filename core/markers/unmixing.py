@@ -104,7 +104,9 @@ class Palette:
         unlit = empty > 4.0 * np.log(spread) + np.log(np.maximum(lit, spread**2)) + ODD
         odd[odd] = unlit
         seen, usual, spread, without = seen[unlit], usual[unlit], spread[unlit], empty[unlit]
-        away = self._away(seen)
+        colors = self._colors
+        # (N, K) squared distances from the other surfaces' colors.
+        away = _dot(seen, seen)[:, None] - 2.0 * seen @ colors.T + _dot(colors, colors)
         variance = self._deviations**2
         pure = (away / variance + 3.0 * np.log(variance)).min(axis=1, initial=np.inf)
         without = np.minimum(without, pure)
@@ -123,11 +125,6 @@ class Palette:
         share.ravel()[where[left]] = own[left]
         gain.ravel()[where[left]] = np.clip(0.5 * (without - cost[left]), -MOST_GAIN, MOST_GAIN)
         return Unmixed(share, gain)
-
-    def _away(self, seen: Array) -> Array:
-        """(N, K) squared distances of colors (N, 3) from the other surfaces'."""
-        colors = self._colors
-        return np.asarray(_dot(seen, seen)[:, None] - 2.0 * seen @ colors.T + _dot(colors, colors))
 
     def _beside(self, away: Array, odd: BoolArray, where: IndexArray) -> BoolArray:
         """(N, K) whether other surfaces are seen beside pixels `where` (N,) of a window."""

@@ -38,7 +38,8 @@ def copy_example(name: str, into: Path) -> Path:
     """
     source, target = example_folder(name), into / name
     if target.exists():
-        if not _is_copy(source, target):
+        pairs = [(source / own, target / copied) for own, copied in COPIED.items()]
+        if not all(copy.is_file() and filecmp.cmp(own, copy, shallow=False) for own, copy in pairs):
             raise InputError(
                 f"{target}: something lies here that is no unchanged copy of the example; open it with "
                 "Open Take, or choose another folder"
@@ -48,8 +49,3 @@ def copy_example(name: str, into: Path) -> Path:
         for own, copied in COPIED.items():
             shutil.copyfile(source / own, staging / copied)
     return target
-
-
-def _is_copy(source: Path, target: Path) -> bool:
-    pairs = [(source / own, target / copied) for own, copied in COPIED.items()]
-    return all(copy.is_file() and filecmp.cmp(own, copy, shallow=False) for own, copy in pairs)

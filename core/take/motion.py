@@ -210,6 +210,12 @@ def write_motion(motion: Motion, path: Path) -> None:
     posture: dict[str, Any] = posture_to_json(motion.posture)
     places: Any = _rows(rounded(np.swapaxes(motion.points, 0, 1)), empty)
     angles: Any = _rows(list(posture.values()), empty)
+    uncertainty: dict[str, Any] = {}
+    if _has_covariance(motion):
+        covariance = 1e6 * motion.point_covariance[:, :, UPPER[0], UPPER[1]]  # (F, P, 6), square millimeters
+        spread = _rows(_significant(np.swapaxes(covariance, 0, 1)), empty)
+        uncertainty["sigma_m"] = dict(zip(names, _rows(rounded(motion.sigma_m.T), empty), strict=True))
+        uncertainty["covariance_mm2"] = dict(zip(names, spread, strict=True))
     file = MotionFile(
         fps=motion.fps,
         frame_start=motion.frame_start,
@@ -222,7 +228,7 @@ def write_motion(motion: Motion, path: Path) -> None:
         actor=motion.body.actor,
         diagnostics={name: _significant(rows) for name, rows in sorted(motion.diagnostics.items())},
         unseen=motion.unseen,
-        **(_uncertainty(motion, empty) if _has_covariance(motion) else {}),
+        **uncertainty,
     )
     write_json(path, file.to_json())
 
@@ -232,6 +238,10 @@ def read_motion(path: Path) -> Motion:
     file = MotionFile.from_json(read_json(path, LARGEST_BYTES), str(path))
     body, points = Body(file.actor), np.stack(list(file.points.values()), axis=1)
     posture, there = np.stack(list(file.posture.values()), axis=1), np.isfinite(points).all(axis=(1, 2))
+    covariance = np.full((*points.shape, 3), np.nan)
+    if file.covariance_mm2:
+        upper = 1e-6 * np.stack(list(file.covariance_mm2.values()), axis=1)
+        covariance[:, :, UPPER[0], UPPER[1]] = covariance[:, :, UPPER[1], UPPER[0]] = upper
     return Motion(
         body=body,
         fps=file.fps,
@@ -239,7 +249,7 @@ def read_motion(path: Path) -> Motion:
         time_s=file.time_s,
         posture=Posture.from_vector(body.skeleton, posture[_nearest(there)]),
         points=points,
-        point_covariance=_covariance(file),
+        point_covariance=covariance,
         keyframe_indices=tuple(frame - file.frame_start for frame in file.keyframes),
         method=file.method,
         diagnostics=MappingProxyType(dict(file.diagnostics)),
@@ -258,26 +268,6 @@ def _rows(columns: list[list[Any]], empty: tuple[int, ...]) -> list[list[Any]]:
         for frame in empty:
             column[frame] = None
     return columns
-
-
-def _uncertainty(motion: Motion, empty: tuple[int, ...]) -> dict[str, Any]:
-    names = motion.body.skeleton.point_names
-    covariance = 1e6 * motion.point_covariance[:, :, UPPER[0], UPPER[1]]  # (F, P, 6), meters² to millimeters²
-    return {
-        "sigma_m": dict(zip(names, _rows(rounded(motion.sigma_m.T), empty), strict=True)),
-        "covariance_mm2": dict(
-            zip(names, _rows(_significant(np.swapaxes(covariance, 0, 1)), empty), strict=True)
-        ),
-    }
-
-
-def _covariance(file: MotionFile) -> Array:
-    covariance = np.full((file.frame_count, len(file.points), 3, 3), np.nan)
-    if file.covariance_mm2:
-        upper = 1e-6 * np.stack(list(file.covariance_mm2.values()), axis=1)
-        covariance[:, :, UPPER[0], UPPER[1]] = upper
-        covariance[:, :, UPPER[1], UPPER[0]] = upper
-    return covariance
 
 
 def _check_finite(motion: Motion) -> None:

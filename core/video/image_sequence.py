@@ -4,6 +4,7 @@ import math
 import re
 import zlib
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -38,7 +39,10 @@ def read_image(path: Path) -> Image:
         data = np.fromfile(path, dtype=np.uint8)  # imread cannot open every path on Windows
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); it must be an image") from error
-    image = _decoded(data)
+    image: NDArray[Any] | None = None
+    if data.size and _is_whole(data.tobytes()):
+        with opencv_silence(), suppress(cv2.error):  # among them a size above what core/__init__ lets it read
+            image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
     if image is None:
         raise InputError(
             f"{path}: cannot be decoded; it must be a whole image that OpenCV can read, of at most "
@@ -52,17 +56,6 @@ def read_image(path: Path) -> Image:
         gray = np.ascontiguousarray(image.reshape(*image.shape[:2], -1)[:, :, 0])
         image = cv2.cvtColor(gray, cv2.COLOR_GRAY2BGR)
     return np.ascontiguousarray(image[:, :, :3])
-
-
-def _decoded(data: Image) -> NDArray[Any] | None:
-    if not data.size or not _is_whole(data.tobytes()):
-        return None
-    try:
-        with opencv_silence():
-            image: NDArray[Any] | None = cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
-            return image
-    except cv2.error:  # among them a size above what core/__init__ lets OpenCV read
-        return None
 
 
 def _is_whole(data: bytes) -> bool:
