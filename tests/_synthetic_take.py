@@ -13,7 +13,9 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
+from keymark.core.body.rotations import exponential
 from keymark.core.camera.camera import Camera
+from keymark.core.camera.camera_motion import moved
 from keymark.core.video.clip import Clip
 
 SIZE = (160, 120)
@@ -216,3 +218,26 @@ def panelled_take(demo: Path, folder: Path) -> Path:
     fields["clip"] = "frames"
     (folder / "take.json").write_text(json.dumps(fields), encoding="utf-8")
     return folder
+
+
+def write_shaken(clip: Path, posture: Posture, turn_rad: float) -> None:
+    """Film postures before a wall of blotches, by hands that turn the camera so far; with keypoints."""
+    focal_px = CAMERA["lens_mm"] / CAMERA["sensor_width_mm"] * SIZE[0]
+    matrix = np.array([[focal_px, 0.0, SIZE[0] / 2], [0.0, focal_px, SIZE[1] / 2], [0.0, 0.0, 1.0]])
+    noise = np.random.default_rng(5).uniform(110.0, 230.0, (SIZE[1] // 8, SIZE[0] // 8, 3))
+    wall = cv2.resize(noise.astype(np.float32), SIZE, interpolation=cv2.INTER_CUBIC).clip(0.0, 255.0)
+    phase = 2.0 * np.pi * np.arange(posture.batch[0]) / posture.batch[0]
+    turns = turn_rad * np.stack([np.sin(phase), np.cos(phase), 0.5 * np.sin(2.0 * phase)], axis=1)
+    moved_by = [matrix @ exponential(turn) @ np.linalg.inv(matrix) for turn in turns]
+    images = []
+    for image, homography in zip(drawn_frames(posture), moved_by, strict=True):
+        before = np.abs(image.astype(int) - 170).max(axis=2) < 12
+        image[before] = wall.astype(np.uint8)[before]
+        images.append(cv2.warpPerspective(image, homography, SIZE, borderMode=cv2.BORDER_REPLICATE))
+    write_frames(clip, images)
+    file = write_keypoints(clip.with_suffix(".keypoints.json"), posture)
+    fields = json.loads(file.read_text(encoding="utf-8"))
+    for frame, homography in zip(fields["frames"], moved_by, strict=True):
+        for point in frame:
+            point[:2] = moved(homography, np.array(point[:2])).tolist()
+    write_json(file, fields)

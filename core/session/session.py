@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from ..body.posture import Posture
 from ..estimate.reconstruct import Reconstruction
 from ..files.digest import digest
 from ..markers.reading import Reading
@@ -83,6 +84,8 @@ class Stage:
 
 def plain(value: object) -> object:
     """A value as `digest` takes it: records as their fields."""
+    if isinstance(value, Posture):  # all are of one skeleton
+        return value.translation, value.rotations, value.angles
     if is_dataclass(value):
         return type(value).__name__, *(plain(getattr(value, each.name)) for each in fields(value))
     if isinstance(value, Mapping):
@@ -98,12 +101,12 @@ def advance(
     session: Session,
     stages: Sequence[Stage],
     kept: MutableMapping[str, object] | None = None,
-    keep: Callable[[str, Session], None] = lambda _stage, _session: None,
+    keep: Callable[[str, Session], Job[object] | None] = lambda _stage, _session: None,
 ) -> Job[Session]:
-    """The session after further stages; `keep` gets each stage's name and the session as it is complete.
+    """The session after further stages.
 
-    `kept` has results by the digest of what they depend on: those found there are not made again, and new
-    ones are added.
+    `keep` gets each stage's name and the session as it is complete, and may take its time for it. `kept` has
+    results by the digest of what they depend on: those are not made again, and new ones are added.
     """
     ahead = [stage for stage in stages if stage.name not in session.made]
     whole, done = max(sum(stage.work(session.inputs) for stage in ahead), 1e-9), 0.0
@@ -118,5 +121,7 @@ def advance(
             if kept is not None and key:
                 kept[key] = result
         session, done = replace(session, made={**session.made, stage.name: result}, key=key), end
-        keep(stage.name, session)
+        keeping = keep(stage.name, session)
+        if keeping is not None:
+            yield from stretch(keeping, done, done)
     return session

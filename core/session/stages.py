@@ -34,7 +34,7 @@ def reach(
     session: Session,
     last: str,
     kept: MutableMapping[str, object] | None = None,
-    keep: Callable[[str, Session], None] = lambda _stage, _session: None,
+    keep: Callable[[str, Session], Job[object] | None] = lambda _stage, _session: None,
 ) -> Job[Session]:
     """The session with all stages up to `last`; see `advance`.
 
@@ -46,7 +46,6 @@ def reach(
     return advance(session, STAGES[: names.index(last) + 1], kept, keep)
 
 
-def seen_in(take: Take, reading: Reading) -> SeenTake:
-    """A take as a reading of its clip shows it."""
-    session = run(reach(Session(Inputs(take), {"read": reading}), "place"))
-    return place.placed_take(session)
+def seen_in(take: Take, reading: Reading, kept: MutableMapping[str, object] | None = None) -> SeenTake:
+    """A take as a reading of its clip shows it; `kept` as in `advance`."""
+    return place.placed_take(run(reach(Session(Inputs(take), {"read": reading}, reading.key), "place", kept)))

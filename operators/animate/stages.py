@@ -1,6 +1,6 @@
 """The stages of *Animate*: each does what its step's own operators do, and keeps its result in the scene."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,18 +19,19 @@ from ..character.add_character import add_rigify_character
 from ..character.characters import add_character
 from ..character.retarget import keep_retargeted, retarget_take
 from ..finish.bake_motion import bake, keep_baked
-from ..follow.camera_from_lines import standing_performer
-from ..follow.evidence import has_keypoints, keypoint_path
-from ..follow.load_keypoints import detect, follow_file, keep_detected
+from ..follow.evidence import has_keypoints, keypoint_path, scene_evidence
+from ..follow.load_keypoints import Detected, follow_file, keep_detected, keypoint_output
 from ..footage.found_camera import is_found, write_fit
 from ..footage.take_footage import lens_is_guess
-from ..keyframes.pose_all import find_poses, keep_poses
-from ..reconstruct.reconstruct import keep_reconstruction, reconstruct_take
-from ..shell.takes import active_take, footage_of
+from ..keyframes.pose_all import keep_poses
+from ..keyframes.scene_session import SceneSession
+from ..reconstruct.reconstruct import judge, keep_motion
+from ..shell.results import reading_of
+from ..shell.takes import active_take, footage_of, take_by_identifier
 from . import FILE, NOTHING, RIGIFY
 
 if TYPE_CHECKING:
-    pass
+    from ...core.session.session import Session
 
 SEEN_SHARES = np.linspace(0.0, 1.0, 9)
 """Moments of the clip at which nothing may stand before the performer."""
@@ -45,36 +46,136 @@ def animate(
     Returns:
         A line on each stage.
     """
-    said: list[str] = []
-    context = bpy.context
+    from ...core.session.stages import reach
+
     take = active_take(scene)
     take.stature = stature_m
-    if has_keypoints(take):
-        said.append(
-            f"The keypoints are read from {listed(keypoint_path(one).name for one in take.follow.files)}"
-        )
-    else:
-        found = yield from stretch(detect(scene), 0.0, 0.4)
-        said.append(keep_detected(scene, found))
-    yield Progress("Placing the camera", 0.4)
-    said.append(_place_camera(active_take(scene), stature_m))
-    said.append(_build_actor(context, active_take(scene), stature_m))
-    matching = active_take(scene).matching
-    floor_m = float(matching.floor_height) if matching.floor == "HEIGHT" else None
-    poses = yield from stretch(find_poses(scene, "", floor_m), 0.4, 0.7)
-    said.append(keep_poses(scene, poses)[0])
-    result = yield from stretch(reconstruct_take(scene, lambda _preview: None), 0.7, 0.88)
-    said.append(keep_reconstruction(operator, scene, result))
-    finished = yield from stretch(bake(scene), 0.88, 0.92)
-    said.append(keep_baked(operator, scene, finished))
-    if character != NOTHING:
-        yield Progress("Opening the character", 0.92)
-        _add_character(context, character, file)
-        retargeted = yield from stretch(retarget_take(scene), 0.93, 1.0)
-        said.append(keep_retargeted(operator, scene, retargeted))
-    _hide_what_stands_before(context, active_take(scene))
+    said: list[str] = []
+    identifier = take.identifier
+    session = yield from stretch(_clip_session(scene, take, stature_m, character, file), 0.0, 0.02)
+
+    def keep(stage: str, session: "Session") -> "Job[object] | None":
+        if stage == "reconstruct":
+            return _keep_motion(operator, scene, SceneSession(identifier, session), said)
+        if stage in KEPT and session.made[stage] is not None:
+            said.append(KEPT[stage](operator, scene, SceneSession(identifier, session)))
+        return None
+
+    yield from stretch(reach(session, "retarget", None, keep), 0.02, 1.0)
+    _hide_what_stands_before(bpy.context, active_take(scene))
     scene.frame_set(scene.frame_start)
     return said
+
+
+def _clip_session(
+    scene: bpy.types.Scene, take: bpy.types.PropertyGroup, stature_m: float, character: str, file: str
+) -> "Job[Session]":
+    """What is known of a clip: its performer's height, its keypoints if there are any, and about its lens."""
+    from ...core.body.actor import Actor
+    from ...core.body.kinematics import Body
+    from ...core.session.lens import Lens, lens_of
+    from ...core.session.session import Inputs, Session
+    from ..bridge.take_from_scene import clip_frames, scene_take
+    from ..library.registry_files import named_libraries
+
+    footage, evidence, kept = footage_of(scene, take), scene_evidence(take), reading_of(take)
+    size, matching = (footage.clip.size[0], footage.clip.size[1]), take.matching
+    lens, camera = lens_of(footage.path, size), still_camera(footage)
+    if lens_is_guess(take):
+        camera = lens.put(size)
+    else:
+        lens = Lens(camera.lens_mm, camera.sensor_width_mm, "as it is set", True)
+    libraries = named_libraries(matching.library_name)
+    floor_m = float(matching.floor_height) if matching.floor == "HEIGHT" else None
+    detects = not has_keypoints(take)
+
+    def retarget(_session: "Session") -> "Job[object]":
+        yield Progress("Opening the character", 0.0)
+        _add_character(bpy.context, character, file)
+        return (yield from stretch(retarget_take(scene), 0.1, 1.0))
+
+    bridge: dict[str, Callable[[Session], Job[object]]] = {"finish": lambda _session: bake(scene)}
+    if character != NOTHING:
+        bridge["retarget"] = retarget
+    frames = yield from clip_frames(footage, evidence, kept)
+    body = Body(Actor.from_stature(stature_m))
+    known_take = scene_take(footage, evidence, frames, body, camera)
+    return Session(
+        Inputs(
+            known_take,
+            detects=detects,
+            open_lens=lens,
+            floor_open=True,
+            libraries=libraries,
+            floor_m=floor_m,
+            kept=kept,
+            bridge=bridge,
+        )
+    )
+
+
+def _keep_keypoints(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession) -> str:
+    from ...core.session.see import Sight
+
+    inputs, take = made.session.inputs, take_by_identifier(scene, made.take)
+    if not inputs.detects:
+        return f"The keypoints are read from {listed(keypoint_path(one).name for one in take.follow.files)}"
+    (people,) = made.session[Sight].people
+    output = keypoint_output(take, footage_of(scene, take).path)
+    return keep_detected(scene, Detected(made.take, output, people, inputs.take.fps, inputs.take.frame_start))
+
+
+def _keep_place(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession) -> str:
+    """Put camera and actor where they are; a camera that nothing tells stays as it was put."""
+    from ...core.session.place import Placed, camera_in_words
+
+    placed, take = made.session[Placed], take_by_identifier(scene, made.take)
+    camera, found = placed.seen.take.camera, placed.camera
+    assert found is not None
+    said = camera_in_words(found)
+    if found.lens.is_known and lens_is_guess(take):
+        take.camera.data.lens *= found.lens.lens_mm / take.guessed_lens_mm
+        take.guessed_lens_mm = 0.0
+    if found.fit is None or not is_found(found.fit):
+        take.camera_findings = f"Camera {said}"
+    else:
+        write_fit(take, found.fit)
+    set_still_pose(take.camera, camera)
+    if placed.floor_m is not None:
+        take.matching.floor, take.matching.floor_height = "HEIGHT", placed.floor_m
+    size_actor(bpy.context, take, placed.seen.take.body)
+    return f"Camera: {said}"
+
+
+def _keep_poses(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession) -> str:
+    """Key the poses; a camera that was seen to turn turns from now on, and the floor is where they stand."""
+    from ...core.session.pose import Posed
+    from ...core.take.steady_camera import followed_camera
+    from ..bridge.footage_to_scene import set_pose
+
+    said, _ = keep_poses(scene, made)
+    take, posed = take_by_identifier(scene, made.take), made.session[Posed]
+    if posed.floor_m is not None:
+        take.matching.floor, take.matching.floor_height = "HEIGHT", posed.floor_m
+    set_pose(take.camera, followed_camera(posed.seen.take, posed.seen.reading), made.frames)
+    return said
+
+
+def _keep_motion(
+    operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession, said: list[str]
+) -> "Job[None]":
+    judged = yield from judge(made)
+    said.append(keep_motion(operator, scene, made, judged))
+
+
+KEPT = {
+    "see": _keep_keypoints,
+    "place": _keep_place,
+    "pose": _keep_poses,
+    "finish": lambda operator, scene, made: keep_baked(operator, scene, made.session.made["finish"]),
+    "retarget": lambda operator, scene, made: keep_retargeted(operator, scene, made.session.made["retarget"]),
+}
+"""How the result of a stage is written into the scene; each returns a sentence on it."""
 
 
 def follow_found_file(take: bpy.types.PropertyGroup, clip: Path) -> None:
@@ -84,36 +185,6 @@ def follow_found_file(take: bpy.types.PropertyGroup, clip: Path) -> None:
     file = keypoints_beside(clip)
     if file is not None and not has_keypoints(take):
         follow_file(take, file)
-
-
-def _place_camera(take: bpy.types.PropertyGroup, stature_m: float) -> str:
-    """Find the camera by the performer; it stays as it was put where they do not tell it."""
-    from ...core.session.lens import lens_of
-    from ...core.session.place import FoundCamera, camera_by_performer, camera_in_words
-
-    source = footage_of(take.id_data, take)
-    lens = lens_of(source.path, (source.clip.size[0], source.clip.size[1]))
-    if lens.is_known and lens_is_guess(take):
-        source.camera.data.lens *= lens.lens_mm / take.guessed_lens_mm
-        take.guessed_lens_mm = 0.0
-    uprights = standing_performer(take, stature_m)
-    camera, fit = camera_by_performer(still_camera(source), not lens_is_guess(take), uprights)
-    said = camera_in_words(FoundCamera(fit, lens, len(uprights)))
-    if fit is None or not is_found(fit):
-        take.camera_findings = f"Camera {said}"
-        return take.camera_findings
-    write_fit(take, fit)
-    set_still_pose(source.camera, camera)
-    take.matching.floor, take.matching.floor_height = "HEIGHT", 0.0
-    return f"Camera: {said}"
-
-
-def _build_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, stature_m: float) -> str:
-    from ...core.body.actor import Actor
-    from ...core.body.kinematics import Body
-
-    size_actor(context, take, Body(Actor.from_stature(stature_m)))
-    return f"The actor is {stature_m:.2f} m tall, of average proportions"
 
 
 def _add_character(context: bpy.types.Context, character: str, file: str) -> None:

@@ -72,13 +72,14 @@ def show_footage(
     set_clip_lens(clip, camera)
     camera_object = new_camera(scene)
     set_lens(camera_object.data, camera)
-    _set_pose(camera_object, camera, frames)
+    set_pose(camera_object, camera, frames)
     set_background(camera_object.data, clip)
     scene.camera, scene.active_clip = camera_object, clip
     return camera_object, frames
 
 
-def _set_pose(camera_object: bpy.types.Object, camera: Camera, frames: Array) -> None:
+def set_pose(camera_object: bpy.types.Object, camera: Camera, frames: Array) -> None:
+    """Give a camera the pose of core's; a moving one has its poses at scene frames (F,)."""
     if not camera.is_moving:
         set_still_pose(camera_object, camera)
         return

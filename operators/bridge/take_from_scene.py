@@ -9,6 +9,7 @@ from ...core.arrays import Array
 from ...core.body.actor import Actor
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
+from ...core.camera.camera import Camera
 from ...core.detect.keypoints import Keypoints
 from ...core.markers.reading import Reading, clip_times
 from ...core.markers.region_tracks import RegionTracks
@@ -46,21 +47,11 @@ def performers_keypoints(
     """
     if not evidence.has_keypoints:
         return Keypoints.none(len(frames))
-    people = evidence.people(footage, frames)
-    known = tuple(keyframes) if any(one.most_people > 1 for one in people) else ()
-    take = Take(
-        folder=footage.path.parent,
-        clip=footage.path,
-        fps=footage.rate,
-        frame_start=footage.first_frame,
-        frame_count=len(frames),
-        # A moving camera is evaluated in every frame, which takes a while.
-        camera=read_camera(footage, frames) if known else read_lens(footage),
-        body=body,
-        markers=evidence.markers if tracks.names else (),
-        keyframes=known,
-        keypoints=people,
-    )
+    own = replace(evidence, markers=evidence.markers if tracks.names else (), reference=None)
+    take = scene_take(footage, own, frames, body, read_lens(footage))
+    known = tuple(keyframes) if any(people.most_people > 1 for people in take.keypoints) else ()
+    if known:  # a moving camera is evaluated in every frame, which takes a while
+        take = replace(take, camera=read_camera(footage, frames), keyframes=known)
     prior = interpolate(known, len(frames)) if known else None
     return performer_keypoints(take, prior, tracks)
 
@@ -94,16 +85,28 @@ def read_scene_take(
     Raises:
         InputError: Something is missing or unusable.
     """
-    path = footage.path
     frames = yield from clip_frames(footage, evidence, kept)
     body = read_body(armature_object, HUMAN)
-    take = Take(
-        folder=path.parent,
-        clip=path,
+    take = scene_take(footage, evidence, frames, body, read_camera(footage, frames))
+    if keyframe_action is None:
+        return take, ()
+    posed = read_keyframes(footage.scene, armature_object, keyframe_action, body, frames, matches)
+    return replace(take, keyframes=posed.keyframes), posed.notes
+
+
+def scene_take(footage: Footage, evidence: SceneEvidence, frames: Array, body: Body, camera: Camera) -> Take:
+    """A take without keyframes; `frames` (F,) are the scene frames of the clip's.
+
+    Raises:
+        InputError: The evidence cannot be read.
+    """
+    return Take(
+        folder=footage.path.parent,
+        clip=footage.path,
         fps=footage.rate,
         frame_start=footage.first_frame,
         frame_count=len(frames),
-        camera=read_camera(footage, frames),
+        camera=camera,
         body=body,
         markers=evidence.markers,
         keyframes=(),
@@ -112,7 +115,3 @@ def read_scene_take(
         ignored_regions=evidence.ignored_regions,
         reference=evidence.reference_motion(),
     )
-    if keyframe_action is None:
-        return take, ()
-    posed = read_keyframes(footage.scene, armature_object, keyframe_action, body, frames, matches)
-    return replace(take, keyframes=posed.keyframes), posed.notes

@@ -123,7 +123,7 @@ def detect(scene: bpy.types.Scene) -> "Job[Detected]":
 
     take = active_take(scene)
     identifier, source = take.identifier, footage_of(scene, take)
-    output, first = _output(take, source.path), source.first_frame
+    output, first = keypoint_output(take, source.path), source.first_frame
     clip = open_footage(source.path, source.rate)
     people = yield from find_people(clip, PoseNetwork())
     return Detected(identifier, output, people, clip.fps, first)
@@ -153,7 +153,7 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
         self.report({"INFO"}, keep_detected(scene, result))
 
 
-def _output(take: bpy.types.PropertyGroup, clip: Path) -> Path:
+def keypoint_output(take: bpy.types.PropertyGroup, clip: Path) -> Path:
     """The file that the keypoints go into: beside the clip, where nothing else lies."""
     from ...core.take.description import sidecar_file
 

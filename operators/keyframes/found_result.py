@@ -1,71 +1,56 @@
 """Keyframes found in a take's footage, and how they are written into the scene."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import bpy
+import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
-from ...core.posing.found_poses import FoundPoses, with_found
+from ...core.markers.reading import Reading
+from ...core.posing.found_poses import FoundPoses
 from ...core.prior.keyframes import Keyframe
-from ...core.take.take import Take
+from ...core.session.place import Placed
+from ...core.session.pose import Posed
+from ..bridge.footage_camera import set_still_pose
 from ..bridge.keyframes import remove_keyframes, take_over
 from ..shell.base_operator import capitalized
 from ..shell.contradictions import note_contradictions
 from ..shell.keyed_frames import has_frame, invalidate_keyed_frames, posed_frames, state_of
-from ..shell.results import keep_reading, keep_speed
+from ..shell.results import keep_reading
 from ..shell.takes import actor_of, take_by_identifier
-from .found_keyframes import SceneClip, undecided_matches
+from .found_keyframes import undecided_matches
 from .match_edits import add_candidate, add_match, key_matches
+from .scene_session import SceneSession
 
 
-@dataclass(frozen=True, eq=False)
-class Proposals:
-    """Frames proposed for keyframes, and what they were chosen by."""
+def write_poses(scene: bpy.types.Scene, made: SceneSession) -> bpy.types.PropertyGroup:
+    """Key what was found beside what is decided, in place of what was found earlier; returns the take.
 
-    indices: tuple[int, ...]  # Of frames of the clip, in order
-    speed: Array  # (F,) the performer's speed in the footage [px per frame]
-
-
-@dataclass(frozen=True, eq=False)
-class FoundResult:
-    """What a job found in a take's footage, for the scene."""
-
-    take: str  # The take's identifier
-    clip: SceneClip
-    found: FoundPoses
-    keyframes: tuple[Keyframe, ...]  # The found keyframes, in order
-    proposals: Proposals | None = None  # Where no frames were proposed before
-
-    def write(self, scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-        """Key what was found beside what is decided, in place of what was found earlier; returns the take."""
-        take = take_by_identifier(scene, self.take)
-        clear_found(take)
-        matching, found = take.matching, self.found
-        matching.fit, matching.floor_found = found.fit, found.floor_m
-        matching.reason = capitalized(found.reason)
-        posed, frames = posed_frames(take), self.clip.frames
-        decided = [match.frame for match in matching.matches]
-        free = [
-            keyframe
-            for keyframe in self.keyframes
-            if not has_frame(posed, float(frames[keyframe.index]))
-            and not has_frame(decided, float(frames[keyframe.index]))
-        ]
-        keep_reading(take, self.clip.reading)
-        if self.proposals is not None:
-            keep_speed(take, frames, self.proposals.speed)
-            take.proposals.clear()
-            for index in self.proposals.indices:
-                take.proposals.add().frame = round(float(frames[index]))
-        write_found(take, self.clip, free, found)
-        return take
-
-
-def found_keyframes(take: Take, found: FoundPoses) -> tuple[Keyframe, ...]:
-    """The found keyframes of a take with decided ones, in order."""
-    return tuple(each for each in with_found(take, found).keyframes if each.matched is not None)
+    Where the world was moved so that the floor is z = 0, the camera is.
+    """
+    take, posed = take_by_identifier(scene, made.take), made.session[Posed]
+    assert posed.found is not None
+    clear_found(take)
+    matching, found, frames = take.matching, posed.found, made.frames
+    matching.fit, matching.floor_found = found.fit, found.floor_m
+    matching.reason = capitalized(found.reason)
+    decided = (*posed_frames(take), *(match.frame for match in matching.matches))
+    keep_reading(take, made.session[Reading])
+    if made.session.inputs.frames is None:
+        take.proposals.clear()
+        for each in found.frames:
+            take.proposals.add().frame = round(float(frames[each.index]))
+    free = [
+        key
+        for key in posed.seen.take.keyframes
+        if key.matched is not None and not has_frame(sorted(decided), float(frames[key.index]))
+    ]
+    write_found(take, frames, free, found)
+    before, camera = made.session[Placed].seen.take.camera, posed.seen.take.camera
+    if not np.array_equal(before.matrix_world, camera.matrix_world):
+        set_still_pose(take.camera, camera)
+    return take
 
 
 def clear_found(take: bpy.types.PropertyGroup) -> int:
@@ -94,12 +79,15 @@ def clear_found(take: bpy.types.PropertyGroup) -> int:
 
 
 def write_found(
-    take: bpy.types.PropertyGroup, clip: SceneClip, keyframes: Sequence[Keyframe], found: FoundPoses
+    take: bpy.types.PropertyGroup, clip_frames: Array, keyframes: Sequence[Keyframe], found: FoundPoses
 ) -> None:
-    """Key found postures, in order of frame, and store what is known of them; none may have an entry yet."""
+    """Key found postures, in order of frame, and store what is known of them; none may have an entry yet.
+
+    `clip_frames` (F,) are the scene frames of the clip's.
+    """
     candidates = {frame.index: frame.candidates for frame in found.frames}
     for keyframe in keyframes:
-        said, frame = keyframe.matched, float(clip.frames[keyframe.index])
+        said, frame = keyframe.matched, float(clip_frames[keyframe.index])
         assert said is not None
         match = add_match(take, frame, said.library)
         add_candidate(match, keyframe.posture, said.posture, said.mirrored, said.confidence)
@@ -108,6 +96,6 @@ def write_found(
             add_candidate(match, other.posture, other.name, other.mirrored, other.confidence)
         note_contradictions(take, frame, found.contradictions.get(keyframe.index, ()))
     if keyframes:
-        frames = clip.frames[[keyframe.index for keyframe in keyframes]]
+        frames = clip_frames[[keyframe.index for keyframe in keyframes]]
         key_matches(take, frames, [keyframe.posture for keyframe in keyframes])
     invalidate_keyed_frames()

@@ -1,64 +1,70 @@
 """Pose all proposed frames at once, from what all libraries know of postures, or one of them."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
 from ...core.errors import InputError
-from ...core.progress import stretch, within
+from ...core.progress import stretch
 from ..bridge.scene_frames import shown_index
 from ..follow.evidence import points_to_follow
 from ..shell.base_operator import warn
 from ..shell.fields import Text
 from ..shell.job_operator import JobOperator
-from ..shell.keyed_frames import count_found, doubtful_matches, proposed_frames
+from ..shell.keyed_frames import count_found, doubtful_matches, posed_frames, proposed_frames
 from ..shell.requirements import actor, all_colors, camera, footage, idle
-from ..shell.takes import active_take
-from .found_keyframes import SceneClip, read_scene_clip
+from ..shell.takes import active_take, placement_is_guess
+from .found_keyframes import undecided_matches
 from .found_properties import FloorSettings
+from .scene_session import READ, SceneSession, go_on, read_session
 
 if TYPE_CHECKING:
     from ...core.progress import Job
-    from .found_result import FoundResult, Proposals
 
 
-READ, MEASURED = 0.5, 0.55
-"""Shares of the job at which the clip is read, and the speed measured where no frames are proposed yet."""
+def find_poses(scene: bpy.types.Scene, library: str, floor_m: float | None) -> "Job[SceneSession]":
+    """Go on with the active take until its poses are found; the scene stays as it is.
 
-
-def find_poses(scene: bpy.types.Scene, library: str, floor_m: float | None) -> "Job[FoundResult]":
-    """Read the active take, propose frames where none are proposed, and find their postures.
-
-    `library` is the only one that is used, the panel's where empty; the scene stays as it is.
+    `library` is the only one that is used, the panel's where empty. Frames that are proposed are posed, or
+    else those that are found to be the best.
     """
-    from ...core.posing.pose_clip import pose_clip
-    from ...core.session.stages import seen_in
     from ..library.registry_files import named_libraries
-    from .found_result import FoundResult, found_keyframes
 
     settings = active_take(scene)
-    identifier, count = settings.identifier, settings.keyframe_count or None
     libraries = named_libraries(library or settings.matching.library_name)
-    proposed = proposed_frames(settings)
-    clip = yield from stretch(read_scene_clip(scene, settings), 0.0, READ)
-    proposals = None if proposed else (yield from stretch(_propose(clip, count), READ, MEASURED))
-    if proposals is None:
-        shown = shown_index(clip.frames, np.array(proposed, dtype=np.float64))
-        wanted = {int(index) for index in shown if index >= 0}
-    else:
-        wanted = set(proposals.indices)
-    decided = {keyframe.index for keyframe in clip.take.keyframes}
-    if wanted <= decided:
-        raise InputError("every proposed frame is posed; propose more, or remove keyframes first")
-    job = pose_clip(seen_in(clip.take, clip.reading), libraries, floor_m, frames=sorted(wanted - decided))
-    found = yield from stretch(job, MEASURED, 1.0)
-    return FoundResult(identifier, clip, found, found_keyframes(clip.take, found), proposals)
+    count, proposed = settings.keyframe_count or None, proposed_frames(settings)
+    is_open = placement_is_guess(settings) and not posed_frames(settings)
+    reading = read_session(
+        scene,
+        settings,
+        undecided_matches(settings),
+        method="map",
+        libraries=libraries,
+        floor_m=floor_m,
+        keyframe_count=count,
+        floor_open=is_open,
+    )
+    made = yield from stretch(reading, 0.0, READ)
+    inputs = made.session.inputs
+    posed = tuple(key for key in inputs.take.keyframes if key.matched is None)
+    inputs = replace(inputs, take=replace(inputs.take, keyframes=posed, reference=None))
+    if proposed:
+        made = yield from go_on(replace(made, session=replace(made.session, inputs=inputs)), "read")
+        shown = shown_index(made.frames, np.array(proposed, dtype=np.float64))
+        wanted = {int(index) for index in shown if index >= 0} - {key.index for key in posed}
+        if not wanted:
+            raise InputError("every proposed frame is posed; propose more, or remove keyframes first")
+        inputs = replace(inputs, frames=tuple(sorted(wanted)))
+    return (yield from go_on(replace(made, session=replace(made.session, inputs=inputs)), "pose"))
 
 
-def keep_poses(scene: bpy.types.Scene, result: "FoundResult") -> tuple[str, bool]:
+def keep_poses(scene: bpy.types.Scene, made: "SceneSession") -> tuple[str, bool]:
     """Key the found postures; returns a sentence on them, and whether any is doubtful."""
-    take = result.write(scene)
+    from .found_result import write_poses
+
+    take = write_poses(scene, made)
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
     count, doubtful = count_found(take)
     if not doubtful:
@@ -83,26 +89,13 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
         self.floor, self.floor_height = matching.floor, matching.floor_height
         return super().invoke(context, event)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[FoundResult]":
+    def start(self, scene: bpy.types.Scene) -> "Job[SceneSession]":
         floor_m = float(self.floor_height) if self.floor == "HEIGHT" else None
         return (yield from find_poses(scene, self.library, floor_m))
 
-    def finish(self, scene: bpy.types.Scene, result: "FoundResult") -> None:
+    def finish(self, scene: bpy.types.Scene, result: "SceneSession") -> None:
         said, doubtful = keep_poses(scene, result)
-        for note in result.clip.notes:
+        for note in result.notes:
             warn(self, note)
         self.report({"INFO"}, active_take(scene).matching.reason)
         self.report({"WARNING" if doubtful else "INFO"}, said)
-
-
-def _propose(clip: SceneClip, count: int | None) -> "Job[Proposals]":
-    """Propose frames of a clip that was read, as *Propose Keyframes* does."""
-    from ...core.prior.keyframe_proposals import evidence_speed, propose_keyframes
-    from ...core.take.performer_keypoints import performer_keypoints
-    from .found_result import Proposals
-
-    take, tracks = clip.take, clip.reading.tracks
-    keypoints = performer_keypoints(take, None, tracks)
-    moved = evidence_speed(tracks, take.marker_segments, keypoints, clip.reading.album)
-    speed = yield from within("Measuring the speed", moved, 0.0, 1.0)
-    return Proposals(tuple(map(int, propose_keyframes(speed.values, count))), speed.values)

@@ -28,9 +28,10 @@ from ..shell.keyed_frames import (
 )
 from ..shell.notices import give_notices
 from ..shell.requirements import actor, idle
-from ..shell.results import reading_of
+from ..shell.results import MADE, reading_of
 from ..shell.takes import active_take, footage_of
-from .found_keyframes import SceneClip, known_matches, read_known_take, undecided_matches
+from .found_keyframes import known_matches, undecided_matches
+from .scene_session import read_session
 
 if TYPE_CHECKING:
     from ...core.body.kinematics import Body
@@ -78,7 +79,7 @@ def _pose_anew(
     from ..library.registry_files import named_libraries
     from .found_result import write_found
 
-    known, notes = run(read_known_take(scene, settings))
+    known = run(read_session(scene, settings, undecided_matches(settings))).session.inputs.take
     frames = scene_frames(reading.tracks.time_s, known.frame_start, known.fps)
     corrected = int(np.argmin(np.abs(frames - frame)))
     section = section_around(reading.tracks.time_s, corrected, known.keyframes)
@@ -89,12 +90,12 @@ def _pose_anew(
     floor_m = float(matching.floor_found) if matching.is_property_set("floor_found") else None
     libraries = named_libraries(matching.library_name)
     between = section.first, section.last
-    job = pose_clip(seen_in(take, reading), libraries, floor_m, between=between, frames=section.changed)
+    job = pose_clip(seen_in(take, reading, MADE), libraries, floor_m, between=between, frames=section.changed)
     found = run(job)
     keyframes = [found.keyframe(each) for each in found.frames]
     for each in keyframes:
         matching.matches.remove(match_at(settings, float(frames[each.index])))
-    write_found(settings, SceneClip(take, reading, frames, notes), keyframes, found)
+    write_found(settings, frames, keyframes, found)
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
     return len(keyframes)
 

@@ -1,7 +1,6 @@
 """What a reconstruction shows on the actor while it runs, and what it writes into the scene at the end."""
 
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass
 from math import floor
 from typing import Any
 
@@ -12,12 +11,14 @@ from bpy.app import handlers
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.estimate.reconstruct import Reconstruction
+from ...core.markers.reading import Reading
 from ...core.progress import Preview
 from ...core.review.review import Review
 from ..bridge.fcurves import write_motion
 from ..bridge.pose import write_posture
 from ..bridge.review_curves import write_review_curves
 from ..bridge.scene_frames import at_scene_frame, showing_action
+from ..keyframes.scene_session import SceneSession
 from ..shell.results import clear_review, keep_reading, keep_reconstruction, keep_review, reconstructed_again
 from ..shell.takes import actor_of, take_by_identifier
 
@@ -89,29 +90,19 @@ def _of_uid(items: "bpy.types.bpy_prop_collection[Any]", uid: int) -> Any:
     raise InputError("the actor or the scene that the job was about has been removed meanwhile; run it again")
 
 
-@dataclass(frozen=True, eq=False)
-class ReconstructionResult:
-    """The result of a reconstruction, for the scene."""
-
-    take: str  # The take's identifier
-    frames: Array  # (F,) scene frames
-    reconstruction: Reconstruction
-    review: Review
-    notes: tuple[str, ...]
-
-    def write(self, scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-        """Write the motion and its review, and let its Action animate the actor; return the take."""
-        take = take_by_identifier(scene, self.take)
-        take.motion_action = write_motion(
-            actor_of(take), self.reconstruction.motion, take.motion_action, take.keyframe_action, self.frames
-        )
-        take.motion_action.use_fake_user = True
-        reconstructed_again(take)
-        keep_reading(take, self.reconstruction.reading)
-        keep_reconstruction(take, self.reconstruction)
-        keep_review(take, self.review)
-        show_review(take, self.review)
-        return take
+def write_result(scene: bpy.types.Scene, made: SceneSession, judged: Review) -> bpy.types.PropertyGroup:
+    """Write a motion and its review, and let its Action animate the actor; return the take."""
+    take, result = take_by_identifier(scene, made.take), made.session[Reconstruction]
+    take.motion_action = write_motion(
+        actor_of(take), result.motion, take.motion_action, take.keyframe_action, made.frames
+    )
+    take.motion_action.use_fake_user = True
+    reconstructed_again(take)
+    keep_reading(take, made.session[Reading])
+    keep_reconstruction(take, result)
+    keep_review(take, judged)
+    show_review(take, judged)
+    return take
 
 
 def show_review(take: bpy.types.PropertyGroup, review: Review) -> None:

@@ -7,78 +7,80 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import stretch
 from ..bridge.actions import assign_action
-from ..bridge.scene_frames import scene_frames
-from ..follow.evidence import anything_to_follow, scene_evidence
+from ..follow.evidence import anything_to_follow
 from ..keyframes.found_keyframes import known_matches
+from ..keyframes.scene_session import READ, go_on, read_session
 from ..shell.base_operator import BaseOperator, capitalized, warn
 from ..shell.job_operator import JobOperator
 from ..shell.keyed_frames import straighten_unposed
 from ..shell.requirements import actor, all_colors, footage, idle, two_keyframes
-from ..shell.results import last_reconstruction, reading_of
-from ..shell.takes import active_take, footage_of
+from ..shell.takes import active_take
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ...core.progress import Job, Progress
-    from .live_preview import LivePreview, ReconstructionResult
+    from ...core.review.review import Review
+    from ..keyframes.scene_session import SceneSession
+    from .live_preview import LivePreview
 
 
-TIMES, READ, SOLVED = 0.05, 0.4, 0.97
-"""Shares of the job at which the clip's times are read, its pictures, and the motion is found."""
+SOLVED = 0.97
+"""Share of the job at which the motion is found."""
 
 
 def reconstruct_take(
     scene: bpy.types.Scene, show: "Callable[[LivePreview], None]"
-) -> "Job[ReconstructionResult]":
-    """Read the active take and reconstruct it, starting from the last reading and reconstruction.
+) -> "Job[tuple[SceneSession, Review]]":
+    """Go on with the active take until its motion is reconstructed and judged; the scene stays as it is.
 
-    `show` gets the preview, where the take wants one; the scene stays as it is.
+    `show` gets the preview, where the take wants one.
     """
-    from ...core.estimate.reconstruct import Reconstruction, check_reconstructible
-    from ...core.review.review import review
-    from ...core.session.session import Inputs, Session
-    from ...core.session.stages import reach
-    from ...core.take.read_footage import read_footage
-    from ..bridge.take_from_scene import read_scene_take
-    from .live_preview import LivePreview, ReconstructionResult
+    from ...core.estimate.reconstruct import check_reconstructible
+    from .live_preview import LivePreview
 
     settings = active_take(scene)
-    identifier, method, armature = settings.identifier, settings.method, settings.armature
-    watched, kept, earlier = settings.live_preview, reading_of(settings), last_reconstruction(settings)
-    evidence, known = scene_evidence(settings), known_matches(settings)
-    source, keys = footage_of(scene, settings), settings.keyframe_action
-    reading_scene = read_scene_take(source, armature, keys, evidence, known, kept)
-    take, notes = yield from stretch(reading_scene, 0.0, TIMES)
+    watched, armature, method = settings.live_preview, settings.armature, settings.method
+    reading = read_session(scene, settings, known_matches(settings), method=method)
+    made = yield from stretch(reading, 0.0, READ)
+    take = made.session.inputs.take
     if take.reference is None or method != "map":
-        _check_enough(len(take.keyframes), notes)
+        _check_enough(len(take.keyframes), made.notes)
     check_reconstructible(take, method)
-    reading = yield from stretch(read_footage(take, kept), TIMES, READ)
-    frames = scene_frames(reading.tracks.time_s, take.frame_start, take.fps)
-    if watched:
-        show(LivePreview(scene, armature, frames))
-    inputs = Inputs(take, method, floor_m=settings.matching.known_floor_m, earlier=earlier)
-    way = reach(Session(inputs, {"read": reading}), "reconstruct")
-    result = (yield from stretch(way, READ, SOLVED))[Reconstruction]
-    judged = yield from stretch(review(take, result, frames), SOLVED, 1.0)
-    return ReconstructionResult(identifier, frames, result, judged, (*notes, *result.notes))
+
+    def keep(stage: str, now: "SceneSession") -> None:
+        if stage == "read" and watched:
+            show(LivePreview(scene, armature, now.frames))
+
+    made = yield from stretch(go_on(made, "reconstruct", keep), 0.0, SOLVED)
+    return made, (yield from stretch(judge(made), SOLVED, 1.0))
 
 
-def keep_reconstruction(
-    operator: bpy.types.Operator, scene: bpy.types.Scene, result: "ReconstructionResult"
+def judge(made: "SceneSession") -> "Job[Review]":
+    """The review of a session's motion."""
+    from ...core.estimate.reconstruct import Reconstruction
+    from ...core.review.review import review
+    from ...core.session.pose import Posed
+
+    return review(made.session[Posed].seen.take, made.session[Reconstruction], made.frames)
+
+
+def keep_motion(
+    operator: bpy.types.Operator, scene: bpy.types.Scene, made: "SceneSession", judged: "Review"
 ) -> str:
     """Write the motion; the keyframes stay in their own Action. Returns a sentence on it."""
+    from ...core.estimate.reconstruct import Reconstruction
     from ...core.take.presence import unseen_line
+    from .live_preview import write_result
 
-    take = result.write(scene)
+    result = made.session[Reconstruction]
+    take = write_result(scene, made, judged)
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
     take.notes.clear()
-    for note in result.notes:
+    for note in (*made.notes, *result.notes):
         take.notes.add().text = warn(operator, note)
-    motion = result.reconstruction.motion
-    take.review.unseen = capitalized(unseen_line(len(motion.empty), motion.unseen))
-    count = len(motion.keyframe_indices)
-    return f"Reconstructed {len(result.frames)} frames from {count} keyframes"
+    take.review.unseen = capitalized(unseen_line(len(result.motion.empty), result.motion.unseen))
+    return f"Reconstructed {len(made.frames)} frames from {len(result.motion.keyframe_indices)} keyframes"
 
 
 class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
@@ -91,7 +93,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     preview: Any = None
     """The running `LivePreview`; not named as type, since Blender evaluates annotations of its classes."""
 
-    def start(self, scene: bpy.types.Scene) -> "Job[ReconstructionResult]":
+    def start(self, scene: bpy.types.Scene) -> "Job[tuple[SceneSession, Review]]":
         def keep(preview: "LivePreview") -> None:
             self.preview = preview
 
@@ -106,9 +108,8 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             self.preview.end()
             self.preview = None
 
-    def finish(self, scene: bpy.types.Scene, result: "ReconstructionResult") -> None:
-        said = keep_reconstruction(self, scene, result)
-        self.report({"INFO"}, said)
+    def finish(self, scene: bpy.types.Scene, result: "tuple[SceneSession, Review]") -> None:
+        self.report({"INFO"}, keep_motion(self, scene, *result))
 
 
 def _check_enough(count: int, notes: tuple[str, ...]) -> None:

@@ -66,6 +66,20 @@ EXTENSION = (__package__ or "").partition(".operators")[0]
 _readings: "LruCache[Reading]" = LruCache()
 _reviews: "LruCache[Review]" = LruCache()
 _speeds: "LruCache[FootageSpeed]" = LruCache()  # by the take's identifier and the key of its reading
+
+
+class Made(OrderedDict[str, object]):
+    """Results of sessions' stages by the digest of all that they depend on; the latest ones."""
+
+    def __setitem__(self, key: str, result: object) -> None:
+        """Add a result, and drop the oldest ones."""
+        super().__setitem__(key, result)
+        while len(self) > MOST_MADE:
+            self.popitem(last=False)
+
+
+MOST_MADE = 12
+MADE = Made()
 _reconstructions: "LruCache[Reconstruction]" = LruCache(2)
 """The last one of each take, by the take's identifier."""
 
@@ -139,7 +153,7 @@ def keep_speed(take: bpy.types.PropertyGroup, frames: "Array", values: "Array") 
 
 def clear_cache() -> None:
     """Drop all results from memory; those on disk stay."""
-    for cache in (_readings, _reviews, _reconstructions, _speeds):
+    for cache in (_readings, _reviews, _reconstructions, _speeds, MADE):
         cache.clear()
 
 

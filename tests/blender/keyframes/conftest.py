@@ -8,6 +8,7 @@ from _scene_state import made_up_frames, wave_library
 from keymark.core.posing import pose_clip as posing
 from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.progress import Progress
+from keymark.core.session import pose as pose_stage
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.keyframes import store_keyframe
@@ -25,8 +26,9 @@ def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespa
     asked.confidences, asked.contradictions = {0: 0.9, 6: 0.3, 12: 0.7}, {}
     asked.error, asked.meanwhile = None, lambda: None
 
-    def pose_clip(take, reading, libraries, floor_m=None, keyframe_count=None, between=None, frames=None):
-        asked.takes.append(take)
+    def pose_clip(seen, libraries, floor_m, _count=None, between=None, frames=None, floor_open=False):
+        frames = tuple(asked.confidences) if frames is None else frames
+        asked.takes.append(seen.take)
         asked.floors.append(floor_m)
         asked.frames.append(tuple(frames))
         asked.between.append(between)
@@ -40,7 +42,8 @@ def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespa
         found = made_up_frames(wave_motion, confidences)
         return FoundPoses(found, wave_motion.posture, 0.75, 0.02, "it is", asked.contradictions)
 
-    monkeypatch.setattr(posing, "pose_clip", pose_clip)
+    for module in (posing, pose_stage):
+        monkeypatch.setattr(module, "pose_clip", pose_clip)
     libraries = [wave_library(wave_motion), wave_library(wave_motion, "walking")]
     monkeypatch.setattr(registry_files, "all_libraries", lambda: libraries)
     return asked

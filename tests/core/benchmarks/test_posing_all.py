@@ -16,7 +16,7 @@ import posing_all as bench  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
 from keymark.core.posing.candidates import Candidate, MatchedFrame  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses  # noqa: E402
-from keymark.core.take.take import Take  # noqa: E402
+from keymark.core.take.seen_take import SeenTake  # noqa: E402
 from trials import Trial, read_unposed  # noqa: E402
 
 FRAMES = 24
@@ -61,10 +61,10 @@ def test_a_take_is_posed_as_a_whole_and_between_two_frames(
     asked: list[dict[str, Any]] = []
 
     def pose(
-        take: Take, _reading: object, _libraries: Any, floor_m: float | None = None, between: Any = None
+        seen: SeenTake, _libraries: Any, floor_m: float | None = None, between: Any = None
     ) -> Iterator[Any]:
         yield from ()
-        asked.append({"posed": take.keyframe_indices, "between": between, "floor_m": floor_m})
+        asked.append({"posed": seen.take.keyframe_indices, "between": between, "floor_m": floor_m})
         return found()
 
     monkeypatch.setattr(bench, "pose_clip", pose)

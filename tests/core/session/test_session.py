@@ -1,0 +1,71 @@
+"""The list of stages: what is kept of them, a camera that moves, and a clip animated from Python."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from _synthetic_take import BODY, gliding, true_postures, write_shaken, write_synthetic_take
+from keymark.core.api import animate, run
+from keymark.core.estimate.reconstruct import Reconstruction
+from keymark.core.prior.learning import LibraryMetadata, learn_library
+from keymark.core.session.place import Placed
+from keymark.core.session.session import Inputs, Session
+from keymark.core.session.stages import STAGES, reach
+from keymark.core.take.take_file import read_take
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory: pytest.TempPathFactory) -> Inputs:
+    take = read_take(write_synthetic_take(tmp_path_factory.mktemp("session") / "take", 16))
+    return Inputs(take, "interpolation")
+
+
+def stages_made(inputs: Inputs, kept: dict[str, object]) -> list[str]:
+    """The stages whose results are not among those kept."""
+    before = set(map(id, kept.values()))
+    session = run(reach(Session(inputs), "reconstruct", kept))
+    return [name for name, result in session.made.items() if id(result) not in before]
+
+
+def test_a_stage_is_made_again_where_anything_that_it_depends_on_has_changed(inputs: Inputs) -> None:
+    kept: dict[str, object] = {}
+    names = [stage.name for stage in STAGES]
+    assert names == ["read", "see", "place", "pose", "reconstruct", "finish", "retarget"]
+    assert stages_made(inputs, kept) == names[:5]
+    assert stages_made(inputs, kept) == []
+    assert stages_made(replace(inputs, method="ekf"), kept) == ["reconstruct"]
+    unmarked = replace(inputs, take=replace(inputs.take, markers=()))
+    stages_made(unmarked, kept)
+    first, *others = unmarked.take.keyframes
+    first = replace(first, posture=first.posture.lowered(0.1))
+    moved = replace(unmarked, take=replace(unmarked.take, keyframes=(first, *others)))
+    assert stages_made(moved, kept) == ["place", "pose", "reconstruct"]
+
+
+def test_stages_of_blender_are_done_by_its_bridge_and_told_as_they_are_complete(inputs: Inputs) -> None:
+    def finish(session: Session) -> Any:
+        yield from ()
+        return session[Reconstruction].motion.method
+
+    told: list[str] = []
+    bridged = replace(inputs, bridge={"finish": finish})
+    session = run(reach(Session(bridged), "retarget", keep=lambda stage, _session: told.append(stage)))
+    assert told == list(session.made) == [stage.name for stage in STAGES]
+    assert session.made["finish"] == "interpolation" and session.made["retarget"] is None
+
+
+def test_a_clip_is_animated_alike_whether_hands_shake_the_camera_or_not(tmp_path: Path) -> None:
+    library = learn_library(
+        BODY, true_postures(24), np.arange(24) / 30.0, LibraryMetadata("Swaying", "Nobody")
+    )
+    points = []
+    for turn_rad in (0.0, 0.02):
+        clip = tmp_path / f"{turn_rad}.mp4"
+        write_shaken(clip, gliding(), turn_rad)
+        session = run(animate(clip, 1.75, [library]))
+        assert (session[Placed].seen.reading.steady is not None) == (turn_rad > 0.0)
+        points.append(session[Reconstruction].motion.points)
+    still, shaken = (each - each[:, [7, 8]].mean(axis=1, keepdims=True) for each in points)
+    assert np.linalg.norm(still - shaken, axis=-1).mean() < 0.03
