@@ -14,6 +14,11 @@ BoolArray = NDArray[np.bool_]
 Image = NDArray[np.uint8]
 
 
+def single(values: Array | SingleArray) -> SingleArray:
+    """Values in single precision, where thousands are compared."""
+    return np.asarray(values, dtype=np.float32)
+
+
 def chunks(index: IndexArray, longest: int) -> list[IndexArray]:
     """Cut indices (N,) into about equal chunks of at most `longest`; no indices make one empty chunk.
 

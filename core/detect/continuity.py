@@ -11,6 +11,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..numerics.markov_chain import NOBODY, cheapest_track
 from .keypoints import SeenPeople
 from .performer import person_size
 
@@ -58,20 +59,21 @@ def same_person(pixel: Array, fps: float, looked: Mapping[int, bool] = NOTHING) 
     weight = [
         len(piece) * float(np.mean(said or [True])) for piece, said in zip(pieces, answers, strict=True)
     ]
-    best, before = np.array(weight), np.full(len(pieces), -1)
-    for later, rows in enumerate(pieces):
-        for earlier in range(later):
-            step = _moved(own[pieces[earlier][-1]], own[rows[0]])
-            time_s = (told[rows[0]] - told[pieces[earlier][-1]]) / fps
-            total = best[earlier] + weight[later]
-            if np.linalg.norm(step) < JUMP + RUN_PER_S * time_s and total > best[later]:
-                best[later], before[later] = total, earlier
-    chosen, piece = [], int(best.argmax())
-    while piece >= 0:
-        chosen += [piece] if weight[piece] else []
-        piece = int(before[piece])
+    ends = np.array([(rows[0], rows[-1]) for rows in pieces])
+
+    def step_costs(here: IndexArray, before: IndexArray) -> Array:
+        """0 for pieces that a person can have gone through one after the other, else infinite."""
+        last, now = ends[before, 1], int(ends[here[0], 0])
+        moved = np.array([np.linalg.norm(_moved(own[row], own[now])) for row in last])
+        return np.where(moved < JUMP + RUN_PER_S * (told[now] - told[last]) / fps, 0.0, np.inf)[None]
+
+    every = np.arange(len(pieces))
+    track = cheapest_track(
+        np.arange(len(pieces) + 1), -np.array(weight), np.zeros(len(pieces)), np.inf, len(pieces), step_costs
+    )
+    chosen = every[(track != NOBODY) & (np.array(weight) > 0.0)]
     starts = [told[rows[0]] for rows in pieces] + [len(pixel)]
-    for number in set(range(len(pieces))) - set(chosen):
+    for number in set(every) - set(chosen):
         kept[starts[number] : starts[number + 1]] = False
     return kept
 

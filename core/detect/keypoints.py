@@ -106,10 +106,24 @@ class Keypoints:
             tuple(note for part in parts for note in part.notes),
         )
 
+    def frames(self, own: slice) -> "Keypoints":
+        """The keypoints of some frames."""
+        return replace(self, pixel=self.pixel[own], score=self.score[own], hint_m=self.hint_m[own])
+
     def frame(self, index: int) -> "Keypoints":
         """The keypoints of one frame."""
-        own = slice(index, index + 1)
-        return replace(self, pixel=self.pixel[own], score=self.score[own], hint_m=self.hint_m[own])
+        return self.frames(slice(index, index + 1))
+
+    def exchanged(self, which: BoolArray | None = None) -> "Keypoints":
+        """The keypoints, or those of `which` (F, N), exchanged with their source's mirror images of them."""
+        partner = mirror_images(self.names, self.sources)
+        either = np.ones(self.score.shape, dtype=bool) if which is None else which | which[:, partner]
+        return replace(
+            self,
+            pixel=np.where(either[..., None], self.pixel[:, partner], self.pixel),
+            score=np.where(either, self.score[:, partner], self.score),
+            hint_m=np.where(either[..., None], self.hint_m[:, partner], self.hint_m),
+        )
 
     @property
     def frame_count(self) -> int:

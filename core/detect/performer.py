@@ -13,9 +13,9 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
+from ..numerics.markov_chain import NOBODY, cheapest_track
 from .keypoints import Keypoints
 
-NOBODY = -1
 MOST_CANDIDATES = 8  # people a frame that are looked at: those nearest to the expected place, or the largest
 ABSENT_COST = 4.5  # of taking nobody where the performer is expected: three standard deviations
 JUMP_COST = 12.0  # of a step to anywhere: five standard deviations
@@ -43,84 +43,33 @@ class Expected:
 
 def choose_performer(seen: Sightings, expected: Expected | None, fps: float) -> IndexArray:
     """The performer's index among the people of each of F frames, `NOBODY` where it is none of them."""
-    frames = len(seen.pixel)
     costs, absent = _costs(seen, expected)
-    before = np.concatenate([[0.0], np.cumsum(absent)])  # of all frames before each
-    window = max(1, round(1.0 * fps))  # seconds; after them a person may be anywhere
-    kept: list[_Reached] = []
-    # Least cost of a path that ended before the window, without the frames passed over since, and its end.
-    best_far, far = np.inf, (0, 0)
-    end, last = before[-1], (NOBODY, 0)
-    for frame in range(frames):
-        if frame > window and len(kept[frame - window - 1].cost):
-            old = kept[frame - window - 1]
-            value = old.cost - before[frame - window]
-            if value.min() < best_far:
-                best_far, far = float(value.min()), (frame - window - 1, int(value.argmin()))
-        rows = np.flatnonzero(np.isfinite(costs[frame]))
-        reached = _Reached.start(seen.pixel[frame][rows], rows, before[frame])
-        if len(rows):
-            if best_far + before[frame] + JUMP_COST < reached.cost.min():
-                reached.cost[:] = best_far + before[frame] + JUMP_COST
-                reached.previous[:] = far
-            _step(reached, kept, frame, window, before, fps)
-            reached.cost += costs[frame][rows]
-            value = reached.cost + before[-1] - before[frame + 1]
-            if value.min() < end:
-                end, last = float(value.min()), (frame, int(value.argmin()))
-        kept.append(reached)
-    chosen = np.full(frames, NOBODY, dtype=np.intp)
-    frame, row = last
-    while frame != NOBODY:
-        chosen[frame] = kept[frame].rows[row]
-        frame, row = (int(value) for value in kept[frame].previous[row])
-    return chosen
+    rows = [np.flatnonzero(np.isfinite(cost)) for cost in costs]
+    first = np.concatenate([[0], np.cumsum([len(own) for own in rows])]).astype(np.intp)
+    if not first[-1]:
+        return np.full(len(rows), NOBODY, dtype=np.intp)
+    pixel, own = (
+        np.concatenate([values[kept] for values, kept in zip(every, rows, strict=True)])
+        for every in (seen.pixel, costs)
+    )
+    time_s = np.repeat(np.arange(len(rows)), np.diff(first)) / fps
+    velocity = np.full((len(own), 2), np.nan)  # px a second along the path; NaN where it begins
 
+    def step_costs(here: IndexArray, before: IndexArray) -> Array:
+        passed_s = time_s[here[0]] - time_s[before]
+        return _step_cost(pixel[before], velocity[before], passed_s, pixel[here])[0]
 
-@dataclass(eq=False)
-class _Reached:
-    """The best path to each candidate of a frame."""
+    def taken(here: IndexArray, source: IndexArray) -> None:
+        for row, before in zip(here, source, strict=True):
+            if before != NOBODY:
+                passed_s = time_s[[row]] - time_s[before]
+                _, moved = _step_cost(pixel[[before]], velocity[[before]], passed_s, pixel[[row]])
+                speed, known = moved[0, 0] / passed_s, velocity[before]
+                velocity[row] = np.where(np.isnan(known), speed, 0.5 * (known + speed))
 
-    pixel: Array  # (H, K, 2)
-    rows: IndexArray  # (H,) their indices among the frame's people
-    cost: Array
-    previous: IndexArray
-    """(H, 2) frame and candidate from which the path comes; frame `NOBODY` where it begins."""
-    velocity: Array  # (H, 2) px a second along the path; NaN where it begins
-
-    @classmethod
-    def start(cls, pixel: Array, rows: IndexArray, cost: float) -> "_Reached":
-        count = len(rows)
-        previous = np.full((count, 2), NOBODY, dtype=np.intp)
-        return cls(pixel, rows, np.full(count, cost), previous, np.full((count, 2), np.nan))
-
-
-def _step(
-    reached: _Reached, kept: list[_Reached], frame: int, window: int, before: Array, fps: float
-) -> None:
-    """Continue the paths of the last frames where that costs less than to begin one."""
-    first = max(0, frame - window)
-    where = np.array([(index, row) for index in range(first, frame) for row in range(len(kept[index].cost))])
-    if not len(where):
-        return
-    cost = np.concatenate([one.cost for one in kept[first:frame]]) + before[frame] - before[where[:, 0] + 1]
-    useful = cost <= cost.min() + JUMP_COST  # no step costs more
-    where, cost = where[useful], cost[useful]
-    pixel = np.stack([kept[index].pixel[row] for index, row in where])
-    velocity = np.stack([kept[index].velocity[row] for index, row in where])
-    time_s = (frame - where[:, 0]) / fps
-    step, moved = _step_cost(pixel, velocity, time_s, reached.pixel)
-    total = cost + step  # (H, S)
-    best = total.argmin(axis=1)
-    row = np.arange(len(best))
-    better = total[row, best] < reached.cost
-    reached.cost[better] = total[row, best][better]
-    reached.previous[better] = where[best][better]
-    speed = moved[row, best] / time_s[best, None]
-    known = velocity[best]
-    smooth = np.where(np.isnan(known), speed, 0.5 * (known + speed))
-    jumped = step[row, best] >= JUMP_COST
-    reached.velocity[better & ~jumped] = smooth[better & ~jumped]
+    # After a second a person may be anywhere.
+    track = cheapest_track(first, own, absent, JUMP_COST, max(1, round(fps)), step_costs, taken)
+    return np.where(track == NOBODY, NOBODY, np.concatenate(rows)[track])
 
 
 def _step_cost(pixel: Array, velocity: Array, time_s: Array, now: Array) -> tuple[Array, Array]:

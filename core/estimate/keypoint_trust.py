@@ -18,7 +18,7 @@ from ..body.skeleton import SIDES
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints, People, mirror_images
 from ..detect.performer import FITS, person_size, principal_keypoints
-from ..numerics.markov_chain import cheapest_path
+from ..numerics.markov_chain import exchanged_path
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..numerics.vectors import runs
 from ..terms.keypoints import HUMAN_LENGTHS_M, USUAL_PLACES, KeypointModel, ObservedKeypoints
@@ -108,7 +108,6 @@ ARMS = ("shoulder", "elbow", "wrist", "index", "thumb", "pinky")
 LEGS = ("hip", "knee", "ankle", "heel", "toe", "small_toe")
 FACE = ("eye", "ear")  # too near each other to tell: exchanged where arms and legs are
 FEWEST_LOOKS = 2  # of the pose network, by which left and right are exchanged
-STATES = np.array([[False, False], [True, False], [False, True], [True, True]])  # arms, legs exchanged
 
 
 @dataclass(frozen=True)
@@ -148,9 +147,8 @@ def find_swaps(
         pairs = [_pairs(keypoints, source, limbs) for limbs in (ARMS, LEGS)]
         if not any(len(own) for own in pairs):
             continue
-        place = np.zeros((len(time_s), len(STATES)))
-        move = np.zeros((len(time_s) - 1, len(STATES), len(STATES)))
-        for own, exchanged in zip(pairs, STATES.T, strict=True):
+        exchanged = np.zeros((len(pairs), len(time_s)), dtype=bool)
+        for row, own in enumerate(pairs):
             if not len(own):
                 continue
             seen, guessed = (
@@ -160,31 +158,14 @@ def find_swaps(
             place_std = SWAPS.place_std_m + speed[:, None] * away_s[:, None, None]
             kept = _cost(seen - guessed, place_std)
             other = _cost(seen[:, :, ::-1] - guessed, place_std)
-            place += np.where(exchanged, other[:, None], kept[:, None])
             onward = _extrapolated(seen, step_s)
             stays = _cost(seen[1:] - onward, move_std)
-            turns = _cost(seen[1:, :, ::-1] - onward, move_std)
-            differs = exchanged[:, None] != exchanged
-            move += np.where(differs, (turns - np.log(SWAPS.change))[:, None, None], stays[:, None, None])
-        exchanged = STATES[cheapest_path(list(place), list(move))]  # (F, 2)
+            turns = _cost(seen[1:, :, ::-1] - onward, move_std) - np.log(SWAPS.change)
+            exchanged[row] = exchanged_path(np.stack([kept, other], axis=-1), stays, turns)
         pairs.append(_pairs(keypoints, source, FACE))
-        for own, state in zip(pairs, [*exchanged.T, exchanged.all(axis=1)], strict=True):
+        for own, state in zip(pairs, [*exchanged, exchanged.all(axis=0)], strict=True):
             swapped[:, own.ravel()] |= state[:, None]
     return swapped & keypoints.seen
-
-
-def exchanged_back(keypoints: Keypoints, swapped: BoolArray) -> Keypoints:
-    """The keypoints with those of `swapped` (F, N) exchanged with their mirror image's."""
-    if not swapped.any():
-        return keypoints
-    partner = mirror_images(keypoints.names, keypoints.sources)
-    either = swapped | swapped[:, partner]
-    return replace(
-        keypoints,
-        pixel=np.where(either[..., None], keypoints.pixel[:, partner], keypoints.pixel),
-        score=np.where(either, keypoints.score[:, partner], keypoints.score),
-        hint_m=np.where(either[..., None], keypoints.hint_m[:, partner], keypoints.hint_m),
-    )
 
 
 def sided_by_pictures(
@@ -218,7 +199,7 @@ def sided_by_pictures(
             for first, last in runs(swapped[:, column]):
                 if np.count_nonzero((frames >= first) & (frames < last)) < FEWEST_LOOKS:
                     swapped[first:last, column] = False
-        keypoints = exchanged_back(keypoints, swapped)
+        keypoints = keypoints.exchanged(swapped)
     return keypoints
 
 

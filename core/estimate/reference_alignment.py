@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from ..arrays import Array, BoolArray
 from ..body.kinematics import Body
 from ..detect.keypoints import mirrored_point
-from ..numerics.markov_chain import cheapest_path
+from ..numerics.markov_chain import exchanged_path
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..take.reference import ReferenceMotion
 from .reference_placement import CHAINS, HIPS, POINTS, SHOULDERS, Placed, SeenPoints, place
@@ -104,13 +104,8 @@ def _sides(points: Array, seen: SeenPoints) -> BoolArray:
         .sum(axis=(1, 2)) / 3.0
         for two in (both[0, known[1:]], both[1, known[1:]])
     )  # fmt: skip
-    steps = [
-        np.array([[one, other], [other, one]])
-        for one, other in zip(stays, turns - np.log(ALIGNMENT.change), strict=True)
-    ]
-    path = cheapest_path(list(own[:, known].T), steps)
     result = np.zeros(len(points), dtype=bool)
-    result[known] = path == 1
+    result[known] = exchanged_path(own[:, known].T, stays, turns - np.log(ALIGNMENT.change))
     return result
 
 

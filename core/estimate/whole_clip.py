@@ -35,7 +35,7 @@ from .keyframe_evidence import SeenAtKeyframes
 from .keyframe_trust import FEWEST_POSED, calibrating, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
-from .keypoint_trust import doubted_at_changes, exchanged_back, find_swaps, keypoint_trust, upright
+from .keypoint_trust import doubted_at_changes, find_swaps, keypoint_trust, upright
 from .performer_placement import lower_ankle_m
 from .refinement import doubting, refine, rests_of
 from .warm_start import blend_weight, continued, revised_windows
@@ -130,7 +130,7 @@ def estimate_whole_clip(
     keypoints = Keypoints.none(tracks.frame_count) if seen.keypoints is None else seen.keypoints
     usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
     swapped = _swaps(usual.model, keypoints, prior, index, tracks.time_s)
-    keypoints = doubted_at_changes(exchanged_back(keypoints, swapped), swapped, tracks.time_s)
+    keypoints = doubted_at_changes(keypoints.exchanged(swapped), swapped, tracks.time_s)
     corrected = np.zeros_like(matched) if believed.corrected is None else believed.corrected
     posed = index[calibrating(matched, corrected)]
     if keypoints.names and matched.all():  # keyframes posed in space tell how hints err

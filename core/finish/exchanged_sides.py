@@ -5,7 +5,7 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
 from ..body.mirror import other_side
-from ..numerics.markov_chain import cheapest_path
+from ..numerics.markov_chain import exchanged_path
 from ..numerics.vectors import unit
 
 EXCHANGE_COST = 8.0  # of a change between two frames: about that of one limb that jumps by its usual error
@@ -25,14 +25,9 @@ def exchanged_frames(points: Array) -> BoolArray:
         return exchanged
     seen = points[known]
     swapped = seen[:, opposite_points()]
-    wrong = _wrong_way(seen)
-    own = [np.array([cost, -cost]) for cost in FORWARD * wrong]
+    own = FORWARD * _wrong_way(seen)
     stay, change = _distances(seen[1:], seen[:-1]), _distances(seen[1:], swapped[:-1])
-    steps = [
-        np.array([[same, other + EXCHANGE_COST], [other + EXCHANGE_COST, same]])
-        for same, other in zip(stay, change, strict=True)
-    ]
-    states = cheapest_path(own, steps).astype(bool)
+    states = exchanged_path(np.stack([own, -own], axis=-1), stay, change + EXCHANGE_COST)
     if not states.any() or states.all():  # a body that is wrong from end to end is left as it is
         return exchanged
     halfway = 0.5 * (known[1:] + known[:-1])

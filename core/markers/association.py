@@ -4,7 +4,6 @@ The path is the cheapest one through all regions of the marker's color: it pays 
 the marker, and for frames in which it is hidden. Costs are negative logarithms of likelihood ratios.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -12,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import percentile_filter
 
-from ..arrays import Array, BoolArray, IntArray
+from ..arrays import Array, BoolArray, IndexArray, IntArray
+from ..numerics.markov_chain import cheapest_track
 from .moments import MOMENT_POWERS
 from .region_tracks import ExpectedRegions, Regions
 
@@ -32,7 +32,7 @@ class Candidates:
     box: Array  # (N, 4) left, top, right, bottom in px
     certainty: Array  # (N,) color certainty in 0..1
     clipped: BoolArray  # (N,) whether the region touches the image's border
-    start: IntArray  # (F + 1,) index of each frame's first region
+    start: IndexArray  # (F + 1,) index of each frame's first region
 
     @property
     def centroid(self) -> Array:
@@ -109,45 +109,22 @@ def _still(found: Candidates, frames: int) -> BoolArray:
     return np.asarray(around[index] >= 0.5 * frames)
 
 
-def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
+def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IndexArray:
     """The Viterbi path: index of the marker's main region in each frame (F,), -1 where it is hidden.
 
     `unary` is the cost (N,) of each region as the marker, whose length in px measures its steps.
     """
-    # Most frames hold one region: numbers of Python's own are quicker here than short arrays.
-    frame, start = found.frame.tolist(), found.start.tolist()
-    position = (found.centroid / (0.35 * size_px)).tolist()  # limbs move their own size in 0.1 s
-    own = unary.tolist()
-    total: list[float] = []
-    previous: list[int] = []
-    best_before, best_index = 0.0, -1  # the cheapest path so far plus its hidden frames, and where it ended
-    for now in range(len(start) - 1):
-        first = start[max(now - 12, 0)]  # hidden frames over which the speed bounds a path
-        restart = best_before + (RESTART_COST if best_index >= 0 else 0.0)
-        for here in range(start[now], start[now + 1]):
-            least, source = restart, best_index
-            x, y = position[here]
-            for before in range(start[now] - 1, first - 1, -1):
-                gap = now - frame[before]
-                # A visible marker is visible in the next frame in 98 of 100 cases.
-                through = total[before] + (4.0 + HIDDEN_COST * (gap - 1) if gap > 1 else 0.0)
-                if through < least:
-                    across, down = position[before]
-                    squared = ((x - across) ** 2 + (y - down) ** 2) / gap**2
-                    through += STEP_TAIL * math.log1p(0.5 * squared / STEP_TAIL)
-                    if through < least:
-                        least, source = through, before
-            total.append(least + own[here])
-            previous.append(source)
-        best_before += HIDDEN_COST
-        for here in range(start[now], start[now + 1]):
-            if total[here] < best_before:
-                best_before, best_index = total[here], here
-    path = np.full(len(start) - 1, -1, dtype=np.int64)
-    while best_index >= 0:
-        path[frame[best_index]] = best_index
-        best_index = previous[best_index]
-    return path
+    position = found.centroid / (0.35 * size_px)  # limbs move their own size in 0.1 s
+
+    def step_costs(here: IndexArray, before: IndexArray) -> Array:
+        gap = found.frame[here][:, None] - found.frame[before]
+        squared = ((position[here][:, None] - position[before]) ** 2).sum(axis=-1) / gap**2
+        # A visible marker is visible in the next frame in 98 of 100 cases.
+        return np.asarray(np.where(gap > 1, 4.0, 0.0) + STEP_TAIL * np.log1p(0.5 * squared / STEP_TAIL))
+
+    absent = np.full(len(found.start) - 1, HIDDEN_COST)
+    # The speed bounds a path over a dozen hidden frames.
+    return cheapest_track(found.start, unary, absent, RESTART_COST, 12, step_costs)
 
 
 def region_costs(
@@ -210,7 +187,7 @@ class MarkerRegion(NamedTuple):
 
 
 def join_fragments(
-    found: Candidates, path: IntArray, cost: Array, reach_px: float, most_cost: float
+    found: Candidates, path: IndexArray, cost: Array, reach_px: float, most_cost: float
 ) -> MarkerRegion:
     """Join each frame's main region with the fragments that an occluding limb cut off from it.
 

@@ -47,12 +47,16 @@ class RegionTracks:
         pairs, matrices = np.zeros((frames, 0, 2)), np.zeros((frames, 0, 2, 2))
         return cls((), pairs, matrices, none, none, none.astype(np.bool_), time_s, size)
 
-    def frame(self, index: int) -> "RegionTracks":
-        """The tracks of one frame, its time included."""
+    def frames(self, own: slice) -> "RegionTracks":
+        """The tracks of some frames, their times included."""
         arrays: dict[str, Any] = {
             name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)
         }
-        return replace(self, **{name: array[index : index + 1] for name, array in arrays.items()})
+        return replace(self, **{name: array[own] for name, array in arrays.items()})
+
+    def frame(self, index: int) -> "RegionTracks":
+        """The tracks of one frame."""
+        return self.frames(slice(index, index + 1))
 
     @property
     def visible(self) -> BoolArray:

@@ -6,7 +6,7 @@ other depth side, do not enter.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,12 +21,12 @@ from ..estimate.keyframe_error import SIZE_STD, place_depth_std_m
 from ..estimate.performer_placement import SAME_FLOOR_M, place_standing, standing_ankle_m
 from ..progress import Part, scaled
 from .composed_path import ComposedPath, best_path
-from .composed_states import LEGS, FrameCosts, FrameStates
+from .composed_states import LEGS, FrameCosts, FrameStates, PosedCosts
+from .frame_likelihood import frame_likelihoods
 from .library_motion import PartBelief, part_beliefs
-from .match_evidence import MatchEvidence, frame_likelihoods
+from .match_evidence import MatchEvidence
 from .part_features import StanceFeatures, composed_postures
 from .part_pools import TORSO, PartPools, part_dofs
-from .posed_costs import PosedCosts
 from .posing_input import PosingInput, tempering
 
 
@@ -121,13 +121,16 @@ def compose_frames(
         is_last = turn == len(rounds) - 1
         # The first round is for the place and the library; exchanged sides are tried where they are known.
         rows = np.unique(np.append(np.arange(0, len(sampled), 1 if is_last else 2), len(sampled) - 1))
-        weight = tempering(time_s[rows])
+        weight, posed = tempering(time_s[rows]), given.posed
         believed = [beliefs[row] for row in rows]
-        costs = _costs(given, stances, sampled[rows], floor_seen_m, believed, weight)
+        costs = frame_costs(camera, evidence, stances, sampled[rows], floor_seen_m, believed)
+        for index, frame in enumerate(posed.frames):
+            for row in np.flatnonzero(sampled[rows] == frame):
+                hips, points = posed.hips[index], posed.points[index]
+                costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, weight)
         others: list[FrameCosts] = []
-        if is_last and len(evidence.points):
-            mirrored = replace(given, evidence=evidence.exchanged())
-            others = _costs(mirrored, stances, sampled[rows], floor_seen_m, believed, weight)
+        if is_last and evidence.keypoints.names:
+            others = frame_costs(camera, evidence.exchanged(), stances, sampled[rows], floor_seen_m, believed)
         states = yield from scaled(_states(costs, others, rough[rows], shares), begun, searched)
         step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
         leading = best_path(stances, states, costs, others, time_s[rows], weight, step_m)
@@ -182,34 +185,18 @@ def _posed_throughout(given: PosingInput) -> bool:
     return bool((np.diff(given.evidence.tracks.time_s[frames]) <= 2.0).all())
 
 
-def _costs(
-    given: PosingInput,
-    stances: StanceFeatures,
-    frames: IndexArray,
-    floor_m: float | None,
-    beliefs: Sequence[PartBelief | None],
-    weight: float,
-) -> list[FrameCosts]:
-    costs = frame_costs(given, stances, frames, floor_m, beliefs)
-    posed = given.posed
-    for index, frame in enumerate(posed.frames):
-        for row in np.flatnonzero(frames == frame):
-            hips, points = posed.hips[index], posed.points[index]
-            costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, weight)
-    return costs
-
-
 def frame_costs(
-    given: PosingInput,
+    camera: Camera,
+    evidence: MatchEvidence,
     stances: StanceFeatures,
     frames: IndexArray,
     floor_m: float | None,
-    beliefs: Sequence[PartBelief | None] | None = None,
+    beliefs: Sequence[PartBelief | None] = (),
 ) -> list[FrameCosts]:
-    """What some frames say of stances and limbs, and what a library's motion tells of them."""
-    likelihoods = frame_likelihoods(given.camera, given.evidence, frames, PART_SCALE)
-    told = [None] * len(likelihoods) if beliefs is None else beliefs
-    return [FrameCosts(each, stances, floor_m, own) for each, own in zip(likelihoods, told, strict=True)]
+    """What some frames say of stances and limbs, and what is believed of them in each."""
+    likelihoods = frame_likelihoods(camera, evidence, frames, PART_SCALE)
+    every = beliefs or [None] * len(likelihoods)
+    return [FrameCosts(each, stances, floor_m, own) for each, own in zip(likelihoods, every, strict=True)]
 
 
 def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array) -> float:
@@ -217,18 +204,19 @@ def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array) ->
     sampled = given.sampled
     rows = np.unique(np.linspace(0, len(sampled) - 1, MOST_PLACED).astype(int))
     free, heights, eyes = [], [], []
-    for row, cost in zip(rows, frame_costs(given, stances, sampled[rows], None), strict=True):
+    every = frame_costs(given.camera, given.evidence, stances, sampled[rows], None)
+    for row, cost in zip(rows, every, strict=True):
         if not cost.likelihood.visible.any():
             continue
         states = cost.states(rough[row] * np.array(WIDE))
         best = states.chosen(np.array([int(states.cost.argmin())]))
-        relative = best.hips - cost.location
+        relative = best.hips - cost.likelihood.location
         feet = [
             float(cost.foot_heights(limb, best.stance, relative)[0, best.limbs[0, LIMBS.index(limb)]])
             for limb in LEGS
         ]
         heights.append(min(feet))
-        eyes.append(float(cost.location[2]))
+        eyes.append(float(cost.likelihood.location[2]))
         free.append((row, float(states.cost.min())))
     found = float(np.median(heights)) if heights else 0.0
     if abs(found) < 0.25:  # sizes are no more exact, and scenes are built on z = 0
@@ -238,7 +226,7 @@ def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array) ->
     if not (eye - found) / FARTHER < eye < (eye - found) * FARTHER:
         return found
     seen = np.array([row for row, _ in free])
-    grounded = frame_costs(given, stances, sampled[seen], 0.0)
+    grounded = frame_costs(given.camera, given.evidence, stances, sampled[seen], 0.0)
     added = [
         float(cost.states(rough[row] * np.array(WIDE)).cost.min()) - least
         for (row, least), cost in zip(free, grounded, strict=True)

@@ -4,19 +4,21 @@ A stance keeps its place, its lean and its heading from one frame to the next, b
 time; a limb its points. Frames are tempered, since what makes one doubtful makes its neighbors doubtful.
 """
 
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, IndexArray, SingleArray
+from ..arrays import Array, IndexArray, SingleArray, single
 from ..body.human import HUMAN, LIMBS
-from ..numerics.markov_chain import cheapest_pairs, cheapest_path, path_posteriors
+from ..numerics.markov_chain import Steps, cheapest_pairs, cheapest_path, path_posteriors
+from ..numerics.robust import DEGREES, multivariate_cost
+from ..progress import Part
 from .composed_states import LEGS, FrameCosts, FrameStates
-from .match_evidence import squared_distances, student_cost
+from .frame_likelihood import squared_distances
 from .part_features import HEADINGS, StanceFeatures
 
-TRUNK_POINTS = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]
+SQUARE = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]
 TRUNK_SPEED, TRUNK_ROUGH_M = 0.8, 0.06  # of shoulders and hips about the hips [m/s]; of the pool [m]
 PLACE_SPEED, PLACE_ROUGH_M = 1.5, 0.04  # the same of the place
 LIMB_SPEED, LIMB_ROUGH_M = 2.0, 0.09  # the same of elbows, wrists, knees and ankles
@@ -41,7 +43,7 @@ def best_path(
     time_s: Array,
     tempering: float,
     depth_step_m: float,
-) -> Generator[float, None, ComposedPath]:
+) -> Part[ComposedPath]:
     """The likeliest path through the states of T frames.
 
     Args:
@@ -53,69 +55,73 @@ def best_path(
         tempering: Weight of a frame.
         depth_step_m: Distance between the depths that were tried.
     """
-    steps = []
-    for index in range(1, len(states)):
-        duration = float(time_s[index] - time_s[index - 1])
-        steps.append(
-            _step_cost(stances, states[index - 1], states[index], costs[index], duration, depth_step_m)
+    own, duration_s = [np.float32(tempering) * each.cost for each in states], np.diff(time_s)
+
+    def step_cost(at: int) -> SingleArray:
+        after = at + 1
+        return _step_cost(
+            stances, states[at], states[after], costs[after], float(duration_s[at]), depth_step_m
         )
-        if index % 8 == 0:
-            yield 0.5 * index / len(states)
-    own = [np.float32(tempering) * each.cost for each in states]
+
+    steps = Steps(len(duration_s), step_cost)
     best = cheapest_path(own, steps)
+    yield 0.2
     posterior = path_posteriors(own, steps)
+    yield 0.5
     stance = np.array([each.stance[row] for each, row in zip(states, best, strict=True)])
-    hips = np.array([each.hips[row] for each, row in zip(states, best, strict=True)], dtype=float)
-    swapped = [bool(each.exchanged[row]) for each, row in zip(states, best, strict=True)]
-    said = [others[i] if swap else cost for i, (cost, swap) in enumerate(zip(costs, swapped, strict=True))]
-    limbs, parts = limb_paths(stances, said, stance, hips, time_s, tempering)
+    hips = np.array([each.hips[row] for each, row in zip(states, best, strict=True)])
+    chosen = [
+        others[i] if each.exchanged[row] else costs[i]
+        for i, (each, row) in enumerate(zip(states, best, strict=True))
+    ]
+    limbs, parts = limb_paths(stances, chosen, stance, hips, duration_s, np.float32(tempering))
     yield 1.0
-    return ComposedPath(stance, hips, limbs, posterior, parts)
+    return ComposedPath(stance, hips.astype(float), limbs, posterior, parts)
 
 
 def limb_paths(
     stances: StanceFeatures,
     costs: Sequence[FrameCosts],
     stance: IndexArray,
-    hips: Array,
-    time_s: Array,
-    tempering: float,
+    hips: SingleArray,
+    duration_s: Array,
+    weight: np.float32,
 ) -> tuple[IndexArray, dict[str, Array]]:
     """(T, 4) the likeliest limbs on given stances at given places (T, 3), and each part's probability."""
-    tables: list[dict[str, SingleArray]] = []
-    for cost, own, place in zip(costs, stance, hips, strict=True):
-        relative = (place[None] - cost.location).astype(np.float32)
-        tables.append({limb: cost.limb_table(limb, np.array([own]), relative) for limb in LIMBS})
-    variances = [np.float32((LIMB_SPEED * step) ** 2 + LIMB_ROUGH_M**2) for step in np.diff(time_s)]
-    points = {}
-    for limb in LIMBS:
-        turn, origin = stances.frame_of(limb, stance)
-        points[limb] = np.einsum("tij,lqj->tlqi", turn, stances.limbs[limb].points) + origin[:, None, None]
+    places = [single(place[None] - each.likelihood.location) for each, place in zip(costs, hips, strict=True)]
+    tables = [
+        {limb: cost.limb_table(limb, stance[[row]], places[row]) for limb in LIMBS}
+        for row, cost in enumerate(costs)
+    ]
+    variances = single((LIMB_SPEED * duration_s) ** 2 + LIMB_ROUGH_M**2)
+
+    def steps(limb: str, kept: Sequence[IndexArray | slice]) -> Steps:
+        def points(row: int) -> SingleArray:
+            turn, origin = stances.frame_of(limb, stance[[row]])
+            return stances.limbs[limb].points[kept[row]] @ turn[0].T + origin[0]
+
+        def cost(at: int) -> SingleArray:
+            moved = squared_distances(points(at), points(at + 1))
+            return multivariate_cost(moved / variances[at], DEGREES, 3)
+
+        return Steps(len(duration_s), cost)
+
     found = np.empty((len(stance), len(LIMBS)), dtype=np.intp)
-
-    def steps(limb: str, rows: Sequence[IndexArray | slice]) -> list[SingleArray]:
-        moved = zip(points[limb][:-1], points[limb][1:], rows[:-1], rows[1:], variances, strict=True)
-        return [
-            student_cost(squared_distances(before[own], after[other]) / variance, 3)
-            for before, after, own, other, variance in moved
-        ]
-
-    weight = np.float32(tempering)
     posterior: dict[str, Array] = {}
     for column, limb in enumerate(LIMBS):
-        own_costs = [weight * table[limb][0] for table in tables]
-        all_steps = steps(limb, [slice(None)] * len(stance))
-        found[:, column] = cheapest_path(own_costs, all_steps)
-        posterior[limb] = np.array(path_posteriors(own_costs, all_steps), dtype=float)
-    chosen = []
-    for row, (cost, own, place) in enumerate(zip(costs, stance, hips, strict=True)):
-        relative = (place[None] - cost.location).astype(np.float32)
-        chosen.append(cost.leg_pairs(np.array([own]), relative, tables[row], found[row][None]))
-    rows = [[left.index[0] for left, _, _ in chosen], [right.index[0] for _, right, _ in chosen]]
-    wholes = [weight * (a.cost[0][:, None] + b.cost[0] + pairs[0]) for a, b, pairs in chosen]
-    both = cheapest_pairs(wholes, *(steps(limb, own) for limb, own in zip(LEGS, rows, strict=True)))
-    for side, limb in enumerate(LEGS):
-        found[:, LIMBS.index(limb)] = [own[pick] for own, pick in zip(rows[side], both[side], strict=True)]
+        own = [weight * table[limb][0] for table in tables]
+        every = steps(limb, [slice(None)] * len(stance))
+        found[:, column] = cheapest_path(own, every)
+        posterior[limb] = np.array(path_posteriors(own, every), dtype=float)
+    pairs = [
+        cost.leg_pairs(stance[[row]], places[row], tables[row], found[row][None])
+        for row, cost in enumerate(costs)
+    ]
+    wholes = [weight * (left.cost[0][:, None] + right.cost[0] + both[0]) for left, right, both in pairs]
+    rows = [[left.index[0] for left, _, _ in pairs], [right.index[0] for _, right, _ in pairs]]
+    chosen = cheapest_pairs(wholes, *(steps(limb, own) for limb, own in zip(LEGS, rows, strict=True)))
+    for limb, own, picks in zip(LEGS, rows, chosen, strict=True):
+        found[:, LIMBS.index(limb)] = [row[pick] for row, pick in zip(own, picks, strict=True)]
     return found, posterior
 
 
@@ -128,12 +134,12 @@ def _step_cost(
     depth_step_m: float,
 ) -> SingleArray:
     """(J, K) costs of steps between the states of two frames."""
-    points = stances.features.points[:, TRUNK_POINTS]
+    points = stances.features.points[:, SQUARE]
     apart = squared_distances(points[before.stance], points[after.stance])
     turned = apart / np.float32((TRUNK_SPEED * duration_s) ** 2 + TRUNK_ROUGH_M**2)
     across = (PLACE_SPEED * duration_s) ** 2 + PLACE_ROUGH_M**2
     along = across + 0.5 * depth_step_m**2
-    sight = cost.backward.astype(float)
+    sight = cost.likelihood.backward.astype(float)
     covariance = across * np.eye(3) + (along - across) * np.outer(sight, sight)
     whiten = np.linalg.inv(np.linalg.cholesky(covariance)).T.astype(np.float32)
     moved = squared_distances((before.hips @ whiten)[:, None], (after.hips @ whiten)[:, None])

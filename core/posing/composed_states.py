@@ -7,15 +7,15 @@ floor asks both legs: one of them stands on it, or none does.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, BoolArray, IndexArray, SingleArray
+from ..arrays import Array, BoolArray, IndexArray, SingleArray, single
 from ..body.human import HUMAN, LIMBS, mass_weights
+from ..numerics.robust import DEGREES, multivariate_cost
 from ..terms.contact import STEP_M
+from .frame_likelihood import EXCHANGED_COST, FrameLikelihood, image_moments, lowest, squared_distances
 from .library_motion import PartBelief
-from .match_evidence import EXCHANGED_COST, FrameLikelihood, extent_cost, lowest, products, student_cost
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
 from .part_pools import ARM
 
@@ -23,7 +23,7 @@ MOST_STATES = 240  # states kept of a frame
 MARGIN = 14.0  # states whose cost exceeds the frame's least by more are dropped
 DEPTH_STD_M = 0.02  # how firmly a state keeps to its distance
 LEGS = tuple(limb for limb in LIMBS if not limb.startswith(ARM))
-NO_CONTACT_COST = np.float32(4.0)  # where neither foot stands: jumps, steps, furniture
+NO_CONTACT_COST = 4.0  # where neither foot stands: jumps, steps, furniture
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,7 @@ class FrameStates:
         both = FrameStates(
             np.concatenate([self.stance, other.stance]),
             np.concatenate([self.hips, other.hips]),
-            np.concatenate([self.cost, other.cost + EXCHANGED_COST]),
+            np.concatenate([self.cost, other.cost + np.float32(EXCHANGED_COST)]),
             np.concatenate([self.limbs, other.limbs]),
             np.arange(count + len(other.cost)) >= count,
         )
@@ -78,13 +78,7 @@ class FrameCosts:
     ) -> None:
         self.likelihood, self.stances, self.floor_m = likelihood, stances, floor_m
         self.belief = belief
-        self.axes = np.asarray(likelihood.image_axes, dtype=np.float32)  # (A, 2, 3)
-        self.rows = self.axes * np.asarray(likelihood.weight, dtype=np.float32)[:, None, None]
-        self.location = np.asarray(likelihood.location, dtype=np.float32)
-        self.backward = np.asarray(likelihood.backward, dtype=np.float32)
-        self.sight = np.asarray(likelihood.sight, dtype=np.float32)
-        self.share = np.float32(likelihood.share)
-        self.markers = len(likelihood.unclipped)
+        self.seen = likelihood.weight > 0.0
 
     def states(self, depths_m: Array) -> FrameStates:
         """The states that explain the frame best, at some distances from the camera, the middle one first."""
@@ -105,7 +99,9 @@ class FrameCosts:
         cost, limbs = self.whole_cost(stance, places, self.torso_cost(stance, places), paired=True)
         kept = lowest(cost, MOST_STATES, MARGIN)
         plain = np.zeros(len(kept), dtype=bool)
-        return FrameStates(stance[kept], places[kept] + self.location, cost[kept], limbs[kept], plain)
+        return FrameStates(
+            stance[kept], places[kept] + self.likelihood.location, cost[kept], limbs[kept], plain
+        )
 
     def places(
         self, stance: IndexArray, depth_m: SingleArray, limbs: IndexArray | None = None
@@ -114,89 +110,81 @@ class FrameCosts:
 
         Without limbs each counts as the middle of all of its kind, and little.
         """
-        matrix = np.outer(self.backward, self.backward) / DEPTH_STD_M**2 + np.eye(3) * 1e-4
-        torso = self.stances.features
-        right = -np.outer(depth_m, self.backward) / DEPTH_STD_M**2
-        for column, observed in enumerate(torso.observed):
-            own = self.rows[observed].T @ self.rows[observed]
+        backward, torso = self.likelihood.backward, self.stances.features
+        matrix = np.outer(backward, backward) / DEPTH_STD_M**2 + np.eye(3) * 1e-4
+        right = -np.outer(depth_m, backward) / DEPTH_STD_M**2
+
+        def rows_of(point: int) -> SingleArray:
+            return self.likelihood.rows[point].T @ self.likelihood.rows[point]
+
+        for column, point in torso.columns(self.seen):
+            own = rows_of(point)
             matrix = matrix + own
             right -= torso.place[stance, column] @ own
         for row, limb in enumerate(LIMBS):
             features = self.stances.limbs[limb]
-            if not len(features.observed):
-                continue
             turn, origin = self.stances.frame_of(limb, stance)
-            for column, observed in enumerate(features.observed):
-                weight = float(self.likelihood.weight[observed])
-                if weight == 0.0:
-                    continue
-                own = self.rows[observed].T @ self.rows[observed]
+            for column, point in features.columns(self.seen):
+                own = rows_of(point)
                 if limbs is None:
                     local = np.broadcast_to(features.place[:, column].mean(axis=0), (len(stance), 3))
                     spread = float(features.place[:, column].var(axis=0).mean())
-                    own = own / (1.0 + spread * weight**2)
+                    own = own / (1.0 + spread * float(self.likelihood.weight[point]) ** 2)
                 else:
                     local = features.place[limbs[:, row], column]
                 matrix = matrix + own
                 right -= (origin + (turn @ local[..., None])[..., 0]) @ own
-        return np.asarray(np.linalg.solve(matrix, right.T).T, dtype=np.float32)
+        return single(np.linalg.solve(matrix, right.T).T)
 
     def torso_cost(self, stance: IndexArray, places: SingleArray) -> SingleArray:
         """(N,) cost of stances at places from the camera, without limbs."""
-        features = self.stances.features
-        local = features.place[stance]
+        seen, features = self.likelihood, self.stances.features
         cost = np.array(features.cost[stance])
         if self.belief is not None:
             cost += self.belief.stance[stance]
-        for column, observed in enumerate(features.observed):
-            at = local[:, column] + places
-            cost += self.share * student_cost(((at @ self.rows[observed].T) ** 2).sum(axis=-1), 2)
-            depth = self._hint_cost(observed, local[:, column] @ self.sight)
-            if depth is not None:
-                cost += depth
-            if observed < self.markers and self.likelihood.unclipped[observed]:
+        for column, point in features.columns(self.seen):
+            local = features.place[stance, column]
+            at = local + places
+            cost += seen.place_cost(((at @ seen.rows[point].T) ** 2).sum(axis=-1))
+            if seen.depth_weight[point]:
+                cost += seen.depth_cost(point, local @ seen.sight)
+            if seen.whole[point]:
                 moment = features.second_moment[stance, column]
-                entries = [moment @ products(*pair) for pair in _pairs(self.axes[observed])]
-                cost += extent_cost(self.likelihood, observed, entries, -at @ self.backward)
-        nearness = -places @ self.backward
-        cost[nearness < 0.3] += np.float32(1e3)
+                entries = [moment @ each for each in image_moments(seen.image_axes[point])]
+                cost += seen.extent_cost(point, entries, -at @ seen.backward)
+        cost[-places @ seen.backward < 0.3] += np.float32(1e3)
         return cost
 
     def limb_table(self, limb: str, stance: IndexArray, places: SingleArray) -> SingleArray:
         """(N, L) cost of each of a limb's parts on stances at places from the camera, without the floor."""
-        features = self.stances.limbs[limb]
+        seen, features = self.likelihood, self.stances.limbs[limb]
         turn, origin = self.stances.frame_of(limb, stance)
         cost = self.stances.limb_cost[limb][stance // HEADINGS]
         if self.belief is not None:
             cost = cost + self.belief.limbs[limb]
-        for column, observed in enumerate(features.observed):
-            if self.likelihood.weight[observed] == 0.0:
-                continue
+        for column, point in features.columns(self.seen):
             local = features.place[:, column].T  # (3, L)
             squared = np.zeros_like(cost)
-            for row in self.rows[observed]:
+            for row in seen.rows[point]:
                 residual = (row @ turn) @ local
                 residual += ((origin + places) @ row)[:, None]
                 residual *= residual
                 squared += residual
-            cost += self.share * student_cost(squared, 2)
-            guessed = self._hint_cost(observed, (self.sight @ turn) @ local + (origin @ self.sight)[:, None])
-            if guessed is not None:
-                cost += guessed
-            if observed < self.markers and self.likelihood.unclipped[observed]:
+            cost += seen.place_cost(squared)
+            if seen.depth_weight[point]:
+                cost += seen.depth_cost(point, (seen.sight @ turn) @ local + (origin @ seen.sight)[:, None])
+            if seen.whole[point]:
                 moment = features.second_moment[:, column].T  # (6, L)
-                entries = [
-                    products(*pair) @ moment for pair in _pairs([a @ turn for a in self.axes[observed]])
-                ]
-                away = -((origin + places) @ self.backward)[:, None] - (self.backward @ turn) @ local
-                cost += extent_cost(self.likelihood, observed, entries, away)
+                entries = [each @ moment for each in image_moments(seen.image_axes[point] @ turn)]
+                away = -((origin + places) @ seen.backward)[:, None] - (seen.backward @ turn) @ local
+                cost += seen.extent_cost(point, entries, away)
         return cost
 
     def foot_heights(self, limb: str, stance: IndexArray, places: SingleArray) -> SingleArray:
         """(N, L) height of each of a leg's feet over the floor [m], by its ankle, 0 where it lies flat."""
         turn, origin = self.stances.frame_of(limb, stance)
         ankle = self.stances.limbs[limb].points[:, 1]
-        base = origin[:, 2] + places[:, 2] + self.location[2] - np.float32(self.floor_m or 0.0)
+        base = origin[:, 2] + places[:, 2] + self.likelihood.location[2] - np.float32(self.floor_m or 0.0)
         above = turn[:, 2] @ ankle.T + base[:, None]
         return np.asarray(above - np.float32(self.stances.ankle_height_m))
 
@@ -258,15 +246,48 @@ class FrameCosts:
             return left, right, np.zeros((*left.index.shape, right.index.shape[1]), dtype=np.float32)
         return left, right, pair_costs(left, right, mass)
 
-    def _hint_cost(self, observed: int, depth: SingleArray) -> SingleArray | None:
-        """Cost of depths behind the hips where one was guessed; None where it was not."""
-        guess = observed - self.markers
-        if guess < 0 or not len(self.likelihood.depth_weight) or self.likelihood.depth_weight[guess] == 0.0:
-            return None
-        off = (depth - np.float32(self.likelihood.depth_m[guess])) * np.float32(
-            self.likelihood.depth_weight[guess]
-        )
-        return np.asarray(self.share * student_cost(off * off, 1))
+
+class PosedCosts(FrameCosts):
+    """Costs of stances and limbs by how far they are from a posed frame's points."""
+
+    def __init__(
+        self,
+        likelihood: FrameLikelihood,
+        stances: StanceFeatures,
+        hips: Array,
+        points: Array,
+        tempering: float,
+    ) -> None:
+        """Hold stances and limbs against hips (3,) and points (P, 3) from there of a posed frame [m].
+
+        `tempering` is what the frame's costs will be multiplied by; a posed frame says its own once.
+        """
+        super().__init__(likelihood, stances, None)
+        self.hips = single(hips - likelihood.location)
+        self.points = single(points)
+        # Distance of a posed point from the nearest part's: what pools are rough by, and a person's error.
+        self.posed_weight = np.float32(0.5 / 0.06**2 / tempering)
+
+    def places(
+        self, stance: IndexArray, depth_m: SingleArray, limbs: IndexArray | None = None
+    ) -> SingleArray:
+        """(N, 3) the posed place of the hips from the camera [m]."""
+        return np.broadcast_to(self.hips, (len(stance), 3)).copy()
+
+    def torso_cost(self, stance: IndexArray, places: SingleArray) -> SingleArray:
+        """(N,) cost of stances by shoulders, hips and head."""
+        off = self.stances.features.points[stance][:, TRUNK_POINTS] - self.points[TRUNK_POINTS]
+        return np.asarray(self.posed_weight * (off * off).sum(axis=(1, 2)))
+
+    def limb_table(self, limb: str, stance: IndexArray, places: SingleArray) -> SingleArray:
+        """(N, L) cost of each of a limb's parts."""
+        turn, origin = self.stances.frame_of(limb, stance)
+        local = (self.points[limb_points(limb)] - origin[:, None]) @ turn  # (N, 2, 3)
+        return 2.0 * self.posed_weight * squared_distances(local, self.stances.limbs[limb].points)
+
+    def states(self, depths_m: Array) -> FrameStates:
+        """The nearest states; there is one distance."""
+        return super().states(depths_m[:1])
 
 
 def soft_least(cost: SingleArray) -> SingleArray:
@@ -276,11 +297,6 @@ def soft_least(cost: SingleArray) -> SingleArray:
     """
     least = cost.min(axis=1)
     return np.asarray(least - np.log(np.exp(least[:, None] - cost).sum(axis=1)))
-
-
-def _pairs(axes: Any) -> tuple[tuple[Any, Any], ...]:
-    first, second = axes
-    return (first, first), (first, second), (second, second)
 
 
 # --- Two legs on a stance: which stands on the floor, and whether the body is balanced over that
@@ -315,23 +331,19 @@ def pair_costs(left: LegChoices, right: LegChoices, mass: SingleArray) -> Single
     # Horizontal distance of the center of mass from the feet that stand: a foot's length, a step under way.
     squared = (off * off).sum(axis=0) / np.float32(0.12**2)
     # Of Student's t: who runs, leaps or leans on something is forgiven.
-    falling = student_cost(squared, 2, 3.0)
+    falling = multivariate_cost(squared, 3.0, 2)
     stands = standing_cost(np.minimum(left.height[:, :, None], right.height[:, None])) + falling
-    return np.asarray(np.minimum(stands, NO_CONTACT_COST))
+    return np.asarray(np.minimum(stands, np.float32(NO_CONTACT_COST)))
 
 
 def below_cost(height: SingleArray) -> SingleArray:
     """Cost of feet below the floor."""
-    return _floor_cost(np.minimum(height, 0.0))
+    # Height of an ankle over a foot that stands: shoes are not measured, nor the floor's last centimeters.
+    off = np.minimum(height, 0.0) / np.float32(0.05)
+    return multivariate_cost(off * off, DEGREES, 1)
 
 
 def standing_cost(height: SingleArray) -> SingleArray:
     """Cost of feet above the floor that should stand on it."""
     # A heel that is off the floor by this much is nothing unusual.
-    return _floor_cost(np.maximum(height - np.float32(0.05), 0.0))
-
-
-def _floor_cost(height: SingleArray) -> SingleArray:
-    # Height of an ankle over a foot that stands: shoes are not measured, nor the floor's last centimeters.
-    off = height / np.float32(0.05)
-    return student_cost(off * off, 1)
+    return below_cost(np.float32(0.05) - height)

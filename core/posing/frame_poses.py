@@ -15,7 +15,7 @@ from ..prior.library import Library
 from ..terms.keypoints import JOINT_ERROR_STD_M, USUAL_PLACES
 from .candidates import ABOUT_RIGHT_M, DISTINCT_M, PROBABILITY_BOUNDS, Candidate, by_confidence, distinct_rows
 from .frame_search import FrameShown, Hypotheses, Knowledge, knowledge, points_from_hips, refined, search
-from .known_motions import PARTS, part_shapes
+from .plausibility import PARTS, part_shapes
 
 
 def belief_costs(belief: FramePrior, posture: Posture) -> Array:
@@ -86,7 +86,7 @@ def unexplained(known: Knowledge, shown: FrameShown, posture: Posture) -> tuple[
     names = [shown.tracks.names[marker] for marker in off.markers]
     # Hands and feet turn about wrists and ankles, of which a posture knows nothing.
     names += [name for name in off.points if USUAL_PLACES[name].error_std_m <= JOINT_ERROR_STD_M]
-    bent = known.plausibility.contorted(known.pools.body.pose(Posture.stack([posture])))[0]
+    bent = known.postures.contorted(known.pools.body.pose(Posture.stack([posture])))[0]
     parts = [part for part, is_bent in zip(PARTS, bent, strict=True) if is_bent]
     worn = zip(shown.tracks.names, shown.segments, shown.tracks.visible[0], strict=True)
     names += [name for name, segment, seen in worn if seen and limb_of(segment) in parts]
@@ -237,7 +237,7 @@ def _confidence(share: float, cost: float) -> float:
 
 def _nearest(known: Knowledge, posture: Posture) -> tuple[str, bool]:
     """Name of the known posture whose trunk is nearest, and whether it is mirrored."""
-    own = known.plausibility.known
+    own = known.postures
     shape = part_shapes(own.body, own.body.pose(Posture.stack([posture])))[TRUNK]
     row = int(np.linalg.norm(own.parts[TRUNK] - shape, axis=-1).argmin())
     return own.names[row], own.mirrored[row]

@@ -24,12 +24,13 @@ from ..terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
 from ..terms.state import ClipState
 from ..terms.term import total_cost
 from .candidates import distinct_rows
-from .compose_clip import PART_SCALE, WIDE
-from .composed_states import NO_CONTACT_COST, FrameCosts
-from .match_evidence import EXCHANGED_COST, MatchEvidence, frame_likelihoods
+from .compose_clip import WIDE, frame_costs
+from .composed_states import NO_CONTACT_COST
+from .frame_likelihood import EXCHANGED_COST
+from .match_evidence import MatchEvidence
 from .part_features import HEADINGS, StanceFeatures, composed_postures, stance_features
 from .part_pools import PartPools, kept, part_pools
-from .posed_costs import Plausibility, plausibility
+from .plausibility import KnownPostures, known_postures
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +110,7 @@ class Knowledge:
     """What is known of postures on one body."""
 
     pools: PartPools
-    plausibility: Plausibility
+    postures: KnownPostures
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,8 +152,8 @@ def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
     usable = [each for each in libraries if each.postures]
 
     def learn() -> Knowledge:
-        likely = plausibility(body, usable)
-        return Knowledge(part_pools(usable, body), likely)
+        postures = known_postures(body, usable)
+        return Knowledge(part_pools(usable, body), postures)
 
     return kept(Knowledge, usable, body, learn)
 
@@ -180,7 +181,7 @@ def _starts(
         least = [_screened(known, stances, shown, height).cost.min() for height in (0.0, None)]
         floor_m = 0.0 if least[0] < least[1] + NO_CONTACT_COST else None
     found = [_screened(known, stances, shown, floor_m)]
-    if len(shown.compared.points):
+    if shown.compared.keypoints.names:
         found.append(_screened(known, stances, shown, floor_m, is_exchanged=True))
     every = Hypotheses.concatenate(found)
     kept = distinct_rows(
@@ -201,13 +202,12 @@ def _screened(
     is_exchanged: bool = False,
 ) -> Hypotheses:
     evidence = shown.compared.exchanged() if is_exchanged else shown.compared
-    first = np.zeros(1, dtype=np.intp)
-    likelihood = frame_likelihoods(shown.camera, evidence, first, PART_SCALE)[0]
+    (costs,) = frame_costs(shown.camera, evidence, stances, np.zeros(1, dtype=np.intp), floor_m)
     placed = place_standing(
         known.pools.body, shown.camera, 0, shown.tracks, shown.segments, evidence.keypoints
     )
     depth = float(shown.camera.depth(placed.translation))
-    states = FrameCosts(likelihood, stances, floor_m).states(depth * np.array(WIDE))
+    states = costs.states(depth * np.array(WIDE))
     cost = states.cost.astype(np.float64) + (EXCHANGED_COST if is_exchanged else 0.0)
     posture = composed_postures(known.pools, stances, states.stance, states.limbs, states.hips)
     return Hypotheses(posture, cost, states.stance // HEADINGS, np.full(len(cost), is_exchanged))
@@ -239,7 +239,7 @@ def _descended(
     place = np.argsort(np.concatenate(order)) if count else np.zeros(0, dtype=np.intp)
     posture = Posture.concatenate(postures)[place]
     cost = np.concatenate(costs)[place] + EXCHANGED_COST * starts.exchanged
-    cost = cost + known.plausibility.costs(known.pools.body.pose(posture)).sum(axis=-1)
+    cost = cost + known.postures.costs(known.pools.body.pose(posture)).sum(axis=-1)
     # Cost of a body part of which lies behind the camera, where nothing can be compared.
     return posture, np.where(np.isfinite(cost), cost, 1e3)
 

@@ -1,104 +1,18 @@
-"""All postures that some libraries know, and their mirror images, on one body: where a search starts from.
-
-The body falls into a trunk and four limbs that move nearly independently; a limb is a part of its own, known
-in the frame of the joint that carries it, so that it fits any trunk.
-"""
+"""All motions of some libraries and their mirror images as postures at small steps of time, on one body."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.human import LIMBS, TRUNK, limb_of
+from ..body.human import limb_of
 from ..body.kinematics import Body, Pose
 from ..body.mirror import mirrored
 from ..body.posture import Posture, headings_rad, yaw_rotation, yawed_at
-from ..errors import InputError
 from ..prior.library import Library, LibraryMotion
 from ..prior.motion_playback import sample_motion
 from ..prior.transfer import transferred
-
-PARTS = (TRUNK, *LIMBS)
-CARRIERS = {"arm": "waist", "leg": "pelvis"}  # joint that carries a limb, by its kind
-
-
-@dataclass(frozen=True, eq=False)
-class KnownPostures:
-    """N postures, all facing -Y with the hips over the origin, as high above the floor z = 0 as they are."""
-
-    body: Body
-    posture: Posture  # (N,)
-    names: tuple[str, ...]  # (N,) of the libraries' postures
-    mirrored: tuple[bool, ...]  # (N,) whether left and right are exchanged
-    library: IndexArray  # (N,) number of the library that each is from
-
-    def __len__(self) -> int:
-        """Number of postures N."""
-        return len(self.names)
-
-    @cached_property
-    def pose(self) -> Pose:
-        """Their forward kinematics."""
-        return self.body.pose(self.posture)
-
-    @cached_property
-    def parts(self) -> dict[str, Array]:
-        """(N, 3 K) shape of each part, see `part_shapes`."""
-        return part_shapes(self.body, self.pose)
-
-
-def known_postures(body: Body, libraries: Sequence[Library]) -> KnownPostures:
-    """The postures of some libraries on a body.
-
-    Raises:
-        InputError: No library has a posture.
-    """
-    batches, names, numbers = [], [], []
-    for number, library in enumerate(libraries):
-        if library.postures:
-            own = Posture.stack([each.posture for each in library.postures])
-            batches.append(transferred(own, library.actor, body))
-            names += [each.name for each in library.postures]
-            numbers += [number] * len(library.postures)
-    if not names:
-        raise InputError("no keyframe library with a posture is given; at least one is needed to find poses")
-    plain = Posture.concatenate(batches)
-    both = Posture.concatenate([plain, mirrored(plain)])
-    hips = np.zeros((len(both.translation), 3))
-    hips[:, 2] = both.translation[:, 2]
-    ahead = yawed_at(both, -headings_rad(both), hips)
-    flags = (False,) * len(names) + (True,) * len(names)
-    return KnownPostures(body, ahead, (*names, *names), flags, np.array(numbers * 2, dtype=np.intp))
-
-
-def part_shapes(body: Body, pose: Pose) -> dict[str, Array]:
-    """Shapes (N, 3 K) of the parts of some postures: distances of shapes are root mean squares of points [m].
-
-    The trunk's are shoulders and head from the hips, heading left out; a limb's its two farther points in the
-    frame of the joint that carries it.
-    """
-    skeleton = body.skeleton
-    points, names = body.points(pose), skeleton.point_names
-    shapes: dict[str, Array] = {}
-    trunk = [names.index(name) for name in ("head", "shoulder.L", "shoulder.R", "hip.L")]
-    upper: Array = points[:, trunk] - pose.posture.translation[:, None]
-    shapes[TRUNK] = _flat(np.einsum("nki,nij->nkj", upper, yaw_rotation(headings_rad(pose.posture))))
-    for limb in LIMBS:
-        joint = skeleton.joint_index(CARRIERS[limb.partition(".")[0]])
-        own = [index for index, name in enumerate(names) if limb_of(name) == limb]
-        shapes[limb] = _flat((points[:, own] - pose.origin[:, None, joint]) @ pose.rotation[:, joint])
-    return shapes
-
-
-def _flat(points: Array) -> Array:
-    return np.asarray(points.reshape(len(points), -1) / np.sqrt(points.shape[1]))
-
-
-# --- All motions of some libraries and their mirror images as postures at small steps of time, on one
-# body
-
 
 STEP_M = 0.045  # mean distance of points between postures: well below performers' differences
 LEAST_RATE, MOST_RATE = 8.0, 25.0  # postures per second of a motion
@@ -208,3 +122,17 @@ def _rates(motion: _Sampled) -> tuple[Array, Array]:
     gone = np.gradient(motion.posture.translation, motion.step_s, axis=0)
     own = (yaw_rotation(-heading) @ gone[..., None])[:, :2, 0]
     return own, np.gradient(heading, motion.step_s)
+
+
+# --- Limbs of postures
+
+
+CARRIERS = {"arm": "waist", "leg": "pelvis"}  # joint that carries a limb, by its kind
+
+
+def limb_places(body: Body, pose: Pose, limb: str) -> Array:
+    """(N, 2, 3) places of a limb's two farther points in the frame of the joint that carries it [m]."""
+    joint = body.skeleton.joint_index(CARRIERS[limb.partition(".")[0]])
+    own = [index for index, name in enumerate(body.skeleton.point_names) if limb_of(name) == limb]
+    away = body.points(pose)[:, own] - pose.origin[:, None, joint]
+    return np.asarray(away @ pose.rotation[:, joint])

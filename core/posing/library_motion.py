@@ -11,29 +11,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, IndexArray, SingleArray
-from ..body.human import HUMAN, LIMBS
+from ..arrays import Array, IndexArray, SingleArray, single
+from ..body.human import LIMBS
 from ..body.kinematics import Body
 from ..body.posture import Posture, headings_rad, yaw_rotation, yawed_at
-from ..numerics.markov_chain import path_posteriors
+from ..numerics.markov_chain import Steps, path_posteriors
+from ..numerics.robust import DEGREES, multivariate_cost
 from ..progress import Part
-from .known_motions import KnownMotions
-from .match_evidence import (
-    DEGREES_OF_FREEDOM,
+from .frame_likelihood import (
     ENTRIES,
     EXCHANGED_COST,
     FrameLikelihood,
-    MatchEvidence,
-    extent_cost,
     frame_likelihoods,
+    image_moments,
     lowest,
-    marker_moments,
-    products,
     squared_distances,
-    student_cost,
 )
-from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
-from .part_pools import ARM, PartPools
+from .known_motions import KnownMotions, limb_places
+from .match_evidence import MatchEvidence, marker_moments
+from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures
+from .part_pools import PartPools
 from .posing_input import PosingInput, tempering
 
 MOST_STATES, MARGIN = 500, 15.0  # states kept of a frame, and how much more than the likeliest they may cost
@@ -55,7 +52,7 @@ class _Whole:
     """Whole postures N of a library in all headings H, heading by heading: N H states."""
 
     motions: KnownMotions
-    places: SingleArray  # (3 A, N H) of markers and keypoints from the hips [m]
+    places: SingleArray  # (A, 3, N H) of markers and keypoints from the hips [m]
     second_moment: SingleArray  # (M, 6, N H) see `part_features.ENTRIES`
     height_m: SingleArray  # (N H,)
     velocity: SingleArray  # (N H, 2) in the world [m/s]
@@ -91,17 +88,12 @@ def part_beliefs(
     evidence, sampled, time_s = given.evidence, given.sampled, given.time_s
     likelihoods = [
         frame_likelihoods(given.camera, each, sampled)
-        for each in ((evidence, evidence.exchanged()) if len(evidence.points) else (evidence,))
+        for each in ((evidence, evidence.exchanged()) if evidence.keypoints.names else (evidence,))
     ]
     velocity = np.gradient(hips[:, :2], time_s, axis=0) if len(hips) > 1 else np.zeros((1, 2))
 
     def states(whole: _Whole, row: int) -> _States:
-        both = [
-            _states(
-                each[row], whole, hips[row], floor_m, velocity[row], float(EXCHANGED_COST) if swap else 0.0
-            )
-            for swap, each in enumerate(likelihoods)
-        ]
+        both = [_states(each[row], whole, hips[row], floor_m, velocity[row]) for each in likelihoods]
         return both[0] if len(both) == 1 else _merged(*both)
 
     few = np.unique(np.linspace(0, len(sampled) - 1, 15).astype(int))
@@ -120,12 +112,12 @@ def part_beliefs(
         if row % 8 == 0:
             yield 0.2 + 0.5 * row / len(sampled)
     weight = np.float32(tempering(time_s))
-    own = [weight * each.cost for each in found]
-    steps = [
-        _step_cost(best.motions, a.row, b.row, float(duration))
-        for a, b, duration in zip(found, found[1:], np.diff(time_s), strict=False)
-    ]
-    posterior = path_posteriors(own, steps)
+    motions, duration_s = best.motions, np.diff(time_s)
+    steps = Steps(
+        len(duration_s),
+        lambda at: _step_cost(motions, found[at].row, found[at + 1].row, float(duration_s[at])),
+    )
+    posterior = path_posteriors([weight * each.cost for each in found], steps)
     explained = float(
         np.mean([chance @ each.explained for chance, each in zip(posterior, found, strict=True)])
     )
@@ -157,69 +149,54 @@ def _whole(motions: KnownMotions, body: Body, evidence: MatchEvidence) -> _Whole
     count = len(motions.names) * HEADINGS
     return _Whole(
         motions,
-        places.reshape(-1, count).astype(np.float32),
+        places.reshape(len(places), 3, count).astype(np.float32),
         rows.reshape(len(rows), 6, count).astype(np.float32),
         np.repeat(motions.height_m, HEADINGS).astype(np.float32),
         velocity.reshape(-1, 2).astype(np.float32),
     )
 
 
-def _states(
-    seen: FrameLikelihood, whole: _Whole, hips: Array, floor_m: float, velocity: Array, cost_of_it: float
-) -> _States:
+def _states(seen: FrameLikelihood, whole: _Whole, hips: Array, floor_m: float, velocity: Array) -> _States:
     """The states that explain a frame best, each at its best place."""
-    rows = (seen.image_axes * seen.weight[:, None, None]).reshape(-1, 3)
     along = (hips - seen.location) @ seen.backward  # negative
-    depth = -seen.backward[None] / (DEPTH_STD * along)
-    up = np.array([[0.0, 0.0, 1.0]]) / HIPS_STD_M
-    by_hips = np.concatenate([rows, depth, up])
-    matrix = np.zeros((len(rows), len(whole.places)))
-    for point in range(len(seen.weight)):
-        matrix[2 * point : 2 * point + 2, 3 * point : 3 * point + 3] = rows[2 * point : 2 * point + 2]
-    count = whole.places.shape[1]
+    depth, up = -seen.backward / (DEPTH_STD * along), np.array([0.0, 0.0, 1.0]) / HIPS_STD_M
+    by_hips = np.concatenate([seen.rows.reshape(-1, 3), depth[None], up[None]])
+    count = whole.places.shape[-1]
     offset = np.empty((len(by_hips), count), dtype=np.float32)
-    offset[:-2] = matrix.astype(np.float32) @ whole.places
+    offset[:-2] = (seen.rows @ whole.places).reshape(-1, count)
     offset[-2] = 1.0 / DEPTH_STD
     offset[-1] = (seen.location[2] - floor_m - whole.height_m) / HIPS_STD_M
     solve = -np.linalg.solve(by_hips.T @ by_hips + 1e-6 * np.eye(3), by_hips.T)
     place = solve.astype(np.float32) @ offset
-    residual = offset + by_hips.astype(np.float32) @ place
-    residual *= residual
-    visible = np.flatnonzero(seen.visible)
-    cost = student_cost(residual[-1], 1) + student_cost(residual[-2], 1) + np.float32(cost_of_it)
+    squared = (offset + by_hips.astype(np.float32) @ place) ** 2
+    cost = multivariate_cost(squared[-1], DEGREES, 1) + multivariate_cost(squared[-2], DEGREES, 1)
     # Going besides the motion's own [m/s].
     going = ((whole.velocity - velocity.astype(np.float32)) ** 2).sum(axis=1) / np.float32(0.6**2)
-    cost += student_cost(going, 2)
+    cost += multivariate_cost(going, DEGREES, 2)
     explained = np.zeros(count, dtype=np.float32)
-    share = np.float32(seen.share)
+    visible = np.flatnonzero(seen.visible)
     for point in visible:
-        squared = residual[2 * point] + residual[2 * point + 1]
-        cost += share * student_cost(squared, 2)
-        explained += np.float32(1.0) / (np.float32(1.0) + squared / np.float32(DEGREES_OF_FREEDOM))
-    markers = len(seen.unclipped)
-    for guess in np.flatnonzero(seen.depth_weight):
-        column = 3 * (markers + guess)
-        off = seen.sight.astype(np.float32) @ whole.places[column : column + 3] - np.float32(
-            seen.depth_m[guess]
-        )
-        cost += share * student_cost((off * np.float32(seen.depth_weight[guess])) ** 2, 1)
+        own = squared[2 * point] + squared[2 * point + 1]
+        cost += seen.place_cost(own)
+        explained += np.float32(DEGREES) / (np.float32(DEGREES) + own)
+        if seen.depth_weight[point]:
+            cost += seen.depth_cost(point, seen.sight @ whole.places[point])
     kept = lowest(cost, 4 * MOST_STATES, MARGIN + 6.0)
     cost = cost[kept]
-    for marker in np.flatnonzero(seen.unclipped):
-        at = place[:, kept] + whole.places[3 * marker : 3 * marker + 3, kept]
-        a, b = seen.image_axes[marker].astype(np.float32)
+    for marker in np.flatnonzero(seen.whole):
+        at = place[:, kept] + whole.places[marker][:, kept]
         moment = whole.second_moment[marker][:, kept]
-        entries = [products(*pair) @ moment for pair in ((a, a), (a, b), (b, b))]
-        cost += extent_cost(seen, marker, entries, np.asarray(-seen.backward @ at, dtype=np.float32))
+        entries = [each @ moment for each in image_moments(seen.image_axes[marker])]
+        cost += seen.extent_cost(marker, entries, -seen.backward @ at)
     best = lowest(cost, MOST_STATES, MARGIN)
     return _States(kept[best], cost[best], explained[kept[best]] / np.float32(max(len(visible), 1)))
 
 
-def _merged(plain: _States, other: _States) -> _States:
+def _merged(plain: _States, exchanged: _States) -> _States:
     """The best of both hypotheses, each state once."""
-    row, cost, explained = (
-        np.concatenate([getattr(plain, n), getattr(other, n)]) for n in ("row", "cost", "explained")
-    )
+    row = np.concatenate([plain.row, exchanged.row])
+    cost = np.concatenate([plain.cost, exchanged.cost + np.float32(EXCHANGED_COST)])
+    explained = np.concatenate([plain.explained, exchanged.explained])
     order = np.lexsort((cost, row))
     _, first = np.unique(row[order], return_index=True)
     best = order[first]
@@ -231,24 +208,27 @@ def _step_cost(
     motions: KnownMotions, before: IndexArray, after: IndexArray, duration_s: float
 ) -> SingleArray:
     """(J, K) costs of steps: on in the motion at about its speed, or to any other posture."""
-    first, second = before // HEADINGS, after // HEADINGS
-    gone = motions.time_s[second] - motions.time_s[first][:, None]
-    late = gone - duration_s
-    period = np.where(np.isfinite(motions.period_s), motions.period_s, 1e9)[second]
+    # States share postures in several headings: what depends on these alone is told once for each.
+    first, from_row = np.unique(before // HEADINGS, return_inverse=True)
+    second, to_row = np.unique(after // HEADINGS, return_inverse=True)
+    step, period = np.maximum(motions.step_s[second], 1e-3), np.minimum(motions.period_s[second], 1e9)
+    late = motions.time_s[second] - motions.time_s[first][:, None] - duration_s
     late -= period * np.round(late / period)
-    step = np.maximum(motions.step_s[second], 1e-3)
     spread = np.hypot(0.45 * duration_s, 0.5 * step)  # difference of the speed from a library's, as a share
     on = 0.5 * (late / spread) ** 2 + np.log(np.maximum(np.sqrt(2.0 * np.pi) * spread / step, 1.0))
-    single = motions.step_s[second] == 0.0
-    on = np.where(single, 0.0, on)
+    on = np.where(motions.step_s[second] == 0.0, 0.0, on)
     on = np.where(motions.motion[second] == motions.motion[first][:, None], on, np.inf)
     # Jumps to another posture per second: one movement lasts a few seconds.
     jump = np.log(len(motions.names)) - np.log(-np.expm1(-0.4 * duration_s))
-    turned = 2.0 * np.pi / HEADINGS * (after % HEADINGS - (before % HEADINGS)[:, None])
-    turned = turned - duration_s * 0.5 * (motions.turn_rate[second] + motions.turn_rate[first][:, None])
-    turned = np.remainder(turned + np.pi, 2.0 * np.pi) - np.pi
-    squared = (turned / np.hypot(TURN_STD * duration_s, TURN_ROUGH_RAD)) ** 2
-    return np.minimum(on, jump).astype(np.float32) + student_cost(squared.astype(np.float32), 1)
+    moved = single(np.minimum(on, jump))[from_row[:, None], to_row]
+    spin = 0.5 * duration_s * motions.turn_rate
+    width = 2.0 * np.pi / HEADINGS
+    ahead = width * (after % HEADINGS) - spin[after // HEADINGS]
+    behind = width * (before % HEADINGS) + spin[before // HEADINGS]
+    turned: SingleArray = single(ahead) - single(behind)[:, None]
+    turned -= np.float32(2.0 * np.pi) * np.round(turned / np.float32(2.0 * np.pi))
+    turned /= np.float32(np.hypot(TURN_STD * duration_s, TURN_ROUGH_RAD))
+    return moved + multivariate_cost(turned * turned, DEGREES, 1)
 
 
 def _beliefs(
@@ -262,12 +242,7 @@ def _beliefs(
     """Beliefs in the parts of probable postures, which are `odds` times likelier than parts far away."""
     pose = body.pose(motions.posture)
     points = body.points(pose)
-    waist = HUMAN.joint_index("waist")
-    near = {}
-    for limb in LIMBS:
-        joint = waist if limb.startswith(ARM) else 0
-        local = (points[:, limb_points(limb)] - pose.origin[:, None, joint]) @ pose.rotation[:, joint]
-        near[limb] = _nearness(local, stances.limbs[limb].points)
+    near = {limb: _nearness(limb_places(body, pose, limb), stances.limbs[limb].points) for limb in LIMBS}
     trunk = points[:, TRUNK_POINTS]
     turn = yaw_rotation(stances.heading_rad)
     found = []
@@ -284,6 +259,6 @@ def _beliefs(
 
 def _nearness(first: Array, second: SingleArray) -> SingleArray:
     """(J, K) of points (J, Q, 3) and (K, Q, 3): 1 for the same place, 0 far away."""
-    mean = squared_distances(np.asarray(first, dtype=np.float32), second)
+    mean = squared_distances(single(first), second)
     # Distance of a part's points between performers at the same moment of a motion.
     return np.asarray(np.exp(np.float32(-0.5 / 0.10**2) * mean))

@@ -4,27 +4,34 @@ A marker's region counts with its centroid and its extent, a keypoint with its p
 guessed it, its depth behind the hips.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, BoolArray, IndexArray, SingleArray
+from ..arrays import Array, BoolArray
 from ..body.body_volume import PieceStack
-from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..camera.camera import Camera
-from ..detect.keypoints import Keypoints, mirrored_point
+from ..detect.keypoints import Keypoints
 from ..detect.performer import principal_keypoints
 from ..markers.region_tracks import RegionTracks
 from ..terms.region_model import MarkerPlacement
 
-CENTROID_STD_M = {"trunk": 0.05, "pelvis": 0.04, "chest": 0.06, "head": 0.07, "girdle": 0.06}
-"""Deviation of a marker between performers at the same moment of a motion, the hips aligned."""
-LIMB_STD_M = {"upper_arm": 0.07, "forearm": 0.11, "hand": 0.14, "thigh": 0.05, "shin": 0.09, "foot": 0.12}
+MARKER_STD_M = {
+    "trunk": 0.05,
+    "pelvis": 0.04,
+    "chest": 0.06,
+    "head": 0.07,
+    "girdle": 0.06,
+    "upper_arm": 0.07,
+    "forearm": 0.11,
+    "hand": 0.14,
+    "thigh": 0.05,
+    "shin": 0.09,
+    "foot": 0.12,
+}
+"""Deviation of a marker between performers at the same moment of a motion, the hips aligned, by segment."""
 POINT_STD_M = {
     "head": 0.07,
     "shoulder": 0.06,
@@ -58,24 +65,20 @@ class MatchEvidence:
 
     tracks: RegionTracks
     segments: tuple[str, ...]  # (M,) the segment of each marker
-    keypoints: Keypoints  # (F, K) those of principal points
+    keypoints: Keypoints  # (F, K) all principal points, or none where none is ever seen
 
     @classmethod
     def of(cls, tracks: RegionTracks, segments: tuple[str, ...], keypoints: Keypoints) -> "MatchEvidence":
         """Evidence of markers and of keypoints in any layout."""
         found = _without_leaps(principal_keypoints(keypoints), tracks.time_s)
-        known = np.flatnonzero(found.seen.any(axis=0))
-        return cls(tracks, segments, _bridged(_selected(found, known), tracks))
+        if not found.seen.any():
+            found = Keypoints.none(tracks.frame_count)
+        return cls(tracks, segments, _bridged(found, tracks))
 
     @property
-    def marker_count(self) -> int:
-        """M."""
-        return len(self.segments)
-
-    @cached_property
-    def points(self) -> IndexArray:
-        """(K,) which of the principal points each keypoint shows."""
-        return np.array([HUMAN.point_names.index(name) for name in self.keypoints.names], dtype=np.intp)
+    def names(self) -> tuple[str, ...]:
+        """(A,) the segment of each marker, the point of each keypoint."""
+        return (*self.segments, *self.keypoints.names)
 
     @cached_property
     def pixel(self) -> Array:
@@ -96,12 +99,10 @@ class MatchEvidence:
     @cached_property
     def deviation_m(self) -> Array:
         """(A,) usual distance between performers at the same moment of a motion, the hips aligned [m]."""
-        of_points = [
-            # Where detectors put a point beside the joint, and how far they miss it.
-            np.hypot(POINT_STD_M[name.split(".")[0]], 0.04)
-            for name in self.keypoints.names
-        ]
-        return np.array([*(_marker_deviation(segment) for segment in self.segments), *of_points])
+        of_markers = [MARKER_STD_M.get(segment.split(".")[0], 0.1) for segment in self.segments]
+        # Where detectors put a point beside the joint, and how far they miss it.
+        of_points = [np.hypot(POINT_STD_M[name.split(".")[0]], 0.04) for name in self.keypoints.names]
+        return np.array([*of_markers, *of_points])
 
     @cached_property
     def depth_deviation_m(self) -> Array:
@@ -112,31 +113,17 @@ class MatchEvidence:
     @cached_property
     def share(self) -> float:
         """Weight of each of the A: many points of one body differ from a library's together."""
-        if not len(self.points):
-            return 1.0
+        seen = int(self.keypoints.seen.any(axis=0).sum())
         # Number of keypoints that say different things of a posture: upper and lower parts of the limbs.
-        return min(1.0, 8.0 / (self.marker_count + len(self.points)))
+        return min(1.0, 8.0 / (len(self.segments) + seen)) if seen else 1.0
+
+    def frames(self, own: slice) -> "MatchEvidence":
+        """The evidence of some frames."""
+        return MatchEvidence(self.tracks.frames(own), self.segments, self.keypoints.frames(own))
 
     def exchanged(self) -> "MatchEvidence":
         """The evidence with left and right of the keypoints exchanged."""
-        known = self.keypoints
-        absent = len(known.names)
-        other = [
-            known.names.index(name) if name in known.names else absent
-            for name in map(mirrored_point, known.names)
-        ]
-
-        def mirrored(values: Array, missing: float) -> Array:
-            nothing = np.full((len(values), 1, *values.shape[2:]), missing)
-            return np.concatenate([values, nothing], axis=1)[:, other]
-
-        changed = replace(
-            known,
-            pixel=mirrored(known.pixel, np.nan),
-            score=mirrored(known.score, 0.0),
-            hint_m=mirrored(known.hint_m, np.nan),
-        )
-        return replace(self, keypoints=changed)
+        return replace(self, keypoints=self.keypoints.exchanged())
 
 
 def _without_leaps(keypoints: Keypoints, time_s: Array) -> Keypoints:
@@ -182,152 +169,7 @@ def _bridged(keypoints: Keypoints, tracks: RegionTracks) -> Keypoints:
     return replace(keypoints, pixel=pixel, score=score)
 
 
-def _selected(keypoints: Keypoints, index: IndexArray) -> Keypoints:
-    return Keypoints(
-        tuple(keypoints.names[i] for i in index),
-        tuple(keypoints.sources[i] for i in index),
-        keypoints.pixel[:, index],
-        keypoints.score[:, index],
-        keypoints.hint_m[:, index],
-    )
-
-
-def _marker_deviation(segment: str) -> float:
-    name = segment.split(".")[0]
-    return CENTROID_STD_M.get(name) or LIMB_STD_M.get(name, 0.1)
-
-
-# --- What one frame shows, as postures are compared with it
-
-
-DEGREES_OF_FREEDOM = 4.0  # of Student's t distribution
-EXCHANGED_COST = np.float32(3.0)  # cost of taking a detector's left for right in a frame: one in twenty
-ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # of a symmetric matrix, as in `second_moment`
-ACROSS, ALONG = 1.0 / 3.0, 1.0 / 12.0  # second moments of a flat silhouette, in radii² and lengths²
-
-
-@dataclass(frozen=True, eq=False)
-class FrameLikelihood:
-    """One frame: A points, M of them markers, and G guessed depths, one a keypoint or none."""
-
-    weight: Array  # (A,) one over the standard deviation of each place [1/m]; 0 where not visible
-    backward: Array  # (3,) the camera's backward axis in the world
-    location: Array  # (3,) the camera's place [m]
-    image_axes: Array  # (A, 2, 3) world directions of a marker's image to the right and upwards
-    extent: Array  # (M, 3) square root of the observed second moments per meter of depth, xx, xy, yy
-    sight: Array  # (3,) line of sight to the performer, along which depths are guessed
-    depth_m: Array  # (G,) guessed depth of each keypoint behind the hips [m]; 0 where there is none
-    depth_weight: Array  # (G,) one over its standard deviation [1/m]; 0 where there is none
-    pixel_size: float  # size of a pixel per meter of depth
-    visible: BoolArray  # (A,) points found in the frame
-    unclipped: BoolArray  # (M,) markers found whose region is not cut off by the picture's edge
-    share: float  # weight of each point's cost, since they do not differ independently
-
-
-def frame_likelihoods(
-    camera: Camera, evidence: MatchEvidence, frames: IndexArray, scale: float = 1.0
-) -> list[FrameLikelihood]:
-    """What some frames show.
-
-    `scale` is the deviation of the postures that are compared, relative to another performer's.
-    """
-    return [_frame_likelihood(camera, evidence, int(frame), scale) for frame in frames]
-
-
-def _frame_likelihood(camera: Camera, evidence: MatchEvidence, frame: int, scale: float) -> FrameLikelihood:
-    tracks, quality = evidence.tracks, evidence.quality[frame]
-    visible = evidence.visible[frame]
-    rotation, location = camera.pose(frame)
-    right, up, backward = rotation.T
-    pixels = np.where(visible[:, None], evidence.pixel[frame], camera.principal_point)
-    _, ray = camera.rays(pixels, frame)
-    away = -ray @ backward
-    x, y = ray @ right / away, ray @ up / away
-    lost = ~np.isfinite(x + y)
-    visible, x, y = visible & ~lost, np.where(lost, 0.0, x), np.where(lost, 0.0, y)
-    trust = np.sqrt(np.clip(quality, LEAST_QUALITY, 1.0))
-    depth = evidence.keypoints.hint_m[frame, :, 2] if evidence.keypoints.has_hints else np.zeros(0)
-    known = np.isfinite(depth) & visible[evidence.marker_count :][: len(depth)]
-    pixel_size = 1.0 / camera.focal_px
-    moments = tracks.second_moment[frame] * pixel_size**2
-    unclipped = visible[: evidence.marker_count] & ~tracks.clipped[frame]
-    # Image rows run down, the camera's axis up.
-    extent = square_root(moments[:, 0, 0], -moments[:, 0, 1], moments[:, 1, 1])
-    return FrameLikelihood(
-        np.where(visible, trust / (scale * evidence.deviation_m), 0.0),
-        backward,
-        location,
-        np.stack([right + x[:, None] * backward, up + y[:, None] * backward], axis=1),
-        np.where(unclipped[:, None], np.stack(extent, axis=-1), 0.0),
-        _line_of_sight(ray[visible], backward),
-        np.where(known, depth, 0.0),
-        np.where(known, 1.0 / evidence.depth_deviation_m[: len(depth)], 0.0),
-        pixel_size,
-        visible,
-        unclipped,
-        evidence.share,
-    )
-
-
-def _line_of_sight(ray: Array, backward: Array) -> Array:
-    """(3,) unit mean of some rays; straight ahead without any."""
-    if not len(ray):
-        return -backward
-    mean = ray.mean(axis=0)
-    return np.asarray(mean / np.linalg.norm(mean))
-
-
-def extent_cost(
-    seen: FrameLikelihood, marker: int, entries: Sequence[Any], depth: SingleArray
-) -> SingleArray:
-    """Cost of predicted second moments xx, xy, yy of a marker [m²] at some depths [m]."""
-    predicted = square_root(*entries)
-    depth = np.maximum(depth, np.float32(0.1))
-    # Deviation of a marker's extent: clothes, the color's ends, a limb turned by a few degrees.
-    variance = np.float32(0.025**2) + (np.float32(seen.pixel_size) * depth) ** 2
-    observed = seen.extent[marker].astype(np.float32)
-    squared = sum(
-        (predicted[k] - observed[k] * depth) ** 2 * np.float32(2.0 if k == 1 else 1.0) for k in range(3)
-    )
-    return student_cost(np.asarray(squared / variance), 3)
-
-
-def square_root(xx: Array, xy: Array, yy: Array) -> tuple[Array, Array, Array]:
-    """Square root of symmetric 2 x 2 matrices, given and returned by entries."""
-    root = np.sqrt(np.maximum(xx * yy - xy * xy, 0.0))
-    scale = 1.0 / np.sqrt(np.maximum(xx + yy + 2.0 * root, 1e-12))
-    return (xx + root) * scale, xy * scale, (yy + root) * scale
-
-
-def products(first: SingleArray, second: SingleArray) -> SingleArray:
-    """(..., 6) coefficients of a symmetric matrix's entries in uᵀ S v, see `ENTRIES`."""
-    u, v = np.moveaxis(first, -1, 0), np.moveaxis(second, -1, 0)
-    mixed = [u[i] * v[j] + u[j] * v[i] for i, j in ENTRIES[3:]]
-    return np.stack([u[0] * v[0], u[1] * v[1], u[2] * v[2], *mixed], axis=-1)
-
-
-def student_cost(squared: SingleArray, dimensions: int, degrees: float = DEGREES_OF_FREEDOM) -> SingleArray:
-    """Negative log likelihood under Student's t of squared distances, up to a constant."""
-    off = squared / np.float32(degrees)
-    off += np.float32(1.0)
-    # NumPy's log1p takes seven times as long, and differs by 1e-6.
-    return np.asarray(np.float32(0.5 * (degrees + dimensions)) * np.log(off))
-
-
-def squared_distances(first: SingleArray, second: SingleArray) -> SingleArray:
-    """(J, K) mean squared distances of points (J, Q, 3) and (K, Q, 3)."""
-    count = first.shape[1]
-    a, b = first.reshape(len(first), -1), second.reshape(len(second), -1)
-    squared = (a * a).sum(axis=1)[:, None] + (b * b).sum(axis=1) - np.float32(2.0) * (a @ b.T)
-    return np.maximum(squared, np.float32(0.0)) / np.float32(count)
-
-
-def lowest(cost: SingleArray, count: int, margin: float) -> IndexArray:
-    """Indices of the lowest costs within a margin of the least, at most `count`, in order of index."""
-    kept = np.flatnonzero(cost <= cost.min() + np.float32(margin))
-    if len(kept) > count:
-        kept = np.sort(kept[np.argpartition(cost[kept], count)[:count]])
-    return kept
+# --- What postures show
 
 
 @dataclass(frozen=True, eq=False)
@@ -357,14 +199,15 @@ def marker_moments(body: Body, evidence: MatchEvidence, posture: Posture) -> Mar
         share = share / share.sum(axis=1, keepdims=True)
         center = 0.5 * (start + end)
         centroid[:, marker] = np.einsum("nq,nqi->ni", share, center)
-        own = ALONG * _outer(axis)
+        # Second moments of a flat silhouette: a twelfth of squared lengths along, a third of radii across.
+        own = _outer(axis) / 12.0
         for side, direction in enumerate((pieces.lateral, pieces.sagittal)):
-            own += ACROSS * width[:, side, None, None] ** 2 * _outer(pieces.turn(pose, direction))
+            own += width[:, side, None, None] ** 2 / 3.0 * _outer(pieces.turn(pose, direction))
         own += _outer(center - centroid[:, marker, None])
         second_moment[:, marker] = np.einsum("nq,nqij->nij", share, own)
     centroid -= posture.translation[:, None]
     points = np.asarray(body.points(pose) - posture.translation[:, None])
-    shown = points[:, evidence.points]
+    shown = points[:, : len(evidence.keypoints.names)].copy()
     for column, name in enumerate(evidence.keypoints.names):
         stem, _, on_side = name.partition(".")
         if stem in BESIDE_M:

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, IndexArray, SingleArray
+from ..arrays import Array, BoolArray, IndexArray, SingleArray, single
 from ..body.body_volume import sole_places
 from ..body.human import HUMAN, LIMBS, TRUNK, limb_of
 from ..body.mirror import mirrored
 from ..body.posture import Posture, yaw_rotation
 from ..estimate.performer_placement import standing_ankle_m
-from .match_evidence import ENTRIES, MatchEvidence, marker_moments
+from .frame_likelihood import ENTRIES
+from .match_evidence import MatchEvidence, marker_moments
 from .part_pools import ARM, PartPool, PartPools
 
 HEADINGS = 24
@@ -32,6 +33,10 @@ class PartFeatures:
     points: SingleArray  # (N, Q, 3) elbow and wrist, knee and ankle; of stances all others [m]
     soles: SingleArray  # (N, 2, 3) heel and tip of a leg's foot; none else [m]
     cost: SingleArray  # (N,) how unusual each is
+
+    def columns(self, seen: BoolArray) -> list[tuple[int, int]]:
+        """Columns of `place` of those of the evidence (A,) that are seen in a frame, and which these are."""
+        return [(column, int(own)) for column, own in enumerate(self.observed) if seen[own]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,15 +76,15 @@ def stance_features(pools: PartPools, evidence: MatchEvidence) -> StanceFeatures
 
     observed = _observed(evidence, TRUNK)
     moments = marker_moments(body, evidence, torsos.posture)
-    markers = observed[observed < evidence.marker_count]
+    markers = observed[observed < len(evidence.segments)]
     second = np.einsum("hij,tmjk,hlk->thmil", turn, moments.second_moment[:, markers], turn, optimize=True)
     features = PartFeatures(
         observed,
-        _single(turned(moments.centroid[:, observed])),
+        single(turned(moments.centroid[:, observed])),
         _symmetric(second.reshape(len(torsos) * HEADINGS, len(markers), 3, 3)),
-        _single(turned(moments.points)),
+        single(turned(moments.points)),
         np.zeros((len(torsos) * HEADINGS, 0, 3), dtype=np.float32),
-        _single(np.repeat(torsos.cost, HEADINGS)),
+        single(np.repeat(torsos.cost, HEADINGS)),
     )
     frames = [
         np.einsum("hij,tjk->thik", turn, pose.rotation[:, joint]).reshape(-1, 3, 3) for joint in (0, waist)
@@ -87,12 +92,12 @@ def stance_features(pools: PartPools, evidence: MatchEvidence) -> StanceFeatures
     limbs = {limb: _limb_features(pools, evidence, limb) for limb in LIMBS}
     return StanceFeatures(
         features,
-        _single(frames[0]),
-        _single(frames[1]),
-        _single(turned(pose.origin[:, waist])),
+        single(frames[0]),
+        single(frames[1]),
+        single(turned(pose.origin[:, waist])),
         heading,
         limbs,
-        {limb: _single(pools.limb_cost[limb]) for limb in LIMBS},
+        {limb: single(pools.limb_cost[limb]) for limb in LIMBS},
         standing_ankle_m(body),
     )
 
@@ -123,30 +128,25 @@ def _limb_features(pools: PartPools, evidence: MatchEvidence, limb: str) -> Part
     observed = _observed(evidence, limb)
     moments = marker_moments(body, evidence, posture)
     chest = body.offsets[HUMAN.joint_index("waist")] if kind == ARM else np.zeros(3)
-    markers = observed[observed < evidence.marker_count]
+    markers = observed[observed < len(evidence.segments)]
     points = limb_points(limb)
     soles = np.zeros((len(pool), 0, 3))
     if kind != ARM:
         soles = sole_places(body, body.pose(posture))[:, ("L", "R").index(side)]
     return PartFeatures(
         observed,
-        _single(moments.centroid[:, observed] - chest),
+        single(moments.centroid[:, observed] - chest),
         _symmetric(moments.second_moment[:, markers]),
-        _single(moments.points[:, points] - chest),
-        _single(soles),
-        _single(pool.cost),
+        single(moments.points[:, points] - chest),
+        single(soles),
+        single(pool.cost),
     )
 
 
 def _observed(evidence: MatchEvidence, part: str) -> IndexArray:
-    names = (*evidence.segments, *evidence.keypoints.names)
-    return np.array([i for i, name in enumerate(names) if limb_of(name) == part], dtype=np.intp)
+    return np.array([i for i, name in enumerate(evidence.names) if limb_of(name) == part], dtype=np.intp)
 
 
 def _symmetric(matrices: Array) -> SingleArray:
     """(..., 6) entries of symmetric matrices (..., 3, 3)."""
-    return _single(np.stack([matrices[..., i, j] for i, j in ENTRIES], axis=-1))
-
-
-def _single(values: Array) -> SingleArray:
-    return np.asarray(values, dtype=np.float32)
+    return single(np.stack([matrices[..., i, j] for i, j in ENTRIES], axis=-1))

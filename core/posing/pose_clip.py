@@ -22,6 +22,7 @@ from ..estimate.whole_clip import (
     WholeClipResult,
     estimate_whole_clip,
 )
+from ..numerics.robust import DEGREES, student_weight
 from ..prior.keyframes import Keyframe, interpolate
 from ..prior.library import Library
 from ..prior.texts import COMPOSED
@@ -32,7 +33,8 @@ from .agreement import agreement
 from .candidates import MatchedFrame, composed_candidates
 from .compose_clip import Composition, compose_frames
 from .found_poses import FoundPoses
-from .match_evidence import DEGREES_OF_FREEDOM, frame_likelihoods, marker_moments
+from .frame_likelihood import frame_likelihoods
+from .match_evidence import marker_moments
 from .part_features import HEADINGS, StanceFeatures, stance_features
 from .part_pools import PartPools, part_pools
 from .posing_input import PosingInput, posing_input, stretch_of, tempering
@@ -146,13 +148,11 @@ def _explained(given: PosingInput, posture: Posture) -> tuple[Array, Array]:
     places = marker_moments(given.body, given.evidence, posture).centroid + posture.translation[:, None]
     likelihoods = frame_likelihoods(given.camera, given.evidence, given.sampled)
     shares, off = np.zeros(len(given.sampled)), np.full(places.shape[:2], np.nan)
-    for row, likelihood in enumerate(likelihoods):
-        if not likelihood.visible.any():
-            continue
-        residual = np.einsum("aki,ai->ak", likelihood.image_axes, places[row] - likelihood.location)
-        distance = np.linalg.norm(residual * likelihood.weight[:, None], axis=-1)
-        off[row, likelihood.visible] = distance[likelihood.visible]
-        shares[row] = float((1.0 / (1.0 + off[row, likelihood.visible] ** 2 / DEGREES_OF_FREEDOM)).mean())
+    for row, seen in enumerate(likelihoods):
+        if seen.visible.any():
+            residual = np.einsum("aki,ai->ak", seen.rows, places[row] - seen.location)
+            off[row, seen.visible] = np.linalg.norm(residual, axis=-1)[seen.visible]
+            shares[row] = student_weight(off[row, seen.visible] ** 2, DEGREES, 1).mean()
     return shares, off
 
 

@@ -1,7 +1,7 @@
 """What of a take its poses are found from: evidence, the frames asked for, and what is posed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +14,6 @@ from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
 from ..errors import InputError
 from ..estimate.keypoint_trust import sided_by_pictures, upright
-from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import runs
 from ..prior.keyframe_proposals import evidence_speed, propose_keyframes
 from ..prior.keyframes import Keyframe
@@ -153,38 +152,23 @@ def stretch_of(whole: PosingInput, first: int, last: int) -> PosingInput:
     """The frames from a first to a last one, both included."""
     own, posed = slice(first, last + 1), whole.posed
     rows = np.flatnonzero((posed.frames >= first) & (posed.frames <= last))
-    held = posed.frames[rows]
     asked = whole.keyframes
-    inside = asked[(asked >= first) & (asked <= last) & ~np.isin(asked, held)]
-    camera, evidence = whole.camera, whole.evidence
+    inside = asked[(asked >= first) & (asked <= last) & ~np.isin(asked, posed.frames)]
+    camera = whole.camera
     if camera.is_moving:
         camera = replace(camera, matrix_world=camera.matrix_world[own])
     return replace(
         whole,
         camera=camera,
-        evidence=MatchEvidence(
-            _tracks(evidence.tracks, own), evidence.segments, _keypoints(evidence.keypoints, own)
-        ),
+        evidence=whole.evidence.frames(own),
         keyframes=inside - first,
-        posed=PosedFrames(
-            whole.body, held - first, tuple(posed.postures[row] for row in rows), posed.depth_found[rows]
+        posed=replace(
+            posed,
+            frames=posed.frames[rows] - first,
+            postures=tuple(posed.postures[row] for row in rows),
+            depth_found=posed.depth_found[rows],
         ),
-        keypoints=_keypoints(whole.keypoints, own),
+        keypoints=whole.keypoints.frames(own),
         there=np.ones(last + 1 - first, dtype=np.bool_),  # a person asks for them
         first=whole.first + first,
-    )
-
-
-def _tracks(tracks: RegionTracks, own: slice) -> RegionTracks:
-    rows = {
-        field.name: getattr(tracks, field.name)[own]
-        for field in fields(tracks)
-        if isinstance(getattr(tracks, field.name), np.ndarray)
-    }
-    return replace(tracks, **rows)
-
-
-def _keypoints(keypoints: Keypoints, own: slice) -> Keypoints:
-    return replace(
-        keypoints, pixel=keypoints.pixel[own], score=keypoints.score[own], hint_m=keypoints.hint_m[own]
     )

@@ -12,9 +12,10 @@ from ..arrays import Array, IndexArray
 from ..body.posture import Posture
 from ..detect.continuity import same_person
 from ..detect.keypoints import FACE, Keypoints, People, SeenPeople
-from ..detect.performer import NOBODY, Expected, Sightings, choose_performer, person_size
+from ..detect.performer import Expected, Sightings, choose_performer, person_size
 from ..errors import pluralize
 from ..markers.region_tracks import RegionTracks
+from ..numerics.markov_chain import NOBODY
 from ..prior.frame_prior import SPEED_M_PER_S
 from .take import Take
 

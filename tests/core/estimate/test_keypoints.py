@@ -29,7 +29,6 @@ from keymark.core.estimate.keypoint_fit import keypoint_notes, observed_joints
 from keymark.core.estimate.keypoint_trust import (
     HINTS_SHARE,
     doubted_at_changes,
-    exchanged_back,
     find_swaps,
     sided_by_pictures,
     upright,
@@ -191,7 +190,7 @@ def test_legs_alone_may_be_exchanged() -> None:
     predicted = model.pixels(BODY.pose(PRIOR), np.arange(FRAMES))
     swapped = find_swaps(mixed, predicted, np.full(FRAMES, 85.0), np.array(POSED), np.arange(FRAMES) / 30.0)
     np.testing.assert_array_equal(swapped, some[:, None] & legs)
-    np.testing.assert_array_equal(exchanged_back(mixed, swapped).pixel, GOOD.pixel)
+    np.testing.assert_array_equal(mixed.exchanged(swapped).pixel, GOOD.pixel)
 
 
 def test_sides_are_those_that_pictures_show_where_nothing_is_posed() -> None:

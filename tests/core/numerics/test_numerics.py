@@ -1,12 +1,21 @@
 """Numerical methods."""
 
+import weakref
 from itertools import product
 
 import numpy as np
 import pytest
 from _performances import jitter_mm, seen_by_network
 from keymark.core.arrays import Array
-from keymark.core.numerics.markov_chain import cheapest_pairs, cheapest_path, path_posteriors
+from keymark.core.numerics.markov_chain import (
+    NOBODY,
+    Steps,
+    cheapest_pairs,
+    cheapest_path,
+    cheapest_track,
+    exchanged_path,
+    path_posteriors,
+)
 from keymark.core.numerics.robust import (
     Equations,
     levenberg_marquardt,
@@ -175,6 +184,46 @@ def test_the_cheapest_pairs_are_the_cheapest_of_all() -> None:
         assert (tuple(found[0]), tuple(found[1])) == best
 
 
+def test_what_is_exchanged_is_the_cheaper_of_both_ways_all_along() -> None:
+    own, stays, turns = (np.random.default_rng(seed).exponential(2.0, size)
+                         for seed, size in ((8, (6, 2)), (9, 5), (10, 5)))  # fmt: skip
+
+    def cost(path: tuple[int, ...]) -> float:
+        moved = np.where(np.diff(path) == 0, stays, turns)
+        return float(own[np.arange(6), list(path)].sum() + moved.sum())
+
+    assert tuple(exchanged_path(own, stays, turns)) == min(product((0, 1), repeat=6), key=cost)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_cheapest_track_is_the_cheapest_of_all_that_leave_frames_out(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    counts = np.array([2, 0, 2, 1, 2])
+    first = np.concatenate([[0], np.cumsum(counts)])
+    frame = np.repeat(np.arange(5), counts)
+    own, absent = rng.exponential(0.5, 7), rng.exponential(1.0, 5)
+    step, restart, reach = rng.exponential(2.0, (7, 7)), 1.5, 2
+
+    def cost(path: tuple[int, ...]) -> float:
+        seen = [item for item in path if item != NOBODY]
+        total = sum(own[item] for item in seen) + sum(absent[f] for f, item in enumerate(path) if item < 0)
+        for before, now in zip(seen, seen[1:], strict=False):
+            near = frame[now] - frame[before] <= reach
+            total += min(step[before, now], restart) if near else restart
+        return float(total)
+
+    heard: dict[int, int] = {}
+
+    def taken(here: np.ndarray, source: np.ndarray) -> None:
+        heard.update(zip(here.tolist(), source.tolist(), strict=True))
+
+    choices = [(NOBODY, *range(a, b)) for a, b in zip(first, first[1:], strict=False)]
+    found = cheapest_track(first, own, absent, restart, reach, lambda h, b: step[np.ix_(b, h)].T, taken)
+    best = min(product(*choices), key=cost)
+    assert tuple(found) == best
+    assert sorted(heard) == list(range(7)) and all(frame[s] < frame[h] for h, s in heard.items() if s >= 0)
+
+
 def test_probabilities_are_those_of_all_paths() -> None:
     own, steps, _ = made(7)
     rows = [each[0] for each in own]
@@ -186,6 +235,33 @@ def test_probabilities_are_those_of_all_paths() -> None:
             total[frame][row] += np.exp(-cost)
     for found, wanted in zip(path_posteriors(rows, steps), total, strict=True):
         assert np.allclose(found, wanted / wanted.sum(), atol=1e-4)
+
+
+def test_costs_of_steps_are_not_kept() -> None:
+    """What is kept does not grow with the square of the states a time."""
+    rng = np.random.default_rng(11)
+    fixed = [rng.exponential(2.0, (ROWS, ROWS)).astype(np.float32) for _ in range(40)]
+    own = [rng.exponential(2.0, ROWS).astype(np.float32) for _ in range(41)]
+    alive: weakref.WeakSet[object] = weakref.WeakSet()
+    most = 0
+
+    class Counted(np.ndarray):
+        """An array that can be told from others while it is kept."""
+
+        __hash__ = object.__hash__  # type: ignore[assignment]
+
+    def cost(at: int) -> np.ndarray:
+        nonlocal most
+        made = fixed[at].copy().view(Counted)
+        alive.add(made)
+        most = max(most, len(alive))
+        return made
+
+    steps = Steps(40, cost)
+    np.testing.assert_array_equal(cheapest_path(own, steps), cheapest_path(own, fixed))
+    for found, wanted in zip(path_posteriors(own, steps), path_posteriors(own, fixed), strict=True):
+        np.testing.assert_array_equal(found, wanted)
+    assert most <= 3
 
 
 TIME_S = np.arange(150) / 30.0

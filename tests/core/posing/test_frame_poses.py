@@ -121,7 +121,7 @@ def test_a_region_that_nobody_wears_is_named_and_left_out(
     tracks = moved_to(film(truth, noise_px=0.3, seed=3), marker, (22.0, 30.0))
     found = find_frame_poses(shown(tracks), libraries)
     assert tracks.names[marker] in found.contradictions
-    bent = knowledge(BODY, libraries).plausibility.contorted(
+    bent = knowledge(BODY, libraries).postures.contorted(
         BODY.pose(Posture.stack([found.candidates[0].posture]))
     )
     assert not bent.any()
@@ -161,9 +161,9 @@ def test_a_frame_that_shows_nothing_says_so(libraries: Libraries) -> None:
 
 
 def test_known_postures_are_plausible_and_bent_ones_are_not(libraries: Libraries) -> None:
-    known = knowledge(BODY, libraries).plausibility
-    assert len(known.known) == 2 * sum(len(library.postures) for library in libraries)  # and mirror images
-    assert known.contorted(known.known.pose).mean() < 0.01
+    known = knowledge(BODY, libraries).postures
+    assert len(known) == 2 * sum(len(library.postures) for library in libraries)  # and mirror images
+    assert known.contorted(known.pose).mean() < 0.01
     step = np.zeros(BODY.skeleton.dof_count)
     step[BODY.skeleton.dof_names.index("knee.L.flexion")] = -1.2
     straight = Posture.rest(BODY.skeleton, (1,))

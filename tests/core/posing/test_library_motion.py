@@ -8,7 +8,6 @@ from _performed import BODY, camera, filmed, performed
 from keymark.core.body.human import LIMBS
 from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import headings_rad, yawed_at
-from keymark.core.posing.known_motions import known_postures
 from keymark.core.posing.library_motion import nearest_libraries, part_beliefs
 from keymark.core.posing.part_features import (
     HEADINGS,
@@ -18,6 +17,7 @@ from keymark.core.posing.part_features import (
     stance_features,
 )
 from keymark.core.posing.part_pools import part_pools
+from keymark.core.posing.plausibility import known_postures
 from keymark.core.posing.posing_input import posing_input
 from keymark.core.prior.library import Library, read_library
 from keymark.core.progress import run

@@ -8,7 +8,7 @@ from _performed import BODY
 from _recorded import assert_recorded
 from keymark.core.posing.depth_flip import FLIPPABLE, flipped
 from keymark.core.posing.dragged import dragged
-from keymark.core.posing.known_motions import known_postures, part_shapes
+from keymark.core.posing.plausibility import known_postures, part_shapes
 from keymark.core.posing.turned import Facing, Sides, turned
 from keymark.core.prior.library import Library
 
