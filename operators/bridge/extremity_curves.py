@@ -11,7 +11,7 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.body.kinematics import extremity_names
 from ...core.body.skeleton import Skeleton
-from .actions import existing_channelbag
+from .actions import curves_of
 from .keys import MOTION, copy_as_generated, ensure_fcurve, unchanged_frames
 from .rotation_modes import ALL_PATHS, bone_path, rotation_path
 
@@ -33,14 +33,10 @@ def posed_extremities(
     armature_object: bpy.types.Object, skeleton: Skeleton, keyframe_action: bpy.types.Action | None
 ) -> frozenset[str]:
     """Names of the hands and feet that the animator has keyed away from rest in the Action of keyframes."""
-    given = None if keyframe_action is None else existing_channelbag(keyframe_action, armature_object)
-    if given is None:
+    if keyframe_action is None:
         return frozenset()
-    return frozenset(
-        name
-        for name in extremity_names(skeleton)
-        if any(_leaves_rest(curve) for curve in _shown_curves(armature_object, given, name))
-    )
+    shown = _shown_curves(armature_object, skeleton, keyframe_action)
+    return frozenset(name for name, curves in shown.items() if any(map(_leaves_rest, curves)))
 
 
 def turned_extremities(
@@ -51,17 +47,17 @@ def turned_extremities(
 ) -> dict[str, Array]:
     """Frames of the unchanged keys by which a motion has turned hands and feet by itself, by name.
 
-    What is posed in the keyframe Action, the motion only copies.
+    What is posed in the keyframe Action, the motion only copies. A frame has such a key in every curve.
     """
-    given = existing_channelbag(action, armature_object)
-    if given is None:
-        return {}
     posed = posed_extremities(armature_object, skeleton, keyframe_action)
-    found = {
-        name: _generated_in_all(_shown_curves(armature_object, given, name))
-        for name in extremity_names(skeleton)
-        if name not in posed
-    }
+    found = {}
+    for name, curves in _shown_curves(armature_object, skeleton, action).items():
+        turns = [curve for curve in curves if not curve.data_path.endswith(".location")]
+        if name not in posed and turns:
+            frames, *others = (unchanged_frames(curve, MOTION) for curve in turns)
+            for other in others:
+                frames = frames[np.isin(np.round(frames, 3), np.round(other, 3))]
+            found[name] = frames
     return {name: frames for name, frames in found.items() if len(frames)}
 
 
@@ -74,11 +70,9 @@ def copy_posed_extremities(
 ) -> None:
     """Copy the curves of some hands and feet as GENERATED keys; where the animator has a key, that stays."""
     paths = extremity_paths(skeleton)
-    given = existing_channelbag(source, armature_object)
-    for curve in given.fcurves if given is not None else ():
-        bone = paths.get(curve.data_path, "")
-        if bone in posed:
-            copy_as_generated(curve, ensure_fcurve(channelbag, curve.data_path, curve.array_index, bone))
+    for (path, index), curve in curves_of(source, armature_object).items():
+        if paths.get(path) in posed:
+            copy_as_generated(curve, ensure_fcurve(channelbag, path, index, paths[path]))
 
 
 def straighten_extremities(
@@ -93,52 +87,37 @@ def straighten_extremities(
     Nobody has posed them: Blender leaves a channel without keys as it was, so that they would stay turned
     under the next Action, and would be keyed with the next pose. What is posed in the keyframe Action stays.
     """
-    given = existing_channelbag(action, armature_object)
+    given = curves_of(action, armature_object)
     posed = posed_extremities(armature_object, skeleton, keyframe_action)
-    if given is None:
-        return
-    for name in extremity_names(skeleton):
+    for name in set(extremity_names(skeleton)) - posed:
         bone = armature_object.pose.bones.get(name)
-        if bone is None or name in posed:
+        if bone is None:
             continue
-        path = rotation_path(bone.rotation_mode)
-        curves = [given.fcurves.find(bone_path(name, path), index=i) for i in range(len(getattr(bone, path)))]
-        if None in curves:
-            continue
-        shown = np.array([curve.evaluate(frame) for curve in curves])
-        if np.abs(shown - np.array(getattr(bone, path))).max() < SAME_VALUE:
+        values = np.array(getattr(bone, rotation_path(bone.rotation_mode)))
+        path = bone_path(name, rotation_path(bone.rotation_mode))
+        curves = [given.get((path, index)) for index in range(len(values))]
+        shown = np.array([np.nan if curve is None else curve.evaluate(frame) for curve in curves])
+        if np.abs(shown - values).max() < SAME_VALUE:  # not so where a curve is missing
             bone.rotation_quaternion = (1.0, 0.0, 0.0, 0.0)
             bone.rotation_euler = (0.0, 0.0, 0.0)
             bone.rotation_axis_angle = (0.0, 0.0, 1.0, 0.0)
 
 
 def _shown_curves(
-    armature_object: bpy.types.Object, channelbag: bpy.types.ActionChannelbag, name: str
-) -> list[bpy.types.FCurve]:
-    """The curves that move a hand or foot: those of its rotation mode, and of its location."""
-    bone = armature_object.pose.bones.get(name)
-    if bone is None:
-        return []
-    paths = {bone_path(name, rotation_path(bone.rotation_mode)), bone_path(name, "location")}
-    return [curve for curve in channelbag.fcurves if curve.data_path in paths and not curve.mute]
+    armature_object: bpy.types.Object, skeleton: Skeleton, action: bpy.types.Action
+) -> dict[str, list[bpy.types.FCurve]]:
+    """The curves that move each hand and foot: those of its rotation mode, and of its location."""
+    curves = curves_of(action, armature_object)
+    found = {}
+    for name in extremity_names(skeleton):
+        bone = armature_object.pose.bones.get(name)
+        if bone is not None:
+            paths = {bone_path(name, rotation_path(bone.rotation_mode)), bone_path(name, "location")}
+            found[name] = [curve for (path, _), curve in curves.items() if path in paths and not curve.mute]
+    return found
 
 
 def _leaves_rest(curve: bpy.types.FCurve) -> bool:
     channel = curve.data_path.rpartition(".")[2]
     rest = AT_REST.get(channel, (0.0, 0.0, 0.0))[curve.array_index]
-    if rest is None or not len(curve.keyframe_points):
-        return False
-    coordinates = np.empty((len(curve.keyframe_points), 2), np.float32)
-    curve.keyframe_points.foreach_get("co", coordinates.ravel())
-    return bool(np.abs(coordinates[:, 1] - rest).max() > SAME_VALUE)
-
-
-def _generated_in_all(curves: list[bpy.types.FCurve]) -> Array:
-    """Frames (N,) that have an unchanged GENERATED key in every curve."""
-    rotations = [
-        unchanged_frames(curve, MOTION) for curve in curves if not curve.data_path.endswith(".location")
-    ]
-    found = rotations[0] if rotations else np.zeros(0)
-    for frames in rotations[1:]:
-        found = found[np.isin(np.round(found, 3), np.round(frames, 3))]
-    return found
+    return rest is not None and any(abs(key.co[1] - rest) > SAME_VALUE for key in curve.keyframe_points)

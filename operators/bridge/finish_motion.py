@@ -21,7 +21,7 @@ from ...core.keys.key_reduction import reduce_keys
 from ...core.keys.rig import Rig, RigPose
 from ...core.keys.tolerances import NEAR_FLOOR_M, foot_rows, point_tolerances
 from ...core.progress import Job, Progress, within
-from .actions import channelbag_for, existing_channelbag
+from .actions import channelbag_for, curves_of
 from .actor_lengths import read_body, read_bones
 from .extremity_curves import turned_extremities
 from .fcurves import moved_paths, posture_columns
@@ -76,12 +76,35 @@ class Finished:
         return int(channels * len(self.frames))
 
     def write(
-        self, armature_object: bpy.types.Object, motion_action: bpy.types.Action, action: bpy.types.Action
+        self, armature_object: bpy.types.Object, source: bpy.types.Action, action: bpy.types.Action
     ) -> int:
-        """Write the motion into a final Action; returns how many keys it has now."""
-        return write_final(
-            armature_object, motion_action, action, self.body, self.rig, self.frames, self.motion
-        )
+        """Write the motion as ordinary keys, replacing all that the Action held for the actor.
+
+        Other curves of `source`, from which the motion was read (posed hands and feet, properties), are
+        copied, but for review curves. Returns the number of keys on the bones' curves.
+        """
+        channelbag = channelbag_for(action, armature_object)
+        for fcurve in list(channelbag.fcurves):
+            channelbag.fcurves.remove(fcurve)
+        count = 0
+        for bone, column, path, index in rig_channels(self.rig):
+            fcurve = ensure_fcurve(channelbag, path, index, self.rig.bones[bone].name)
+            held = self.motion[bone]
+            if isinstance(held, Spline):
+                at = self.frames[held.keys]
+                write_smooth_keys(fcurve, at, held.values[:, column], held.slopes[:, column])
+            else:
+                write_linear_keys(fcurve, self.frames, held[:, column])
+            count += len(fcurve.keyframe_points)
+        written = set(moved_paths(armature_object, self.body.skeleton))
+        written |= {bone_path(bone.name, channel) for bone in self.rig.bones for channel in ALL_PATHS}
+        for (path, index), fcurve in curves_of(source, armature_object).items():
+            if path not in written and not is_review_curve(fcurve):
+                group = fcurve.group.name if fcurve.group is not None else armature_object.name
+                copy_keys(fcurve, ensure_fcurve(channelbag, path, index, group))
+        action.use_frame_range = True
+        action.frame_start, action.frame_end = float(self.frames[0]), float(self.frames[-1])
+        return count
 
 
 def finish_motion(
@@ -116,7 +139,7 @@ def finish_motion(
         before = planted.posture
         planting = plant_feet(body, before, time_s, options.stray_m)
         planted = yield from within(PLANTING, planting, SEEN, PLANTED)
-        notes += _planting_notes(rig, shown, body, before, planted)
+        notes += _planting_notes(rig, shown, body, before, len(planted.contacts))
         if planted.contacts:
             every = np.ones(len(frames), dtype=bool)
             moved = {bone.name: every for bone in rig.bones if _is_moved_by_feet(bone.name)}
@@ -154,23 +177,24 @@ def _floor_notes(rig: Rig, shown: RigPose, floor_m: Array | None, frames: Array)
     if floor_m is None:
         return ()
     depth = floor_m - _sole_heights_m(rig, shown)
-    return floor_notes({side: depth[:, number] for number, side in enumerate(SIDES)}, frames)
+    return floor_notes(dict(zip(SIDES, depth.T, strict=True)), frames)
 
 
-def _planting_notes(
-    rig: Rig, shown: RigPose, body: Body, before: Posture, planted: PlantedFeet
-) -> tuple[str, ...]:
-    if not planted.contacts:
+def _planting_notes(rig: Rig, shown: RigPose, body: Body, before: Posture, rests: int) -> tuple[str, ...]:
+    """Notes on feet that do not rest, and on legs of the rig that no posture reaches."""
+    if not rests:
         return ("No foot rests long enough to be planted; raise Feet May Sway to hold feet that sway",)
-    beyond_m = largest_leg_distance_m(rig, shown, body, before)
+    pose = body.pose(before)
+    beyond_m = max(
+        float(np.linalg.norm(shown.points[:, rows.start + 1] - end, axis=-1).max())
+        for bone, rows in zip(rig.bones, rig.point_slices, strict=True)
+        if _is_moved_by_feet(bone.name)
+        for _, end in [body.segment_ends(pose, bone.name)]
+    )
     if beyond_m <= NOTICEABLE_M:
         return ()
-    return (
-        (
-            f"The motion goes up to {1000.0 * beyond_m:.0f} mm beyond what the skeleton's legs can do; "
-            "planting the feet uses the nearest posture"
-        ),
-    )
+    note = f"The motion goes up to {1000.0 * beyond_m:.0f} mm beyond what the skeleton's legs can do; "
+    return (note + "planting the feet uses the nearest posture",)
 
 
 def _is_moved_by_feet(bone: str) -> bool:
@@ -196,18 +220,6 @@ def _replaced(
     return changed
 
 
-def largest_leg_distance_m(rig: Rig, shown: RigPose, body: Body, posture: Posture) -> float:
-    """The largest distance of a leg's joint or end between a rig's poses and postures [m]."""
-    pose = body.pose(posture)
-    worst = 0.0
-    for index, bone in enumerate(rig.bones):
-        if _is_moved_by_feet(bone.name):
-            end = body.segment_ends(pose, bone.name)[1]
-            there = shown.points[:, rig.point_slices[index].start + 1]
-            worst = max(worst, float(np.linalg.norm(end - there, axis=-1).max()))
-    return worst
-
-
 def posed_indices(
     armature_object: bpy.types.Object,
     keyframe_action: bpy.types.Action | None,
@@ -221,41 +233,3 @@ def posed_indices(
     matched = unchanged_keyframes(armature_object, keyframe_action, skeleton, FOUND)
     posed = np.array(sorted(set(keyed) - set(matched)))
     return np.flatnonzero(np.isin(frames, np.round(posed)))
-
-
-def write_final(
-    armature_object: bpy.types.Object,
-    source: bpy.types.Action,
-    action: bpy.types.Action,
-    body: Body,
-    rig: Rig,
-    frames: Array,
-    motion: Sequence[Array] | Sequence[Spline],
-) -> int:
-    """Write a finished motion as ordinary keys, replacing all that the Action held for the actor.
-
-    Other curves of `source`, from which the motion was read (posed hands and feet, properties), are copied,
-    but for review curves. Returns the number of keys on the bones' curves.
-    """
-    channelbag = channelbag_for(action, armature_object)
-    for fcurve in list(channelbag.fcurves):
-        channelbag.fcurves.remove(fcurve)
-    count = 0
-    for bone, column, path, index in rig_channels(rig):
-        fcurve = ensure_fcurve(channelbag, path, index, rig.bones[bone].name)
-        held = motion[bone]
-        if isinstance(held, Spline):
-            write_smooth_keys(fcurve, frames[held.keys], held.values[:, column], held.slopes[:, column])
-        else:
-            write_linear_keys(fcurve, frames, held[:, column])
-        count += len(fcurve.keyframe_points)
-    written = set(moved_paths(armature_object, body.skeleton))
-    written |= {bone_path(bone.name, channel) for bone in rig.bones for channel in ALL_PATHS}
-    given = existing_channelbag(source, armature_object)
-    for fcurve in given.fcurves if given is not None else ():
-        if fcurve.data_path not in written and not is_review_curve(fcurve):
-            group = fcurve.group.name if fcurve.group is not None else armature_object.name
-            copy_keys(fcurve, ensure_fcurve(channelbag, fcurve.data_path, fcurve.array_index, group))
-    action.use_frame_range = True
-    action.frame_start, action.frame_end = float(frames[0]), float(frames[-1])
-    return count

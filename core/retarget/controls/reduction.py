@@ -8,6 +8,7 @@ moves nothing.
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -29,8 +30,9 @@ from .point_tolerances import (
 )
 
 NO_POINTS = np.zeros((0, 3))
-Toleranced = tuple[Array, Callable[[Array], Array]]
-"""A point (3,) in its control's axes [m], and its tolerance (F,) from its path (F, 3) in the armature's."""
+Toleranced = tuple[Array, Array | Callable[[Array], Array]]
+"""A point (3,) in its control's axes [m], and its tolerance (F,), or that from its path (F, 3) in the
+armature's."""
 Keyed = tuple[dict[int, KeyedControl], dict[int, ControlChannels]]
 """By index what is keyed on each control, and its channels with the poses that the keys show."""
 
@@ -55,7 +57,17 @@ def reduce_controls(
     if body:
         # Share of the work that the body's controls are, where others follow.
         done = 0.5 if following else 1.0
-        points = _body_points(motion, rules, body, {group.leg for group in following})
+        points: dict[int, list[Toleranced]] = {
+            index: [
+                (place, partial(_of_body, motion, rules, point)) for point, place in motion.points_of(index)
+            ]
+            for index in body
+        }
+        for name, limb in motion.limbs.items():  # the roots of the limbs that are fitted after it
+            follows = not limb.in_fk or name in {group.leg for group in following}
+            if limb.root_control in points and follows:
+                root_m = rules.reach_m(motion.joints_m(name), CARRIED_SHARE)
+                points[limb.root_control].append((motion.scale * limb.root_place, root_m))
         part = _reduced(motion, motion.channels, times, rules.body_m, of, points)
         keyed, shown = yield from scaled(part, 0.0, done)
     share = (1.0 - done) / max(len(following), 1)
@@ -193,7 +205,7 @@ def _reduced(
     for index, row in turned.items():
         start = rig.point_slices[row].start
         for column, (_, tolerance) in enumerate(points[index], start + 1):
-            allowed[:, column] = tolerance(target[:, column])
+            allowed[:, column] = tolerance(target[:, column]) if callable(tolerance) else tolerance
         if heads is not None and index in heads:
             allowed[:, start] = heads[index]
             allowed[:, rig.point_slices[moved.get(index, row)].start] = heads[index]
@@ -211,27 +223,6 @@ def _reduced(
     return keyed, shown
 
 
-# --- The body, and the limbs that hang on it in FK
-
-
-def _body_points(
-    motion: ControlMotion, rules: ToleranceRules, body: Sequence[int], legs: Collection[str | None]
-) -> dict[int, list[Toleranced]]:
-    """The points of the body's controls, and the roots of the limbs that are fitted after it."""
-
-    def held(point: HeldPoint) -> Callable[[Array], Array]:
-        return lambda path: rules.of(point, path, not motion.shows_ik(point.limb), rules.general_m)
-
-    def root(limb: str) -> Callable[[Array], Array]:
-        return lambda path: rules.reach_m(motion.joints_m(limb), CARRIED_SHARE)
-
-    found = {index: [(place, held(point)) for point, place in motion.points_of(index)] for index in body}
-    for name, limb in motion.limbs.items():
-        if limb.root_control in found and (name in legs or not limb.in_fk):
-            found[limb.root_control].append((motion.scale * limb.root_place, root(name)))
-    return found
-
-
 # --- What follows the body that its own few keys show
 
 
@@ -247,45 +238,38 @@ def _reduce_following(
     known = {index: shown.get(index, channels) for index, channels in enumerate(motion.channels)}
     carrier = known.get(group.carrier)
     known = {index: channels for index, channels in known.items() if index not in group.controls}
-    wanted = dict(motion.wanted) | _wanted(motion, rules, group, shown)
-    channels = control_channels(motion.controls, wanted, motion.size, known)
+    controls = [motion.controls[index] for index in group.controls]
+    if group.leg is None or group.carrier not in shown:
+        own = {control.name: _followed(motion, rules, control, shown) for control in controls}
+    else:
+        bones = {**motion.bones, **leg_on_body(motion, group.leg, shown[group.carrier])}
+        own = {
+            control.name: bones[control.plan.bone] @ np.linalg.inv(motion.offsets[control.name])
+            for control in controls
+        }
+    channels = control_channels(motion.controls, {**motion.wanted, **own}, motion.size, known)
 
-    def held(point: HeldPoint) -> Callable[[Array], Array]:
-        def tolerance(path: Array) -> Array:
-            if carrier is not None:
-                path = motion.scale * carrier.place + (carrier.turn @ path[..., None])[..., 0]
-            return _tolerance(motion, rules, group, point, path)
-
-        return tolerance
+    def held(point: HeldPoint, path: Array) -> Array:
+        if carrier is not None:
+            path = motion.scale * carrier.place + (carrier.turn @ path[..., None])[..., 0]
+        return _tolerance(motion, rules, group, point, path)
 
     points = {
-        index: [(place, held(point)) for point, place in motion.points_of(index)] for index in group.controls
+        index: [(place, partial(held, point)) for point, place in motion.points_of(index)]
+        for index in group.controls
     }
     heads = {}
-    for index in group.controls:
-        limb = str(motion.controls[index].plan.limb)
-        if motion.controls[index].plan.kind is ControlKind.POLE:
+    for index, plan in zip(group.controls, (control.plan for control in controls), strict=True):
+        if plan.kind is ControlKind.POLE:
+            limb = str(plan.limb)
             distance_m = motion.scale * motion.limbs[limb].pole_distance
             heads[index] = rules.pole_m(motion.joints_m(limb), distance_m)
     keyed, local = yield from _reduced(motion, channels, times, rules.body_m, of, points, heads)
     return keyed, local if carrier is None else {index: one.on(carrier) for index, one in local.items()}
 
 
-def _wanted(
-    motion: ControlMotion,
-    rules: ToleranceRules,
-    group: FollowingControls,
-    shown: Mapping[int, ControlChannels],
-) -> dict[str, Array]:
-    """(F, 4, 4) by control the poses of a group, given what the keys found so far show."""
-    controls = [motion.controls[index] for index in group.controls]
-    if group.leg is None or group.carrier not in shown:
-        return {control.name: _followed(motion, rules, control, shown) for control in controls}
-    bones = {**motion.bones, **leg_on_body(motion, group.leg, shown[group.carrier])}
-    return {
-        control.name: bones[control.plan.bone] @ np.linalg.inv(motion.offsets[control.name])
-        for control in controls
-    }
+def _of_body(motion: ControlMotion, rules: ToleranceRules, point: HeldPoint, path: Array) -> Array:
+    return rules.of(point, path, not motion.shows_ik(point.limb), rules.general_m)
 
 
 def _followed(

@@ -20,16 +20,13 @@ from ...body.skeleton import SIDES
 from ...feet.contacts import RELEASE_SPEED_M_S, Contact, speeds
 from ...feet.fading import Hold, ease, faded, held_turns, smooth_above
 from ...feet.ground import Ground
-from .foot_shape import FootShape, is_rigid
+from .foot_shape import FootShape
 from .hips import straightness
 from .stage import Stage
 from .two_bone import LimbPose
 
 FLAT_RAD = (np.radians(15.0), np.radians(30.0))
 """Tilt of a resting sole up to which it lies flat, and from which it stays as it is (on tiptoe, kneeling)."""
-LOW_M = (0.02, 0.10)
-"""Height of an ankle over its resting height up to which a foot without a turn of its own lies flat, and from
-which it is rigid with the shin."""
 TOUCHING_M = (0.01, 0.04)
 """Height of the performer's toe tip up to which it is on the ground, and from which it is in the air."""
 SLIDING_M_S = (0.4, 1.2)
@@ -52,21 +49,6 @@ class FootPath:
     planted: BoolArray  # (F,) whether the ankle must get there: the foot stands on the ground
     over_m: Array  # (F,) how much higher that is than with the sole on the ground [m]
     ground_m: Array  # (F,) height of the ground under it [m]
-
-
-def foot_turns(source: SegmentMotion, stage: Stage, ground: Ground, side: str) -> Array:
-    """(F, 3, 3) turns of the performer's foot on the stage; made flat near the ground where it has none."""
-    turn = np.asarray(stage.turn @ source.turn[f"foot.{side}"])
-    if not is_rigid(source, side):
-        return turn
-    over = source.start[f"foot.{side}"][:, 2] - ground.height_m[:, SIDES.index(side)] - ground.ankle_m
-    return leveled(turn, 1.0 - ease(over, *LOW_M))
-
-
-def leveled(turn: Array, share: Array) -> Array:
-    """Turns (F, 3, 3) of feet tilted back toward flat soles by shares (F,), headings kept."""
-    tilt = rotations.logarithm(rotations.smallest(turn[..., :, 2], np.broadcast_to(UP, turn.shape[:-1])))
-    return np.asarray(rotations.exponential(share[..., None] * tilt) @ turn)
 
 
 def plan_foot(
@@ -149,7 +131,7 @@ def _rolled(
 
     Nowhere is it pitched further than the ground lets it: a larger foot than the performer's lifts its toes.
     """
-    turn = foot_turns(source, stage, ground, side)
+    turn = np.asarray(stage.turn @ source.turn[f"foot.{side}"])
     point = SIDES.index(side)
     tip = source.start[f"foot.{side}"] + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[point][1]
     speed = speeds(tip, source.time_s)
@@ -197,8 +179,8 @@ def _about_x(angle_rad: Array) -> Array:
 def _standing(turn: Array) -> Array:
     """(3, 3) the turn of a foot throughout a rest: its mean, flat where it nearly is."""
     mean = Rotation.from_matrix(turn).mean().as_matrix()
-    tilt = np.arccos(np.clip(mean[2, 2], -1.0, 1.0))
-    return np.asarray(leveled(mean[None], 1.0 - ease(np.array([tilt]), *FLAT_RAD))[0])
+    flat = 1.0 - ease(np.arccos(np.clip(mean[2, 2], -1.0, 1.0)), *FLAT_RAD)
+    return rotations.exponential(flat * rotations.logarithm(rotations.smallest(mean[:, 2], UP))) @ mean
 
 
 def _still(source: SegmentMotion, ground: Ground, side: str) -> tuple[BoolArray, BoolArray]:

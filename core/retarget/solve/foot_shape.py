@@ -151,19 +151,9 @@ def _ahead(ways: Array) -> Array:
 def performer_ground(source: SegmentMotion) -> Ground:
     """The ground under a performer, whose feet are turned."""
     ankles = np.stack([source.start[f"foot.{side}"] for side in SIDES], axis=1)
+    turns = np.stack([source.turn[f"foot.{side}"][:, 2] for side in SIDES], axis=1)
     offsets = sole_offsets(source.body)
-    flat_m = -offsets[..., 2].min(axis=1)
-    depth_m = [
-        np.full(len(ankles), flat)
-        if is_rigid(source, side)
-        else -(source.turn[f"foot.{side}"][:, 2] @ sole.T).min(axis=1)
-        for side, sole, flat in zip(SIDES, offsets, flat_m, strict=True)
-    ]
+    depth_m = -np.einsum("fsi,ski->fsk", turns, offsets).min(axis=-1)
+    flat_m = -float(offsets[..., 2].min(axis=1).mean())
     rests = find_contacts(ankles, source.time_s)
-    depths = np.stack(depth_m, axis=1)
-    return find_ground(ankles, depths, float(flat_m.mean()), source.time_s, rests, on_scene=True)
-
-
-def is_rigid(source: SegmentMotion, side: str) -> bool:
-    """Whether a foot is only carried along by its shin."""
-    return bool(np.allclose(source.turn[f"foot.{side}"], source.turn[f"shin.{side}"], atol=1e-6))
+    return find_ground(ankles, depth_m, flat_m, source.time_s, rests, on_scene=True)

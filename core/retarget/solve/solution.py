@@ -14,7 +14,7 @@ from ...feet.ground import Ground
 from ..character import LIMBS, joint_roles
 from ..character_motion import FootRest, HandGoal
 from .body_frames import bone_turns, joint_places
-from .feet import FootPath, foot_turns, plan_foot, toe_bends
+from .feet import FootPath, plan_foot, toe_bends
 from .foot_shape import FootShape
 from .hands import above_floor, floor_goals, hand_goals, reach
 from .hips import DEEPEST_SHARE, SINK_S, needed_drop_m, raised_m
@@ -54,8 +54,6 @@ class Solution:
     ) -> "Solution":
         """The motion by the performer's directions alone."""
         turn = {name: stage.turn @ own for name, own in source.turn.items()}
-        for side in SIDES:
-            turn[f"foot.{side}"] = foot_turns(source, stage, ground, side)
         middle = stage.joints(0.5 * (source.start["thigh.L"] + source.start["thigh.R"]))
         if not body.is_moved("hips"):
             middle = np.broadcast_to(body.hip_joints, middle.shape).copy()

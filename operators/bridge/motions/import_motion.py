@@ -1,7 +1,7 @@
 """Import an animated armature from a file: its Action on whole frames, its rate, and a person's size."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from ....core.retarget.mended_armature import ArmaturePoints
 from ....core.retarget.solve.rest_body import RestBody
 from ....core.take.character_settings import CharacterFile
 from ....core.take.reference import ARMATURE_ENDINGS, ReferenceMotion
-from ..actions import assign_action, existing_channelbag
+from ..actions import assign_action, curves_of, existing_channelbag
 from ..blend_files import own_scene, showing_scene
 from ..character.import_character import ImportedCharacter, import_character
 from ..character.read_character import read_character
@@ -32,6 +32,7 @@ SLOWEST, FASTEST = 1.0, 1000.0  # frames a second of a motion
 LARGEST_BVH = 2**29
 UNITS = (1.0, 0.01, 0.1, 0.001, 0.0254, 0.3048, 100.0)
 """Meters that a file's unit may have: m, cm, dm, mm, inches, feet; and characters in hundreds of meters."""
+Curves = Mapping[tuple[str, int], bpy.types.FCurve]
 SHORTEST_LEG_M, LONGEST_LEG_M = 0.35, 1.5  # of a child and of a giant
 _RATE = re.compile(r"Frame\s+Time:\s*(\S+)", re.IGNORECASE)
 _FRAMES = re.compile(r"Frames:\s*(\S+)", re.IGNORECASE)
@@ -114,9 +115,7 @@ def load_motion(file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path
         action = armature.animation_data.action
         factor = scene.render.fps / scene.render.fps_base
         factor /= meanwhile.render.fps / meanwhile.render.fps_base
-        bag = existing_channelbag(action, armature)
-        if bag is not None:
-            _retime(bag, meanwhile.frame_start, factor, scene.frame_start)
+        _retime(curves_of(action, armature), meanwhile.frame_start, factor, scene.frame_start)
         for collection in list(meanwhile.collection.children):
             scene.collection.children.link(collection)
     except BaseException:
@@ -143,9 +142,9 @@ def armature_reference(path: Path, maps: Sequence[Path] = ()) -> ReferenceMotion
         return ReferenceMotion(points.of_poses(poses), scene.render.fps / scene.render.fps_base, str(path))
 
 
-def _retime(bag: bpy.types.ActionChannelbag, first: float, factor: float, start: float) -> None:
+def _retime(curves: Curves, first: float, factor: float, start: float) -> None:
     """Let keys begin at `start` instead of `first`, and follow at `factor` times their distance."""
-    for curve in bag.fcurves:
+    for curve in curves.values():
         for key in curve.keyframe_points:
             for handle in (key.co, key.handle_left, key.handle_right):
                 handle[0] = start + (handle[0] - first) * factor
@@ -223,11 +222,11 @@ def _set_to_keys(
     scene: bpy.types.Scene, armature: bpy.types.Object, action: bpy.types.Action, path: Path
 ) -> None:
     """Give the scene the rate of an Action's keys and its range; keys between frames come to lie on them."""
-    bag = existing_channelbag(action, armature)
-    curves = [] if bag is None else [curve for curve in bag.fcurves if len(curve.keyframe_points) > 1]
-    if not curves:
+    curves = curves_of(action, armature)
+    moving = [curve for curve in curves.values() if len(curve.keyframe_points) > 1]
+    if not moving:
         raise InputError(f"{path}: Action '{action.name}' has no keys over two frames, so it has no motion")
-    densest = max(curves, key=lambda curve: len(curve.keyframe_points))
+    densest = max(moving, key=lambda curve: len(curve.keyframe_points))
     times = np.empty(2 * len(densest.keyframe_points), np.float32)
     densest.keyframe_points.foreach_get("co", times)
     times = times[::2]
@@ -239,9 +238,7 @@ def _set_to_keys(
             raise InputError(
                 f"{path}: its keys follow at {rate / step:.4g} a second; {SLOWEST:g} to {FASTEST:g} are valid"
             )
-        first = float(times[0])
-        if bag is not None:
-            _retime(bag, first, 1.0 / step, 1.0)
+        _retime(curves, float(times[0]), 1.0 / step, 1.0)
         rate /= step
     # A step of 0.033333 s means 30 frames a second.
     _set_rate(scene, float(round(rate)) if abs(rate - round(rate)) < 5e-4 * rate else rate)

@@ -19,7 +19,7 @@ from ....core.retarget.mended_armature import ArmaturePoints, Poses
 from ....core.retarget.retarget_record import RECOGNIZED
 from ....core.retarget.solve.rest_body import RestBody
 from ....core.take.character_settings import AUTO
-from ..actions import existing_channelbag
+from ..actions import curves_of
 from ..actor_bones import is_actor
 from ..character.read_character import read_character
 from ..keys import MOTION, animator_frames, unchanged_frames
@@ -87,12 +87,10 @@ def action_frames(armature_object: bpy.types.Object, action: bpy.types.Action) -
 
 
 def _bone_curves(armature_object: bpy.types.Object, action: bpy.types.Action) -> list[bpy.types.FCurve]:
-    channelbag = existing_channelbag(action, armature_object)
-    curves = channelbag.fcurves if channelbag is not None else ()
     return [
         curve
-        for curve in curves
-        if curve.data_path.startswith("pose.bones[") and not curve.is_empty and not curve.mute
+        for (path, _), curve in curves_of(action, armature_object).items()
+        if path.startswith("pose.bones[") and not curve.is_empty and not curve.mute
     ]
 
 

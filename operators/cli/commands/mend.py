@@ -11,7 +11,7 @@ from ....core.finish.mend_motion import Mended, MendOptions, mend_motion
 from ....core.progress import run
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.session.result import AS_MADE, changed_files, kept_note, write_made_digests
-from ....core.take.character_settings import CharacterFile, CharacterSettings
+from ....core.take.character_settings import CharacterFile
 from ....core.take.conversion_record import BVH, CHARACTER_BLEND, CHARACTER_PICTURE, MOTION
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion import write_motion
@@ -59,19 +59,28 @@ def mend_command(arguments: argparse.Namespace) -> None:
             console.stage("Writing the motion")
             write_motion(motion, staging / MOTION)
             with blender_silence(arguments.debug):
+                from ...bridge.character.source import show_result
                 from ...bridge.motions.mend_action import write_actor_bvh
 
                 write_actor_bvh(motion, staging / BVH)
             if settings is not None:
-                notes = (
-                    *notes,
-                    *_onto_character(settings, mended, file, (staging, folder), console, arguments),
+                record = write_character_result(
+                    settings,
+                    motion,
+                    absolute_path(file.path).stem,
+                    lambda scene, shown: show_result(scene, None, shown),
+                    (staging, real_path(folder)),
+                    console,
+                    arguments.debug,
+                    formats,
+                    picture=False,
                 )
+                notes = (*notes, *record.doubts, *record.notes)
             made = [name for name in FILES if (staging / name).exists()]
             write_made_digests(staging, made)
             before = {MOTION: ""} if (folder / AS_MADE).exists() else {}
             kept.update(changed_files(folder, staging, FILES, (CHARACTER_BLEND,), before))
-        said = (*mended.notes, *notes, *(kept_note(*names) for names in kept.items()))
+        notes = (*mended.notes, *notes, *(kept_note(*names) for names in kept.items()))
         files = [str(folder / name) for name in made]
         summary = {
             "frames": len(motion.time_s),
@@ -80,10 +89,10 @@ def mend_command(arguments: argparse.Namespace) -> None:
             "posed": [index + motion.frame_start for index in motion.keyframe_indices],
             "exchanged": int(mended.exchanged.sum()),
             "rests": len(mended.contacts),
-            "notes": list(said),
+            "notes": list(notes),
             "files": files,
         }
-        lines = [f"Note: {note.rstrip('.')}." for note in said]
+        lines = [f"Note: {note.rstrip('.')}." for note in notes]
         lines.append(
             f"{len(motion.time_s)} frames at {motion.fps:g} a second, {len(mended.contacts)} rests of feet:"
         )
@@ -139,31 +148,6 @@ def _mend_armature(
                 paths = {name: hidden[other] for name, other in exports.items()}
                 write_character_files(scene, imported, action, hidden[CHARACTER_BLEND], paths)
     return found.mended, (*imported.notes, *chosen.doubts)
-
-
-def _onto_character(
-    settings: CharacterSettings,
-    mended: Mended,
-    file: CharacterFile,
-    folders: tuple[Path, Path],
-    console: Console,
-    arguments: argparse.Namespace,
-) -> tuple[str, ...]:
-    from ...bridge.character.source import show_result
-
-    staging, folder = folders
-    record = write_character_result(
-        settings,
-        mended.motion,
-        absolute_path(file.path).stem,
-        lambda scene, shown: show_result(scene, None, shown),
-        (staging, real_path(folder)),
-        console,
-        arguments.debug,
-        export_formats(arguments.format),
-        picture=False,
-    )
-    return (*record.doubts, *record.notes)
 
 
 def _motion_file(text: str) -> CharacterFile:

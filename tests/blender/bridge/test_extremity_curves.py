@@ -18,7 +18,7 @@ from keymark.operators.bridge.extremity_curves import (
     turned_extremities,
 )
 from keymark.operators.bridge.fcurves import write_motion
-from keymark.operators.bridge.finish_motion import FinishOptions, finish_motion, write_final
+from keymark.operators.bridge.finish_motion import FinishOptions, finish_motion
 from keymark.operators.bridge.keyframes import store_pose
 from mathutils import Euler, Matrix, Vector
 
@@ -149,7 +149,7 @@ def test_a_motion_of_rigid_feet_is_finished_as_it_is(actor: bpy.types.Object) ->
             bag.fcurves.remove(each)
     finished = run(finish_motion(actor, action, None, FinishOptions(None, False, None), 1.0 / FPS))
     final = bpy.data.actions.new("Final")
-    write_final(actor, action, final, finished.body, finished.rig, finished.frames, finished.motion)
+    finished.write(actor, action, final)
     paths = {one.data_path for one in existing_channelbag(final, actor).fcurves}
     assert not any("foot" in path or "hand" in path for path in paths)
 

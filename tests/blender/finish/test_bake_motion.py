@@ -10,7 +10,7 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.progress import run
 from keymark.core.take.motion import Motion
-from keymark.operators.bridge.actions import assign_action, existing_channelbag
+from keymark.operators.bridge.actions import assign_action, curves_of, existing_channelbag
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.extremity_curves import straighten_extremities
@@ -76,8 +76,7 @@ def places(take: bpy.types.PropertyGroup, action: bpy.types.Action, shown_points
 def curves(
     take: bpy.types.PropertyGroup, action: bpy.types.Action
 ) -> dict[tuple[str, int], bpy.types.FCurve]:
-    found = existing_channelbag(action, take.armature).fcurves
-    return {(curve.data_path, curve.array_index): curve for curve in found}
+    return curves_of(action, take.armature)
 
 
 @pytest.mark.parametrize("shared", ["PER_BONE", "WHOLE_POSE"])
@@ -179,26 +178,22 @@ def test_baking_again_writes_into_the_same_action(take: bpy.types.PropertyGroup)
     )
 
 
-def test_other_curves_of_the_motion_come_along(take: bpy.types.PropertyGroup) -> None:
+def test_other_curves_come_along_and_what_judges_the_motion_stays_behind(
+    take: bpy.types.PropertyGroup,
+) -> None:
     channelbag = existing_channelbag(take.motion_action, take.armature)
     for curve in [curve for curve in channelbag.fcurves if '"hand.L"' in curve.data_path]:
         channelbag.fcurves.remove(curve)
-    assign_action(take.armature, take.motion_action)
-    hand = take.armature.pose.bones["hand.L"]
-    for frame in (3, 9):
-        hand.keyframe_insert("rotation_quaternion", frame=frame)
-    bpy.ops.keymark.bake_motion()
-    points = curves(take, take.finish.action)['pose.bones["hand.L"].rotation_quaternion', 0].keyframe_points
-    assert [point.co.x for point in points] == [3.0, 9.0]
-
-
-def test_what_judges_the_motion_stays_behind(take: bpy.types.PropertyGroup) -> None:
-    channelbag = existing_channelbag(take.motion_action, take.armature)
     for path in (curve_path("Confidence"), '["mood"]'):
         channelbag.fcurves.new(path, index=0).keyframe_points.insert(4.0, 0.5)
+    assign_action(take.armature, take.motion_action)
+    for frame in (3, 9):
+        take.armature.pose.bones["hand.L"].keyframe_insert("rotation_quaternion", frame=frame)
     bpy.ops.keymark.bake_motion()
-    paths = {path for path, _ in curves(take, take.finish.action)}
-    assert '["mood"]' in paths and curve_path("Confidence") not in paths
+    final = curves(take, take.finish.action)
+    points = final['pose.bones["hand.L"].rotation_quaternion', 0].keyframe_points
+    assert [point.co.x for point in points] == [3.0, 9.0]
+    assert ('["mood"]', 0) in final and (curve_path("Confidence"), 0) not in final
 
 
 def test_the_rig_shows_what_blender_shows(take: bpy.types.PropertyGroup, shown_points: ShownPoints) -> None:
@@ -213,14 +208,12 @@ def test_the_rig_shows_what_blender_shows(take: bpy.types.PropertyGroup, shown_p
     assert apart.max() < 1e-5
 
 
-def test_without_a_motion_the_tooltip_says_so(take: bpy.types.PropertyGroup) -> None:
-    take.motion_action = None
-    with pytest.raises(RuntimeError, match="Reconstruct the motion first"):
-        bpy.ops.keymark.bake_motion()
-
-
-def test_an_action_of_one_frame_is_refused_with_a_sentence(take: bpy.types.PropertyGroup) -> None:
-    take.motion_action = bpy.data.actions.new("Empty")
-    with pytest.raises(RuntimeError, match="has no motion of 'Actor'"):
-        bpy.ops.keymark.bake_motion()
-    assert take.finish.action is None
+def test_what_has_no_motion_is_refused_with_a_sentence(take: bpy.types.PropertyGroup) -> None:
+    for action, sentence in (
+        (None, "Reconstruct the motion first"),
+        (bpy.data.actions.new("Empty"), "has no motion of 'Actor'"),
+    ):
+        take.motion_action = action
+        with pytest.raises(RuntimeError, match=sentence):
+            bpy.ops.keymark.bake_motion()
+        assert take.finish.action is None

@@ -71,3 +71,10 @@ def test_the_ground_under_a_foot_changes_just_before_it_steps_up_and_after_it_st
     assert (np.diff(height_m[30 - whole : 31]) > 0.0).all()
     assert (np.diff(height_m[40 : 41 + whole]) < 0.0).all()
     np.testing.assert_array_equal(_under(1, rests, np.array([0.0, 0.2, -0.1]), time_s), height_m)
+
+
+def test_the_ground_goes_evenly_between_rests_that_differ_by_noise_and_on_to_the_other_foots() -> None:
+    rests = [Contact(point, first, first + 10, np.zeros(3)) for point, first in ((0, 0), (0, 30), (1, 50))]
+    left, right = (_under(point, rests, np.array([0.0, 0.02, 0.5]), np.arange(71) / 30.0) for point in (0, 1))
+    np.testing.assert_allclose(left[[5, 20, 35, 60]], [0.0, 0.01, 0.02, 0.5])
+    np.testing.assert_allclose(right, left)

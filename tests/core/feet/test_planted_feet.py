@@ -1,6 +1,7 @@
 """Planted feet: what rests stands still, what moves goes on moving, and nothing jumps."""
 
 import numpy as np
+import pytest
 from _scene import BODY
 from keymark.core.body.posture import Posture
 from keymark.core.feet.contacts import Contact, find_contacts
@@ -97,6 +98,13 @@ def test_a_foot_held_up_does_not_rest_on_air() -> None:
     contacts = find_contacts(path, TIME_S)
     assert len(contacts) == 1
     assert contacts[0].first > 28
+
+
+@pytest.mark.parametrize(("high_m", "rests"), [(0.2, [0, 1]), (0.4, [1])], ids=["on a stool", "in the air"])
+def test_a_foot_held_still_high_over_the_other_does_not_rest(high_m: float, rests: list[int]) -> None:
+    path = np.zeros((60, 2, 3))
+    path[:, 0, 2] = high_m
+    assert [contact.point for contact in find_contacts(path, TIME_S)] == rests
 
 
 def test_a_motion_without_a_rest_is_returned_as_it_is() -> None:

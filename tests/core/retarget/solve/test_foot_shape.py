@@ -10,16 +10,11 @@ from keymark.core.retarget.solve.foot_shape import HEEL_BEHIND, foot_shape, rest
 from keymark.core.retarget.solve.rest_body import RestBody
 
 
-def test_a_character_on_its_origin_stands_on_it() -> None:
-    character = plain_character()
-    assert rest_floor_m(RestBody.of(character, plain_map(character))) == 0.0
-
-
-@pytest.mark.parametrize("height", [-0.82, 3.0])
-def test_a_character_off_its_origin_stands_under_its_toes(height: float) -> None:
+@pytest.mark.parametrize("height", [0.0, -0.82, 3.0])
+def test_a_character_stands_on_its_origin_or_off_it_under_its_toes(height: float) -> None:
     character, character_map = shaped(lambda _, place: place + [0.0, 0.0, height])
     floor_m = rest_floor_m(RestBody.of(character, character_map))
-    assert height - 0.02 < floor_m < height + 0.015
+    assert height - 0.02 < floor_m < height + 0.015 and (floor_m == 0.0) == (height == 0.0)
 
 
 @pytest.mark.parametrize("without", [(), ("toe",)])
@@ -64,9 +59,7 @@ def test_tails_are_believed_where_they_meet_heads() -> None:
     meant, anywhere = RestBody.of(character, character_map), RestBody.of(astray, character_map)
     assert meant.tails_are_meant and not anywhere.tails_are_meant
     assert anywhere.tip("toe.L") is None
-    lengths = [np.ptp(foot_shape(body, "L", 0.0).toe[:, 1]) for body in (meant, anywhere)]
     tips = [foot_shape(body, "L", 0.0).toe[:, 1].min() for body in (meant, anywhere)]
-    assert len(lengths) == 2
     np.testing.assert_allclose(tips, [-0.08, -0.052], atol=0.01)
 
 

@@ -1,5 +1,6 @@
 """A performer's motion on characters of many shapes: directions, feet, place, and what is left alone."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,12 +18,12 @@ from _performances import (
     steps_elsewhere,
 )
 from keymark.core.arrays import Array
-from keymark.core.body.kinematics import RIGID, segment_motion
+from keymark.core.body.kinematics import SegmentMotion, segment_motion
 from keymark.core.body.posture import Posture, yaw_rotation
 from keymark.core.errors import InputError
 from keymark.core.feet.natural_extremities import natural_extremities
 from keymark.core.retarget.character import LONG_BONES, Character
-from keymark.core.retarget.character_motion import Similarity
+from keymark.core.retarget.character_motion import CharacterMotion, Similarity
 from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones
 from keymark.core.retarget.quality import direction_errors_deg
 from keymark.core.retarget.recognition.recognize import recognize
@@ -77,26 +78,40 @@ SHAPES = {
 }
 
 
+def assert_stands(
+    character: Character,
+    character_map: CharacterMap,
+    motion: CharacterMotion,
+    source: SegmentMotion | None = None,
+) -> None:
+    """Resting feet do not slide, none is in the ground, and legs are about as the performer's."""
+    figures = quality(character, character_map, source or steps(), motion)
+    assert motion.rests and (figures.skate_worst_mm or 0.0) < 0.01
+    assert (figures.penetration_mm or 0.0) < 0.1
+    assert figures.legs_deg is not None and figures.legs_deg < 1.5
+    assert figures.legs_worst_deg is not None and figures.legs_worst_deg < 8.0
+
+
+def assert_points_alike(character_map: CharacterMap, motion: CharacterMotion, limbs: Sequence[str]) -> None:
+    """The limbs point where the performer's do."""
+    for limb in limbs:
+        shown = joints(character_map, motion)
+        errors = direction_errors_deg(source_joints(steps()), shown, LONG_BONES[limb])
+        assert errors.shape == (118, 2) and errors.max() < 0.01
+
+
 @pytest.mark.parametrize("shape", SHAPES)
 def test_limbs_point_where_the_performers_do(shape: str) -> None:
     character, character_map = SHAPES[shape]()
-    shown = joints(character_map, solved(character, character_map, steps(), FREE))
-    for bones in LONG_BONES.values():
-        errors = direction_errors_deg(source_joints(steps()), shown, bones)
-        assert errors.shape == (118, 2)
-        assert errors.max() < 0.01
+    assert_points_alike(character_map, solved(character, character_map, steps(), FREE), tuple(LONG_BONES))
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_feet_stand_still_on_the_ground(shape: str) -> None:
     character, character_map = SHAPES[shape]()
     motion = solved(character, character_map, steps())
-    figures = quality(character, character_map, steps(), motion)
+    assert_stands(character, character_map, motion)
     assert len(motion.rests) == 4
-    assert figures.skate_worst_mm is not None and figures.skate_worst_mm < 0.01
-    assert figures.penetration_mm is not None and figures.penetration_mm < 0.1
-    assert figures.legs_deg is not None and figures.legs_deg < 1.5
-    assert figures.legs_worst_deg is not None and figures.legs_worst_deg < 8.0
 
 
 @pytest.mark.parametrize("shape", ["T", "bare", "wide", "short"])
@@ -169,9 +184,7 @@ def test_the_character_may_stay_where_it_is() -> None:
     options = RetargetOptions(place=Placement.CHARACTER)
     motion = solved(character, character_map, steps_elsewhere(), options, here)
     assert motion.to_world is here
-    figures = quality(character, character_map, steps_elsewhere(), motion)
-    assert figures.legs_deg is not None and figures.legs_deg < 1.5
-    assert figures.penetration_mm is not None and figures.penetration_mm < 0.1
+    assert_stands(character, character_map, motion, steps_elsewhere())
     np.testing.assert_allclose(joints(character_map, motion)["hips"][0, :2], [5.0, 6.0], atol=0.02)
 
 
@@ -213,8 +226,7 @@ def test_roles_left_alone_go_with_what_carries_them() -> None:
     chest, arm = motion.poses["chest"], motion.poses["upper_arm.L"]
     local = np.linalg.solve(chest, arm)[:, :3, 3]
     np.testing.assert_allclose(local, local[:1].repeat(len(local), 0), atol=1e-9)
-    errors = direction_errors_deg(source_joints(steps()), joints(character_map, motion), LONG_BONES["arm.L"])
-    assert errors.max() < 0.01
+    assert_points_alike(character_map, motion, ("arm.L",))
 
 
 def test_a_leg_left_alone_is_not_planted() -> None:
@@ -272,13 +284,8 @@ def test_characters_of_other_conventions(name: str) -> None:
     character = shared_characters()[name]
     character_map = recognize(character).character_map
     motion = solved(character, character_map, steps())
-    figures = quality(character, character_map, steps(), motion)
-    assert figures.skate_worst_mm is not None and figures.skate_worst_mm < 0.01
-    assert figures.penetration_mm is not None and figures.penetration_mm < 0.1
-    assert figures.legs_deg is not None and figures.legs_deg < 1.5
-    free = joints(character_map, solved(character, character_map, steps(), FREE))
-    for bones in LONG_BONES.values():
-        assert direction_errors_deg(source_joints(steps()), free, bones).max() < 0.01
+    assert_stands(character, character_map, motion)
+    assert_points_alike(character_map, solved(character, character_map, steps(), FREE), tuple(LONG_BONES))
 
 
 def test_a_bone_in_two_roles_is_refused() -> None:
@@ -323,23 +330,7 @@ def test_uneven_frames() -> None:
     source = segment_motion(body, few, time_s, natural_extremities(body, few, time_s))
     character = plain_character()
     character_map = plain_map(character)
-    figures = quality(character, character_map, source, solved(character, character_map, source))
-    assert figures.skate_worst_mm is not None and figures.skate_worst_mm < 0.01
-    assert figures.penetration_mm is not None and figures.penetration_mm < 0.1
-
-
-def test_feet_that_are_rigid_with_the_shins_lie_flat_at_rest() -> None:
-    body, posture = stepping()
-    source = segment_motion(body, posture, np.arange(posture.batch[0]) / 30.0, RIGID)
-    character = plain_character()
-    character_map = plain_map(character)
-    motion = solved(character, character_map, source)
-    figures = quality(character, character_map, source, motion)
-    assert figures.penetration_mm is not None and figures.penetration_mm < 0.1
-    rest = motion.rests[0]
-    foot = motion.poses[f"foot.{rest.limb[-1]}"][rest.first : rest.last + 1, :3, :3]
-    sole = foot @ character.bone("foot.L").rest[:3, :3].T @ [0.0, 0.0, 1.0]
-    np.testing.assert_allclose(sole, [[0.0, 0.0, 1.0]] * len(sole), atol=0.02)
+    assert_stands(character, character_map, solved(character, character_map, source), source)
 
 
 def test_a_map_with_its_sides_mistaken_is_named() -> None:
