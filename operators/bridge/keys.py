@@ -27,6 +27,20 @@ ENUMS = ("interpolation", "easing", "handle_left_type", "handle_right_type", "ty
 FLAGS = ("select_control_point", "select_left_handle", "select_right_handle")
 
 
+_revision = 0
+
+
+def revision() -> int:
+    """A number that is another one after every change of keys that is known of."""
+    return _revision
+
+
+def keys_changed() -> None:
+    """Keys have changed, or may have: by a person, by undo, by a script before an operator."""
+    global _revision  # noqa: PLW0603
+    _revision += 1
+
+
 @dataclass(frozen=True)
 class KeyKind:
     """A kind of keys that Keymark writes and tells from others."""
@@ -103,6 +117,7 @@ def _write_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
     for name in (*ENUMS, *FLOATS, *PAIRS, *FLAGS):
         points.foreach_set(name, keys[name].ravel())
     fcurve.update()
+    keys_changed()
 
 
 def _new_keys(frames: Array, values: Array, kind: KeyKind) -> Keys:
@@ -236,6 +251,7 @@ def _keep(
         _write_keys(fcurve, _chosen(keys, kept))
     else:
         channelbag.fcurves.remove(fcurve)
+        keys_changed()
 
 
 def mark_generated(channelbag: bpy.types.ActionChannelbag) -> None:

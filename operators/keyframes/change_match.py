@@ -6,7 +6,7 @@ from ...core.body.human import HUMAN
 from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.contradictions import note_contradictions
 from ..shell.fields import Choice, Switch
-from ..shell.keyed_frames import doubtful_matches, invalidate_keyed_frames, match_at, state_of
+from ..shell.keyed_frames import doubtful_matches, match_at, state_of
 from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take
 from .found_keyframes import chosen_match, undecided_matches
@@ -40,7 +40,6 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         take, now = active_take(context.scene), context.scene.frame_current_final
-        invalidate_keyed_frames()
         if self.only_doubtful:  # the most doubtful one or, where that is shown, the one after it
             places, here = doubtful_matches(take), match_at(take, now)
             at = places.index(here) if here in places else None
@@ -67,13 +66,11 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
 
         take = active_take(context.scene)
         match = chosen_match(take)
-        invalidate_keyed_frames()
         if state_of(take, match) != "FOUND":
             raise Unchanged(f"frame {match.frame:g} is no found keyframe any more")
         frame = round(match.frame, 3)
         take_over(take.armature, take.keyframe_action, HUMAN, (frame,))
         note_contradictions(take, frame, ())
-        invalidate_keyed_frames()
         self.report({"INFO"}, f"Frame {frame:g} counts as right in the picture now")
 
 
@@ -88,11 +85,9 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
 
         take = active_take(context.scene)
         matching, match = take.matching, chosen_match(take)
-        invalidate_keyed_frames()
         frame = round(match.frame, 3)
         if state_of(take, match) == "FOUND":
             remove_keyframes(take.armature, take.keyframe_action, HUMAN, (frame,))
-            invalidate_keyed_frames()
         note_contradictions(take, frame, ())
         removed = matching.shown_match
         matching.matches.remove(removed)

@@ -16,7 +16,6 @@ from ..shell.keyed_frames import (
     SAME_FRAME,
     depth_is_found,
     has_frame,
-    invalidate_keyed_frames,
     keyframes_of,
     show_keyframes,
 )
@@ -76,7 +75,6 @@ def set_corrected(
 
     show_keyframes(take)
     write_posture(take.armature, posture)
-    invalidate_keyed_frames()
     redraw_footage(context)
     frame = context.scene.frame_current_final
     if not is_keyed(take, frame):
@@ -141,7 +139,6 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
         from ..bridge.scene_frames import at_scene_frame, showing_action
 
         take, scene = active_take(context.scene), context.scene
-        invalidate_keyed_frames()
         now, keyed = scene.frame_current_final, keyframes_of(take)
         if self.direction == "NEXT":
             neighbor = min((frame for frame in keyed if frame > now + SAME_FRAME), default=None)

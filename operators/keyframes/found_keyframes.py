@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import InputError
-from ..shell.keyed_frames import invalidate_keyed_frames, matched_frames
+from ..shell.keyed_frames import matched_frames
 
 if TYPE_CHECKING:
     from ...core.prior.keyframes import Matched
@@ -22,7 +22,6 @@ def undecided_matches(take: bpy.types.PropertyGroup) -> "dict[float, Matched]":
 
 
 def _untouched(take: bpy.types.PropertyGroup) -> list[bpy.types.PropertyGroup]:
-    invalidate_keyed_frames()  # a script may have changed a key that Blender has not told of yet
     untouched = set(matched_frames(take))
     return [match for match in take.matching.matches if round(match.frame, 3) in untouched]
 

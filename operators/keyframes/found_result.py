@@ -16,7 +16,7 @@ from ..bridge.footage_camera import set_still_pose
 from ..bridge.keyframes import remove_keyframes, take_over
 from ..shell.base_operator import capitalized
 from ..shell.contradictions import note_contradictions
-from ..shell.keyed_frames import has_frame, invalidate_keyed_frames, posed_frames, state_of
+from ..shell.keyed_frames import has_frame, posed_frames, state_of
 from ..shell.results import keep_reading
 from ..shell.takes import actor_of, take_by_identifier
 from .found_keyframes import undecided_matches
@@ -74,7 +74,6 @@ def clear_found(take: bpy.types.PropertyGroup) -> int:
             matching.matches.remove(index)
     for name in ("reason", "fit", "floor_found", "active_match"):
         matching.property_unset(name)
-    invalidate_keyed_frames()
     return len(undecided)
 
 
@@ -98,4 +97,3 @@ def write_found(
     if keyframes:
         frames = clip_frames[[keyframe.index for keyframe in keyframes]]
         key_matches(take, frames, [keyframe.posture for keyframe in keyframes])
-    invalidate_keyed_frames()

@@ -13,7 +13,7 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture, headings_rad, yaw_rotation
 from ..bridge.actions import assign_action
 from ..bridge.keyframes import candidate_posture, write_matched
-from ..shell.keyed_frames import invalidate_keyed_frames, new_keyframe_action, straighten_unposed
+from ..shell.keyed_frames import new_keyframe_action, straighten_unposed
 from ..shell.takes import actor_of
 from .found_properties import PLACE_VALUES
 
@@ -69,7 +69,6 @@ def key_matches(take: bpy.types.PropertyGroup, frames: Array, postures: Sequence
     write_matched(actor, take.keyframe_action, frames, postures)
     straighten_unposed(take)
     assign_action(actor, take.keyframe_action)
-    invalidate_keyed_frames()
 
 
 def key_candidate(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> None:

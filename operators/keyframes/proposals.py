@@ -11,7 +11,7 @@ from ..follow.evidence import scene_evidence
 from ..shell.base_operator import BaseOperator, Unchanged, warn
 from ..shell.fields import Choice, Switch
 from ..shell.job_operator import JobOperator
-from ..shell.keyed_frames import invalidate_keyed_frames, proposed_frames, unposed_proposals
+from ..shell.keyed_frames import proposed_frames, unposed_proposals
 from ..shell.notices import give_notices
 from ..shell.requirements import all_colors, footage, idle
 from ..shell.results import keep_reading, keep_speed, reading_of
@@ -114,7 +114,6 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         scene, take = context.scene, find_take(context.scene)
-        invalidate_keyed_frames()
         frames = unposed_proposals(take) if self.skip_posed else proposed_frames(take)
         if not frames:
             raise Unchanged("all proposed keyframes are posed")

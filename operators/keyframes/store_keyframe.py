@@ -19,7 +19,6 @@ from ..shell.keyed_frames import (
     SAME_FRAME,
     depth_is_found,
     has_frame,
-    invalidate_keyed_frames,
     keyframes_of,
     match_at,
     new_keyframe_action,
@@ -149,7 +148,6 @@ def key_pose(context: bpy.types.Context, take: bpy.types.PropertyGroup, depth_fo
     assign_action(take.armature, take.keyframe_action)
     note_contradictions(take, frame, ())
     take.offered.candidates.clear()
-    invalidate_keyed_frames()
     return 0 if depth_found else improve_neighbors(context, take, frame)
 
 

@@ -14,7 +14,6 @@ from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.fields import Choice
 from ..shell.keyed_frames import (
     depth_is_found,
-    invalidate_keyed_frames,
     new_keyframe_action,
     straighten_unposed,
 )
@@ -96,7 +95,6 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         assign_action(take.armature, action)
         whole = int(frame // 1.0)
         scene.frame_set(whole, subframe=frame - whole)
-        invalidate_keyed_frames()
         self.report({"INFO"}, f"Stored the reconstructed pose at frame {frame:g}; now correct it")
 
 

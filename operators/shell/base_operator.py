@@ -10,6 +10,7 @@ from typing import ClassVar
 import bpy
 
 from ...core.errors import InputError, KeymarkError
+from ..bridge.keys import keys_changed
 from .requirements import Requirement, all_met
 from .takes import redraw_sidebars_soon
 
@@ -88,6 +89,7 @@ class BaseOperator:
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Run; an expected failure becomes the operator's error report, and the operator is cancelled."""
+        keys_changed()  # a script may have set some that Blender has called no handler for yet
         with reported(self):
             return self.run(context) or {"FINISHED"}
         return {"CANCELLED"}

@@ -14,6 +14,7 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import run as run_job
+from ..bridge.keys import keys_changed
 from .base_operator import BaseOperator, capitalized, reported
 from .job_progress import time_left
 from .takes import redraw_sidebars, redraw_sidebars_soon
@@ -73,7 +74,9 @@ class JobOperator(BaseOperator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Run the whole job at once."""
-        self.finish(context.scene, run_job(self.start(context.scene)))
+        result = run_job(self.start(context.scene))
+        keys_changed()  # a script may have set some meanwhile
+        self.finish(context.scene, result)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Run the job in time slices, so that the user interface stays alive."""

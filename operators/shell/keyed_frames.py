@@ -13,6 +13,7 @@ from ...core.arrays import BoolArray
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ..bridge.actions import assign_action
+from ..bridge.keys import FOUND, PICTURED, keys_changed, revision
 from ..bridge.object_space import evaluated
 from .contradictions import contradictions_at
 
@@ -73,8 +74,8 @@ class KeyedFrames:
     pictured: tuple[float, ...] = ()  # those that a person put right in the picture alone
 
 
-_keyed: dict[tuple[int, int], KeyedFrames] = {}
-"""By the session numbers (`session_uid`) of an armature and an Action."""
+_keyed: dict[tuple[int, int, int], KeyedFrames] = {}
+"""By the session numbers (`session_uid`) of an armature and an Action, and the revision of keys."""
 
 
 def keyframes_of(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
@@ -106,11 +107,12 @@ def depth_is_found(take: bpy.types.PropertyGroup, frame: float) -> bool:
 def _keyed_of(take: bpy.types.PropertyGroup) -> KeyedFrames:
     if take.armature is None or take.keyframe_action is None:
         return KeyedFrames()
-    key = take.armature.session_uid, take.keyframe_action.session_uid
+    key = take.armature.session_uid, take.keyframe_action.session_uid, revision()
     if key not in _keyed:
         from ..bridge.keyframes import keyed_frames, unchanged_keyframes
-        from ..bridge.keys import FOUND, PICTURED
 
+        for earlier in [each for each in _keyed if each[-1] != key[-1]]:
+            del _keyed[earlier]
         source = take.armature, take.keyframe_action, HUMAN
         try:
             found, pictured = (unchanged_keyframes(*source, kind) for kind in (FOUND, PICTURED))
@@ -154,41 +156,25 @@ def unposed_proposals(take: bpy.types.PropertyGroup | None) -> list[int]:
     return [frame for frame in proposed_frames(take) if frame not in keyed]
 
 
-def invalidate_keyed_frames() -> None:
-    """Empty the cache: the next query reads the keys again."""
-    _keyed.clear()
-
-
 @persistent
-def _on_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+def _on_change(_scene: object = None, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     if depsgraph is None or depsgraph.id_type_updated("ACTION"):
-        invalidate_keyed_frames()
+        keys_changed()
 
 
-@persistent
-def _on_load(*_arguments: object) -> None:
-    invalidate_keyed_frames()
-
-
-HANDLERS = {
-    "depsgraph_update_post": _on_change,
-    "load_post": _on_load,
-    "undo_post": _on_load,
-    "redo_post": _on_load,
-}
+HANDLERS = ("depsgraph_update_post", "load_post", "undo_post", "redo_post")
 
 
 def register() -> None:
-    """Add handlers that empty the cache when keys may have changed."""
-    for name, handler in HANDLERS.items():
-        getattr(bpy.app.handlers, name).append(handler)
+    """Add handlers that tell when keys may have changed."""
+    for name in HANDLERS:
+        getattr(bpy.app.handlers, name).append(_on_change)
 
 
 def unregister() -> None:
     """Remove the handlers."""
-    for name, handler in HANDLERS.items():
-        getattr(bpy.app.handlers, name).remove(handler)
-    invalidate_keyed_frames()
+    for name in HANDLERS:
+        getattr(bpy.app.handlers, name).remove(_on_change)
 
 
 # --- Found keyframes of a take, those that nobody posed

@@ -5,8 +5,9 @@ from collections.abc import Callable
 import bpy
 
 from ..bridge.actor_bones import is_actor, missing_bones
+from ..bridge.keys import keys_changed
 from .job_progress import job_is_running
-from .keyed_frames import invalidate_keyed_frames, keyframes_of
+from .keyed_frames import keyframes_of
 from .takes import find_take, has_lost_actor, present_actor
 
 Requirement = Callable[[bpy.types.Context], str | None]
@@ -68,7 +69,7 @@ def two_keyframes(context: bpy.types.Context) -> str | None:
     if take is None or take.keyframe_action is None:
         return keyframes(context)
     if len(keyframes_of(take)) == 1:
-        invalidate_keyed_frames()  # a script may have set a key for which Blender has called no handler yet
+        keys_changed()  # a script may have set a key for which Blender has called no handler yet
     if len(keyframes_of(take)) == 1:
         return "Store a keyframe at another frame first; there is only one"
     return None

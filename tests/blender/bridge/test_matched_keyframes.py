@@ -25,13 +25,12 @@ from keymark.operators.bridge.keyframes import (
     unchanged_keyframes,
     write_matched,
 )
-from keymark.operators.bridge.keys import FOUND
+from keymark.operators.bridge.keys import FOUND, keys_changed
 from keymark.operators.bridge.pose import read_posture
 from keymark.operators.bridge.take_from_scene import read_scene_take
 from keymark.operators.follow.evidence import scene_evidence
 from keymark.operators.keyframes.found_keyframes import known_matches
 from keymark.operators.shell.keyed_frames import (
-    invalidate_keyed_frames,
     keyframes_of,
     matched_frames,
     posed_frames,
@@ -171,7 +170,7 @@ def test_matched_keyframes_are_taken_over_and_removed(take: bpy.types.PropertyGr
     key = key_at(take, 'pose.bones["chest"].rotation_quaternion', 0, 7.0)
     assert key.type == "KEYFRAME" and key.amplitude != FOUND.amplitude
     remove_keyframes(armature_object, action, HUMAN, (7.0,))
-    invalidate_keyed_frames()
+    keys_changed()
     assert keyed_frames(armature_object, action, HUMAN) == keyframes_of(take) == (1.0, 13.0)
 
 
