@@ -2,7 +2,7 @@
 
 import json
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -95,6 +95,15 @@ def named(rows: np.ndarray) -> dict[str, Any]:
 def write_json(path: Path, value: Any) -> None:
     """Write without any of the product's own code."""
     path.write_text(json.dumps(value), encoding="utf-8")
+
+
+def edit_json(path: Path, change: Callable[[Any], object] | None = None, **fields: Any) -> Path:
+    """Change a JSON file, which may be new, by a function or by fields; returns the file."""
+    value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    if change is not None:
+        change(value)
+    write_json(path, {**value, **fields} if fields else value)
+    return path
 
 
 def drawn_frames(posture: Posture, seed: int = 7) -> Iterator[np.ndarray]:

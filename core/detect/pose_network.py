@@ -91,10 +91,8 @@ class PoseNetwork:
         Two looks at a time with one thread each are faster than several threads for one look.
         """
         with ThreadPoolExecutor(max(1, min(len(looks), cv2.getNumThreads(), MOST_AT_ONCE))) as pool:
-            return list(pool.map(lambda look: self._look(*look), looks))
-
-    def _look(self, picture: Image, crop: Crop) -> Pose:
-        return self.postprocess(self.infer(self.preprocess(picture, crop)), crop)
+            seen = pool.map(lambda look: self.infer(self.preprocess(*look)), looks)
+            return [self.postprocess(out, crop) for out, (_, crop) in zip(seen, looks, strict=True)]
 
     def preprocess(self, picture: Image, crop: Crop) -> SingleArray:
         """The network's input (1, 3, 256, 256), red first, 0 to 1."""

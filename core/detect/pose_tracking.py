@@ -199,7 +199,11 @@ def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[P
     found: list[Pose] = []
     for number, side in enumerate(sides):
         there = [pose.crop for pose in chain(known, found)]
-        crops = [crop for crop in _grid(picture, side) if not any(_overlap(crop, one) for one in there)]
+        crops = [
+            crop
+            for crop in _grid(picture, side)
+            if all(np.hypot(*(crop.center - one.center)) >= APART * one.side for one in there)
+        ]
         small = SMALLEST * largest
         for pose in _settled(network, picture, crops):
             new = pose.crop.side > small and not _is_among(pose, [*known, *found])
@@ -231,10 +235,6 @@ def _grid(picture: Image, side: float) -> Iterator[Crop]:
 
 def _is_inside(pose: Pose, picture: Image) -> bool:
     return bool((pose.crop.center > 0.0).all() and (pose.crop.center < picture.shape[1::-1]).all())
-
-
-def _overlap(first: Crop, second: Crop) -> bool:
-    return bool(np.hypot(*(first.center - second.center)) < APART * second.side)
 
 
 def _is_among(pose: Pose, others: Sequence[Pose]) -> bool:

@@ -28,7 +28,10 @@ def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights
     """
     principal = principal_keypoints(keypoints)
     pixel = np.where((principal.score >= 0.3)[..., None], principal.pixel, np.nan)
-    ankle, hip, shoulder = (_middle(pixel, part) for part in ("ankle", "hip", "shoulder"))
+    ankle, hip, shoulder = (
+        np.mean([pixel[:, HUMAN.point_names.index(f"{part}.{side}")] for side in SIDES], axis=0)
+        for part in ("ankle", "hip", "shoulder")
+    )
     head = pixel[:, HUMAN.point_names.index("head")]
     points = body.points(body.pose(Posture.stack([standing_posture(body)])))[0]
     # Of each kind of point above the floor of someone upright [m].
@@ -58,11 +61,6 @@ def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights
         common_lean_rad=COMMON_LEAN_RAD,
         doubtful=True,
     )
-
-
-def _middle(pixel: Array, part: str) -> Array:
-    left, right = (HUMAN.point_names.index(f"{part}.{side}") for side in SIDES)
-    return np.asarray(0.5 * (pixel[:, left] + pixel[:, right]))
 
 
 def _along(first: Array, second: Array, least: float) -> BoolArray:

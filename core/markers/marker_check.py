@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, BoolArray, IntArray
+from ..arrays import Array, IntArray
 from ..video.clip import ClipSamples
 from ..video.working_image import halvings
 from .association import (
@@ -51,7 +51,11 @@ def assign_regions(
     own = {}
     for color, group in enumerate(groups):
         one = found[color]
-        length = _length(one, clutter[color], usual[color])
+        full = ~clutter[color] & (one.area >= 0.7 * usual[color])
+        length = 1.0  # of the marker in px: the long axis of regions of the usual size
+        if full.any():
+            _, second = centroid_and_second_moment(one.moments[full])
+            length = float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))
         taken = np.zeros(len(one.frame), dtype=np.bool_)
         for marker in group:
             cost = region_costs(one, clutter[color], usual[color], expected, marker)
@@ -60,15 +64,6 @@ def assign_regions(
             own[marker] = join_fragments(one, path, cost, reach, HIGHEST_FRAGMENT_COST)
             taken[path[path >= 0]] = True
     return own
-
-
-def _length(found: Candidates, clutter: BoolArray, usual_area: float) -> float:
-    """The marker's length in px: the long axis of regions of the usual size."""
-    full = ~clutter & (found.area >= 0.7 * usual_area)
-    if not full.any():
-        return 1.0
-    _, second = centroid_and_second_moment(found.moments[full])
-    return float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))
 
 
 @dataclass(frozen=True)

@@ -175,7 +175,10 @@ def read_described(
     settings = replace(settings, evidence=None) if whole else settings
     if description.inherits:
         fields = _with_clip_fields(fields, description.clip)
-    _refuse_mistyped_markers(fields)
+    # Without markers a take has other evidence: a mistyped name of theirs must not lead there.
+    objects = [name for name, value in islice(fields.values.items(), 100) if isinstance(value, Mapping)]
+    if not fields.has("markers") and get_close_matches("markers", objects, n=1, cutoff=0.85):
+        fields.required("markers", "an object of markers by name, each with color_srgb")
     said = read_record(TakeFields, fields)
     fps, frame_start, frame_count, camera = said.fps, said.frame_start, said.frame_count, said.camera
     if camera.is_moving and frame_count is not None and len(camera.matrix_world) < frame_count:
@@ -330,13 +333,6 @@ def _with_clip_fields(fields: Fields, path: Path) -> Fields:
     if not sized:  # what else the camera lacks is missing where it is described
         merged.sources["camera"] = fields.source_of("camera")
     return Fields(merged, fields.where)
-
-
-def _refuse_mistyped_markers(fields: Fields) -> None:
-    """Without markers a take has other evidence: a mistyped name of theirs must not lead there."""
-    objects = [name for name, value in islice(fields.values.items(), 100) if isinstance(value, Mapping)]
-    if not fields.has("markers") and get_close_matches("markers", objects, n=1, cutoff=0.85):
-        fields.required("markers", "an object of markers by name, each with color_srgb")
 
 
 def _markers(given: Mapping[str, MarkerFields], where: str) -> tuple[MarkerStyle, ...]:

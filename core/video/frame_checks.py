@@ -92,7 +92,8 @@ class FrameChecks:
             self._blank.append(index)
             return False
         small = _thinned(image).copy()
-        self._color = max(self._color, _colorfulness(small))
+        spread = np.sort(np.ptp(small, axis=-1), axis=None)  # of each pixel's channels
+        self._color = max(self._color, int(spread[max(len(spread) - 4, 0)]))  # some have colors by accident
         if index % 15 == 0:
             self._combed.append(combed_shares(image))
         if self._last is not None:
@@ -142,15 +143,6 @@ def _repeated(moved: Mapping[int, float]) -> tuple[int, ...]:
         else:
             run, before = [], change
     return tuple(found)
-
-
-def _colorfulness(image: Image) -> int:
-    """Largest difference of the channels of a pixel in levels, but for a few pixels."""
-    blue, green, red = cv2.split(image)
-    brightest, darkest = cv2.max(cv2.max(blue, green), red), cv2.min(cv2.min(blue, green), red)
-    spread = (brightest - darkest).ravel()
-    last = spread.size - min(4, spread.size)  # pixels that may have colors by accident
-    return int(np.partition(spread, last)[last])
 
 
 def _ranges(frames: Sequence[int], first: int) -> str:

@@ -109,14 +109,11 @@ def verdict(outcome: Outcome) -> Verdict:
 def sections(outcomes: Sequence[Outcome]) -> dict[Verdict, list[Outcome]]:
     """Takes by verdict, without empty verdicts; sorted by confidence, the least first, then by name."""
     found: dict[Verdict, list[Outcome]] = {kind: [] for kind in Verdict}
-    for outcome in sorted(outcomes, key=_urgency):
+    records = {outcome.take: current_record(outcome) for outcome in outcomes}
+    confidence = {take: (record and record.confidence) or 0.0 for take, record in records.items()}
+    for outcome in sorted(outcomes, key=lambda one: (confidence[one.take], one.take)):
         found[verdict(outcome)].append(outcome)
     return {kind: those for kind, those in found.items() if those}
-
-
-def _urgency(outcome: Outcome) -> tuple[float, str]:
-    record = current_record(outcome)
-    return (0.0 if record is None or record.confidence is None else record.confidence, outcome.take)
 
 
 COLUMNS = ("Take", "Footage", "Confidence", "To do and to know", "Files")
@@ -226,34 +223,29 @@ def _no_result(outcome: Outcome) -> str:
 
 
 def _to_do(record: ConversionRecord) -> str:
-    frames = f"<p>Worth a keyframe: {_frames(record.weak_frames)}</p>" if record.weak_frames else ""
+    frames = ""
+    if record.weak_frames:
+        first, *others = record.weak_frames[:MOST_NAMED]
+        then = f", then {', '.join(str(frame) for frame in others)}" if others else ""
+        more = " and more" if len(record.weak_frames) > MOST_NAMED else ""
+        frames = f"<p>Worth a keyframe: frame <b>{first}</b>{then}{more}</p>"
     notes = [f"<li>{isolated(note)}</li>" for note in record.notes[:MOST_NAMED]]
     if len(record.notes) > MOST_NAMED:
         notes.append(f"<li>{len(record.notes) - MOST_NAMED} more in conversion.json</li>")
     return frames + (f"<ul>{''.join(notes)}</ul>" if notes else "")
 
 
-def _frames(weak: Sequence[int]) -> str:
-    first, *others = weak[:MOST_NAMED]
-    then = f", then {', '.join(str(frame) for frame in others)}" if others else ""
-    return f"frame <b>{first}</b>{then}" + (" and more" if len(weak) > MOST_NAMED else "")
-
-
 def _files(path: str, record: ConversionRecord) -> str:
     results = [name for name in record.files if not name.startswith(REPORT)]
     pictures = [name for name in record.files if name.startswith(REPORT)]
-    lines = [", ".join(_link(path, name, name) for name in sorted(results, key=_file_order))]
+    results.sort(key=lambda name: (*(not name.endswith(ending) for ending in FILE_ORDER), name))
+    lines = [", ".join(_link(path, name, name) for name in results)]
     lines.append(", ".join(_link(path, name, PurePosixPath(name).stem) for name in pictures))
     return "<br>".join(line for line in lines if line)
 
 
 def _link(path: str, name: str, words: str) -> str:
     return f'<a href="{address(path, name)}">{isolated(words)}</a>'
-
-
-def _file_order(name: str) -> tuple[int, str]:
-    suffix = PurePosixPath(name).suffix
-    return (FILE_ORDER.index(suffix) if suffix in FILE_ORDER else len(FILE_ORDER), name)
 
 
 def _small(text: str) -> str:

@@ -259,13 +259,6 @@ def test_anything_else_is_a_usual_zoom(size: tuple[int, int]) -> None:
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_the_guess_depends_on_the_shape_and_not_on_the_fineness(size: tuple[int, int]) -> None:
-    half = (size[0] // 2, size[1] // 2)
-    if size != (1440, 1080):
-        assert guess_lens(half) == guess_lens(size)
-
-
-@pytest.mark.parametrize("size", SIZES)
 def test_the_performer_is_in_view_from_the_first_stand(size: tuple[int, int]) -> None:
     guess = guess_lens(size)
     stand = default_camera_pose(guess.lens_mm, guess.sensor_width_mm, size)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _synthetic_take import MATRIX_WORLD, drawn_frames, true_postures, write_frames, write_shoot
+from _synthetic_take import MATRIX_WORLD, drawn_frames, edit_json, true_postures, write_frames, write_shoot
 from keymark.core.shoot.check.take_check import TakeCheck
 from keymark.core.shoot.discovery import Shoot, ShootTake
 from keymark.operators.cli.commands import check as command
@@ -48,13 +48,6 @@ def check(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, dict[s
     return run
 
 
-def edit(shoot: Path, name: str, change: Callable[[Any], object]) -> None:
-    path = shoot / name
-    value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    change(value)
-    path.write_text(json.dumps(value), encoding="utf-8")
-
-
 def test_a_sound_shoot_is_ready_and_stays_as_it_is(
     pristine: Path, check: Callable[..., Any], capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -89,11 +82,11 @@ def cut_keyframes(shoot: Path) -> None:
 
 
 def late_keyframe(shoot: Path) -> None:
-    edit(shoot, f"{TAKE}.keyframes.json", lambda value: value["keyframes"][-1].update(frame=FRAMES + 5))
+    edit_json(shoot / f"{TAKE}.keyframes.json", lambda value: value["keyframes"][-1].update(frame=FRAMES + 5))
 
 
 def said_of_take(**fields: Any) -> Callable[[Path], None]:
-    return lambda shoot: edit(shoot, f"{TAKE}.take.json", lambda value: value.update(fields))
+    return lambda shoot: edit_json(shoot / f"{TAKE}.take.json", lambda value: value.update(fields))
 
 
 BEHIND = [[-1.0, 0, 0, 0], [0, 0, 1.0, -4.0], [0, 1.0, 0, 1.0], [0, 0, 0, 1.0]]
@@ -133,7 +126,7 @@ def swapped(shoot: Path) -> None:
 
 
 def few(shoot: Path) -> None:
-    edit(shoot, f"{TAKE}.keyframes.json", lambda value: value.update(keyframes=value["keyframes"][::3]))
+    edit_json(shoot / f"{TAKE}.keyframes.json", lambda value: value.update(keyframes=value["keyframes"][::3]))
     said_of_take(fps=5)(shoot)
 
 
@@ -174,7 +167,7 @@ def test_a_mistake_of_all_is_said_once(
     pristine: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shoot = Path(shutil.copytree(pristine, tmp_path / "shoot"))
-    edit(shoot, "shoot.json", lambda value: value["actor"].update(height_m=None))
+    edit_json(shoot / "shoot.json", lambda value: value["actor"].update(height_m=None))
     no_video(shoot)
     assert main(["check", str(shoot)]) == 1
     said = capsys.readouterr()
@@ -198,7 +191,7 @@ def test_a_take_without_keyframes_is_told_how_to_get_some(shoot: Path, check: Ca
     no_keyframes(shoot)
     (problem,) = check(shoot)[1]["takes"][0]["problems"]
     assert "--keyframes auto" in problem and '"keyframes": "auto"' in problem
-    edit(shoot, "shoot.json", lambda value: value.update(keyframes="auto"))
+    edit_json(shoot / "shoot.json", lambda value: value.update(keyframes="auto"))
     assert check(shoot)[0] == 0
 
 

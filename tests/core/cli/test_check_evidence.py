@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _synthetic_take import BODY, SIZE, true_postures, write_json, write_keypoints, write_shoot
+from _synthetic_take import BODY, SIZE, edit_json, true_postures, write_json, write_keypoints, write_shoot
 from keymark.core.detect.keypoints import mirrored_point
 from keymark.core.shoot.check.take_check import estimate_cost
 from keymark.operators.cli.main import main
@@ -41,20 +41,12 @@ def check(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, dict[s
     return run
 
 
-def edit(path: Path, **fields: Any) -> None:
-    value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    write_json(path, {**value, **fields})
-
-
 def rewrite(shoot: Path, change: Callable[[dict[str, Any]], object]) -> None:
-    path = shoot / f"{TAKE}.keypoints.json"
-    value = json.loads(path.read_text(encoding="utf-8"))
-    change(value)
-    write_json(path, value)
+    edit_json(shoot / f"{TAKE}.keypoints.json", change)
 
 
 def no_markers(shoot: Path) -> None:
-    edit(shoot / f"{TAKE}.take.json", markers=None)
+    edit_json(shoot / f"{TAKE}.take.json", markers=None)
 
 
 def test_good_keypoints_are_said_to_be_good(
@@ -85,7 +77,7 @@ def test_a_take_without_markers_is_ready(shoot: Path, check: Callable[..., Any])
     assert status == 1 and "neither markers nor keypoints, without which no posture" in take["problems"][0]
     status, take = check(shoot, "--evidence", "markers")
     assert status == 1 and "names markers, which this take has not got" in take["problems"][0]
-    edit(shoot / f"{TAKE}.take.json", markers=None, method="ekf")
+    edit_json(shoot / f"{TAKE}.take.json", markers=None, method="ekf")
     status, take = check(shoot)
     assert status == 1 and take["problems"][0].startswith("take01: method is ekf")
 

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 import pytest
 from _command_line import one_line, tree
-from _synthetic_take import SIZE, write_json, write_synthetic_take
+from _synthetic_take import SIZE, edit_json, write_json, write_synthetic_take
 from keymark.core.errors import ConversionError
 from keymark.core.session.result import RESULT_FILES
 from keymark.core.take.conversion_record import EARLIER_PICTURES
@@ -150,13 +150,8 @@ def test_another_keyframe_file_may_be_named(take: Path, tmp_path: Path) -> None:
     assert len(read_motion(new / "motion.json").keyframe_indices) == len(value["keyframes"])
 
 
-def edit(name: str, change: Callable[[Any], object]) -> Callable[[Path], None]:
-    def apply(take: Path) -> None:
-        value = json.loads((take / name).read_text(encoding="utf-8"))
-        change(value)
-        (take / name).write_text(json.dumps(value), encoding="utf-8")
-
-    return apply
+def edit(name: str, change: Callable[[Any], object]) -> Callable[[Path], object]:
+    return lambda take: edit_json(take / name, change)
 
 
 def cut(name: str) -> Callable[[Path], None]:

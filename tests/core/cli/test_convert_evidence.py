@@ -3,11 +3,10 @@
 import json
 import shutil
 from pathlib import Path
-from typing import Any
 
 import pytest
 from _command_line import one_line
-from _synthetic_take import true_postures, write_json, write_keypoints, write_synthetic_take
+from _synthetic_take import edit_json, true_postures, write_json, write_keypoints, write_synthetic_take
 from keymark.core.take.motion import read_motion
 from keymark.operators.cli.main import main
 
@@ -28,11 +27,6 @@ def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def take(pristine: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(pristine, tmp_path / "take"))
-
-
-def edit(take: Path, **fields: Any) -> None:
-    value = json.loads((take / "take.json").read_text(encoding="utf-8"))
-    write_json(take / "take.json", {**value, **fields})
 
 
 @pytest.mark.usefixtures("no_blender")
@@ -99,7 +93,7 @@ def test_keypoints_that_are_wrong_change_nothing(
         (take / "keypoints.json").write_bytes(content)
         assert main(["convert", str(take), "--output", str(out), "--no-report", "--quiet"]) == 2
         assert "keypoints.json: " in one_line(capsys.readouterr().err)
-    edit(take, keypoints="../pose.json")
+    edit_json(take / "take.json", keypoints="../pose.json")
     assert main(["convert", str(take), "--output", str(out), "--no-report", "--quiet"]) == 2
     assert "inside the take's folder" in one_line(capsys.readouterr().err)
     assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
@@ -112,7 +106,7 @@ def test_a_folder_with_holes_is_noted(take: Path, tmp_path: Path, capsys: pytest
     person = {"pose_keypoints_2d": [80.0, 60.0, 0.9] * 25}
     for frame in range(0, FRAMES, 5):
         write_json(holes / f"clip_{frame:012d}_keypoints.json", {"version": 1.3, "people": [person]})
-    edit(take, keypoints="openpose")
+    edit_json(take / "take.json", keypoints="openpose")
     assert main(["convert", str(take), "--output", str(tmp_path / "out"), "--no-report", "--json"]) == 0
     notes = json.loads(capsys.readouterr().out)["notes"]
     assert any("openpose: lacks 12 of 16 frames" in note for note in notes), notes

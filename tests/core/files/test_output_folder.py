@@ -1,11 +1,10 @@
 """Result folders: written completely or not at all."""
 
 import json
-import os
 from pathlib import Path
 
 import pytest
-from keymark.core.errors import ConversionError, InputError
+from keymark.core.errors import InputError
 from keymark.core.files import output_folder as module
 from keymark.core.files.output_folder import output_folder
 
@@ -62,27 +61,6 @@ def test_files_of_others_stay_and_files_of_earlier_runs_go(tmp_path: Path) -> No
     with output_folder(out, ["motion.json", "report/speed.png"]) as staging_folder:
         (staging_folder / "motion.json").write_text("second", encoding="utf-8")
     assert tree(out) == {"motion.json": "second", "notes.txt": "mine"}
-
-
-@pytest.mark.parametrize("fails_at", [1, 2, 3, 4])
-def test_a_move_that_fails_is_undone(tmp_path: Path, fails_at: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    out = tmp_path / "out"
-    with output_folder(out) as staging_folder:
-        fill(staging_folder, "old")
-    before, moves = tree(tmp_path), 0
-    replace = os.replace
-
-    def fail_once(source: Path, destination: Path) -> None:
-        nonlocal moves
-        moves += 1
-        if moves == fails_at:
-            raise OSError(28, "No space left on device")
-        replace(source, destination)
-
-    monkeypatch.setattr(module.os, "replace", fail_once)
-    with pytest.raises(ConversionError, match="No space left"), output_folder(out) as staging_folder:
-        fill(staging_folder, "new")
-    assert tree(tmp_path) == before
 
 
 def test_a_path_that_is_no_folder_is_refused(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from _faults import GROWING, Killed, disk_full, faulty_calls, killed, tree
+from _faults import GROWING, Killed, disk_full, faulty_calls, tree
 from keymark.core.errors import BusyError, ConversionError, InputError, KeymarkError
 from keymark.core.files.commit import backup_name
 from keymark.core.files.output_folder import output_folder
@@ -318,7 +318,3 @@ def test_a_link_to_nowhere_leads_there(tmp_path: Path) -> None:
     (tmp_path / "out").symlink_to(tmp_path / "disk" / "results")
     run(tmp_path / "out", "newer")
     assert is_whole(tmp_path / "disk" / "results") and (tmp_path / "out").is_symlink()
-
-
-def test_the_fault_is_the_one_asked_for() -> None:
-    assert not isinstance(killed("open"), Exception) and isinstance(disk_full("open"), OSError)

@@ -7,7 +7,7 @@ from _synthetic_take import COLORS, drawn_frames, true_postures
 from keymark.core.markers.appearance import NO_PART, Appearance, learn_appearance
 from keymark.core.markers.color_model import chromaticity
 from keymark.core.markers.moments import centroid_and_second_moment
-from keymark.core.markers.strong_colors import StrongColor, strong_colors
+from keymark.core.markers.strong_colors import strong_colors
 from keymark.core.markers.surface_colors import BANDS, BandColors, band_cells, learn_band_colors
 from keymark.core.markers.unmixing import MOST_GAIN, Palette, Surface, Traces, contrast, surface_of, traces
 
@@ -108,14 +108,6 @@ def test_the_markers_are_among_the_strong_colors() -> None:
         assert np.linalg.norm(chroma - wanted, axis=1).min() < 0.08, name
     apart = np.linalg.norm(chroma[:, None] - chroma[None], axis=-1)[np.triu_indices(len(found), 1)]
     assert apart.min() > 0.03 and all(0.0 < color.share < 0.1 for color in found)
-
-
-def test_hues_have_names() -> None:
-    names = {(200, 30, 30): "red", (200, 30, 60): "red", (220, 190, 40): "yellow", (40, 150, 70): "green"}
-    names |= {(50, 80, 220): "blue", (190, 50, 150): "pink", (120, 50, 160): "purple"}
-    names |= {(220, 120, 50): "orange", (46, 98, 114): "cyan"}
-    for color, name in names.items():
-        assert StrongColor(color, 0.01).hue == name
 
 
 WALL = np.array([150.0, 165.0, 160.0])

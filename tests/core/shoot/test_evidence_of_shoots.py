@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from _synthetic_take import true_postures, write_json, write_keypoints, write_shoot
+from _synthetic_take import edit_json, true_postures, write_json, write_keypoints, write_shoot
 from keymark.core.errors import InputError
 from keymark.core.shoot.discovery import open_shoot
 from keymark.core.take.conversion_digest import conversion_digest
@@ -36,11 +36,6 @@ def shoot(pristine: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(pristine, tmp_path / "shoot"))
 
 
-def edit(path: Path, **fields: Any) -> None:
-    value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    write_json(path, {**value, **fields})
-
-
 def names(shoot: Path, defaults: ConversionSettings = NO_SETTINGS) -> list[list[str]]:
     """Paths of the files that each take's conversion reads its keypoints from."""
     found = []
@@ -61,26 +56,26 @@ def test_sidecars_of_clips_are_found(shoot: Path) -> None:
 def test_a_shoot_names_the_file_of_every_take(shoot: Path) -> None:
     others = ["day1/take01.pose.json", "day1/take02.pose.json", "day1/take03/pose.json"]
     assert names(shoot, ConversionSettings(keypoints=(Path("pose.json"),))) == [[name] for name in others]
-    edit(shoot / "shoot.json", keypoints=["pose.json", "keypoints.json"])
+    edit_json(shoot / "shoot.json", keypoints=["pose.json", "keypoints.json"])
     assert [one[0] for one in names(shoot)] == others
     assert names(shoot)[0] == ["day1/take01.pose.json", "day1/take01.keypoints.json"]
-    edit(shoot / "day1" / "take02.take.json", keypoints="take01.pose.json")
+    edit_json(shoot / "day1" / "take02.take.json", keypoints="take01.pose.json")
     assert names(shoot)[1] == ["day1/take01.pose.json"]
-    edit(shoot / "day1" / "take02.take.json", keypoints=None)
+    edit_json(shoot / "day1" / "take02.take.json", keypoints=None)
     assert names(shoot)[1] == ["day1/take02.keypoints.json"]
 
 
 def test_a_take_without_the_file_is_refused(shoot: Path) -> None:
     (shoot / "day1" / "take02.pose.json").unlink()
-    edit(shoot / "shoot.json", keypoints="pose.json")
+    edit_json(shoot / "shoot.json", keypoints="pose.json")
     assert len(read_take(shoot / "day1" / "take01.mp4").keypoints) == 1
     with pytest.raises(InputError, match=r"take02\.pose\.json"):
         read_take(shoot / "day1" / "take02.mp4")
 
 
 def test_evidence_is_inherited(shoot: Path) -> None:
-    edit(shoot / "shoot.json", evidence=["markers"])
-    edit(shoot / "day1" / "take02.take.json", markers=None, evidence=None)
+    edit_json(shoot / "shoot.json", evidence=["markers"])
+    edit_json(shoot / "day1" / "take02.take.json", markers=None, evidence=None)
     kinds = [evidence_of(read_take(take.path)) for take in open_shoot(shoot).takes]
     assert kinds == [("markers",), ("keypoints", "contours"), ("markers",)]
     line = {"take": "day1/take01.mp4", "evidence": ["keypoints"], "keypoints": "take01.pose.json"}
@@ -111,7 +106,7 @@ def test_the_digest_follows_content_and_choice(shoot: Path) -> None:
     digests.append(digest(describe(clip)))
     assert len(set(digests)) == len(digests)
     assert digest(describe(clip), evidence=("markers",)) == digests[1]
-    edit(shoot / "shoot.json", evidence=["markers"])
+    edit_json(shoot / "shoot.json", evidence=["markers"])
     assert digest(describe(clip)) == digests[1]
 
 
@@ -128,7 +123,7 @@ def test_the_files_of_a_folder_count(shoot: Path) -> None:
     folder.mkdir()
     for frame in range(FRAMES):
         write_json(folder / f"take01_{frame:012d}_keypoints.json", {"people": []})
-    edit(shoot / "day1" / "take01.take.json", keypoints="take01.openpose")
+    edit_json(shoot / "day1" / "take01.take.json", keypoints="take01.openpose")
     before = digest(describe(clip))
     (folder / f"take01_{FRAMES - 1:012d}_keypoints.json").unlink()
     fewer = digest(describe(clip))

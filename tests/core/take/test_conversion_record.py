@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from _synthetic_take import write_shoot
+from _synthetic_take import edit_json, write_shoot
 from keymark.core.errors import InputError
 from keymark.core.take.conversion_digest import conversion_digest
 from keymark.core.take.conversion_record import (
@@ -127,9 +127,7 @@ MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
 @pytest.mark.parametrize(("change", "said"), MISTAKES)
 def test_a_mistake_is_named(change: Callable[[dict[str, Any]], object], said: str, tmp_path: Path) -> None:
     made(tmp_path)
-    value = json.loads((tmp_path / RECORD_FILE).read_text(encoding="utf-8"))
-    change(value)
-    (tmp_path / RECORD_FILE).write_text(json.dumps(value), encoding="utf-8")
+    edit_json(tmp_path / RECORD_FILE, change)
     with pytest.raises(InputError, match=said) as caught:
         read_record(tmp_path)
     assert str(caught.value).startswith(str(tmp_path / RECORD_FILE))
@@ -137,9 +135,7 @@ def test_a_mistake_is_named(change: Callable[[dict[str, Any]], object], said: st
 
 def test_a_record_of_an_earlier_keymark_can_be_read(tmp_path: Path) -> None:
     made(tmp_path)
-    value = json.loads((tmp_path / RECORD_FILE).read_text(encoding="utf-8"))
-    del value["libraries"], value["doubtful"]
-    (tmp_path / RECORD_FILE).write_text(json.dumps(value), encoding="utf-8")
+    edit_json(tmp_path / RECORD_FILE, lambda value: [value.pop(name) for name in ("libraries", "doubtful")])
     assert read_record(tmp_path) == replace(RECORD, libraries={}, doubtful=())
 
 
@@ -178,15 +174,9 @@ def digest(
     return conversion_digest(description, settings, libraries, shoot.parent / "out", version, maps)
 
 
-def edit(name: str, **fields: Any) -> Callable[[Path], None]:
+def edit(name: str, **fields: Any) -> Callable[[Path], Path]:
     """Change fields of one of the shoot's files, which may be new."""
-
-    def change(shoot: Path) -> None:
-        file = shoot / name
-        value = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
-        file.write_text(json.dumps({**value, **fields}), encoding="utf-8")
-
-    return change
+    return lambda shoot: edit_json(shoot / name, **fields)
 
 
 def lengthen(shoot: Path) -> None:

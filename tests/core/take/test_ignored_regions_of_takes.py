@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from _synthetic_take import SIZE, write_json, write_shoot, write_synthetic_take
+from _synthetic_take import SIZE, edit_json, write_json, write_shoot, write_synthetic_take
 from keymark.core.errors import InputError
 from keymark.core.markers.ignored_regions import MOST_POINTS, MOST_REGIONS, IgnoredRegion
 from keymark.core.prior.keyframes import interpolate
@@ -27,19 +27,15 @@ def folder(tmp_path: Path) -> Path:
 
 
 def ignoring(folder: Path, value: Any) -> Path:
-    said = json.loads((folder / "take.json").read_text(encoding="utf-8"))
-    write_json(folder / "take.json", {**said, "ignored_regions": value})
-    return folder
+    return edit_json(folder / "take.json", ignored_regions=value).parent
 
 
 def test_a_take_says_what_is_never_a_marker_and_is_written_back(folder: Path, tmp_path: Path) -> None:
     assert read_take(folder).ignored_regions == ()
-    said = json.loads((folder / "take.json").read_text(encoding="utf-8"))
-    keyframes = json.loads((folder / "keyframes.json").read_text(encoding="utf-8"))
-    for keyframe in keyframes["keyframes"]:
-        keyframe["frame"] += 10
-    write_json(folder / "keyframes.json", keyframes)
-    write_json(folder / "take.json", {**said, "frame_start": 11, "ignored_regions": [BOX, STROKE]})
+    edit_json(
+        folder / "keyframes.json", lambda v: [row.update(frame=row["frame"] + 10) for row in v["keyframes"]]
+    )
+    edit_json(folder / "take.json", frame_start=11, ignored_regions=[BOX, STROKE])
     take = read_take(folder)
     assert take.ignored_regions == (
         IgnoredRegion(box=(1.0, 2.5, 30.0, 40.0)),
@@ -59,12 +55,12 @@ def test_a_take_without_them_is_written_as_ever(folder: Path, tmp_path: Path) ->
 def test_a_shoot_says_it_for_all_its_takes(tmp_path: Path) -> None:
     shoot = write_shoot(tmp_path / "shoot", takes=2, frames=3)
     file = shoot / "shoot.json"
-    write_json(file, {**json.loads(file.read_text(encoding="utf-8")), "ignored_regions": [BOX]})
+    edit_json(file, ignored_regions=[BOX])
     clips = [shoot / "day1" / f"take0{number}.mp4" for number in (1, 2)]
     write_json(shoot / "day1" / "take02.take.json", {"ignored_regions": None})
     first, second = (read_take(clip, keyframes_required=False) for clip in clips)
     assert [len(take.ignored_regions) for take in (first, second)] == [1, 0]
-    write_json(file, {**json.loads(file.read_text(encoding="utf-8")), "ignored_regions": [{"bx": 1}]})
+    edit_json(file, ignored_regions=[{"bx": 1}])
     with pytest.raises(InputError, match=r"shoot.json: ignored_regions\[0\] has the unknown field 'bx'"):
         read_take(clips[0], keyframes_required=False)
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from _performances import stepping, write_mhr70
-from _synthetic_take import BODY, true_postures
+from _synthetic_take import BODY, edit_json, true_postures
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.core.errors import ConversionError, InputError
@@ -116,9 +116,7 @@ def test_a_damaged_motion_file_is_named(
 ) -> None:
     path = tmp_path / "motion.json"
     write_motion(motion, path)
-    value = json.loads(path.read_text(encoding="utf-8"))
-    change(value)
-    path.write_text(json.dumps(value), encoding="utf-8")
+    edit_json(path, change)
     with pytest.raises(InputError, match=sentence) as caught:
         read_motion(path)
     assert "motion.json" in str(caught.value)

@@ -8,7 +8,6 @@ import cv2
 import numpy as np
 import pytest
 from _drawn_clip import write_video
-from _footage import encode, write_numbered_take
 from keymark.core.errors import InputError
 from keymark.core.markers.reading import read_clip
 from keymark.core.markers.region_tracks import is_variable_frame_rate
@@ -215,15 +214,6 @@ def test_packets_tell_frames_and_times(video: Path, tmp_path: Path) -> None:
     assert some is not None and not some.complete and len(some.time_s) == 100
     (tmp_path / "text.mp4").write_text("no video", encoding="utf-8")
     assert read_packets(tmp_path / "text.mp4") is None and quickly_found(tmp_path / "text.mp4", [3]) == []
-
-
-def test_packets_tell_an_uneven_rate(tmp_path: Path) -> None:
-    take = write_numbered_take(tmp_path / "take", 20)
-    uneven = encode(take, tmp_path / "uneven.mkv", "-vf", "select='not(eq(mod(n,7),3))'", "-fps_mode", "vfr")
-    even = encode(take, tmp_path / "even.mp4")
-    for path, varies in ((uneven, True), (even, False)):
-        packets = read_packets(path)
-        assert packets is not None and is_variable_frame_rate(packets.time_s) is varies
 
 
 def trimmed(path: Path, first_s: float, length_s: float) -> Path:

@@ -69,15 +69,6 @@ def test_a_name_is_no_protocol(name: str, tmp_path: Path, monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize(
-    ("name", "code"), [("a.mp4", "mp4v"), ("a.avi", "MJPG"), ("a.mkv", "mp4v"), ("a.mov", "mp4v")]
-)
-def test_containers_are_known(name: str, code: str, tmp_path: Path) -> None:
-    path = write_video(tmp_path / name, GRAYS, code=code)
-    check_container(path)
-    assert Clip.open(path).size == SIZE
-
-
-@pytest.mark.parametrize(
     "beginning",
     [
         b"G" + bytes(187) + b"G" + bytes(187),

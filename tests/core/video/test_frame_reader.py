@@ -70,13 +70,6 @@ def test_a_file_is_searched_exactly(tmp_path: Path, order: tuple[int, ...]) -> N
         assert reader.image_at(index / FPS).mean() == pytest.approx(20 + 8 * (index % 25), abs=3.9)
 
 
-def test_numbered_images_are_read_one_by_one(tmp_path: Path) -> None:
-    for index in range(6):
-        cv2.imwrite(str(tmp_path / f"img_{index}.png"), gray(index))
-    reader = FrameReader(Clip.open(tmp_path, fps=10.0))
-    assert (reader.image_at(0.31) == gray(3)).all() and (reader.image_at(0.12) == gray(1)).all()
-
-
 GRADIENTS = [
     np.broadcast_to(np.linspace(0.0, 100.0, 640)[None, :, None] + 30.0 * index, (480, 640, 3)).astype(
         np.uint8
