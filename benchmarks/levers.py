@@ -73,12 +73,12 @@ def without_album(body: Any, camera: Any, seen: Any, *more: Any, **named: Any) -
     return estimate(body, camera, replace(seen, album=None), *more, **named)
 
 
-def unjudged(model: Any, noise: Any, at: Any, scale: Any) -> Any:
+def unjudged(model: Any, at: Any, belief: Any) -> Any:
     """What keyframes say without contours."""
-    return read_keyframes(model, noise, replace(at, contours=None), scale)
+    return read_belief(model, replace(at, contours=None), belief)
 
 
-find_shifts, read_keyframes = contour_evidence.find_shifts, whole_clip.read_mixed_keyframes
+find_shifts, read_belief = contour_evidence.find_shifts, whole_clip.read_belief
 estimate = reconstruct.estimate_whole_clip
 no_variance: Callable[..., Any] = lambda area, *_: np.zeros((*area.shape, regions.FEATURES))  # noqa: E731
 OFF: Mapping[str, tuple[Switch, ...]] = {
@@ -93,9 +93,8 @@ OFF: Mapping[str, tuple[Switch, ...]] = {
         ),
     ),
     "shapes of parts": ((contour_evidence, "_fit_shapes", job(lambda model, *_: model)),),
-    "contours judge keyframes": ((whole_clip, "read_mixed_keyframes", unjudged),),
+    "contours judge keyframes": ((whole_clip, "read_belief", unjudged),),
     "size of posing errors": ((keyframe_evidence, "SCALES", np.ones(1)),),
-    "timing of keyframes": ((keyframe_evidence, "TIMINGS", np.zeros(1)),),
     "distrust of markers": ((keyframe_evidence, "_distrust", lambda of, _: np.ones(of.shape[1])),),
     "matting": (
         (
@@ -109,11 +108,11 @@ OFF: Mapping[str, tuple[Switch, ...]] = {
         (regions, "missing_variance", no_variance),
         (keyframe_evidence, "missing_variance", no_variance),
     ),
-    "markers found again": ((refinement, "find_lost", job(lambda problem, *_: problem)),),
-    "turns": ((refinement, "choose_turns", job(lambda problem, states, _: (problem, states))),),
-    "sizes of motion": ((refinement, "adapted", job(lambda problem, _, states, *__: (problem, states))),),
+    "markers found again": ((refinement, "find_lost", job(lambda problem, *_: (problem, np.zeros(0, int)))),),
+    "turns": ((refinement, "choose_turns", job(lambda problem, states: (problem, states))),),
+    "sizes of motion": ((refinement, "adapted", job(lambda problem, _, states: (problem, states))),),
     "sizes of limbs": ((refinement, "limb_sizes", lambda problem, *_: problem.limb_size),),
-    "sizes of depth": ((refinement, "_depth_factor", lambda *of: of[-1]),),
+    "sizes of depth": ((refinement, "_depth_factor", lambda problem, *_: problem.depth_factor),),
     "feet at rest": without(StillnessTerm),
     "joint limits": without(LimitTerm),
     "annealing": ((window_problem, "TEMPERATURES", (1.0,) * len(window_problem.TEMPERATURES)),),

@@ -27,7 +27,7 @@ from ..markers.region_tracks import RegionTracks
 from ..numerics.robust import DEGREES, student_cost, student_weight
 from ..terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, USUAL_PLACES, KeypointModel, ObservedKeypoints
 from ..terms.region_model import MarkerPlacement, RegionModel
-from ..terms.regions import ObservedRegions, RegionNoise, feature_rows, limb_widths
+from ..terms.regions import NOISE, ObservedRegions, feature_rows, limb_widths
 from .keyframe_evidence import (
     LARGEST,
     PRIOR_STD,
@@ -250,10 +250,9 @@ class _Problem:
         pose = self._pose(x, model.body)
         predicted = model.evaluate(pose, self.frame)
         residual, _ = feature_rows(self.observed, predicted)
-        noise = RegionNoise()
         width = limb_widths(model, pose.posture.translation, self.frame)
-        variance = noise.pixel_std_px**2 + noise.surface_std(width) ** 2
-        usable = np.isfinite(residual).all(-1) & (predicted.visible > noise.least_visible)
+        variance = NOISE.pixel_std_px**2 + NOISE.surface_std(width) ** 2
+        usable = np.isfinite(residual).all(-1) & (predicted.visible > NOISE.least_visible)
         trust = np.where(usable, np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0), 0.0)
         height = np.log(standing_height_m(model.body) / self.height_m) / 0.005
         off, spread = self._off_px(x)

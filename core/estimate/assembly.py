@@ -16,11 +16,11 @@ from ..terms.depths import DepthHintTerm, DepthTerm, point_depths
 from ..terms.keypoints import LEAST_CONFIDENCE, KeypointModel, KeypointTerm, ObservedKeypoints
 from ..terms.motion import LimitTerm, SmoothnessTerm, belief_term
 from ..terms.reference import ReferenceTerm
-from ..terms.regions import ObservedRegions, RegionNoise, RegionTerm
+from ..terms.regions import NOISE, ObservedRegions, RegionTerm
 from ..terms.state import ClipState
 from ..terms.term import QuadraticTerm, Term
-from .clip_problem import ClipProblem, KeyframeEvidence
-from .keyframe_error import picture_std_m
+from .belief import picture_std_m
+from .clip_problem import ClipData, ClipProblem, KeyframeEvidence
 from .keypoint_evidence import KeypointEvidence
 from .performer_placement import ANKLE_HEIGHT_STD_M, SHOE_M, standing_ankle_m
 from .windows import Window
@@ -32,39 +32,34 @@ LOOSE_FEET = {"release_speed_m_s": 0.4, "release_height_m": 0.06}
 
 def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Term]:
     """The terms of one window of a clip, but for its contours."""
-    frames = window.frames
-    step_s = clip.step_s[window.first : window.last - 1]
+    data, evidence, frames = clip.data, clip.evidence, window.frames
+    belief, step_s, ankles = data.belief, data.step_s[window.first : window.last - 1], _seen_ankles(data)
+    prior_depth = point_depths(data.body, data.camera, data.body.pose(state.prior), state.frame)
+    depth_std_m = belief.depth_std_m[frames, None] * clip.depth_factor[frames]
+    regions = evidence.model, clip.observed[frames], data.width_px[frames]
     pace = float(np.median(step_s)) / REFERENCE_STEP_S if len(step_s) else 1.0
-    prior_depth = point_depths(clip.body, clip.camera, clip.body.pose(state.prior), state.frame)
-    ankles = _seen_ankles(clip)
-    evidence = clip.evidence
     terms: list[Term] = [
         _prior_term(clip, window, step_s),
         SmoothnessTerm(pace**1.5),
-        RegionTerm(
-            evidence.model,
-            clip.observed[frames],
-            clip.noise,
-            clip.width_px[frames],
-            evidence.distrust,
-            evidence.area_ratio,
-        ),
-        DepthTerm(clip.camera, prior_depth, clip.depth_std_m[frames, None] * clip.depth_factor[frames]),
+        RegionTerm(*regions, evidence.distrust, evidence.area_ratio),
+        DepthTerm(data.camera, prior_depth, depth_std_m),
         LimitTerm(),
     ]
     if ankles:
         terms.append(stillness_term(clip, window))
     if evidence.keypoints.model.names:
-        terms.append(_keypoint_term(clip, window, step_s))
-    if np.isfinite(clip.points.depth_m).any():
-        terms.append(_hint_term(clip, window, step_s))
-    if clip.corrected.any():
-        terms.append(_picture_term(clip, window))
-    if clip.ankle_height_m is not None and ankles:
-        terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
-    if clip.reference is not None:
-        kept = np.exp(-step_s / clip.reference.memory_s)[:, None]
-        terms.append(ReferenceTerm(clip.reference[frames], kept))
+        points, kept = evidence.keypoints, _kept(step_s, evidence.keypoints.memory_s)
+        terms.append(KeypointTerm(points.model, data.points[frames], points.error_m, kept))
+    if np.isfinite(data.points.depth_m).any():
+        points, hints = evidence.keypoints, evidence.keypoints.depths
+        kept = _kept(step_s, hints.memory_s)
+        terms.append(_hint_term(points, data.points[frames], hints.error_m, kept))
+    if belief.pictured.any():
+        terms.append(_picture_term(data, window))
+    if belief.ankle_m is not None and ankles:
+        terms.append(GroundTerm(ankles, belief.ankle_m[frames], ANKLE_HEIGHT_STD_M))
+    if belief.reference is not None:
+        terms.append(ReferenceTerm(belief.reference[frames], _kept(step_s, belief.reference.memory_s)))
     return terms
 
 
@@ -72,20 +67,24 @@ def stillness_term(clip: ClipProblem, window: Window) -> StillnessTerm:
     """Ankles of legs that are seen, and stand."""
     pairs = slice(window.first, window.last - 1)
     rests = None if clip.rests is None else clip.rests[pairs]
-    loose = LOOSE_FEET if clip.reference is not None else {}
-    return StillnessTerm(clip.camera, _seen_ankles(clip), clip.step_s[pairs], rests, **loose)
+    loose = LOOSE_FEET if clip.data.belief.reference is not None else {}
+    return StillnessTerm(clip.data.camera, _seen_ankles(clip.data), clip.data.step_s[pairs], rests, **loose)
 
 
-def _seen_ankles(clip: ClipProblem) -> tuple[int, ...]:
-    seen = [leg not in clip.unseen for leg in LEGS]
-    return tuple(ankle for ankle, own in zip(_ankles(clip.body), seen, strict=True) if own)
+def _kept(step_s: Array, memory_s: float) -> Array:
+    """(F - 1, 1) share of an error that is left in the next frame."""
+    return np.exp(-step_s / memory_s)[:, None]
+
+
+def _seen_ankles(data: ClipData) -> tuple[int, ...]:
+    seen = [leg not in data.belief.unseen for leg in LEGS]
+    return tuple(ankle for ankle, own in zip(_ankles(data.body), seen, strict=True) if own)
 
 
 def frame_terms(
     evidence: KeyframeEvidence,
     observed: ObservedRegions,
     belief: FramePrior,
-    noise: RegionNoise,
     width_px: Array,
     points: ObservedKeypoints | None = None,
 ) -> list[Term]:
@@ -93,22 +92,12 @@ def frame_terms(
 
     Regions (1, M), NaN where hidden, and keypoints (1, N) are those of this one frame.
     """
-    model, starts = evidence.model, belief.starts.batch[0]
-    bias_std = noise.bias_std(width_px).reshape(1, -1)
-    repeated = observed[np.zeros(starts, dtype=np.intp)]
-    width = np.repeat(width_px, starts, axis=0)
-    terms: list[Term] = [
-        belief_term(starts, belief.posture.skeleton.dof_count, bias_std),
-        RegionTerm(model, repeated, noise, width, evidence.distrust, evidence.area_ratio),
-        LimitTerm(),
-    ]
+    body, starts = evidence.model.body, belief.starts.batch[0]
+    terms = [_own_belief(body, width_px, starts), *_seen_in_frame(evidence, observed, width_px, starts)]
     if belief.grounded is not None:
-        ankles = _ankles(model.body)
-        standing = model.body.points(model.body.pose(belief.grounded))
-        terms.append(GroundTerm(ankles, float(standing[:, list(ankles), 2].min())))
-    if points is not None and evidence.keypoints.model.names:
-        terms += _frame_point_terms(evidence.keypoints, points, starts)
-    return terms
+        standing = body.points(body.pose(belief.grounded))
+        terms.append(GroundTerm(_ankles(body), float(standing[:, list(_ankles(body)), 2].min())))
+    return terms + _frame_point_terms(evidence.keypoints, points, starts)
 
 
 def free_frame_terms(
@@ -116,7 +105,6 @@ def free_frame_terms(
     observed: ObservedRegions,
     starts: int,
     floor_m: float | None,
-    noise: RegionNoise,
     width_px: Array,
     points: ObservedKeypoints | None = None,
 ) -> tuple[Term, list[Term]]:
@@ -125,33 +113,40 @@ def free_frame_terms(
     `starts`: number of states of it; `floor_m`: None where it is not known. The belief of each descent in its
     own start, and all else.
     """
-    model, body = evidence.model, evidence.model.body
-    bias_std = noise.bias_std(width_px).reshape(1, -1)
-    repeated = observed[np.zeros(starts, dtype=np.intp)]
-    width = np.repeat(width_px, starts, axis=0)
-    terms: list[Term] = [
-        RegionTerm(model, repeated, noise, width, evidence.distrust, evidence.area_ratio),
-        LimitTerm(),
-        BalanceTerm(body),
-    ]
+    body = evidence.model.body
+    terms = [*_seen_in_frame(evidence, observed, width_px, starts), BalanceTerm(body)]
     if floor_m is not None:
         standing_m = floor_m + standing_ankle_m(body)
         terms += [GroundTerm(_ankles(body), standing_m), FloorTerm(_ankles(body), standing_m - SHOE_M)]
-    if points is not None and evidence.keypoints.model.names:
-        terms += _frame_point_terms(evidence.keypoints, points, starts)
-    return belief_term(starts, body.skeleton.dof_count, bias_std), terms
+    terms += _frame_point_terms(evidence.keypoints, points, starts)
+    return _own_belief(body, width_px, starts), terms
 
 
-def _frame_point_terms(evidence: KeypointEvidence, points: ObservedKeypoints, starts: int) -> list[Term]:
+def _own_belief(body: Body, width_px: Array, starts: int) -> Term:
+    return belief_term(starts, body.skeleton.dof_count, NOISE.bias_std(width_px).reshape(1, -1))
+
+
+def _seen_in_frame(
+    evidence: KeyframeEvidence, observed: ObservedRegions, width_px: Array, starts: int
+) -> list[Term]:
+    repeated, width = observed[np.zeros(starts, dtype=np.intp)], np.repeat(width_px, starts, axis=0)
+    return [
+        RegionTerm(evidence.model, repeated, width, evidence.distrust, evidence.area_ratio),
+        LimitTerm(),
+    ]
+
+
+def _frame_point_terms(
+    evidence: KeypointEvidence, points: ObservedKeypoints | None, starts: int
+) -> list[Term]:
     """The keypoints of one frame, and the depths guessed with them, in as many states."""
+    if points is None or not evidence.model.names:
+        return []
     std_m = np.where(evidence.trust > 0.0, evidence.std_m, np.inf)
     repeated = points[np.zeros(starts, dtype=np.intp)]
-    terms: list[Term] = [KeypointTerm(evidence.model, repeated, std_m, None)]
+    terms: list[Term] = [KeypointTerm(evidence.model, repeated, std_m)]
     if np.isfinite(points.depth_m).any():
-        depths = evidence.depths
-        std = _depth_std_m(evidence, points, depths.std_m)[0]
-        expected = depths.expected(points.depth_m)[0]
-        terms.append(DepthHintTerm(evidence.model, depths.links, expected, std, None))
+        terms.append(_hint_term(evidence, repeated, evidence.depths.std_m, None))
     return terms
 
 
@@ -159,53 +154,42 @@ def _ankles(body: Body) -> tuple[int, ...]:
     return tuple(body.skeleton.point_names.index(name) for name in ANKLES)
 
 
-def _keypoint_term(clip: ClipProblem, window: Window, step_s: Array) -> KeypointTerm:
-    evidence = clip.evidence.keypoints
-    kept = np.exp(-step_s / evidence.memory_s)[:, None]
-    return KeypointTerm(evidence.model, clip.points[window.frames], evidence.error_m, kept)
-
-
-def _picture_term(clip: ClipProblem, window: Window) -> KeypointTerm:
+def _picture_term(data: ClipData, window: Window) -> KeypointTerm:
     """Points of keyframes that were put right in the picture."""
-    model = KeypointModel.usual(clip.body, clip.camera, clip.body.skeleton.point_names)
-    frame = clip.keyframes[clip.corrected]
-    pixel = np.full((clip.frames, len(model.names), 2), np.nan)
-    pixel[frame] = model.pixels(clip.body.pose(clip.prior[frame]), frame)
+    model = KeypointModel.usual(data.body, data.camera, data.body.skeleton.point_names)
+    frame = data.belief.frame[data.belief.pictured]
+    pixel = np.full((len(data.time_s), len(model.names), 2), np.nan)
+    pixel[frame] = model.pixels(data.body.pose(data.belief.prior[frame]), frame)
     seen = np.isfinite(pixel).all(axis=-1)
     observed = ObservedKeypoints(pixel, seen.astype(np.float64), np.full(seen.shape, np.nan))
-    std_m = np.full(len(model.names), picture_std_m(clip.body))
-    return KeypointTerm(model, observed[window.frames], std_m, None)
+    std_m = np.full(len(model.names), picture_std_m(data.body))
+    return KeypointTerm(model, observed[window.frames], std_m)
 
 
-def _hint_term(clip: ClipProblem, window: Window, step_s: Array) -> DepthHintTerm:
-    evidence, points = clip.evidence.keypoints, clip.points[window.frames]
-    std_m = _depth_std_m(evidence, points, evidence.depths.error_m)
-    kept = np.exp(-step_s / evidence.depths.memory_s)[:, None]
-    expected = evidence.depths.expected(points.depth_m)
-    return DepthHintTerm(evidence.model, evidence.depths.links, expected, std_m, kept)
-
-
-def _depth_std_m(evidence: KeypointEvidence, points: ObservedKeypoints, error_m: Array) -> Array:
-    """(F, L) errors of the links' guessed depths, of which `error_m` (L,) are those of sure detections."""
+def _hint_term(
+    evidence: KeypointEvidence, points: ObservedKeypoints, error_m: Array, kept: Array | None
+) -> DepthHintTerm:
+    """The links' guessed depths, of which `error_m` (L,) are the errors of sure detections."""
     links = evidence.depths.links
     sure = np.where(links.ends != 0.0, points.confidence[:, None], 1.0).min(axis=-1)
     left_out = (links.ends != 0.0) @ (evidence.trust == 0.0) > 0.0
-    return np.asarray(np.where(left_out, np.inf, error_m) / np.maximum(sure, LEAST_CONFIDENCE))
+    std_m = np.where(left_out, np.inf, error_m) / np.maximum(sure, LEAST_CONFIDENCE)
+    return DepthHintTerm(evidence.model, links, evidence.depths.expected(points.depth_m), std_m, kept)
 
 
 def _prior_term(clip: ClipProblem, window: Window, step_s: Array) -> QuadraticTerm:
     """The deviation's size, trust in keyframes, and the biases' slow drift."""
-    noise, width_px = clip.noise, clip.width_px[window.frames]
-    inside = (clip.keyframes >= window.first) & (clip.keyframes < window.last)
-    dofs, frames = clip.body.skeleton.dof_count, len(width_px)
-    size = noise.bias_std(width_px).reshape(frames, -1)
+    width_px, keyframes = clip.data.width_px[window.frames], clip.data.belief.frame
+    inside = (keyframes >= window.first) & (keyframes < window.last)
+    dofs, frames = clip.data.body.skeleton.dof_count, len(width_px)
+    size = NOISE.bias_std(width_px).reshape(frames, -1)
     matrix = BlockBanded(frames, dofs + size.shape[1])
     posture, bias = slice(0, dofs), slice(dofs, None)
     matrix.add_combination(posture, (1.0,), np.array(20.0**-2))
     factor = clip.accelerations
     information = factor.T @ clip.evidence.information[inside] @ factor
-    matrix.diagonal[clip.keyframes[inside] - window.first, :dofs, :dofs] += information
-    kept = np.exp(-step_s / noise.bias_time_s)[:, None]
+    matrix.diagonal[keyframes[inside] - window.first, :dofs, :dofs] += information
+    kept = _kept(step_s, NOISE.bias_time_s)
     matrix.add_combination(bias, (-kept, 1.0), (size[1:] * np.sqrt(1.0 - kept**2)) ** -2.0)
     matrix.diagonal[0, bias, bias] += np.diag(size[0] ** -2.0)
     return QuadraticTerm(matrix)

@@ -1,6 +1,7 @@
 """The estimation problem of a whole clip, without its pictures."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -10,12 +11,13 @@ from ..body.posture import Posture
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
 from ..markers.ignored_regions import IgnoredPixels
+from ..prior.frame_prior import REFERENCE_STEP_S, process_noise_factor
 from ..prior.keyframes import with_turns
 from ..terms.keypoints import ObservedKeypoints
-from ..terms.reference import ExpectedPoints
 from ..terms.region_model import RegionModel
-from ..terms.regions import FEATURES, ObservedRegions, RegionNoise
+from ..terms.regions import FEATURES, ObservedRegions
 from ..terms.state import ClipState
+from .belief import Belief
 from .keypoint_evidence import KeypointEvidence
 from .windows import Window
 
@@ -26,7 +28,6 @@ class KeyframeEvidence:
 
     model: RegionModel  # with the placements and the lens found
     posing_scale: float  # size of the posing error relative to a person's usual one
-    timing_frames: float  # standard deviation of the keyframes' timing error [frames]
     distrust: Array  # (M,) factor, at least one, of the expected standard deviation of each marker's regions
     area_ratio: Array  # (M,) area of each marker's unhidden region, relative to the predicted one
     information: Array  # (K, D, D) inverse covariance of each keyframe's posing error
@@ -39,7 +40,6 @@ def uncalibrated(model: RegionModel) -> KeyframeEvidence:
     return KeyframeEvidence(
         model,
         1.0,
-        0.0,
         np.ones(markers),
         np.ones(markers),
         np.zeros((0, dofs, dofs)),
@@ -47,49 +47,72 @@ def uncalibrated(model: RegionModel) -> KeyframeEvidence:
     )
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class ClipProblem:
-    """Everything that the estimate of a clip of F frames follows from, except its pictures."""
+@dataclass(frozen=True, eq=False)
+class ClipData:
+    """What is known of a clip of F frames before anything is estimated, except its pictures."""
 
-    # What it is about.
     body: Body
-    camera: Camera  # as stated; the evidence has the calibrated lens
-    noise: RegionNoise
-
-    # What the keyframes say.
-    keyframes: IndexArray  # (K,) their frames
-    matched: BoolArray  # (K,) which of them are matched, or corrected in the picture only
-    corrected: BoolArray  # (K,) which of these a person vouches for in the picture
-    evidence: KeyframeEvidence
-    factor: Array  # (D, D) of the deviation's accelerations
-    interpolated: Posture  # F postures: the keyframes interpolated, which turns the short way round
-    depth_std_m: Array  # (F,) noise of the prior's depths [m]
-    ankle_height_m: Array | None  # (F,) usual height of the lower ankle [m]; None where no floor is known
-
-    # What the footage has taught.
-    prior: Posture  # the interpolated postures with the turns
-    turns: IndexArray  # (K - 1,) whole turns about the vertical that the prior adds in each gap
-    limb_size: Array  # (D,) factor on the accelerations of each degree of freedom's limb
-    rests: Array | None  # (F - 1, A) how far each ankle seen rests by the footage; None where not asked
-    depth_factor: Array  # (F, P) on the noise of the prior's depths, by how far the prior misses each point
-    observed: ObservedRegions  # the markers' regions: as tracked, and those found at a second look
-
-    # What was seen.
+    camera: Camera  # as stated; the calibration has the lens found
+    belief: Belief  # in the motion, with its keyframes
     tracked: ObservedRegions  # the markers' regions as tracked
     width_px: Array  # (F, M) half-width of each marker's limb [px]
     ignored: IgnoredPixels | None  # what is never a marker, in all frames; None for nothing
     keypoints: Keypoints  # of the performer, N of them; left and right exchanged back where they were swapped
     points: ObservedKeypoints  # the same, as they are compared
     swapped: BoolArray  # (F, N) which of them were exchanged
-    step_s: Array  # (F - 1,) time between frames [s]
-    unseen: tuple[str, ...]  # limbs that are never seen
+    time_s: Array  # (F,)
     there: BoolArray  # (F,) whether the performer is there; nothing is solved elsewhere
-    reference: ExpectedPoints | None = None  # where a motion from elsewhere has the points; None without one
+
+    @cached_property
+    def step_s(self) -> Array:
+        """(F - 1,) time between frames [s]."""
+        return np.maximum(np.diff(self.time_s), 1e-3)
+
+    @cached_property
+    def pace(self) -> float:
+        """The usual time between frames, in those that accelerations are stated for."""
+        return float(np.median(self.step_s)) / REFERENCE_STEP_S if len(self.step_s) else 1.0
+
+    @cached_property
+    def factor(self) -> Array:
+        """(D, D) of the deviation's usual accelerations, as the keyframes have them."""
+        belief = self.belief
+        return process_noise_factor(belief.postures, self.time_s[belief.frame])
+
+
+@dataclass(frozen=True, eq=False)
+class ClipProblem:
+    """The estimation problem of a clip: what is known, what was calibrated, and what has been learned."""
+
+    data: ClipData
+    evidence: KeyframeEvidence
+
+    # What the footage has taught.
+    prior: Posture  # the interpolated postures with the turns
+    turns: IndexArray  # (K - 1,) whole turns about the vertical that the prior adds in each gap
+    limb_size: Array  # (D,) factor on the accelerations of each degree of freedom's limb
+    depth_factor: Array  # (F, P) on the noise of the prior's depths, by how far the prior misses each point
+    observed: ObservedRegions  # the markers' regions: as tracked, and those found at a second look
+    rests: Array | None = None  # (F - 1, A) how far each ankle seen rests; None where not asked
+
+    @classmethod
+    def begun(cls, data: ClipData, evidence: KeyframeEvidence) -> "ClipProblem":
+        """The problem before anything has been learned."""
+        prior, skeleton = data.belief.prior, data.body.skeleton
+        return cls(
+            data,
+            evidence,
+            prior,
+            np.zeros(max(len(data.belief.frame) - 1, 0), dtype=np.intp),
+            np.ones(skeleton.dof_count),
+            np.ones((prior.batch[0], len(skeleton.points))),
+            data.tracked,
+        )
 
     @property
     def accelerations(self) -> Array:
         """(D, D) the factor L of usual accelerations, with what the footage shows."""
-        return np.asarray(self.limb_size[:, None] * self.factor)
+        return np.asarray(self.limb_size[:, None] * self.data.factor)
 
     @property
     def frames(self) -> int:
@@ -98,17 +121,17 @@ class ClipProblem:
 
     def with_turns(self, turns: IndexArray) -> "ClipProblem":
         """The same with these whole turns (K - 1,) in the gaps between the keyframes."""
-        prior = with_turns(self.interpolated, self.keyframes, turns)
+        prior = with_turns(self.data.belief.prior, self.data.belief.frame, turns)
         return replace(self, prior=prior, turns=turns)
 
     def start(self, window: Window) -> ClipState:
         """The state of a window to begin with: its prior, without biases."""
         frames, markers = window.last - window.first, self.observed.quality.shape[1]
         return ClipState(
-            self.body,
+            self.data.body,
             self.prior[window.frames],
             np.arange(window.first, window.last),
             self.accelerations,
-            np.zeros((frames, self.body.skeleton.dof_count)),
+            np.zeros((frames, self.data.body.skeleton.dof_count)),
             np.zeros((frames, markers * FEATURES)),
         )

@@ -1,10 +1,10 @@
-"""Calibration on the keyframes: placement of the markers, lens, and the keyframes' posing and timing errors.
+"""Calibration on the keyframes: placement of the markers, lens, and the size of the posing error.
 
 All follow from the same residuals between the regions seen and those predicted, so they are found together:
-the size of the posing error and of its timing are those of the largest marginal likelihood over
-placements and lens (empirical Bayes; Robbins 1956; MacKay 1992, *Bayesian Interpolation*), and placements
-and lens are the most probable ones given those sizes. Regions that fit none count for less (Student's t), and
-a marker that never fits is distrusted in all frames.
+the size of the posing error is that of the largest marginal likelihood over placements and lens (empirical
+Bayes; Robbins 1956; MacKay 1992, *Bayesian Interpolation*), and placements and lens are the most probable
+ones given that size. Regions that fit none count for less (Student's t), and a marker that never fits is
+distrusted in all frames.
 """
 
 from collections.abc import Callable, Generator
@@ -20,9 +20,9 @@ from ..camera.camera import Camera
 from ..numerics.robust import DEGREES, student_weight
 from ..terms.keypoints import ObservedKeypoints
 from ..terms.region_model import MarkerPlacement, RegionModel
-from ..terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
+from ..terms.regions import FEATURES, NOISE, ObservedRegions, feature_rows, missing_variance
+from .belief import FEWEST_POSED, POINT_STD_M, Belief, picture_information, posing_covariance
 from .clip_problem import KeyframeEvidence, uncalibrated
-from .keyframe_error import POINT_STD_M, posing_covariance, velocities
 from .keyframe_rows import UNUSED, EvidenceRows, KeyframeRows
 from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, learned_std, read_depths
 from .windows import evenly_spread
@@ -87,7 +87,6 @@ class CalibrationOptions:
     most_judged: int = 60
     scale_median: float = 0.7  # log-normal prior of the size
     scale_spread: float = 1.2
-    timing_mean: float = 0.7  # mean of its exponential prior [frames]
     # Factor of the posing error by contours alone: the colors that edges are found by are learned at the same
     # keyframes, with their errors, which hides about a quarter of these.
     learned_share: float = 1.3
@@ -96,7 +95,6 @@ class CalibrationOptions:
 
 CALIBRATION = CalibrationOptions()
 SCALES = np.geomspace(0.1, 2.5, 17)  # sizes of the posing error tried, relative to a person's usual one
-TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])  # deviations of the timing tried [frames]
 LENS_DIFFERENCE = 1e-3
 
 
@@ -114,7 +112,6 @@ class SeenAtKeyframes:
     keypoints: KeypointEvidence | None = None  # usual evidence of the N keypoints; None for none
     points: ObservedKeypoints | None = None  # those seen
     contours: ContourReader | None = None  # reads rows at some keyframes; None where contours judge none
-    posing: Array | None = None  # (K, D, D) their usual errors; None for those of keyframes posed in space
 
     def __getitem__(self, index: IndexArray) -> "SeenAtKeyframes":
         """Some of the keyframes."""
@@ -125,28 +122,54 @@ class SeenAtKeyframes:
             observed=self.observed[index],
             width_px=self.width_px[index],
             points=None if self.points is None else self.points[index],
-            posing=None if self.posing is None else self.posing[index],
         )
 
 
-def read_keyframes(
-    model: RegionModel, noise: RegionNoise, at: SeenAtKeyframes
+def read_belief(
+    model: RegionModel, at: SeenAtKeyframes, belief: Belief
 ) -> Generator[None, None, KeyframeEvidence]:
-    """Calibrate markers and keypoints on posed keyframes and judge the keyframes by them."""
+    """Calibrate on those keyframes of which a person vouches, and judge them; others stay as doubtful."""
+    body, pictured = model.body, belief.pictured
+    covariance = belief.covariance(body, model.camera)
+    information, known = np.linalg.inv(covariance), np.flatnonzero(belief.calibrating)
+    if len(known) < FEWEST_POSED:
+        evidence = replace(uncalibrated(model), information=information)
+        return evidence if at.keypoints is None else replace(evidence, keypoints=at.keypoints)
+    if pictured.any():
+        more = picture_information(body, model.camera, belief.postures[pictured], belief.frame[pictured])
+        covariance[pictured] = np.linalg.inv(information[pictured] + more)
+        if at.points is not None:  # a found depth says nothing of a detector's guess
+            depth_m = np.where(pictured[:, None], np.nan, at.points.depth_m)
+            at = replace(at, points=replace(at.points, depth_m=depth_m))
+    evidence = yield from read_keyframes(model, at[known], covariance[known])
+    information[belief.posed] /= evidence.posing_scale**2
+    return replace(evidence, information=information)
+
+
+def read_keyframes(
+    model: RegionModel, at: SeenAtKeyframes, posing: Array | None = None
+) -> Generator[None, None, KeyframeEvidence]:
+    """Calibrate markers and keypoints on keyframes and judge the keyframes by them.
+
+    `posing` (K, D, D): their usual errors; None for those of keyframes posed in space.
+    """
     posture, frame, points, contours = at.posture, at.frame, at.points, at.contours
-    posing = posing_covariance(model.body, model.body.pose(posture)) if at.posing is None else at.posing
-    velocity = velocities(posture, frame)
+    posing = posing_covariance(model.body, model.body.pose(posture)) if posing is None else posing
     keypoints = at.keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
     believed = points is not None and points.only(keypoints.trust > 0.0).seen.any()
     if not model.placements and not believed and contours is None:
-        information = keyframe_information(posing, velocity, CALIBRATION.scale_median, 0.0)
-        found = replace(uncalibrated(model), posing_scale=CALIBRATION.scale_median, information=information)
-        return replace(found, keypoints=keypoints)
+        information = np.linalg.inv(posing) / CALIBRATION.scale_median**2
+        return replace(
+            uncalibrated(model),
+            posing_scale=CALIBRATION.scale_median,
+            information=information,
+            keypoints=keypoints,
+        )
     judged = evenly_spread(frame, CALIBRATION.most_judged)
     pose = model.body.pose(posture[judged])
     known = KnownFrames(pose, frame[judged], at.observed[judged])
     # (J, M, 5); without the slow bias, which at the keyframes is mostly the placements'.
-    variance = noise.pixel_std_px**2 + noise.surface_std(at.width_px[judged]) ** 2
+    variance = NOISE.pixel_std_px**2 + NOISE.surface_std(at.width_px[judged]) ** 2
     calibrated, groups = model, [FEATURES] * len(model.placements)
     seen_points = None
     if points is not None and believed:
@@ -161,7 +184,7 @@ def read_keyframes(
     weight = np.ones((len(judged), int(size.sum())))
     markers = len(model.placements)
     distrust = np.ones(markers)
-    scale, timing = CALIBRATION.scale_median, 0.0
+    scale = CALIBRATION.scale_median
     for iteration in range(4):
         yield
         parts, area_ratio = [], np.ones(0)
@@ -172,13 +195,13 @@ def read_keyframes(
             parts.append(keypoint_rows(placed, usual, seen_points, std_m))
         if outlines is not None:
             parts.append(outlines)
-        seen = KeyframeRows.stacked(parts, posing[judged], velocity[judged])
+        seen = KeyframeRows.stacked(parts, posing[judged])
         yield
         if iteration > 0:  # before, a careless keyframe looks like a marker mistaken for another thing
             judging, tied = _judging(markers, keypoints, seen_points is not None, outlines)
-            scale, timing = yield from _most_likely_sizes(seen.part(judging, tied), weight[:, judging])
-        change, left = seen.calibrated(weight, scale, timing)
-        squared = seen.squared(left, size, scale, timing)
+            scale = yield from _most_likely_size(seen.part(judging, tied), weight[:, judging])
+        change, left = seen.calibrated(weight, scale)
+        squared = seen.squared(left, size, scale)
         usable = (seen.variance < UNUSED)[:, np.cumsum(size) - 1]
         ends = markers * len(PRIOR_STD)
         calibrated = _changed(model, np.append(change[:ends], change[-1]))
@@ -191,23 +214,18 @@ def read_keyframes(
             rows, places = 2 * len(usual.names), 3 * len(usual.names)
             placed = usual.changed(change[ends : ends + places].reshape(-1, 3), calibrated.camera)
             own = slice(markers * FEATURES, markers * FEATURES + rows)
-            spread = seen.noise(weight, scale, timing)[:, own, own]
+            spread = seen.noise(weight, scale)[:, own, own]
             std_m = learned_std(placed, seen_points, keypoints.std_m, std_m, left[:, own], spread)
     if outlines is not None and not markers and seen_points is None:
         scale *= CALIBRATION.learned_share
-    information = keyframe_information(posing, velocity, scale, timing)
+    information = np.linalg.inv(posing) / scale**2
     placed = replace(placed, camera=calibrated.camera)
     found_points = replace(keypoints, model=placed, std_m=std_m)
     if points is not None and believed and np.isfinite(points.depth_m).any():
         every = model.body.pose(posture)
         depths = read_depths(keypoints.depths, placed, every, frame, points.depth_m, scale * POINT_STD_M)
         found_points = replace(found_points, depths=depths)
-    return KeyframeEvidence(calibrated, scale, timing, distrust, area_ratio, information, found_points)
-
-
-def keyframe_information(posing: Array, velocity: Array, scale: float, timing: float) -> Array:
-    """(K, D, D) inverse covariance of keyframes whose usual error (K, D, D) and velocity (K, D) are given."""
-    return np.linalg.inv(scale**2 * posing + timing**2 * velocity[:, :, None] * velocity[:, None, :])
+    return KeyframeEvidence(calibrated, scale, distrust, area_ratio, information, found_points)
 
 
 def _changed(model: RegionModel, change: Array) -> RegionModel:
@@ -283,43 +301,22 @@ def _judging(
     return rows, np.append(parameters, True)
 
 
-def _most_likely_sizes(seen: KeyframeRows, weight: Array) -> Generator[None, None, tuple[float, float]]:
-    """Means over the posterior of the posing error's size and of the timing error."""
-    logarithm = np.empty((len(SCALES), len(TIMINGS)))
-    for row, scale in zip(logarithm, SCALES, strict=True):
-        row[:] = _log_likelihoods(seen, seen.noise(weight, scale, 0.0))
-        yield
-    logarithm -= (
-        0.5 * (np.log(SCALES[:, None] / CALIBRATION.scale_median) / CALIBRATION.scale_spread) ** 2
-        + TIMINGS / CALIBRATION.timing_mean
-    )
-    probability = np.exp(logarithm - logarithm.max())
-    probability /= probability.sum()
-    scale = np.exp(probability.sum(axis=1) @ np.log(SCALES))
-    return float(scale), float(probability.sum(axis=0) @ TIMINGS)
+def _most_likely_size(seen: KeyframeRows, weight: Array) -> Generator[None, None, float]:
+    """Mean over the posterior of the posing error's size, the fitted parameters integrated out.
 
-
-def _log_likelihoods(seen: KeyframeRows, noise: Array) -> Array:
-    """(T,) log likelihood of all rows for each of `TIMINGS`, the fitted parameters integrated out.
-
-    Woodbury's identity spares the dense matrix of all rows, Sherman and Morrison's an inverse a timing.
+    Woodbury's identity spares the dense matrix of all rows.
     """
-    inverse, information, right = seen.gathered(noise)
-    _, determinants = np.linalg.slogdet(noise)
-    misfit = np.einsum("jr,jrs,js->", seen.residual, inverse, seen.residual)
-    weighted = (inverse @ seen.velocity[..., None])[..., 0]
-    gain = np.sum(seen.velocity * weighted, axis=-1)
-    along = (np.swapaxes(seen.parameter_jacobian, -1, -2) @ weighted[..., None])[..., 0]  # (J, X)
-    against = np.sum(weighted * seen.residual, axis=-1)
-    result = np.empty(len(TIMINGS))
-    for i, timing in enumerate(TIMINGS):
-        share = timing**2 / (1.0 + timing**2 * gain)
-        known = information - (along.T * share) @ along
-        pull = right - along.T @ (share * against)
-        rest = misfit - share @ against**2 - pull @ np.linalg.solve(known, pull)
-        spread = determinants.sum() + np.log1p(timing**2 * gain).sum() + np.linalg.slogdet(known)[1]
-        result[i] = -0.5 * (rest + spread)
-    return result
+    logarithm = -0.5 * (np.log(SCALES / CALIBRATION.scale_median) / CALIBRATION.scale_spread) ** 2
+    for row, scale in enumerate(SCALES):
+        noise = seen.noise(weight, scale)
+        inverse, information, right = seen.gathered(noise)
+        misfit = np.einsum("jr,jrs,js->", seen.residual, inverse, seen.residual)
+        rest = misfit - right @ np.linalg.solve(information, right)
+        spread = np.linalg.slogdet(noise)[1].sum() + np.linalg.slogdet(information)[1]
+        logarithm[row] -= 0.5 * (rest + spread)
+        yield
+    probability = np.exp(logarithm - logarithm.max())
+    return float(np.exp(probability @ np.log(SCALES) / probability.sum()))
 
 
 def _distrust(squared: Array, usable: BoolArray) -> Array:

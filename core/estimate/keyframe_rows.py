@@ -32,14 +32,13 @@ class KeyframeRows:
     parameter_jacobian: Array  # (J, R, X)
     variance: Array  # (J, R)
     posing: Array  # (J, R, R) covariance that a person's usual posing error adds
-    velocity: Array  # (J, R) change of the rows per frame
     prior: Array  # (X, X)
 
     @classmethod
-    def stacked(cls, parts: Sequence[EvidenceRows], posing: Array, velocity: Array) -> "KeyframeRows":
+    def stacked(cls, parts: Sequence[EvidenceRows], posing: Array) -> "KeyframeRows":
         """The rows of several kinds of evidence, one after the other.
 
-        `posing` (J, D, D) is the usual posing error, `velocity` (J, D) the change of the postures per frame.
+        `posing` (J, D, D) is the usual posing error.
         """
         judged = len(posing)
         rows = [part.residual.shape[1] for part in parts]
@@ -56,7 +55,6 @@ class KeyframeRows:
             parameters,
             np.concatenate([part.variance for part in parts], axis=1),
             jacobian @ posing @ np.swapaxes(jacobian, -1, -2),
-            (jacobian @ velocity[..., None])[..., 0],
             block_diag(*(part.prior for part in parts), LENS_STD**-2),
         )
 
@@ -67,7 +65,6 @@ class KeyframeRows:
             self.parameter_jacobian[:, rows][:, :, parameters],
             self.variance[:, rows],
             self.posing[:, rows][:, :, rows],
-            self.velocity[:, rows],
             self.prior[np.ix_(parameters, parameters)],
         )
 
@@ -78,15 +75,15 @@ class KeyframeRows:
         information = (weighted @ self.parameter_jacobian).sum(axis=0) + self.prior
         return inverse, information, (weighted @ self.residual[..., None]).sum(axis=0)[:, 0]
 
-    def calibrated(self, weight: Array, scale: float, timing: float) -> tuple[Array, Array]:
+    def calibrated(self, weight: Array, scale: float) -> tuple[Array, Array]:
         """Most probable change (X,) of the parameters, and the rows (J, R) that it leaves; as `noise`."""
-        _, information, right = self.gathered(self.noise(weight, scale, timing))
+        _, information, right = self.gathered(self.noise(weight, scale))
         change = -np.linalg.solve(information, right)
         return change, self.residual + self.parameter_jacobian @ change
 
-    def squared(self, left: Array, size: IndexArray, scale: float, timing: float) -> Array:
+    def squared(self, left: Array, size: IndexArray, scale: float) -> Array:
         """(J, G) squares, in standard deviations, of rows that are left: groups of `size` (G,) rows each."""
-        expected = self.noise(np.ones_like(left), scale, timing)
+        expected = self.noise(np.ones_like(left), scale)
         squared = np.empty((len(left), len(size)))
         first = np.cumsum(size) - size
         for count in np.unique(size):
@@ -97,13 +94,13 @@ class KeyframeRows:
             squared[:, size == count] = (rows[..., None, :] @ solved)[..., 0, 0]
         return squared
 
-    def noise(self, weight: Array, scale: float, timing: float) -> Array:
+    def noise(self, weight: Array, scale: float) -> Array:
         """(J, R, R) covariance of the rows without the parameters' own.
 
         `weight` (J, R) is 1 for a row that is no outlier, `scale` the posing error's size relative to a usual
-        one, `timing` the timing error's standard deviation [frames].
+        one.
         """
-        total = scale**2 * self.posing + timing**2 * self.velocity[:, :, None] * self.velocity[:, None, :]
+        total = scale**2 * self.posing
         rows = np.arange(total.shape[-1])
         total[:, rows, rows] += self.variance / weight
         return total

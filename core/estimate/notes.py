@@ -40,15 +40,10 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
             f"the lens is {lens:.1f} mm by keyframes and footage, and the estimate used that "
             f"instead of {stated:.1f} mm as stated; check the camera"
         )
-    if evidence.timing_frames > 1.0:
-        notes.append(
-            f"the keyframes are about {evidence.timing_frames:.0f} frames early or late by the "
-            "footage; check the frames they are set at"
-        )
     if evidence.posing_scale > 2.0:
         notes.append(
             "the keyframes differ from the footage by much more than the usual posing error; check "
-            f"the camera, the actor's lengths{_and_what_is_seen(take)}"
+            f"the frames they are set at, the camera, the actor's lengths{_and_what_is_seen(take)}"
         )
     for marker, distrust in zip(take.markers, evidence.distrust, strict=True):
         if distrust > 3.0:

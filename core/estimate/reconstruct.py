@@ -15,7 +15,7 @@ from ..body.skeleton import SIDES
 from ..detect.keypoints import Keypoints
 from ..errors import InputError
 from ..markers.ignored_regions import IgnoredPixels
-from ..markers.reading import Reading, of_same_footage
+from ..markers.reading import Reading
 from ..markers.region_tracks import RegionTracks
 from ..prior.keyframe_proposals import evidence_speed
 from ..prior.keyframes import interpolate, with_offset
@@ -28,16 +28,17 @@ from ..take.read_footage import average_model
 from ..take.seen_take import SeenTake
 from ..take.take import Take
 from ..terms.region_model import RegionModel
+from .belief import Belief
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
-from .keyframe_error import UNOBSERVED, place_depth_std_m, undetermined_covariance, unobserved_variance
-from .keyframe_trust import select_keyframes
+from .keyframe_selection import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
-from .performer_placement import feet_over_floor_m, found_ankle_m
+from .performer_placement import feet_over_floor_m, found_ankle_m, lower_ankle_m
 from .reference_evidence import OPTIONS, NoReference, ReferenceEvidence, with_reference
 from .second_look import seen_tracks
-from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
+from .sigma import UNOBSERVED, place_depth_std_m, undetermined_covariance, unobserved_variance
+from .whole_clip import Seen, WholeClipResult, estimate_whole_clip
 
 CHUNK_FRAMES = 500
 
@@ -53,7 +54,7 @@ class Reconstruction:
     notes: tuple[str, ...]  # notes on the result for people, one sentence each
     keypoints: Keypoints  # the performer's keypoints in every frame, none where the take has none
     model: RegionModel  # the markers' region model: calibrated on the keyframes, or of average placements
-    solution: WholeClipResult | None = None  # result of method `map`, for another to start from
+    solution: WholeClipResult | None = None  # result of method `map`
 
     @property
     def keypoint_fit(self) -> KeypointFit | None:
@@ -70,16 +71,14 @@ class Reconstruction:
 def reconstruct(
     seen: SeenTake,
     method: str = "map",
-    earlier: Reconstruction | None = None,
     referred: ReferenceEvidence | NoReference | None = None,
     floor_m: float | None = None,
 ) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
-    `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; of `earlier`
-    those parts are used that still hold; `referred` is what the take's reference motion tells; `floor_m` is
-    the floor's height, on which found poses should stand. Closing the generator cancels the job, which has no
-    effects of its own.
+    `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; `referred` is
+    what the take's reference motion tells; `floor_m` is the floor's height, on which found poses should
+    stand. Closing the generator cancels the job, which has no effects of its own.
 
     Raises:
         InputError: The method is unknown, or there are too few keyframes.
@@ -89,7 +88,7 @@ def reconstruct(
     check_reconstructible(seen.take, method)
     # The matrices are small: more threads of linear algebra take up to twenty times as long.
     with threadpool_limits(limits=1, user_api="blas"):
-        return (yield from _reconstruct(seen, method, earlier, referred, floor_m))
+        return (yield from _reconstruct(seen, method, referred, floor_m))
 
 
 def check_reconstructible(take: Take, method: str) -> None:
@@ -122,7 +121,6 @@ def check_method(take: Take, method: str) -> None:
 def _reconstruct(
     given: SeenTake,
     method: str,
-    earlier: Reconstruction | None,
     said: ReferenceEvidence | NoReference | None,
     floor_m: float | None,
 ) -> Job[Reconstruction]:
@@ -142,22 +140,20 @@ def _reconstruct(
     notes += reading.notes + shaken + absent + left_out_notes(take, left_out)
     take = replace(take, keyframes=worth)
     notes += found_notes(take)
-    keyframes, match_scale = with_offset(take.keyframes, take.fps)
-    wide = [OPTIONS.keyframe_width if key.matched and key.matched.is_referred else 1.0 for key in keyframes]
+    keyframes, doubt = with_offset(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
     notes += keypoints.notes
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution, seen = baseline, average_model(take), None, tracks
     if method == "map":
-        usable = _usable(earlier, reading)
         ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
         footage = Seen(tracks, take.marker_segments, keypoints, reading.album, ignored, there)
         unseen = given.unseen
-        believed = _believed(take, prior, match_scale * wide, unseen, referred)
-        estimate = estimate_whole_clip(take.body, take.camera, footage, believed, earlier=usable)
+        belief = _belief(take, prior, doubt, unseen, referred)
+        estimate = estimate_whole_clip(take.body, take.camera, footage, belief)
         solution = yield from within("Estimating the motion", estimate, 0.0, 1.0)
         seen = seen_tracks(tracks, solution.problem.observed)
-        motion, model = _solved(take, seen, solution, match_scale, unseen, floor_m), solution.evidence.model
+        motion, model = _solved(take, seen, solution, doubt, unseen, floor_m), solution.evidence.model
         if not shaken:  # else the camera is what does not fit
             notes += evidence_notes(take, solution.evidence)
         notes += keypoint_notes(solution.keypoints)
@@ -171,14 +167,6 @@ def _reconstruct(
     notes += marker_notes(seen, there)
     motion, baseline = motion.emptied(there), baseline.emptied(there)
     return Reconstruction(motion, baseline, reading, speed.values, notes, keypoints, model, solution)
-
-
-def _usable(earlier: Reconstruction | None, reading: Reading) -> WholeClipResult | None:
-    """An earlier reconstruction's estimate from the same pictures; None without one."""
-    if earlier is None or (earlier.reading.album is None) != (reading.album is None):
-        return None
-    known = earlier.reading is reading or of_same_footage(earlier.reading.key, reading.key)
-    return earlier.solution if known else None
 
 
 def _present(take: Take, there: BoolArray) -> Take:
@@ -199,19 +187,24 @@ def _check_tracks(take: Take, tracks: RegionTracks) -> None:
     check_in_front(take)
 
 
-def _believed(
+def _belief(
     take: Take,
     prior: Posture,
-    match_scale: Array,
+    doubt: Array,
     unseen: tuple[str, ...],
     referred: ReferenceEvidence | None,
-) -> Believed:
-    ankle, index = None, np.array(take.keyframe_indices, dtype=np.intp)
+) -> Belief:
+    """The belief in a take's keyframes; `doubt` (K,) as of `Belief`, but for wider reference motions."""
+    ankle_m, frame = None, np.array(take.keyframe_indices, dtype=np.intp)
     if _is_composed(take):
-        ankle = found_ankle_m(take.body, prior[index], index, prior.batch[0])
+        ankle_m = found_ankle_m(take.body, prior[frame], frame, prior.batch[0])
+    elif doubt.all():  # posed keyframes say where the floor is, and better
+        ankle_m = lower_ankle_m(take.body, prior[frame], frame, prior.batch[0])
+    referring = [key.matched is not None and key.matched.is_referred for key in take.keyframes]
+    doubt = doubt * np.where(referring, OPTIONS.keyframe_width, 1.0)
+    pictured = np.array([keyframe.depth_found for keyframe in take.keyframes])
     expected = None if referred is None else referred.expected
-    corrected = np.array([keyframe.depth_found for keyframe in take.keyframes])
-    return Believed(prior, take.keyframe_indices, match_scale, ankle, unseen, expected, corrected)
+    return Belief(prior, frame, doubt, pictured, ankle_m, unseen, expected)
 
 
 def _is_composed(take: Take) -> bool:
@@ -223,7 +216,7 @@ def _solved(
     take: Take,
     tracks: RegionTracks,
     result: WholeClipResult,
-    match_scale: Array,
+    doubt: Array,
     never: tuple[str, ...],
     floor_m: float | None,
 ) -> Motion:
@@ -232,11 +225,10 @@ def _solved(
         "residual_px": result.residual_px,
         "quality": tracks.quality,
         "posing_scale": np.array(result.evidence.posing_scale),
-        "timing_frames": np.array(result.evidence.timing_frames),
         "lens_mm": np.array(result.evidence.model.camera.lens_mm),
         "distrust": result.evidence.distrust,
     }
-    if result.problem.keypoints.names:
+    if fit.keypoints.names:
         diagnostics |= {
             "keypoint_residual_px": fit.residual_px,
             "keypoint_weight": fit.weight,
@@ -255,8 +247,6 @@ def _solved(
     posture = rested(take.body, result.posture, never)
     motion = _motion(take, tracks, posture, result.covariance, "map", diagnostics, unseen)
     motion = replace(motion, unseen=never)
-    if not match_scale.any():
-        return motion
     place_std_m: Array | float = 0.0
     if _is_composed(take):
         ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
@@ -272,7 +262,7 @@ def _solved(
             for key in take.keyframes
         ]
     )
-    open_depth = undetermined_covariance(motion.points, take.camera, index, match_scale, sure, place_std_m)
+    open_depth = undetermined_covariance(motion.points, take.camera, index, doubt, sure, place_std_m)
     return replace(motion, point_covariance=motion.point_covariance + open_depth)
 
 

@@ -14,20 +14,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array
 from ..prior.frame_prior import REFERENCE_STEP_S
 from ..progress import Part, scaled
 from ..terms.depths import DEPTH_STD_M
 from ..terms.state import ClipState
 from ..video.album import Album
 from .assembly import stillness_term
+from .belief import found_covariance
 from .clip_problem import ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_search import all_located, contour_schedule, points_locate
-from .keyframe_error import match_covariance
 from .second_look import find_lost
 from .turn_choice import choose_turns
-from .warm_start import changed_gaps
 from .window_problem import WindowProblem
 from .windows import Window, spliced
 
@@ -59,30 +58,23 @@ SIZES = SizeOptions()
 
 
 def adapted(
-    problem: ClipProblem,
-    spans: list[Window],
-    states: list[ClipState],
-    among: BoolArray,
-    earlier: ClipProblem | None,
+    problem: ClipProblem, spans: list[Window], states: list[ClipState]
 ) -> Generator[None, None, tuple[ClipProblem, list[ClipState]]]:
     """The problem with sizes learned from its states, and the states that follow from it.
 
-    `among` (F,): frames in whose gaps it is asked how far the prior misses; `earlier`: the problem of an
-    earlier estimate, which knows the limbs' sizes and all other gaps. Nothing changes where neither markers
-    nor keypoints show the whole body.
+    Nothing changes where neither markers nor keypoints show the whole body.
     """
+    data = problem.data
     segments = tuple(one.segment for one in problem.evidence.model.placements)
-    if not (all_located(problem.body, segments) or points_locate(problem.keypoints)) or not spans:
+    if not (all_located(data.body, segments) or points_locate(data.keypoints)) or not spans:
         return problem, states
-    known = problem if earlier is None else earlier
-    factor = _depth_factor(problem, spans, states, among, known.depth_factor)
-    size = limb_sizes(problem, spans, states) if earlier is None else earlier.limb_size
-    problem = replace(problem, limb_size=size, depth_factor=factor)
+    size = limb_sizes(problem, spans, states)
+    problem = replace(problem, limb_size=size, depth_factor=_depth_factor(problem, spans, states))
     solved = []
     for window, state in zip(spans, states, strict=True):
         scaled = replace(state, factor=problem.accelerations, variation=state.variation / size)
         part = WindowProblem(problem, window, scaled)
-        for _ in part.settle():
+        for _ in part.converge(2):
             yield
         solved.append(part.state.without_cache())
     return problem, solved
@@ -91,25 +83,22 @@ def adapted(
 def limb_sizes(problem: ClipProblem, spans: list[Window], states: list[ClipState]) -> Array:
     """(D,) factor on the usual accelerations of each degree of freedom's limb."""
     kept = [state.variation[window.kept] for window, state in zip(spans, states, strict=True)]
-    pace = float(np.median(problem.step_s)) / REFERENCE_STEP_S if len(problem.step_s) else 1.0
-    variation = np.concatenate(kept)
+    variation, pace, keyframes = np.concatenate(kept), problem.data.pace, problem.data.belief.frame
     size = np.ones(variation.shape[1])
-    if len(variation) < 3 or len(problem.keyframes) < 2:
+    if len(variation) < 3 or len(keyframes) < 2:
         return size
     squared = (np.diff(variation, n=2, axis=0) ** 2).mean(axis=0) / pace**3
-    gap_s = float(np.median(np.diff(problem.keyframes))) * pace * REFERENCE_STEP_S
+    gap_s = float(np.median(np.diff(keyframes))) * pace * REFERENCE_STEP_S
     largest = float(np.clip(SIZES.largest_per_gap_s * gap_s, SIZES.largest, SIZES.largest_of_all))
-    for limb in problem.body.skeleton.limbs:
+    for limb in problem.data.body.skeleton.limbs:
         found = (np.sqrt(squared[limb].mean()) / SIZES.usual_size) ** SIZES.shrinkage
         size[limb] = np.clip(found, 1.0, largest)
     return size
 
 
-def _depth_factor(
-    problem: ClipProblem, spans: list[Window], states: list[ClipState], among: BoolArray, known: Array
-) -> Array:
-    """(F, P) factor on the noise of the prior's depths, alike within a gap, else as known."""
-    body, camera = problem.body, problem.camera
+def _depth_factor(problem: ClipProblem, spans: list[Window], states: list[ClipState]) -> Array:
+    """(F, P) factor on the noise of the prior's depths, alike within a gap."""
+    body, camera = problem.data.body, problem.data.camera
     squared = np.full(problem.depth_factor.shape, np.nan)
     for window, state in zip(spans, states, strict=True):
         kept, frame = state.posture[window.kept], state.frame[window.kept]
@@ -118,18 +107,14 @@ def _depth_factor(
         sight = camera.sight(points, frame[:, None])
         missed = missed - np.sum(missed * sight, axis=-1, keepdims=True) * sight
         squared[frame] = 0.5 * (missed**2).sum(axis=-1)  # two axes lie across
-    gap = np.searchsorted(problem.keyframes, np.arange(problem.frames), side="right")
-    told = np.isfinite(squared[:, 0])
-    gaps = len(problem.keyframes) + 1
-    # A gap of which only some frames are estimated again would not tell what all of it did.
-    asked = np.bincount(gap[among], minlength=gaps) > 0
-    told &= (asked & (np.bincount(gap[~told & problem.there], minlength=gaps) == 0))[gap]
-    count = np.bincount(gap[told], minlength=gaps)
-    total = np.stack([np.bincount(gap[told], one[told], minlength=gaps) for one in squared.T], axis=-1)
+    gap = np.searchsorted(problem.data.belief.frame, np.arange(problem.frames), side="right")
+    solved, gaps = np.isfinite(squared[:, 0]), len(problem.data.belief.frame) + 1
+    count = np.bincount(gap[solved], minlength=gaps)
+    total = np.stack([np.bincount(gap[solved], one[solved], minlength=gaps) for one in squared.T], axis=-1)
     mean = total / np.maximum(count, 1)[:, None]
     mean = (1.0 - SIZES.body_share) * mean + SIZES.body_share * mean.mean(axis=-1, keepdims=True)
     std = np.clip(SIZES.dependent_rows * np.sqrt(mean), SIZES.least_depth_std_m, SIZES.most_depth_std_m)
-    return np.where((count > 0)[gap][:, None], (std / DEPTH_STD_M)[gap], known)
+    return np.where((count > 0)[gap][:, None], (std / DEPTH_STD_M)[gap], problem.depth_factor)
 
 
 def refine(
@@ -137,60 +122,56 @@ def refine(
     spans: list[Window],
     states: list[ClipState],
     album: Album | None,
-    anew: BoolArray,
     contours: ContourEvidence | None,
-    earlier: ClipProblem | None = None,
 ) -> Part[tuple[ClipProblem, list[ClipState], ContourEvidence | None]]:
     """Learn from the footage what the keyframes could not tell.
 
-    `anew` (F,): the frames that are decided anew, and with them the gaps they lie in; `album` and `contours`
-    None leave contours out, or to be learned; `earlier`: the problem of an earlier estimate, which knows the
-    rest.
+    `album` and `contours` None leave contours out, or to be learned.
     """
-    problem, states = yield from scaled(choose_turns(problem, states, changed_gaps(problem, anew)), 0.0, 0.3)
-    problem, states = yield from scaled(adapted(problem, spans, states, anew, earlier), 0.3, 0.4)
-    if earlier is None and contours is not None:
-        contours = contours.with_camera(problem.evidence.model.camera)
-    elif earlier is None and album is not None:
-        contours = yield from scaled(_learned(problem, spans, states, album), 0.4, 0.5)
-    if contours is not None and len(problem.evidence.model.placements):
-        looking = find_lost(problem, spans, states, contours, anew)
-        problem = yield from scaled(looking, 0.5, 1.0)
-    return problem, states, contours
-
-
-def _learned(
-    problem: ClipProblem, spans: list[Window], states: list[ClipState], album: Album
-) -> Part[ContourEvidence | None]:
+    problem, states = yield from scaled(choose_turns(problem, states), 0.0, 0.3)
+    problem, states = yield from scaled(adapted(problem, spans, states), 0.3, 0.4)
     camera = problem.evidence.model.camera  # with the lens that was found
-    segments = tuple(one.segment for one in problem.evidence.model.placements)
-    schedule = contour_schedule(
-        problem.body, camera, album.factor, segments, problem.prior, problem.keypoints
-    )
     solved = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
     posture = spliced(problem.prior, spans, solved)
-    learning = learn_contours(problem.body, camera, album, posture, problem.keyframes, schedule)
-    return (yield from scaled(learning, 0.0, 1.0))
+    if contours is not None:
+        contours = contours.with_camera(camera)
+    elif album is not None:
+        segments = tuple(one.segment for one in problem.evidence.model.placements)
+        data = problem.data
+        schedule = contour_schedule(data.body, camera, album.factor, segments, problem.prior, data.keypoints)
+        learning = learn_contours(data.body, camera, album, posture, data.belief.frame, schedule)
+        contours = yield from scaled(learning, 0.4, 0.5)
+    if contours is not None and len(problem.evidence.model.placements):
+        looking = find_lost(problem, posture, contours)
+        problem, found = yield from scaled(looking, 0.5, 0.8)
+        for index, window in enumerate(spans):
+            if ((found >= window.first) & (found < window.last)).any():
+                part = WindowProblem(problem, window, states[index])
+                yield from scaled(part.follow_markers(), 0.8, 1.0)
+                states[index] = part.state.without_cache()
+    return problem, states, contours
 
 
 # --- Rests of the feet, which keyframes that are not posed do not tear
 
 
-def doubting(problem: ClipProblem) -> ClipProblem:
+def as_found(problem: ClipProblem) -> ClipProblem:
     """The problem with every keyframe as doubtful as a found one.
 
     A keyframe that a person put right lies beside frames whose evidence has a foot a little elsewhere. Feet
     that move from frame to frame are released, so the one frame would jump there and back. Where feet rest
     is therefore asked before the keyframe is believed, and holds afterwards: a correction moves all of it.
     """
-    decided = ~problem.matched | problem.corrected
+    data, belief = problem.data, problem.data.belief
+    decided = belief.posed | belief.pictured
     if not decided.any():
         return problem
     information = problem.evidence.information.copy()
-    frame = problem.keyframes[decided]
-    information[decided] = np.linalg.inv(match_covariance(problem.prior[frame], problem.camera, frame))
+    covariance = found_covariance(belief.postures, data.camera, belief.frame)
+    information[decided] = np.linalg.inv(covariance[decided])
     evidence = replace(problem.evidence, information=information)
-    return replace(problem, evidence=evidence, corrected=np.zeros_like(decided))
+    data = replace(data, belief=replace(belief, pictured=np.zeros_like(decided)))
+    return replace(problem, evidence=evidence, data=data)
 
 
 def rests_of(problem: ClipProblem, spans: list[Window], states: list[ClipState]) -> Array:

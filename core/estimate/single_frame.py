@@ -1,6 +1,5 @@
 """One frame's posture from its regions and keypoints, and what of them the posture does not explain."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,9 +13,9 @@ from ..progress import run
 from ..terms.depths import depths_jacobian
 from ..terms.keypoints import ObservedKeypoints
 from ..terms.region_model import RegionModel
-from ..terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
+from ..terms.regions import FEATURES, ObservedRegions, limb_widths
+from ..terms.solver import descend
 from ..terms.state import ClipState
-from ..terms.term import NormalEquations, Term, total_cost
 from .assembly import frame_terms
 from .clip_problem import KeyframeEvidence, uncalibrated
 from .keyframe_evidence import SeenAtKeyframes, read_keyframes
@@ -73,40 +72,6 @@ def frame_residuals(
     misplaced = np.flatnonzero(far & (points.confidence[0] >= MISPLACED.sure))
     names = tuple(dict.fromkeys(own.names[row] for row in misplaced))
     return FrameResiduals(off, point_off, tuple(map(int, markers)), names)
-
-
-TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))  # of image noise, from far off
-
-
-def descend(
-    state: ClipState, terms: Sequence[Term], temperatures: Sequence[float] = TEMPERATURES
-) -> tuple[ClipState, Array]:
-    """Descend from every start of a state.
-
-    `terms` are the frame's, for as many states of it; where a start's prior lies elsewhere it is a candidate,
-    too. The best state of each descent, never less probable than its prior's mean, and their costs (S,).
-    """
-    best = replace(state, variation=np.zeros_like(state.variation))
-    least = total_cost(terms, best)
-    for temperature in temperatures:
-        equations = NormalEquations(state.frames, state.unknowns.shape[1])
-        for term in terms:
-            term.add_to(equations, state, temperature)
-        step = equations.matrix.factorize().solve(-equations.gradient)
-        state, moved = state.stepped(step, 0.4)
-        if temperature > 1.0:
-            continue
-        costs = total_cost(terms, state)
-        better = costs < least
-        best = replace(
-            best,
-            variation=np.where(better[:, None], state.variation, best.variation),
-            bias=np.where(better[:, None], state.bias, best.bias),
-        )
-        least = np.minimum(costs, least)
-        if moved < 2e-3:
-            break
-    return best, least
 
 
 EXPECTED_RADIUS_M = 0.9  # largest distance of a marker from where it is believed to be
@@ -170,7 +135,7 @@ def calibrated(
         return found if keypoints is None else replace(found, keypoints=keypoints)
     width_px = limb_widths(model, keyframes.translation, frame)
     at = SeenAtKeyframes(frame, keyframes, observed, width_px, keypoints, points)
-    return run(read_keyframes(model, RegionNoise(), at))
+    return run(read_keyframes(model, at))
 
 
 def expected_in_frame(model: RegionModel, belief: FramePrior, frame: int) -> ExpectedRegions:
@@ -196,7 +161,7 @@ def _fitted(
     frames = np.full(count, frame, dtype=np.intp)
     state = ClipState(model.body, believed, frames, factor, variation, bias)
     width_px = limb_widths(model, belief.posture.translation[None], np.array([frame]))
-    best, least = descend(state, frame_terms(evidence, observed, belief, RegionNoise(), width_px, points))
+    best, least = descend(state, frame_terms(evidence, observed, belief, width_px, points))
     chosen = int(np.argmin(least))
     posture, cost = best.posture[chosen], float(least[chosen])
     found = frame_residuals(evidence, observed, points, posture, frame)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array
+from ..prior.frame_prior import REFERENCE_STEP_S
 from ..prior.keyframes import FULL_TURN, heading_steps_rad
 from ..progress import Part, scaled
 from ..terms.state import ClipState
@@ -94,20 +95,19 @@ class DoubtedTurn:
     strength: float  # by which the most doubtful gap comes first
 
 
-def doubted_turns(problem: ClipProblem, cost: Array, among: BoolArray) -> list[DoubtedTurn]:
+def doubted_turns(problem: ClipProblem, cost: Array) -> list[DoubtedTurn]:
     """Gaps to be tried another way round, the most doubtful first.
 
-    `cost` (F,): what each marker seen costs on average, the short way round; `among` (K - 1,): the gaps asked
-    for.
+    `cost` (F,): what each marker seen costs on average, the short way round.
     """
-    keyframes = problem.keyframes
-    step = heading_steps_rad(problem.interpolated[keyframes])
+    keyframes = problem.data.belief.frame
+    step = heading_steps_rad(problem.data.belief.postures)
     found = []
-    for gap in np.flatnonzero(among).tolist():
+    for gap in range(len(step)):
         first, last = int(keyframes[gap]), int(keyframes[gap + 1])
         if last - first < 2:
             continue
-        time_s = float(problem.step_s[first:last].sum())
+        time_s = float(problem.data.step_s[first:last].sum())
         misfit = float(cost[first + 1 : last].mean())
         doubted = time_s >= TURNS.long_s and misfit > TURNS.doubted_cost
         if abs(step[gap]) < TURNS.large_step_rad and not doubted:
@@ -120,19 +120,18 @@ def doubted_turns(problem: ClipProblem, cost: Array, among: BoolArray) -> list[D
     return sorted(found, key=lambda doubt: (-doubt.strength, doubt.gap))
 
 
-def choose_turns(
-    problem: ClipProblem, states: list[ClipState], among: BoolArray
-) -> Part[tuple[ClipProblem, list[ClipState]]]:
+def choose_turns(problem: ClipProblem, states: list[ClipState]) -> Part[tuple[ClipProblem, list[ClipState]]]:
     """Turn the other way round where that costs less.
 
-    `states` are windows, solved, which may overlap; `among` (K - 1,) the gaps that are asked for.
+    `states` are windows, solved, which may overlap.
     """
     states = list(states)
-    margin = round(TURNS.margin_s / float(np.median(problem.step_s))) if len(problem.step_s) else 0
-    seen = bool(problem.observed.quality.any() or problem.points.seen.any())  # contours alone decide nothing
-    doubts = doubted_turns(problem, image_cost(problem, states), among) if seen else []
+    data = problem.data
+    margin = round(TURNS.margin_s / (data.pace * REFERENCE_STEP_S))
+    seen = bool(problem.observed.quality.any() or data.points.seen.any())  # contours alone decide nothing
+    doubts = doubted_turns(problem, image_cost(problem, states)) if seen else []
     for number, doubt in enumerate(doubts):
-        first, last = (int(frame) for frame in problem.keyframes[doubt.gap : doubt.gap + 2])
+        first, last = (int(frame) for frame in problem.data.belief.frame[doubt.gap : doubt.gap + 2])
         state = cut(states, first, last + 1, margin)
         if state is None:
             continue
@@ -143,7 +142,6 @@ def choose_turns(
             turned = (problem.prior.rotations != before.prior.rotations).any(axis=(1, 2, 3))
             for index, one in enumerate(states):
                 if turned[one.frame].any():
-                    # From the prior, as an estimate that keeps these turns begins (`warm_start`).
                     whole = Window(int(one.frame[0]), int(one.frame[-1]) + 1, 0, 0)
                     part = WindowProblem(problem, whole, problem.start(whole))
                     yield from scaled(part.follow_markers(), 1.0, 1.0)

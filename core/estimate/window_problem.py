@@ -10,7 +10,8 @@ from ..body.posture import Posture
 from ..progress import Part, Preview, scaled
 from ..terms.contours import AxialTerm, ContourTerm
 from ..terms.keypoints import KeypointTerm
-from ..terms.regions import FEATURES, RegionTerm
+from ..terms.regions import FEATURES, NOISE, RegionTerm
+from ..terms.solver import assembling, gauss_newton
 from ..terms.state import ClipState
 from ..terms.term import NormalEquations, total_cost
 from .assembly import window_terms
@@ -19,8 +20,8 @@ from .contour_evidence import ContourEvidence
 from .windows import Window
 
 TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)  # of a first descent, which need not converge yet
-MATCHED_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
-"""From matched keyframes the descent is longer and has more local minima."""
+FOUND_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
+"""From found keyframes the descent is longer and has more local minima."""
 MOST_UNPACKED = 256 << 20  # bytes of pictures unpacked once: half a minute at 320 x 240
 UNMARKED_DOUBT = 9.0
 """Factor of the contours' variance in the covariance of limbs without markers: what errs in one part does so
@@ -42,16 +43,12 @@ class WindowProblem:
 
     def follow_markers(self) -> Part[None]:
         """Gauss-Newton with annealed image noise; yields the fraction done and the postures on the way."""
-        matched = bool(self.clip.matched.any())
-        yield from self._gauss_newton(MATCHED_TEMPERATURES if matched else TEMPERATURES, 0.0, 1.0)
+        found = bool(self.clip.data.belief.doubt.any())
+        yield from self._gauss_newton(FOUND_TEMPERATURES if found else TEMPERATURES)
 
-    def settle(self) -> Part[None]:
-        """Gauss-Newton from markers followed already, after something else is known; yields likewise."""
-        yield from self._gauss_newton((1.0, 1.0), 0.0, 1.0)
-
-    def converge(self) -> Part[None]:
-        """Gauss-Newton to the end with the terms there are; yields likewise."""
-        yield from self._gauss_newton(tuple(1.0 for _ in range(9)), 0.0, 1.0)
+    def converge(self, steps: int = 9) -> Part[None]:
+        """Gauss-Newton with the terms there are, from where markers were followed; yields likewise."""
+        yield from self._gauss_newton((1.0,) * steps)
 
     def descend(self, temperatures: tuple[float, ...]) -> Generator[None, None, Array]:
         """Gauss-Newton steps with the terms there are.
@@ -59,7 +56,7 @@ class WindowProblem:
         (F,) negative logarithm of each frame's probability where the steps end, up to a constant;
         `temperatures` are factors of the image's variance.
         """
-        for _ in self._gauss_newton(temperatures, 0.0, 1.0):
+        for _ in self._gauss_newton(temperatures):
             yield
         return total_cost(self.terms, self.state)
 
@@ -75,23 +72,19 @@ class WindowProblem:
             self.terms = [*others, term]
             if contours.along is not None:
                 shifts = contours.measure_along(
-                    self.state.posture, self.state.frame, search, self.clip.step_s
+                    self.state.posture, self.state.frame, search, self.clip.data.step_s
                 )
                 self.terms.append((yield from scaled(shifts, measured, measured)))
-            yield from self._gauss_newton((1.0, 1.0), measured, (number + 1) / looks)
+            yield from scaled(self._gauss_newton((1.0, 1.0)), measured, (number + 1) / looks)
 
-    def _gauss_newton(self, temperatures: tuple[float, ...], begun: float, ended: float) -> Part[None]:
-        for i, temperature in enumerate(temperatures):
-            done = begun + (ended - begun) * i / len(temperatures)
-            equations = NormalEquations(self.state.frames, self.state.unknowns.shape[1])
-            for _ in self._assemble(equations, temperature):
-                yield done
-            step = equations.matrix.factorize().solve(-equations.gradient)
-            self.state, moved = self.state.stepped(step, 0.5)
-            yield begun + (ended - begun) * (i + 1) / len(temperatures)
-            yield Preview(self.window.keep_first, self.state.posture[self.window.kept])
-            if temperature == 1.0 and moved < 3e-3:
-                break
+    def _gauss_newton(self, temperatures: tuple[float, ...]) -> Part[None]:
+        done = 0
+        for _, state, is_new in gauss_newton(self.terms, self.state, temperatures):
+            done += is_new
+            yield done / len(temperatures)
+            if is_new:
+                self.state = state
+                yield Preview(self.window.keep_first, state.posture[self.window.kept])
 
     def outlined(self) -> BoolArray:
         """(F, O) whether each part's contours were seen at the last look, in the frames the window keeps."""
@@ -102,9 +95,12 @@ class WindowProblem:
         """Postures, their covariance and the centroids' residuals of the frames the window keeps."""
         state, kept = self.state, self.window.kept
         dofs = state.variation.shape[1]
-        equations = NormalEquations(state.frames, state.unknowns.shape[1])
         unmarked = any(isinstance(term, AxialTerm) for term in self.terms)
-        yield from self._assemble(equations, 1.0, UNMARKED_DOUBT if unmarked else 1.0)
+        outlines = [unmarked and isinstance(term, ContourTerm | AxialTerm) for term in self.terms]
+        doubt = np.where(outlines, UNMARKED_DOUBT, 1.0).tolist()
+        equations = NormalEquations(state.frames, state.unknowns.shape[1])
+        for _ in assembling(equations, self.terms, state, 1.0, doubt):
+            yield
         factorized = equations.matrix.factorize()
         yield
         blocks = factorized.covariance_blocks()[kept, :dofs, :dofs]
@@ -116,19 +112,8 @@ class WindowProblem:
         predicted = self.clip.evidence.model.evaluate(state.pose, state.frame)
         offset = predicted.centroid - self.clip.observed.centroid[self.window.frames]
         distance = np.hypot(offset[..., 0], offset[..., 1])
-        distance[predicted.visible <= self.clip.noise.least_visible] = np.nan
+        distance[predicted.visible <= NOISE.least_visible] = np.nan
         return state.posture[kept], covariance, distance[kept]
-
-    def _assemble(
-        self, equations: NormalEquations, temperature: float, contours_doubt: float = 1.0
-    ) -> Generator[None, None, None]:
-        """Add the normal equations of all terms at the current state, one after the other."""
-        _ = self.state.pose, self.state.tangent_jacobian  # cached for all terms
-        for term in self.terms:
-            yield
-            doubt = contours_doubt if isinstance(term, ContourTerm | AxialTerm) else 1.0
-            term.add_to(equations, self.state, temperature * doubt)
-        yield
 
 
 def image_cost(clip: ClipProblem, states: list[ClipState]) -> Array:
@@ -144,5 +129,5 @@ def image_cost(clip: ClipProblem, states: list[ClipState]) -> Array:
         part = WindowProblem(clip, Window(first, last, first, last), state)
         seen = [term.cost(state) for term in part.terms if isinstance(term, RegionTerm | KeypointTerm)]
         cost[first:last] = np.sum(seen, axis=0)
-    count = (clip.observed.quality > 0.0).sum(axis=1) + 2.0 / FEATURES * clip.points.seen.sum(axis=1)
+    count = (clip.observed.quality > 0.0).sum(axis=1) + 2.0 / FEATURES * clip.data.points.seen.sum(axis=1)
     return cost / np.maximum(count, 1.0)

@@ -13,8 +13,8 @@ from ..arrays import Array
 from ..body.human import HUMAN
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
-from ..estimate.keyframe_error import GROUND_STD_M
 from ..estimate.performer_placement import feet_over_floor_m
+from ..estimate.sigma import GROUND_STD_M
 from ..files.fields import listed
 from ..take.presence import named_limbs
 from .candidates import PROBABILITY_BOUNDS, MatchedFrame

@@ -17,8 +17,8 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..camera.camera import Camera
-from ..estimate.keyframe_error import SIZE_STD, place_depth_std_m
 from ..estimate.performer_placement import SAME_FLOOR_M, place_standing, standing_ankle_m
+from ..estimate.sigma import SIZE_STD, place_depth_std_m
 from ..progress import Part, scaled
 from .composed_path import ComposedPath, best_path
 from .composed_states import LEGS, FrameCosts, FrameStates, PosedCosts

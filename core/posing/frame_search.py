@@ -15,12 +15,13 @@ from ..detect.keypoints import Keypoints
 from ..estimate.assembly import free_frame_terms
 from ..estimate.clip_problem import KeyframeEvidence
 from ..estimate.performer_placement import place_standing
-from ..estimate.single_frame import descend, exchanged
+from ..estimate.single_frame import exchanged
 from ..markers.region_tracks import RegionTracks
 from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
 from ..prior.library import Library
 from ..terms.keypoints import ObservedKeypoints
-from ..terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
+from ..terms.regions import FEATURES, ObservedRegions, limb_widths
+from ..terms.solver import descend
 from ..terms.state import ClipState
 from ..terms.term import total_cost
 from .candidates import distinct_rows
@@ -259,7 +260,7 @@ def _side_by_side(
     nothing = np.zeros((count, len(model.placements) * FEATURES))
     state = ClipState(body, starts, shown.frames(count), np.diag(std), np.zeros((count, len(std))), nothing)
     belief, terms = free_frame_terms(
-        shown.evidence, shown.regions, count, floor_m, RegionNoise(), width, shown.points_of(is_exchanged)
+        shown.evidence, shown.regions, count, floor_m, width, shown.points_of(is_exchanged)
     )
     best, _ = descend(state, [belief, *terms], temperatures)
     return best.posture, total_cost(terms, best)

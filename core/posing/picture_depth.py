@@ -16,9 +16,10 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
+from ..estimate.belief import JOINT_STD_DEG, picture_std_m
 from ..estimate.clip_problem import uncalibrated
-from ..estimate.keyframe_error import JOINT_STD_DEG, found_std_m, picture_std_m
 from ..estimate.keypoint_evidence import KeypointEvidence
+from ..estimate.sigma import found_std_m
 from ..markers.region_tracks import RegionTracks
 from ..prior.library import Library
 from ..terms.keypoints import ObservedKeypoints

@@ -14,14 +14,9 @@ from ..arrays import Array
 from ..body.body_volume import rested
 from ..body.posture import Posture
 from ..errors import InputError
+from ..estimate.belief import Belief
 from ..estimate.performer_placement import found_ankle_m
-from ..estimate.whole_clip import (
-    Believed,
-    Seen,
-    WholeClipOptions,
-    WholeClipResult,
-    estimate_whole_clip,
-)
+from ..estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
 from ..numerics.robust import DEGREES, student_weight
 from ..prior.keyframes import Keyframe, interpolate
 from ..prior.library import Library
@@ -126,15 +121,15 @@ def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[Whol
         given.body,
         given.camera,
         Seen(tracks, take.marker_segments, given.keypoints, there=given.there),
-        Believed(
+        Belief(
             interpolate(keyframes, tracks.frame_count),
-            tuple(map(int, sampled)),
+            sampled,
             scale,
+            corrected,
             found_ankle_m(given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m),
             given.unseen,
-            corrected=corrected,
         ),
-        WholeClipOptions(resting=False),  # a held foot would pull on the postures around
+        hold_rests=False,  # a held foot would pull on the postures around
     )
 
 

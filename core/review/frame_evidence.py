@@ -192,7 +192,7 @@ def used_evidence(reconstruction: Reconstruction) -> UsedEvidence:
 def _uses_hints(solution: WholeClipResult) -> bool:
     """Whether any believed point has a guessed depth."""
     trusted = solution.evidence.keypoints.trust > 0.0
-    return bool(np.isfinite(solution.problem.points.depth_m[:, trusted]).any())
+    return bool(np.isfinite(solution.problem.data.points.depth_m[:, trusted]).any())
 
 
 def _used_keypoints(reconstruction: Reconstruction) -> tuple[UsedKeypoints, ...]:

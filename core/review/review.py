@@ -15,7 +15,7 @@ from ..markers.regions import CORNERS, ellipse_outline
 from ..progress import Job, Part, within
 from ..take.take import Take
 from ..terms.region_model import RegionModel
-from ..terms.regions import RegionNoise, limb_widths
+from ..terms.regions import NOISE, limb_widths
 from .compared_keypoints import ComparedKeypoints
 from .confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
 from .frame_evidence import (
@@ -129,7 +129,7 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
     predicted, offset = yield from within(STAGE, _predictions(model, pose, tracks.centroid), 0.0, 0.5)
     predicted[~there], offset[~there] = np.nan, np.nan
     contours = yield from within(STAGE, contour_sight(reconstruction), 0.5, 1.0)
-    noise, width = RegionNoise(), limb_widths(model, motion.posture.translation, frame)
+    noise, width = NOISE, limb_widths(model, motion.posture.translation, frame)
     variance = noise.surface_std(width)[..., 0] ** 2 + noise.bias_std(width)[..., 0] ** 2
     misfit = misfits(offset, np.sqrt(noise.pixel_std_px**2 + variance))
     keypoints = compare_keypoints(reconstruction)
@@ -179,7 +179,7 @@ def _predictions(model: RegionModel, pose: Pose, centroid: Array) -> Part[tuple[
         chunk = slice(first, first + CHUNK_FRAMES)
         frame = np.arange(len(centroid))[chunk]
         predicted = model.evaluate(pose[chunk], frame)
-        seen = predicted.visible > RegionNoise().least_visible
+        seen = predicted.visible > NOISE.least_visible
         shape = ellipse_outline(predicted.centroid, predicted.second_moment)
         outlines[chunk] = np.where(seen[..., None, None], shape, np.nan)
         apart = np.linalg.norm(predicted.centroid - centroid[chunk], axis=-1)

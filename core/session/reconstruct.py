@@ -9,11 +9,7 @@ from .session import Session, Stage
 def make_motion(session: Session) -> Job[Reconstruction]:
     """Reconstruct the motion from all that is seen and posed."""
     inputs, posed = session.inputs, session[Posed]
-    return (
-        yield from reconstruct(
-            posed.seen, inputs.method, inputs.earlier, posed.referred, floor_m=posed.floor_m
-        )
-    )
+    return (yield from reconstruct(posed.seen, inputs.method, posed.referred, floor_m=posed.floor_m))
 
 
 STAGE = Stage("reconstruct", make_motion, lambda inputs: (inputs.method,), lambda _inputs: 2.0)

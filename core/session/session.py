@@ -12,7 +12,6 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..body.posture import Posture
-from ..estimate.reconstruct import Reconstruction
 from ..files.digest import digest
 from ..markers.reading import Reading
 from ..prior.library import Library
@@ -48,8 +47,6 @@ class Inputs:
     """How many of these; 10 per 100 frames where None."""
     kept: Reading | None = None
     """A reading of any clip, whose parts are used that still hold."""
-    earlier: Reconstruction | None = None
-    """A reconstruction of which those parts are used that still hold."""
     bridge: Mapping[str, Callable[["Session"], Job[Any]]] = field(default_factory=dict)
     """Stages that only Blender can do, by name, and how; those left out are not done."""
 

@@ -47,6 +47,9 @@ class RegionNoise:
         return width[..., None] * _per_feature(self.bias_centroid_share, self.bias_shape_share)
 
 
+NOISE = RegionNoise()
+
+
 def _per_feature(centroid: float, shape: float) -> Array:
     return np.repeat([centroid, shape], (2, FEATURES - 2))
 
@@ -169,7 +172,6 @@ class RegionTerm(Term):
 
     model: RegionModel
     observed: ObservedRegions
-    noise: RegionNoise
     width_px: Array  # (F, M) mean half-width of each marker's limb in the image [px]
     distrust: Array  # (M,) factor of the noise of each marker's regions
     area_ratio: Array  # (M,) area of each marker's unhidden region, relative to the predicted one
@@ -196,9 +198,9 @@ class RegionTerm(Term):
 
     def information(self, residual: Array, predicted: RegionPrediction) -> Array:
         """Information (F, M, 5) of each row [1/px²], outliers or not; zero for what is not compared."""
-        usable = np.isfinite(residual).all(-1) & (predicted.visible > self.noise.least_visible)
+        usable = np.isfinite(residual).all(-1) & (predicted.visible > NOISE.least_visible)
         trust = np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0)
-        variance = self.noise.pixel_std_px**2 + self.noise.surface_std(self.width_px) ** 2
+        variance = NOISE.pixel_std_px**2 + NOISE.surface_std(self.width_px) ** 2
         variance = variance * self.distrust[:, None] ** 2
         variance = variance + missing_variance(self.observed.area, self.area_ratio, predicted)
         variance = variance + self.observed.variance

@@ -10,7 +10,7 @@ from ...core.arrays import Array
 from ...core.progress import stretch
 from ..bridge.keyframes import Matches
 from ..follow.evidence import scene_evidence
-from ..shell.results import MADE, last_reconstruction, reading_of
+from ..shell.results import MADE, reading_of
 from ..shell.takes import footage_of
 
 if TYPE_CHECKING:
@@ -49,11 +49,11 @@ def read_session(
     from ...core.session.session import Inputs, Session
     from ..bridge.take_from_scene import read_scene_take
 
-    identifier, earlier = settings.identifier, last_reconstruction(settings)
+    identifier = settings.identifier
     kept, floor_m = reading_of(settings), settings.matching.known_floor_m
     source, actor, keys = footage_of(scene, settings), settings.armature, settings.keyframe_action
     take, notes = yield from read_scene_take(source, actor, keys, scene_evidence(settings), matches, kept)
-    inputs = Inputs(take, **{"floor_m": floor_m, "kept": kept, "earlier": earlier, **wanted})
+    inputs = Inputs(take, **{"floor_m": floor_m, "kept": kept, **wanted})
     return SceneSession(identifier, Session(inputs), notes)
 
 

@@ -1,6 +1,5 @@
-"""Errors of keyframes: posed, matched; and of postures that nothing observes."""
+"""Errors of keyframes: posed, found; and of postures that nothing observes."""
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,27 +8,33 @@ from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.body_volume import sole_heights_m
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.keyframe_error import (
+from keymark.core.estimate.belief import (
     PLACE_DEPTH_STD_M,
     PLACE_STD_M,
+    Belief,
+    found_covariance,
+    joint_std_rad,
+)
+from keymark.core.estimate.keyframe_evidence import (
+    SeenAtKeyframes,
+    placement_values,
+    read_belief,
+    read_keyframes,
+)
+from keymark.core.estimate.performer_placement import SHOE_M, lower_ankle_m
+from keymark.core.estimate.sigma import (
     SURE_STD_M,
     UNOBSERVED,
     UNSURE_STD_M,
-    depth_std_m,
-    joint_std_rad,
-    match_covariance,
     place_depth_std_m,
     undetermined_covariance,
     unobserved_variance,
 )
-from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes, placement_values
-from keymark.core.estimate.keyframe_trust import read_mixed_keyframes
-from keymark.core.estimate.performer_placement import SHOE_M, lower_ankle_m
-from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
 from keymark.core.terms.depths import DEPTH_STD_M
-from keymark.core.terms.regions import ObservedRegions, RegionNoise, limb_widths
+from keymark.core.terms.regions import ObservedRegions, limb_widths
 
 FRAMES = 60
 TRUTH = exercise(FRAMES)
@@ -40,68 +45,66 @@ TRACKS = film(TRUTH, 0.3)
 def off(seed: int = 2) -> Posture:
     """The true postures at the keyframes as a library has them: another performer's, each a little off."""
     rng = np.random.default_rng(seed)
-    covariance = match_covariance(TRUTH[INDEX], CAMERA, INDEX)
+    covariance = found_covariance(TRUTH[INDEX], CAMERA, INDEX)
     factor = np.linalg.cholesky(covariance)
     error = 0.4 * rng.normal(size=(1, BODY.skeleton.dof_count)) + 0.3 * rng.normal(size=(len(INDEX), 34))
     return TRUTH[INDEX].plus((factor @ error[..., None])[..., 0])
 
 
-def estimate(postures: Posture, match_scale: np.ndarray | None) -> WholeClipResult:
+def belief(postures: Posture, doubt: np.ndarray | None = None) -> Belief:
+    """The belief in keyframes that were found, or posed where there is no doubt."""
     keyframes = tuple(Keyframe(int(i), postures[row]) for row, i in enumerate(INDEX))
-    prior = interpolate(keyframes, FRAMES)
-    return run(
-        estimate_whole_clip(
-            BODY, CAMERA, Seen(TRACKS, SEGMENTS), Believed(prior, tuple(int(i) for i in INDEX), match_scale)
-        )
-    )
+    return Belief.of(interpolate(keyframes, FRAMES), tuple(INDEX.tolist()), doubt)
+
+
+def estimate(postures: Posture, doubt: np.ndarray | None) -> WholeClipResult:
+    return run(estimate_whole_clip(BODY, CAMERA, Seen(TRACKS, SEGMENTS), belief(postures, doubt)))
 
 
 @cache
-def as_matched() -> WholeClipResult:
-    """The estimate through keyframes that are all matched."""
+def as_found() -> WholeClipResult:
+    """The estimate through keyframes that are all found."""
     return estimate(off(), np.ones(len(INDEX)))
 
 
-def test_matched_keyframes_are_left_behind_where_posed_ones_would_be_held_on_to() -> None:
-    both = estimate(off(), None), as_matched()
+def test_found_keyframes_are_left_behind_where_posed_ones_would_be_held_on_to() -> None:
+    both = estimate(off(), None), as_found()
     errors = [point_error_m(found.posture, TRUTH).mean() for found in both]
     assert errors[1] < 0.9 * errors[0]
     stated = [np.sqrt(np.trace(found.covariance[:, :3, :3], axis1=1, axis2=2)).mean() for found in both]
     assert stated[1] > 1.25 * stated[0]
 
 
-def test_matched_keyframes_calibrate_nothing() -> None:
-    evidence = as_matched().evidence
+def test_found_keyframes_calibrate_nothing() -> None:
+    evidence = as_found().evidence
     np.testing.assert_array_equal(
         placement_values(evidence.model.placements), placement_values(MODEL.placements)
     )
     assert evidence.model.camera.lens_mm == CAMERA.lens_mm
 
 
-def test_posed_keyframes_calibrate_and_matched_ones_beside_them_do_not() -> None:
-    match_scale = np.where(np.arange(len(INDEX)) % 2, 0.7, 0.0)
+def test_posed_keyframes_calibrate_and_found_ones_beside_them_do_not() -> None:
+    doubt = np.where(np.arange(len(INDEX)) % 2, 0.7, 0.0)
     postures, observed = off(), ObservedRegions.from_tracks(TRACKS)[INDEX]
     width = limb_widths(MODEL, postures.translation, INDEX)
-    every = SeenAtKeyframes(INDEX, postures, observed, width)
-    mixed = run(read_mixed_keyframes(MODEL, RegionNoise(), every, match_scale, match_scale < 0.0))
-    posed = np.flatnonzero(match_scale == 0.0)
-    alone = run(read_mixed_keyframes(MODEL, RegionNoise(), every[posed], np.zeros(len(posed)), posed < 0))
-    np.testing.assert_array_equal(
-        placement_values(mixed.model.placements), placement_values(alone.model.placements)
-    )
-    np.testing.assert_array_equal(mixed.information[posed], alone.information)
+    every, posed = SeenAtKeyframes(INDEX, postures, observed, width), np.flatnonzero(doubt == 0.0)
+    mixed = run(read_belief(MODEL, every, belief(postures, doubt)))
+    alone = run(read_keyframes(MODEL, every[posed]))
+    ours, theirs = (placement_values(one.model.placements) for one in (mixed, alone))
+    np.testing.assert_allclose(ours, theirs, rtol=1e-9)
+    np.testing.assert_allclose(mixed.information[posed], alone.information, rtol=1e-9)
     covariance = np.linalg.inv(mixed.information[1])
     assert covariance[10, 10] == pytest.approx(0.49 * joint_std_rad(BODY.skeleton)[10] ** 2)
 
 
 def test_the_place_is_less_known_along_the_line_of_sight() -> None:
-    place = match_covariance(TRUTH[INDEX], CAMERA, INDEX)[0, :3, :3]
+    place = found_covariance(TRUTH[INDEX], CAMERA, INDEX)[0, :3, :3]
     values = np.sqrt(np.linalg.eigvalsh(place))
     np.testing.assert_allclose(values, [PLACE_STD_M, PLACE_STD_M, PLACE_DEPTH_STD_M])
 
 
 def test_depths_count_near_posed_keyframes_only() -> None:
-    noise = depth_std_m(np.array([0, 10]), np.array([False, True]), 12)
+    noise = Belief.of(TRUTH[:12], (0, 10), np.array([0.0, 1.0])).depth_std_m
     assert noise[0] == pytest.approx(DEPTH_STD_M)
     assert (np.diff(noise[:11]) > 0.0).all() and noise[11] == noise[10] > 4.0 * noise[0]
 
@@ -143,20 +146,6 @@ def test_the_lower_ankle_follows_a_library_into_flight_and_rests_on_its_floor() 
     high = float(ankle - sole_heights_m(BODY, BODY.pose(rest)).min()) + SHOE_M
     assert heights[0] == pytest.approx(high, abs=1e-6)
     assert heights[15] == pytest.approx(high + 0.4, abs=1e-6)
-
-
-def test_a_keyframe_set_right_is_worked_on_alone_or_everywhere_with_the_same_result() -> None:
-    first = as_matched()
-    again = run(
-        estimate_whole_clip(
-            BODY,
-            CAMERA,
-            Seen(TRACKS, SEGMENTS),
-            Believed(first.problem.prior, tuple(int(i) for i in INDEX), np.ones(len(INDEX))),
-            earlier=replace(first),
-        )
-    )
-    assert point_error_m(first.posture, again.posture).max() == 0.0
 
 
 WORN = ("trunk", "forearm.L", "shin.L")

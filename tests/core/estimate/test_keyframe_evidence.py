@@ -1,4 +1,4 @@
-"""Placements, lens, posing and timing errors, all found from what is seen at the keyframes."""
+"""Placements, lens and posing errors, all found from what is seen at the keyframes."""
 
 from dataclasses import replace
 
@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.posture import Posture
+from keymark.core.estimate.belief import posing_covariance
 from keymark.core.estimate.clip_problem import KeyframeEvidence
-from keymark.core.estimate.keyframe_error import posing_covariance
 from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes, read_keyframes
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.progress import run
 from keymark.core.terms.region_model import MarkerPlacement, RegionModel
-from keymark.core.terms.regions import ObservedRegions, RegionNoise, limb_widths
+from keymark.core.terms.regions import ObservedRegions, limb_widths
 
 FRAMES = 90
 MOTION = exercise(FRAMES)
@@ -32,7 +32,7 @@ TRUE = tuple(
 def read(posed: Posture, tracks: RegionTracks, model: RegionModel = MODEL) -> KeyframeEvidence:
     observed = ObservedRegions.from_tracks(tracks)[POSED]
     width = limb_widths(model, posed.translation, POSED)
-    return run(read_keyframes(model, RegionNoise(), SeenAtKeyframes(POSED, posed, observed, width)))
+    return run(read_keyframes(model, SeenAtKeyframes(POSED, posed, observed, width)))
 
 
 def posed_by_hand(seed: int) -> Posture:
@@ -81,14 +81,6 @@ def test_a_misstated_lens_is_found(factor: float) -> None:
 def test_a_right_lens_is_left_alone_by_careless_keyframes() -> None:
     found = read(posed_by_hand(5), film(MOTION, 0.2)).model.camera
     assert found.lens_mm == pytest.approx(CAMERA.lens_mm, rel=0.02)
-
-
-def test_keyframes_set_at_the_wrong_frame_are_recognized() -> None:
-    rng = np.random.default_rng(4)
-    shifted = np.clip(POSED + rng.choice([-3, -2, 2, 3], len(POSED)), 0, FRAMES - 1)
-    tracks = film(MOTION, 0.2)
-    assert read(MOTION[shifted], tracks).timing_frames > 0.8
-    assert read(MOTION[POSED], tracks).timing_frames < 0.2
 
 
 def test_a_marker_that_is_never_where_it_should_be_is_distrusted() -> None:

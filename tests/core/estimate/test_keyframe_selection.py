@@ -6,7 +6,7 @@ import numpy as np
 from _scene import BODY, MODEL, exercise, film
 from keymark.core.body.posture import Posture
 from keymark.core.detect.keypoints import Keypoints, mirrored_point
-from keymark.core.estimate.keyframe_trust import select_keyframes
+from keymark.core.estimate.keyframe_selection import select_keyframes
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.prior.texts import COMPOSED

@@ -25,6 +25,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera
 from keymark.core.detect.keypoints import Keypoints, People, mirror_images
 from keymark.core.detect.performer import person_size
+from keymark.core.estimate.belief import Belief
 from keymark.core.estimate.keypoint_fit import keypoint_notes, observed_joints
 from keymark.core.estimate.keypoint_trust import (
     HINTS_SHARE,
@@ -33,7 +34,7 @@ from keymark.core.estimate.keypoint_trust import (
     sided_by_pictures,
     upright,
 )
-from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
@@ -54,13 +55,12 @@ def estimate(
     tracks: RegionTracks = BARE,
     prior: Posture = PRIOR,
     camera: Camera = CAMERA,
-    match_scale: np.ndarray | None = None,
-    earlier: WholeClipResult | None = None,
+    doubt: np.ndarray | None = None,
 ) -> WholeClipResult:
     worn = SEGMENTS if tracks.names else ()
     seen = Seen(tracks, worn, keypoints)
-    believed = Believed(prior, POSED, match_scale)
-    job = estimate_whole_clip(BODY, camera, seen, believed, earlier=earlier)
+    believed = Belief.of(prior, POSED, doubt)
+    job = estimate_whole_clip(BODY, camera, seen, believed)
     return run(job)
 
 
@@ -311,7 +311,7 @@ def test_before_a_moving_camera() -> None:
 
 
 def test_matched_keyframes_calibrate_nothing() -> None:
-    result = estimate(GOOD, match_scale=np.ones(len(POSED)))
+    result = estimate(GOOD, doubt=np.ones(len(POSED)))
     usual = KeypointModel.usual(BODY, CAMERA, LAYOUT)
     np.testing.assert_array_equal(result.evidence.keypoints.model.place, usual.place)
     assert result.keypoints.trust.min() == 1.0
@@ -327,14 +327,6 @@ def test_errors_are_within_their_interval() -> None:
         sigma = np.sqrt(np.trace(spread, axis1=-2, axis2=-1))
         inside.append((point_error_m(result.posture, TRUTH) < 1.96 * sigma)[BETWEEN].mean())
     assert 0.90 <= np.mean(inside) <= 1.0
-
-
-def test_a_later_estimate_starts_from_an_earlier_one_unless_keypoints_changed() -> None:
-    again = estimate(GOOD, earlier=with_good())
-    np.testing.assert_array_equal(again.posture.translation, with_good().posture.translation)
-    other = estimate(detect(TRUTH, seed=9), earlier=with_good())
-    fresh = estimate(detect(TRUTH, seed=9))
-    assert np.abs(other.posture.minus(fresh.posture)).max() < 1e-6
 
 
 def test_a_hip_shows_the_trunk_and_an_ankle_its_leg() -> None:

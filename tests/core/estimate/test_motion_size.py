@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
+from keymark.core.estimate.belief import Belief
 from keymark.core.estimate.clip_problem import ClipProblem
 from keymark.core.estimate.refinement import SIZES, adapted, limb_sizes
-from keymark.core.estimate.whole_clip import Believed, Seen, estimate_whole_clip
+from keymark.core.estimate.whole_clip import Seen, estimate_whole_clip
 from keymark.core.estimate.window_problem import WindowProblem
 from keymark.core.estimate.windows import Window, windows
 from keymark.core.prior.keyframes import Keyframe, interpolate
@@ -18,7 +19,6 @@ from keymark.core.progress import run
 from keymark.core.terms.state import ClipState
 
 FRAMES, EVERY = 61, 15
-EVERYWHERE = np.ones(FRAMES, dtype=bool)
 WHOLE = [Window(0, FRAMES, 0, FRAMES)]
 COLUMN = {name: number for number, name in enumerate(BODY.skeleton.dof_names)}
 LIMB = next(limb for limb in BODY.skeleton.limbs if COLUMN["elbow.L.flexion"] in limb)
@@ -44,7 +44,7 @@ def problem(segments: tuple[str, ...] = SEGMENTS) -> ClipProblem:
     keys = tuple(Keyframe(index, truth[index]) for index in range(0, FRAMES, EVERY))
     index = tuple(key.index for key in keys)
     job = estimate_whole_clip(
-        BODY, CAMERA, Seen(tracks, segments), Believed(interpolate(keys, FRAMES), index)
+        BODY, CAMERA, Seen(tracks, segments), Belief.of(interpolate(keys, FRAMES), index)
     )
     found = run(job).problem
     return replace(
@@ -81,12 +81,10 @@ def bulging(meters: float, frames: slice = GAP) -> Posture:
 def learn(
     clip: ClipProblem,
     posture: Posture,
-    among: np.ndarray = EVERYWHERE,
-    earlier: ClipProblem | None = None,
     spans: list[Window] = WHOLE,
 ) -> tuple[ClipProblem, list[ClipState]]:
     """What is learned from these F postures."""
-    return finished(adapted(clip, spans, about(clip, posture, spans), among, earlier))
+    return finished(adapted(clip, spans, about(clip, posture, spans)))
 
 
 def finished(
@@ -102,7 +100,7 @@ def finished(
 @pytest.fixture
 def unsettled(monkeypatch: pytest.MonkeyPatch) -> None:
     """States are left as they were given."""
-    monkeypatch.setattr(WindowProblem, "settle", lambda self: iter(()))
+    monkeypatch.setattr(WindowProblem, "converge", lambda self, steps: iter(()))
 
 
 def test_a_limb_that_moves_more_than_keyframes_tell_gets_a_larger_size() -> None:
@@ -119,10 +117,10 @@ def test_sizes_have_bounds() -> None:
     np.testing.assert_array_equal(limb_sizes(problem(), WHOLE, trembling(0.01 * usual)), 1.0)
     wild = trembling(100.0 * usual)
     np.testing.assert_allclose(limb_sizes(problem(), WHOLE, wild), SIZES.largest_per_gap_s * EVERY / 30.0)
-    sparse = replace(problem(), keyframes=np.array([0, FRAMES - 1]))
-    np.testing.assert_array_equal(limb_sizes(sparse, WHOLE, wild), SIZES.largest_of_all)
-    alone = replace(problem(), keyframes=np.array([0]))
-    np.testing.assert_array_equal(limb_sizes(alone, WHOLE, wild), 1.0)
+    for frames, largest in (([0, FRAMES - 1], SIZES.largest_of_all), ([0], 1.0)):
+        belief = replace(problem().data.belief, frame=np.array(frames))
+        sparse = replace(problem(), data=replace(problem().data, belief=belief))
+        np.testing.assert_array_equal(limb_sizes(sparse, WHOLE, wild), largest)
 
 
 def test_windows_tell_the_same_as_the_whole_clip() -> None:
@@ -147,20 +145,6 @@ def test_where_the_prior_misses_across_the_line_of_sight_its_depth_is_trusted_le
     assert (far.depth_factor[GAP] > 1.5 * near.depth_factor[GAP]).all()
 
 
-def test_gaps_that_are_not_asked_for_are_as_known(unsettled: None) -> None:
-    clip = problem()
-    earlier = replace(
-        clip, limb_size=np.full_like(clip.limb_size, 1.2), depth_factor=np.full_like(clip.depth_factor, 2.5)
-    )
-    among = np.zeros(FRAMES, dtype=bool)
-    among[GAP.start + 4] = True
-    found, _ = learn(clip, bulging(0.3), among, earlier)
-    fresh, _ = learn(clip, bulging(0.3))
-    np.testing.assert_array_equal(found.depth_factor[GAP], fresh.depth_factor[GAP])
-    np.testing.assert_array_equal(np.delete(found.depth_factor, GAP, axis=0), 2.5)
-    np.testing.assert_array_equal(found.limb_size, 1.2)
-
-
 def test_postures_stay_as_they_are_when_sizes_change(unsettled: None) -> None:
     swings = np.zeros((FRAMES, len(COLUMN)))
     swings[:, LIMB] = np.sin(2.0 * np.pi * np.arange(FRAMES) / 8.0)[:, None]
@@ -175,7 +159,7 @@ def test_nothing_is_learned_where_markers_do_not_show_the_whole_body() -> None:
     clip = problem(("trunk", "forearm.L"))
     posture = exercise(FRAMES, 0.5)
     states = about(clip, posture, WHOLE)
-    same, kept = finished(adapted(clip, WHOLE, states, EVERYWHERE, None))
+    same, kept = finished(adapted(clip, WHOLE, states))
     assert same is clip and kept is states
     other, _ = learn(problem(), posture)
     assert other is not problem()

@@ -179,7 +179,6 @@ def test_doubtful_keyframes_send_people_to_what_the_take_has(
     take = with_evidence(replace(take, keypoints=(people,)), kinds)
     evidence = SimpleNamespace(
         model=SimpleNamespace(camera=take.camera),
-        timing_frames=0.0,
         posing_scale=9.0,
         distrust=[1.0] * len(take.markers),
     )

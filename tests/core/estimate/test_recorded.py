@@ -10,14 +10,14 @@ from _scene import FRAMES as FILMED_FRAMES
 from _scene import POSED as FILMED_POSED
 from _scene import TRUTH as FILMED
 from keymark.core.body.posture import Posture
+from keymark.core.estimate.belief import Belief, posing_covariance
 from keymark.core.estimate.clip_problem import uncalibrated
-from keymark.core.estimate.keyframe_error import posing_covariance
-from keymark.core.estimate.performer_placement import place_standing
+from keymark.core.estimate.performer_placement import lower_ankle_m, place_standing
 from keymark.core.estimate.reference_alignment import about_hips, align
 from keymark.core.estimate.reference_evidence import STD_M, error_factor, own_and_usual_cost
 from keymark.core.estimate.reference_placement import SeenPoints
 from keymark.core.estimate.single_frame import fit_frame, frame_residuals
-from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.frame_prior import prior_from_keyframes
 from keymark.core.prior.keyframes import Keyframe, interpolate
@@ -51,7 +51,7 @@ def test_by_markers() -> None:
     centroid = tracks.centroid.copy()
     centroid[14, 1] += 40.0
     seen = Seen(replace(tracks, centroid=centroid), SEGMENTS)
-    hold("estimate by markers", run(estimate_whole_clip(BODY, CAMERA, seen, Believed(by_hand(1), POSED))))
+    hold("estimate by markers", run(estimate_whole_clip(BODY, CAMERA, seen, Belief.of(by_hand(1), POSED))))
 
 
 @pytest.mark.parametrize("found", [False, True])
@@ -59,14 +59,16 @@ def test_by_keypoints(found: bool) -> None:
     bare = RegionTracks.unmarked(np.arange(FRAMES) / 30.0, CAMERA.resolution)
     scale = np.full(len(POSED), 1.5) if found else None
     seen = Seen(bare, (), detect(TRUTH))
-    result = run(estimate_whole_clip(BODY, CAMERA, seen, Believed(by_hand(2), POSED, scale)))
+    prior, index = by_hand(2), np.array(POSED)
+    ankle_m = lower_ankle_m(BODY, prior[index], index, FRAMES) if found else None
+    result = run(estimate_whole_clip(BODY, CAMERA, seen, Belief.of(prior, POSED, scale, None, ankle_m)))
     hold(f"estimate by keypoints, found {found}", result)
 
 
 def test_by_contours() -> None:
     keyframes = tuple(Keyframe(int(index), FILMED[index : index + 1][0]) for index in FILMED_POSED)
     bare = RegionTracks.unmarked(np.arange(FILMED_FRAMES) / 30.0, CAMERA.resolution)
-    believed = Believed(interpolate(keyframes, FILMED_FRAMES), tuple(int(index) for index in FILMED_POSED))
+    believed = Belief.of(interpolate(keyframes, FILMED_FRAMES), tuple(int(index) for index in FILMED_POSED))
     seen = Seen(bare, (), album=album())
     result = run(estimate_whole_clip(BODY, CAMERA, seen, believed))
     hold("estimate by contours", result, 2e-3)  # OpenCV's releases draw a border's pixels differently
@@ -106,4 +108,6 @@ def test_by_a_detector_that_exchanges_sides() -> None:
     sides[18:27] = True
     bare = RegionTracks.unmarked(np.arange(FRAMES) / 30.0, CAMERA.resolution)
     seen = Seen(bare, (), sides_exchanged(detect(TRUTH), sides))
-    hold("estimate by wrong sides", run(estimate_whole_clip(BODY, CAMERA, seen, Believed(by_hand(3), POSED))))
+    hold(
+        "estimate by wrong sides", run(estimate_whole_clip(BODY, CAMERA, seen, Belief.of(by_hand(3), POSED)))
+    )

@@ -265,7 +265,7 @@ def test_the_term_descends_its_cost_and_forgives_a_point_far_off() -> None:
     assert term.cost(moved).sum() < term.cost(state).sum()
     assert not equations.gradient[2].any()
     points[4, 5] += 3.0
-    far = ReferenceTerm(ExpectedPoints(points, whitening, 0.4), term.kept)
+    far = ReferenceTerm(ExpectedPoints(points, whitening, 0.4), term.lasting)
     pull = NormalEquations(frames, HUMAN.dof_count)
     far.add_to(pull, state, 1.0)
     assert np.abs(pull.gradient[4]).max() < 3.0 * np.abs(equations.gradient).max()

@@ -4,7 +4,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise
+from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film
 from keymark.core.body.body_volume import Piece, PieceStack
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
@@ -12,8 +12,10 @@ from keymark.core.camera.camera import Camera
 from keymark.core.terms import region_model
 from keymark.core.terms.occlusion import sample_silhouette, view_pieces
 from keymark.core.terms.region_model import MOMENTS, MarkerPlacement, RegionModel
+from keymark.core.terms.regions import FEATURES, ObservedRegions, feature_rows, missing_variance
 
 STEP = 1e-5
+FRAMES = 6
 
 
 def standing(**angles: float) -> Posture:
@@ -234,3 +236,42 @@ def test_area_rates_agree_with_central_differences(seed: int) -> None:
             seen(upright(0.6, 1.0), base.plus(sign * tangent), far).area[0, 0].sum() for sign in (1, -1)
         )
         assert rate[axis] == pytest.approx((ahead - behind) / (2 * step), abs=2e-4)
+
+
+def test_features_of_a_region_against_itself_are_zero_and_grow_with_its_shift() -> None:
+    posture = exercise(FRAMES)
+    tracks = film(posture)
+    predicted = MODEL.evaluate(BODY.pose(posture), np.arange(FRAMES))
+    observed = ObservedRegions.from_tracks(tracks)
+    residual, _ = feature_rows(observed, predicted)
+    seen = tracks.visible
+    assert residual.shape[-1] == FEATURES
+    assert np.abs(residual[seen]).max() < 1e-9
+    elsewhere = replace(observed, centroid=observed.centroid - [3.0, 0.0])
+    shifted, _ = feature_rows(elsewhere, predicted)
+    np.testing.assert_allclose(shifted[seen][:, 0], 3.0)
+    np.testing.assert_allclose(shifted[seen][:, 1:], 0.0, atol=1e-9)
+
+
+def test_a_shape_residual_is_the_difference_of_deviations_in_pixels() -> None:
+    posture = exercise(1)
+    predicted = MODEL.evaluate(BODY.pose(posture), np.arange(1))
+    tracks = film(posture)
+    observed = ObservedRegions.from_tracks(tracks)
+    stretched = (
+        observed.axes @ np.apply_along_axis(np.diag, -1, [1.0, 1.1]) @ np.swapaxes(observed.axes, -1, -2)
+    )
+    moment = stretched @ observed.second_moment @ np.swapaxes(stretched, -1, -2)
+    wider = replace(tracks, second_moment=moment)
+    residual, _ = feature_rows(ObservedRegions.from_tracks(wider), predicted)
+    long_axis = observed.deviation[0, :, 1]
+    np.testing.assert_allclose(residual[0, :, 4], -0.1 * long_axis, rtol=0.06)
+
+
+def test_what_is_missing_of_a_region_widens_its_features() -> None:
+    predicted = MODEL.evaluate(BODY.pose(exercise(1)), np.arange(1))
+    variance = [missing_variance(share * predicted.area, 1.0, predicted) for share in (1.0, 0.5, 0.25)]
+    assert variance[0].max() == 0.0
+    along = np.sqrt(predicted.second_moment[..., 0, 0])
+    assert np.all(np.sqrt(variance[1][..., 0]) > 0.4 * along)
+    assert np.all(variance[2] > variance[1])

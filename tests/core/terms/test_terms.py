@@ -19,10 +19,7 @@ from keymark.core.terms.reference import ExpectedPoints, ReferenceTerm
 from keymark.core.terms.regions import (
     FEATURES,
     ObservedRegions,
-    RegionNoise,
     RegionTerm,
-    feature_rows,
-    missing_variance,
 )
 from keymark.core.terms.state import ClipState
 from keymark.core.terms.term import NormalEquations, QuadraticTerm, Rows, Term, total_cost
@@ -110,7 +107,7 @@ def every_term() -> dict[str, tuple[Term, ClipState, float]]:
     matrix.add_combination(slice(0, DOFS), (-0.9, 1.0), np.full(DOFS, 0.3**-2))
     ones = np.ones(count)
     observed, width_px = ObservedRegions.from_tracks(film(exercise(FRAMES))), np.full((FRAMES, count), 20.0)
-    regions = RegionTerm(MODEL, observed, RegionNoise(), width_px, ones, ones)
+    regions = RegionTerm(MODEL, observed, width_px, ones, ones)
     elsewhere = ExpectedPoints(about, np.full((FRAMES, 13, 3, 3), 20.0 * np.eye(3)), 0.4)
     return {
         "ground": (GroundTerm(ankles, 0.12), at, 1e-4),
@@ -336,45 +333,6 @@ def test_a_burst_in_one_limb_does_not_loosen_another() -> None:
     )
 
 
-def test_features_of_a_region_against_itself_are_zero_and_grow_with_its_shift() -> None:
-    posture = exercise(FRAMES)
-    tracks = film(posture)
-    predicted = MODEL.evaluate(BODY.pose(posture), np.arange(FRAMES))
-    observed = ObservedRegions.from_tracks(tracks)
-    residual, _ = feature_rows(observed, predicted)
-    seen = tracks.visible
-    assert residual.shape[-1] == FEATURES
-    assert np.abs(residual[seen]).max() < 1e-9
-    elsewhere = replace(observed, centroid=observed.centroid - [3.0, 0.0])
-    shifted, _ = feature_rows(elsewhere, predicted)
-    np.testing.assert_allclose(shifted[seen][:, 0], 3.0)
-    np.testing.assert_allclose(shifted[seen][:, 1:], 0.0, atol=1e-9)
-
-
-def test_a_shape_residual_is_the_difference_of_deviations_in_pixels() -> None:
-    posture = exercise(1)
-    predicted = MODEL.evaluate(BODY.pose(posture), np.arange(1))
-    tracks = film(posture)
-    observed = ObservedRegions.from_tracks(tracks)
-    stretched = (
-        observed.axes @ np.apply_along_axis(np.diag, -1, [1.0, 1.1]) @ np.swapaxes(observed.axes, -1, -2)
-    )
-    moment = stretched @ observed.second_moment @ np.swapaxes(stretched, -1, -2)
-    wider = replace(tracks, second_moment=moment)
-    residual, _ = feature_rows(ObservedRegions.from_tracks(wider), predicted)
-    long_axis = observed.deviation[0, :, 1]
-    np.testing.assert_allclose(residual[0, :, 4], -0.1 * long_axis, rtol=0.06)
-
-
-def test_what_is_missing_of_a_region_widens_its_features() -> None:
-    predicted = MODEL.evaluate(BODY.pose(exercise(1)), np.arange(1))
-    variance = [missing_variance(share * predicted.area, 1.0, predicted) for share in (1.0, 0.5, 0.25)]
-    assert variance[0].max() == 0.0
-    along = np.sqrt(predicted.second_moment[..., 0, 0])
-    assert np.all(np.sqrt(variance[1][..., 0]) > 0.4 * along)
-    assert np.all(variance[2] > variance[1])
-
-
 def test_a_body_behind_the_camera_is_not_compared_with_regions() -> None:
     tracks = film(exercise(FRAMES))
     behind = Posture.stack([exercise(FRAMES)[index] for index in range(FRAMES)])
@@ -383,7 +341,7 @@ def test_a_body_behind_the_camera_is_not_compared_with_regions() -> None:
     at = replace(state(size=0.0), prior=Posture(HUMAN, away, behind.rotations, behind.angles))
     observed, count = ObservedRegions.from_tracks(tracks), len(MODEL.placements)
     widths = np.full((FRAMES, count), 20.0)
-    term = RegionTerm(MODEL, observed, RegionNoise(), widths, np.ones(count), np.ones(count))
+    term = RegionTerm(MODEL, observed, widths, np.ones(count), np.ones(count))
     at = replace(at, bias=np.zeros((FRAMES, count * FEATURES)))
     equations = NormalEquations(FRAMES, DOFS + count * FEATURES)
     term.add_to(equations, at, 1.0)

@@ -1,16 +1,10 @@
-"""Evidence of posed and matched keyframes together: only posed ones calibrate markers and lens.
+"""Which found keyframes are worth having between posed ones."""
 
-Placements, lens and posing error are calibrated on keyframes that a person has posed, in the picture at
-least. Matched ones err by more than any of these, and all in the same direction: calibrated on them, sleeves
-would make up for another performer's gait.
-"""
-
-from collections.abc import Generator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, BoolArray, chunks
+from ..arrays import Array, chunks
 from ..body.posture import Posture
 from ..detect.keypoints import Keypoints, mirrored_point
 from ..detect.performer import principal_keypoints
@@ -18,60 +12,12 @@ from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import columns_at
 from ..prior.keyframes import Keyframe, interpolate, leave_one_out_residuals
 from ..terms.region_model import RegionModel
-from ..terms.regions import RegionNoise
-from .clip_problem import KeyframeEvidence, uncalibrated
-from .keyframe_error import match_covariance, picture_information, posing_covariance
-from .keyframe_evidence import SeenAtKeyframes, read_keyframes
-
-FEWEST_POSED = 2  # fewer posed keyframes calibrate nothing
-
-
-def calibrating(matched: BoolArray, corrected: BoolArray) -> BoolArray:
-    """(K,) keyframes by which a clip's evidence is judged: those posed, and those put right in the picture.
-
-    Of the latter two count as one: a person puts right what is wrong there, not what is usual.
-    """
-    posed = ~matched
-    enough = posed.sum() + corrected.sum() // 2 >= FEWEST_POSED
-    return posed | corrected if enough else posed
-
-
-def read_mixed_keyframes(
-    model: RegionModel, noise: RegionNoise, at: SeenAtKeyframes, match_scale: Array, corrected: BoolArray
-) -> Generator[None, None, KeyframeEvidence]:
-    """Evidence of keyframes of which some may be matched.
-
-    `match_scale` (K,): size of the matched ones' error, relative to a usual difference between performers; 0
-    for posed ones; `corrected` (K,): which of these a person vouches for in the picture, which calibrates
-    too.
-    """
-    if not match_scale.any():
-        return (yield from read_keyframes(model, noise, at))
-    posed = np.flatnonzero(match_scale == 0.0)
-    seen = np.flatnonzero(calibrating(match_scale > 0.0, corrected))
-    information = np.linalg.inv(match_covariance(at.posture, model.camera, at.frame))
-    information /= np.where(match_scale > 0.0, match_scale, 1.0)[:, None, None] ** 2
-    if len(seen) >= FEWEST_POSED:
-        posing = posing_covariance(model.body, model.body.pose(at.posture))
-        if corrected.any():
-            there = at[np.flatnonzero(corrected)]
-            pictured = picture_information(model.body, model.camera, there.posture, there.frame)
-            posing[corrected] = np.linalg.inv(information[corrected] + pictured)
-            if at.points is not None:  # a found depth says nothing of a detector's guess
-                depth_m = np.where(corrected[:, None], np.nan, at.points.depth_m)
-                at = replace(at, points=replace(at.points, depth_m=depth_m))
-        evidence = yield from read_keyframes(model, noise, replace(at, posing=posing)[seen])
-        information[posed] = evidence.information[np.isin(seen, posed)]
-        return replace(evidence, information=information)
-    if len(posed):
-        information[posed] = np.linalg.inv(posing_covariance(model.body, model.body.pose(at.posture[posed])))
-    evidence = replace(uncalibrated(model), information=information)
-    return evidence if at.keypoints is None else replace(evidence, keypoints=at.keypoints)
+from .belief import FEWEST_POSED
 
 
 @dataclass(frozen=True)
 class SelectionOptions:
-    """When a matched keyframe is better than interpolation between posed ones."""
+    """When a found keyframe is better than interpolation between posed ones."""
 
     # a library with a larger error along the line of sight holds another motion
     largest_library_error_m: float = 0.12
@@ -98,7 +44,7 @@ def select_keyframes(
     fps: float,
     keypoints: Keypoints | None = None,
 ) -> tuple[Keyframe, ...]:
-    """The posed keyframes, and those matched ones that are better than interpolation between them."""
+    """The posed keyframes, and those found ones that are better than interpolation between them."""
     posed = tuple(keyframe for keyframe in keyframes if keyframe.is_posed)
     compared = tuple(
         key for key in keyframes if key.is_posed or (key.matched is not None and not key.matched.is_composed)
