@@ -28,7 +28,8 @@ from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.detect.keypoint_file import write_keypoints  # noqa: E402
 from keymark.core.estimate.reconstruct import Reconstruction  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
-from keymark.core.prior.registry import registered_libraries  # noqa: E402
+from keymark.core.prior.registry import find_libraries  # noqa: E402
+from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.progress import Job, Progress  # noqa: E402
 from keymark.core.review.score import read_truth  # noqa: E402
 from keymark.core.session.described import findings  # noqa: E402
@@ -156,7 +157,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("takes", nargs="*")
     names = parser.parse_args().takes
-    libraries = [one.library for one in registered_libraries([LIBRARIES]) if one.library is not None]
+    libraries = find_libraries(EVERY_LIBRARY, [LIBRARIES])
     lines = ["| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
     numbers: dict[str, object] = {}
     for name, folder in chosen_takes(names, plain=True).items():

@@ -30,7 +30,8 @@ from keymark.core.detect.standing_moments import standing_keypoints  # noqa: E40
 from keymark.core.posing.found_poses import with_found  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
-from keymark.core.prior.registry import registered_libraries  # noqa: E402
+from keymark.core.prior.registry import find_libraries  # noqa: E402
+from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score, read_truth  # noqa: E402
 from keymark.core.session.stages import seen_in  # noqa: E402
@@ -145,7 +146,7 @@ def scores(trial: Trial, camera: Camera) -> dict[str, Score]:
     """Posed over the picture by somebody who sees it through that camera, and not posed at all."""
     seen = replace(trial, take=replace(trial.take, camera=camera, keyframes=seen_through(trial, camera)))
     motion = seen.estimated("map")
-    libraries = [one.library for one in registered_libraries([LIBRARIES]) if one.library is not None]
+    libraries = find_libraries(EVERY_LIBRARY, [LIBRARIES])
     bare = replace(seen.take, keyframes=())
     poses = run(pose_clip(seen_in(bare, trial.reading), libraries))
     reading = poses.reading or trial.reading

@@ -277,7 +277,11 @@ class _Search:
             return
         below = [file for file, is_folder, is_link in kinds if is_folder and not is_link]
         videos = [file for file, is_folder, _ in kinds if not is_folder and file.suffix.lower() in VIDEOS]
-        if described and not videos and _is_sequence(inside, alone=not below):
+        # Images are a clip where they are a folder's only content, or numbered; else they are stills.
+        images = [file for file in inside if is_image(file)]
+        stems = Counter(stem_of_number(image) for image in images)
+        numbered = any(count > 1 for stem, count in stems.items() if stem is not None)
+        if described and not videos and images and (numbered or not below):
             self._add(folder)
             return
         for video in videos if described else ():
@@ -301,13 +305,6 @@ def is_result_take(folder: Path) -> bool:
     except InputError:
         return False
     return record is not None and TAKE_FILE in record.files
-
-
-def _is_sequence(inside: list[Path], alone: bool) -> bool:
-    """Whether a folder's images are a clip: its only content, or numbered; else they are stills."""
-    images = [file for file in inside if is_image(file)]
-    stems = Counter(stem_of_number(file) for file in images)
-    return bool(images) and (alone or any(count > 1 for stem, count in stems.items() if stem is not None))
 
 
 def take_path(file: Path) -> Path:

@@ -15,7 +15,7 @@ from ..progress import run
 from ..take.description import KEYFRAME_FILE, KEYPOINT_FILE, SCHEMA_VERSION, TAKE_FILE, sidecar_file
 from ..take.evidence import KEYPOINTS, MARKERS
 from ..video.clip import Clip, sample_spread_frames
-from .discovery import Shoot, ShootTake
+from .discovery import Shoot
 
 COLORED_CLIPS = 48
 """Clips that are sampled for colors at most: a few of every day, of all performers."""
@@ -90,9 +90,10 @@ def survey_clips(shoot: Shoot) -> Generator[float, None, ClipSurvey]:
     opened: list[Clip] = []
     for done, take in enumerate(shoot.takes):
         yield 0.8 * done / len(shoot.takes)
-        if _is_described(take):
+        own = (take.path / TAKE_FILE).exists()
+        if own or sidecar_file(take.path, TAKE_FILE).exists():
             described.append(take.name)
-        if (take.path / TAKE_FILE).exists():
+        if own:
             continue
         try:
             clip = Clip.open(take.path)
@@ -120,10 +121,6 @@ def survey_clips(shoot: Shoot) -> Generator[float, None, ClipSurvey]:
 
 def _spread(count: int, most: int) -> list[int]:
     return list(range(count))[:: max(-(-count // most), 1)]
-
-
-def _is_described(take: ShootTake) -> bool:
-    return (take.path / TAKE_FILE).exists() or sidecar_file(take.path, TAKE_FILE).exists()
 
 
 USUAL_MARKERS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
@@ -179,11 +176,14 @@ def clip_lines(survey: ClipSurvey) -> list[str]:
     frames = sum(clip.frames for clip in survey.clips)
     lines = [f"{pluralize(len(survey.clips), 'clip')}, {pluralize(frames, 'frame')} in all"]
     lines += [
-        f"{pluralize(count, 'clip')} of {width} x {height} pixels{_examples(survey, size=(width, height))}"
-        for (width, height), count in survey.sizes.most_common()
+        f"{pluralize(count, 'clip')} of {size[0]} x {size[1]} pixels"
+        + _examples(survey, [clip.name for clip in survey.clips if clip.size == size])
+        for size, count in survey.sizes.most_common()
     ]
     lines += [
-        f"{pluralize(count, 'clip')} {_at(fps)}{_examples(survey, fps=fps)}"
+        f"{pluralize(count, 'clip')} "
+        + ("of images, whose rate nothing tells" if fps is None else f"at {fps:g} frames per second")
+        + _examples(survey, [clip.name for clip in survey.clips if clip.fps == fps])
         for fps, count in survey.rates.most_common()
     ]
     if survey.described:
@@ -300,17 +300,6 @@ def _keyframes(survey: ClipSurvey) -> dict[str, Any]:
     }
 
 
-def _at(fps: float | None) -> str:
-    return "of images, whose rate nothing tells" if fps is None else f"at {fps:g} frames per second"
-
-
-def _examples(
-    survey: ClipSurvey, size: tuple[int, int] | None = None, fps: float | None | bool = False
-) -> str:
-    """Names of the clips with this size or rate, unless they are half of all or more."""
-    names = [
-        clip.name
-        for clip in survey.clips
-        if (size is None or clip.size == size) and (fps is False or clip.fps == fps)
-    ]
+def _examples(survey: ClipSurvey, names: list[str]) -> str:
+    """Names of clips that are alike, unless they are half of all or more."""
     return f": {listed(names, MOST_NAMED)}" if 2 * len(names) < len(survey.clips) else ""

@@ -11,7 +11,6 @@ from ..files.digest import content_digest, digest
 from ..files.json_file import read_json
 from ..prior.texts import COMPOSED, EVERY_LIBRARY
 from ..video.image_sequence import find_images
-from .character_settings import CharacterSettings
 from .conversion_settings import METHODS, ConversionSettings
 from .description import FILE_FIELDS, SETTING_FIELDS, Description, keypoint_files
 
@@ -43,34 +42,40 @@ def conversion_digest(
         images = find_images(description.clip)
     except OSError as error:
         raise InputError(f"{description.clip}: the clip cannot be read ({error.strerror})") from error
+    try:
+        clip = os.path.relpath(os.path.realpath(description.clip), os.path.realpath(output))
+    except ValueError:  # another drive
+        clip = str(description.clip)
     footage = [description.clip] if images is None else images
     posed = settings.keyframes
     if posed is None and os.path.exists(description.keyframes):
         posed = description.keyframes
+    character, options = settings.character, ""
+    contents: tuple[object, ...] = ()
+    if character is not None:
+        files = (character.file, *_buffers(character.file))
+        contents = tuple((file.name, content_digest(file)) for file in files)
+        options = json.dumps(character.options.to_json(), sort_keys=True)
+    keypoints = keypoint_files(description, settings)
+    evidence: tuple[object, ...] = ()
+    if keypoints or settings.evidence is not None:
+        evidence = (tuple(_keypoints(file) for file in keypoints), settings.evidence)
     return digest(
         FORMAT,
         version,
         _take_fields(description.fields.values),
         description.name,
-        _relative_clip(description.clip, output),
+        clip,
         tuple((file.name, content_digest(file)) for file in footage),
         None if posed is None else content_digest(posed),
         (COMPOSED, *libraries) if settings.library == EVERY_LIBRARY else tuple(libraries),
         settings.floor_m if libraries else None,
         settings.method or METHODS[0],
         settings.pictures is not False,
-        None if settings.character is None else (_character(settings.character), tuple(maps)),
-        *_evidence(description, settings),
+        None if character is None else ((contents, character.object, options), tuple(maps)),
+        *evidence,
         *(() if settings.reference is None else ((settings.reference.name, _content(settings.reference)),)),
     )
-
-
-def _evidence(description: Description, settings: ConversionSettings) -> tuple[object, ...]:
-    """Keypoints by name and content, and the kinds of evidence; empty where nothing is said of either."""
-    keypoints = keypoint_files(description, settings)
-    if not keypoints and settings.evidence is None:
-        return ()
-    return (tuple(_keypoints(file) for file in keypoints), settings.evidence)
 
 
 def _content(path: Path) -> str:
@@ -89,13 +94,6 @@ def _keypoints(path: Path) -> tuple[object, ...]:
     except OSError as error:
         raise InputError(f"{path}: the keypoints cannot be read ({error.strerror})") from error
     return (path.name, tuple((file.name, content_digest(file)) for file in files if not file.is_dir()))
-
-
-def _character(character: CharacterSettings) -> tuple[object, ...]:
-    """The character's files by name and content, its armature, and the options."""
-    options = json.dumps(character.options.to_json(), sort_keys=True)
-    files = (character.file, *_buffers(character.file))
-    return (tuple((file.name, content_digest(file)) for file in files), character.object, options)
 
 
 def _buffers(path: Path) -> list[Path]:
@@ -118,10 +116,3 @@ def _take_fields(fields: Mapping[str, Any]) -> str:
     if isinstance(markers, Mapping):
         kept["markers"] = list(markers.items())
     return json.dumps(kept, sort_keys=True, ensure_ascii=False)
-
-
-def _relative_clip(clip: Path, output: Path) -> str:
-    try:
-        return os.path.relpath(os.path.realpath(clip), os.path.realpath(output))
-    except ValueError:  # another drive
-        return str(clip)

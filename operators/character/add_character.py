@@ -5,7 +5,7 @@ import bpy
 from ...core.errors import InputError
 from ..bridge.character.read_character import make_override, needs_override
 from ..bridge.character.rigify_human import add_rigify_human, enable_rigify, has_rigify, is_rigify_enabled
-from ..shell.base_operator import BaseOperator, warn
+from ..shell.base_operator import BaseOperator
 from ..shell.fields import SKIP_SAVE, Text
 from ..shell.requirements import bones_editable, idle
 from ..shell.takes import active_take
@@ -17,7 +17,7 @@ from .characters import (
     require_character_armature,
 )
 from .map_conversion import map_of, show_map
-from .recognition import all_doubts
+from .recognition import say_recognized
 from .requirements import armature, character, take
 
 
@@ -48,29 +48,17 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
         return {"CANCELLED"}  # each entry is a step of its own
 
     def run(self, context: bpy.types.Context) -> None:
-        chosen = self._chosen(context)
-        character = add_character(active_take(context.scene), chosen)
-        if character.problem:
-            warn(self, character.problem)
-        elif chosen is None:
-            self.report({"INFO"}, "Choose the character's armature")
-        elif all_doubts(character):
-            self.report({"WARNING"}, f"Check the bones of '{chosen.name}': some are doubtful")
+        if self.armature:
+            chosen = bpy.data.objects.get(self.armature)
+            require_character_armature(chosen, self.armature)
         else:
-            self.report({"INFO"}, f"Recognized the bones of '{chosen.name}'")
-
-    def _chosen(self, context: bpy.types.Context) -> bpy.types.Object | None:
-        """The armature to add; None where it is left to the person.
-
-        Raises:
-            InputError: The armature that was named is not there, or is no character.
-        """
-        if not self.armature:
             found = candidates(context.scene, context.view_layer)
-            return found[0] if len(found) == 1 else None
-        named = bpy.data.objects.get(self.armature)
-        require_character_armature(named, self.armature)
-        return named
+            chosen = found[0] if len(found) == 1 else None
+        character = add_character(active_take(context.scene), chosen)
+        if chosen is None:
+            self.report({"INFO"}, "Choose the character's armature")
+        else:
+            say_recognized(self, character)
 
 
 # --- Add a Rigify rig of the performer's size as the character
@@ -124,11 +112,7 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
         )
 
     def run(self, context: bpy.types.Context) -> None:
-        chosen = add_rigify_character(context)
-        if chosen.problem:
-            warn(self, chosen.problem)
-        else:
-            self.report({"INFO"}, f"Recognized the bones of '{chosen.armature.name}'")
+        say_recognized(self, add_rigify_character(context))
 
 
 class KEYMARK_OT_remove_character(BaseOperator, bpy.types.Operator):
@@ -163,46 +147,32 @@ class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         character = active_character(context.scene)
-        original = character.armature
-        instance = _instance_of(context.scene, original)
+        original, scene = character.armature, context.scene
+        # A linked collection often stands in a scene as an empty, in whose place it is overridden.
+        empties = (
+            []
+            if original.name in scene.objects
+            else [
+                one for one in scene.objects if one.instance_type == "COLLECTION" and one.instance_collection
+            ]
+        )
+        instance = next((one for one in empties if original in one.instance_collection.all_objects[:]), None)
         if instance is None:
             overridden = make_override(context, original)
         else:
-            overridden = _override_instance(context, original, instance)
+            collection = instance.instance_collection
+            made = collection.override_hierarchy_create(
+                scene, context.view_layer, reference=instance, do_fully_editable=True
+            )
+            overrides = (one for one in scene.objects if one.override_library is not None)
+            overridden = next((one for one in overrides if one.override_library.reference == original), None)
+            if made is None or overridden is None:
+                raise InputError(
+                    f"Blender makes no library override of collection '{collection.name}', which holds "
+                    f"'{original.name}'; append it instead"
+                )
         known = map_of(character.character_map)
         character.armature = overridden
         if known.roles:
             show_map(character.character_map, known)
         self.report({"INFO"}, f"'{overridden.name}' can be animated now")
-
-
-def _override_instance(
-    context: bpy.types.Context, original: bpy.types.Object, instance: bpy.types.Object
-) -> bpy.types.Object:
-    """Override a linked collection in place of the empty that shows it; returns the armature's override.
-
-    Raises:
-        InputError: Blender refuses.
-    """
-    collection = instance.instance_collection
-    made = collection.override_hierarchy_create(
-        context.scene, context.view_layer, reference=instance, do_fully_editable=True
-    )
-    overrides = (each for each in context.scene.objects if each.override_library is not None)
-    found = next((each for each in overrides if each.override_library.reference == original), None)
-    if made is None or found is None:
-        raise InputError(
-            f"Blender makes no library override of collection '{collection.name}', which holds "
-            f"'{original.name}'; append it instead"
-        )
-    return found
-
-
-def _instance_of(scene: bpy.types.Scene, original: bpy.types.Object) -> bpy.types.Object | None:
-    """The empty of the scene that shows the linked collection an object is in; None where there is none."""
-    shown = () if original.name in scene.objects else scene.objects
-    for each in shown:
-        collection = each.instance_collection if each.instance_type == "COLLECTION" else None
-        if collection is not None and original in collection.all_objects[:]:
-            return each
-    return None

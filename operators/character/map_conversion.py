@@ -9,6 +9,8 @@ from ...core.retarget.maps.character_map import CharacterMap, IkControls, RoleBo
 
 DIGITS = 7  # significant digits of values that Blender keeps as float32
 WORDS = ("author", "license", "description")
+KINDS = {"BOOL": bool, "INT": int, "FLOAT": float}
+"""The types of properties' values."""
 NO_DOUBTS: Mapping[str, str] = {}
 
 
@@ -31,11 +33,13 @@ def map_of(group: bpy.types.PropertyGroup) -> CharacterMap:
         fk=fk,
         ik={limb.name: _ik_of(limb) for limb in group.limbs if limb.goal},
         settings=tuple(
-            Setting(each.bone, each.property, _value_of(each)) for each in group.settings if each.bone
+            Setting(each.bone, each.property, KINDS[each.kind](_rounded(each.value)))
+            for each in group.settings
+            if each.bone
         ),
         root=group.root or None,
         soles={
-            role.name: tuple(_triple(point.place) for point in role.sole)
+            role.name: tuple(tuple(map(_rounded, point.place)) for point in role.sole)
             for role in group.roles
             if len(role.sole)
         },
@@ -64,11 +68,17 @@ def show_map(
     for name in ROLES:
         _show_role(group.roles.add(), name, character_map, doubts.get(name, ""))
     for name in LIMBS:
-        _show_limb(group.limbs.add(), name, character_map.ik.get(name))
+        limb, controls = group.limbs.add(), character_map.ik.get(name)
+        limb.name = name
+        if controls is not None:
+            limb.goal, limb.pole, limb.toe = controls.goal, controls.pole or "", controls.toe or ""
+            if (switch := controls.switch) is not None:
+                limb.switch_bone, limb.switch_property = switch.bone, switch.property
+                limb.switch_ik, limb.switch_fk = switch.ik, switch.fk
     for setting in character_map.settings:
         shown = group.settings.add()
         shown.bone, shown.property, shown.value = setting.bone, setting.property, float(setting.value)
-        shown.kind = {bool: "BOOL", int: "INT"}.get(type(setting.value), "FLOAT")
+        shown.kind = next(kind for kind, value in KINDS.items() if value is type(setting.value))
 
 
 def clear_map(group: bpy.types.PropertyGroup) -> None:
@@ -107,17 +117,6 @@ def _show_role(shown: bpy.types.PropertyGroup, name: str, character_map: Charact
         shown.corrected, shown.correction = True, character_map.rest_corrections[name]
 
 
-def _show_limb(shown: bpy.types.PropertyGroup, name: str, controls: IkControls | None) -> None:
-    shown.name = name
-    if controls is None:
-        return
-    shown.goal, shown.pole, shown.toe = controls.goal, controls.pole or "", controls.toe or ""
-    switch = controls.switch
-    if switch is not None:
-        shown.switch_bone, shown.switch_property = switch.bone, switch.property
-        shown.switch_ik, shown.switch_fk = switch.ik, switch.fk
-
-
 def _ik_of(limb: bpy.types.PropertyGroup) -> IkControls:
     switch = None
     if limb.switch_bone and limb.switch_property:
@@ -127,17 +126,5 @@ def _ik_of(limb: bpy.types.PropertyGroup) -> IkControls:
     return IkControls(limb.goal, limb.pole or None, limb.toe or None, switch)
 
 
-def _value_of(setting: bpy.types.PropertyGroup) -> float | int | bool:
-    value = _rounded(setting.value)
-    if setting.kind == "BOOL":
-        return bool(value)
-    return round(value) if setting.kind == "INT" else value
-
-
 def _rounded(value: float) -> float:
     return float(f"{value:.{DIGITS}g}")
-
-
-def _triple(place: "bpy.types.bpy_prop_array[float]") -> tuple[float, float, float]:
-    x, y, z = (_rounded(value) for value in place)
-    return x, y, z

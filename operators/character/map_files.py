@@ -49,9 +49,7 @@ class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
             self.title if self.title and not self.filepath else chosen_file(self, "a character map, .json")
         )
         found = find_map(named, map_folders())
-        character_map = found.character_map
-        if character_map is None:
-            raise InputError(found.problem)
+        character_map = found.valid
         check_map(character_map, read_character(character.armature), str(found.path))
         show_map(character.character_map, character_map)
         show_doubts(character)

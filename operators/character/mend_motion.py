@@ -16,7 +16,6 @@ from .recognition import map_folders
 
 if TYPE_CHECKING:
     from ...core.progress import Job
-    from ...core.retarget.maps.character_map import CharacterMap
     from ..bridge.motions.mend_action import MendedAction
 
 ONTO = (
@@ -94,10 +93,15 @@ class KEYMARK_OT_mend_motion(JobOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[tuple[int, MendedAction]]":
         from ..bridge.motions.mend_action import mend_action
+        from ..bridge.motions.read_poses import motion_map
 
         active = bpy.context.view_layer.objects.active
         frames = _frames(self.posed)
-        character_map = _map_of(active)
+        known = with_map(active)
+        if known is not None:
+            character_map = map_of(known.character_map)
+        else:
+            character_map = motion_map(active, map_folders()).character_map
         found = yield from mend_action(active, character_map, frames, self.plant_feet, self.floor)
         return active.session_uid, found
 
@@ -125,16 +129,6 @@ def _frames(text: str) -> tuple[int, ...]:
         return tuple(int(word) for word in text.split(",") if word.strip())
     except ValueError as error:
         raise InputError(f"Posed Frames is {text}; frames with commas between them are valid") from error
-
-
-def _map_of(armature_object: bpy.types.Object) -> "CharacterMap":
-    """The map of an armature: that of a character that it is in a take, else the one found."""
-    from ..bridge.motions.read_poses import motion_map
-
-    known = with_map(armature_object)
-    if known is not None:
-        return map_of(known.character_map)
-    return motion_map(armature_object, map_folders()).character_map
 
 
 def _select(context: bpy.types.Context, chosen: bpy.types.Object) -> None:

@@ -1,7 +1,7 @@
 """Rows of the panel that shows which bones play which role."""
 
 import bpy
-from bpy.types import Armature, Context, PropertyGroup, UILayout
+from bpy.types import Context, PropertyGroup, UILayout
 
 from ...core.retarget.character import CHAINS
 from ..bridge.character.read_character import needs_override
@@ -54,27 +54,19 @@ def _draw_parts(layout: UILayout, context: Context, character: PropertyGroup) ->
         marked = any(is_marked(character, role) for role in shown)
         header, body = layout.panel(f"KEYMARK_PT_part_{part.replace('.', '_')}", default_closed=not marked)
         header.label(text=PART_TITLES[part], icon="ERROR" if marked else "NONE")
-        _draw_confidence(header, shown)
+        found = [role for role in shown if any(entry.bone for entry in role.bones)]
+        if found:
+            least = min(found, key=lambda role: role.confidence)
+            facts = header.row()
+            facts.alignment, facts.active = "RIGHT", False
+            sure = "" if least.source == "you" else f" {100.0 * least.confidence:.0f} %"
+            facts.label(text=SOURCE_WORDS[least.source] + sure, translate=False)
         if body is None:
             continue
         column = body.column(align=True)
         for role in shown:
             _draw_role(column, context, character, role)
         _draw_controls(body, character, part, shown)
-
-
-def _draw_confidence(header: UILayout, shown: list[PropertyGroup]) -> None:
-    found = [role for role in shown if any(entry.bone for entry in role.bones)]
-    if not found:
-        return
-    least = min(found, key=lambda role: role.confidence)
-    facts = header.row()
-    facts.alignment = "RIGHT"
-    facts.active = False
-    source = SOURCE_WORDS[least.source]
-    if least.source != "you":
-        source = f"{source} {100.0 * least.confidence:.0f} %"
-    facts.label(text=source, translate=False)
 
 
 def is_marked(character: PropertyGroup, role: PropertyGroup) -> bool:
@@ -97,18 +89,14 @@ def _draw_role(column: UILayout, context: Context, character: PropertyGroup, rol
         field.alert = bool(entry.bone) and entry.bone not in bones
         icon = "ERROR" if role.doubt or field.alert else "NONE"
         field.prop_search(entry, "bone", character.armature.data, "bones", text="", icon=icon)
-        _draw_buttons(row, role, index)
+        pick = row.operator("keymark.pick_bone", text="", icon="EYEDROPPER")
+        pick.role, pick.index = role.name, index
+        if role.name in CHAINS and not entry.bone and len(role.bones) > 1:
+            remove = row.operator("keymark.remove_chain_bone", text="", icon="REMOVE")
+            remove.role, remove.index = role.name, index
     if role.doubt:
         why = role.doubt.partition(": ")[2] or role.doubt
         draw_sentence(column, context, why[:1].upper() + why[1:], "BLANK1", MOST_LINES)
-
-
-def _draw_buttons(row: UILayout, role: PropertyGroup, index: int) -> None:
-    pick = row.operator("keymark.pick_bone", text="", icon="EYEDROPPER")
-    pick.role, pick.index = role.name, index
-    if role.name in CHAINS and not role.bones[index].bone and len(role.bones) > 1:
-        remove = row.operator("keymark.remove_chain_bone", text="", icon="REMOVE")
-        remove.role, remove.index = role.name, index
 
 
 def _draw_controls(layout: UILayout, character: PropertyGroup, part: str, shown: list[PropertyGroup]) -> None:
@@ -123,26 +111,22 @@ def _draw_controls(layout: UILayout, character: PropertyGroup, part: str, shown:
     if body is None:
         return
     column, armature = body.column(align=True), character.armature.data
-    for role, entry in keyed:
-        _draw_control(column, armature, entry, "control", role_title(role.name))
-    for name in controls:
-        _draw_control(column, armature, limb, name, limb.bl_rna.properties[name].name)
-    if limb is not None and limb.switch_bone:
-        _draw_control(column, armature, limb, "switch_bone", "Switch")
+    fields = [(entry, "control", role_title(role.name)) for role, entry in keyed]
+    switch = ["switch_bone"] * bool(limb is not None and limb.switch_bone)
+    fields += [(limb, name, limb.bl_rna.properties[name].name) for name in (*controls, *switch)]
+    for owner, name, text in fields:
+        split = column.split(factor=LABEL_SHARE, align=True)
+        left = split.row()
+        left.alignment = "RIGHT"
+        left.label(text=text, translate=False)
+        field = split.row()
+        field.alert = bool(getattr(owner, name)) and getattr(owner, name) not in armature.bones
+        field.prop_search(owner, name, armature, "bones", text="", icon="BONE_DATA")
+    if switch:
         split = column.split(factor=LABEL_SHARE)
         split.label(text="")
         values = f"{limb.switch_property}: IK {limb.switch_ik:g}, FK {limb.switch_fk:g}"
         split.label(text=values, translate=False)
-
-
-def _draw_control(column: UILayout, armature: Armature, owner: PropertyGroup, name: str, text: str) -> None:
-    split = column.split(factor=LABEL_SHARE, align=True)
-    left = split.row()
-    left.alignment = "RIGHT"
-    left.label(text=text, translate=False)
-    field = split.row()
-    field.alert = bool(getattr(owner, name)) and getattr(owner, name) not in armature.bones
-    field.prop_search(owner, name, armature, "bones", text="", icon="BONE_DATA")
 
 
 # --- The panel of the step

@@ -7,6 +7,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.files.fields import listed
+from ...core.retarget.character import CHAINS
 from ..shell.base_operator import BaseOperator, reported
 from ..shell.fields import SKIP_SAVE, Choice, Text
 from ..shell.footage_clicks import NAVIGATION
@@ -15,7 +16,7 @@ from ..shell.job_operator import cancel_click
 from ..shell.requirements import idle
 from .characters import MOST_NAMED, active_character, find_character, full_title
 from .map_conversion import map_of, role_named, show_map
-from .recognition import RoleBoneOperator, active_bone_of, chain_role, give_bone, told
+from .recognition import RoleBoneOperator, active_bone_of, give_bone, told
 from .requirements import armature
 
 NEAR_PX = 25.0  # farthest that a click may be from a bone, at a UI scale of 1
@@ -28,38 +29,31 @@ def bone_under(
     context: bpy.types.Context, armature_object: bpy.types.Object, mouse_x: int, mouse_y: int
 ) -> str | None:
     """Name of the visible bone nearest to the mouse [window px], in a 3D viewport; None where none is."""
-    near = NEAR_PX * context.preferences.system.ui_scale
-    for area in (area for area in context.screen.areas if area.type == "VIEW_3D"):
-        for region in (region for region in area.regions if region.type == "WINDOW"):
-            x, y = mouse_x - region.x, mouse_y - region.y
-            if 0 <= x < region.width and 0 <= y < region.height:
-                mouse = np.array([x, y], dtype=np.float64)
-                return _nearest(context, armature_object, region, mouse, near)
-    return None
-
-
-def _nearest(
-    context: bpy.types.Context,
-    armature_object: bpy.types.Object,
-    region: bpy.types.Region,
-    mouse: Array,
-    near: float,
-) -> str | None:
-    view = region.data
+    regions = (
+        region
+        for area in context.screen.areas
+        if area.type == "VIEW_3D"
+        for region in area.regions
+        if region.type == "WINDOW"
+        and 0 <= mouse_x - region.x < region.width
+        and 0 <= mouse_y - region.y < region.height
+    )
+    region = next(regions, None)
+    if region is None:
+        return None
+    view, names, ends, depths = region.data, [], [], []
     shown = armature_object.evaluated_get(context.evaluated_depsgraph_get())
-    names, ends, depths = [], [], []
-    for bone in shown.pose.bones:
-        if not is_visible(bone):
-            continue
+    for bone in filter(is_visible, shown.pose.bones):
         places = [shown.matrix_world @ end for end in (bone.head, bone.tail)]
         pixels = [location_3d_to_region_2d(region, view, place) for place in places]
-        if any(pixel is None for pixel in pixels):
-            continue
-        names.append(bone.name)
-        ends.append([tuple(pixel) for pixel in pixels])
-        depths.append(-(view.view_matrix @ ((places[0] + places[1]) / 2.0)).z)
+        if all(pixel is not None for pixel in pixels):
+            names.append(bone.name)
+            ends.append([tuple(pixel) for pixel in pixels])
+            depths.append(-(view.view_matrix @ ((places[0] + places[1]) / 2.0)).z)
     if not names:
         return None
+    mouse = np.array([mouse_x - region.x, mouse_y - region.y], dtype=np.float64)
+    near = NEAR_PX * context.preferences.system.ui_scale
     index = nearest_segment(mouse, np.array(ends, dtype=np.float64), np.array(depths), near)
     return None if index is None else names[index]
 
@@ -169,10 +163,14 @@ class KEYMARK_OT_add_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Operat
 
     def run(self, context: bpy.types.Context) -> None:
         character = active_character(context.scene)
-        shown = role_named(character.character_map, chain_role(self.role))
+        shown = chain_of(character, self.role)
         taken = {entry.bone for role in character.character_map.roles for entry in role.bones}
         last = shown.bones[-1].bone if len(shown.bones) else ""
-        shown.bones.add().bone = _next_upward(character.armature.data.bones, last, taken)
+        below = character.armature.data.bones.get(last)
+        free = [child for child in below.children if child.name not in taken] if below is not None else []
+        # The child that goes on from the bone's tail and plays no role yet.
+        onward = min(free, key=lambda child: (child.head_local - below.tail_local).length, default=None)
+        shown.bones.add().bone = onward.name if onward is not None else ""
 
 
 class KEYMARK_OT_remove_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
@@ -182,7 +180,7 @@ class KEYMARK_OT_remove_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Ope
     requirements = (armature,)
 
     def run(self, context: bpy.types.Context) -> None:
-        shown = role_named(active_character(context.scene).character_map, chain_role(self.role))
+        shown = chain_of(active_character(context.scene), self.role)
         if self.index >= len(shown.bones):
             raise InputError(
                 f"the role {self.role} has {len(shown.bones)} bones; there is no number {self.index}"
@@ -194,12 +192,15 @@ class KEYMARK_OT_remove_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Ope
         shown.source, shown.confidence, shown.doubt, shown.uneven = "you", 1.0, "", False
 
 
-def _next_upward(bones: "bpy.types.bpy_prop_collection[bpy.types.Bone]", last: str, taken: set[str]) -> str:
-    """The child that goes on from a bone's tail and plays no role yet; empty where there is none."""
-    below = bones.get(last)
-    free = [child for child in below.children if child.name not in taken] if below is not None else []
-    nearest = min(free, key=lambda child: (child.head_local - below.tail_local).length, default=None)
-    return nearest.name if nearest is not None else ""
+def chain_of(character: bpy.types.PropertyGroup, role: str) -> bpy.types.PropertyGroup:
+    """The properties of a role that several bones may share.
+
+    Raises:
+        InputError: It is one bone's.
+    """
+    if role not in CHAINS:
+        raise InputError(f"'{role}' is no chain of bones; spine and neck are")
+    return role_named(character.character_map, role)
 
 
 # --- Copy the roles of one side to the other

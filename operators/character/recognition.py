@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import InputError, KeymarkError
-from ...core.retarget.character import CHAINS, ROLES
+from ...core.retarget.character import ROLES
 from ..library import registry
 from ..shell.base_operator import BaseOperator, capitalized, warn
 from ..shell.fields import SKIP_SAVE, Integer, Text
@@ -76,17 +76,6 @@ def told(context: bpy.types.Context, role: str) -> str:
     )
 
 
-def chain_role(role: str) -> str:
-    """The role, if several bones may share it.
-
-    Raises:
-        InputError: It is one bone's.
-    """
-    if role not in ROLES or role not in CHAINS:
-        raise InputError(f"'{role}' is no chain of bones; spine and neck are")
-    return role
-
-
 # --- A character's bones recognized, and shown in its properties
 
 
@@ -113,10 +102,14 @@ def show_doubts(character: bpy.types.PropertyGroup, doubts: tuple[str, ...] = ()
     add_lines(character.doubts, doubts, "ERROR")
 
 
-def all_doubts(character: bpy.types.PropertyGroup) -> list[str]:
-    """All that is doubtful about a character's map, in sentences."""
-    doubted = [role.doubt for role in character.character_map.roles if role.doubt]
-    return [line.text for line in character.doubts] + doubted
+def say_recognized(operator: BaseOperator, character: bpy.types.PropertyGroup) -> None:
+    """Report what came of recognizing a character's bones: what is wrong, or all that is doubtful."""
+    doubts = [line.text for line in character.doubts]
+    doubts += [role.doubt for role in character.character_map.roles if role.doubt]
+    for sentence in [character.problem] if character.problem else doubts:
+        warn(operator, sentence)
+    if not character.problem and not doubts:
+        operator.report({"INFO"}, f"Recognized the bones of '{character.armature.name}'")
 
 
 def _role_of(sentence: str) -> str:
@@ -141,20 +134,15 @@ def armature_chosen(character: bpy.types.PropertyGroup) -> None:
         show_map(character.character_map, map_of(known.character_map))
         return
     with suppress(ModuleNotFoundError):  # operators report it
+        from ...core.retarget.maps.map_registry import map_for
+        from ..bridge.character.read_character import read_character
+
         try:
             recognize_bones(character)
-            suggest_map(character)
+            found = map_for(read_character(character.armature), map_folders())
+            character.suggested = "" if found is None else found.title
         except KeymarkError as error:
             character.problem = capitalized(str(error))
-
-
-def suggest_map(character: bpy.types.PropertyGroup) -> None:
-    """Show the title of the map in the user's folder that is for the bones of a character's armature."""
-    from ...core.retarget.maps.map_registry import map_for
-    from ..bridge.character.read_character import read_character
-
-    found = map_for(read_character(character.armature), map_folders())
-    character.suggested = "" if found is None else found.title
 
 
 def map_folders() -> list[Path]:
@@ -171,8 +159,4 @@ class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         character = active_character(context.scene)
         recognize_bones(character)
-        doubts = all_doubts(character)
-        for doubt in doubts:
-            warn(self, doubt)
-        if not doubts:
-            self.report({"INFO"}, f"Recognized the bones of '{character.armature.name}'")
+        say_recognized(self, character)

@@ -1,6 +1,5 @@
 """Output of a command: text wrapped to the terminal, one object for `--json`, and progress."""
 
-import argparse
 import json
 import os
 import sys
@@ -183,11 +182,6 @@ class Console:
                 raise ConversionError(
                     f"standard output cannot be written ({reason}); the result is not told, the rest is done"
                 ) from error
-
-
-def arguments_console(arguments: argparse.Namespace) -> Console:
-    """The console that the options of a command ask for."""
-    return Console(quiet=arguments.quiet, as_json=arguments.json, started=arguments.started)
 
 
 def _bar() -> Any:

@@ -21,6 +21,7 @@ from typing import Any, NoReturn
 from ...core.errors import InputError, KeymarkError, describe_unexpected
 from .blender_silence import codec_silence
 from .commands import SUMMARIES
+from .console import Console
 from .parser import Command, CommandGroup, UsageError, print_error, program_name, version
 
 BLENDER_PREFIX = ["--command", "keymark"]
@@ -59,8 +60,8 @@ def _run(words: list[str]) -> int:
                 import_module(".batch.worker", __package__).run_worker()
                 return DONE
             arguments = build_parser(chosen).parse_args(words)
-            arguments.started = started
-            arguments.run(arguments)
+            with Console(quiet=arguments.quiet, as_json=arguments.json, started=started) as console:
+                arguments.run(arguments, console)
         return DONE
     except SystemExit as stop:  # --help and --version
         return stop.code if isinstance(stop.code, int) else DONE

@@ -1,6 +1,5 @@
 """What a command of the command line declares, and mistakes, each told in one line."""
 
-import argparse
 import importlib.util
 import sys
 import tomllib
@@ -33,16 +32,24 @@ def argument(*names: str, **settings: Any) -> Argument:
 
 @dataclass(frozen=True)
 class Command:
-    """A command."""
+    """A command: a function `NAME_command`, whose docstring is what the command's own help says."""
 
-    name: str
-    description: str
-    """What the command's own help begins with."""
-    run: Callable[[argparse.Namespace], None]
+    run: Callable[..., None]
+    """It takes the arguments and the console, on which it shows progress and result."""
     arguments: Sequence[Argument] = ()
     """Beside those that every command has."""
     summary: str = ""
     """Half a line for the list of a group; those of the other commands are in `commands/__init__.py`."""
+
+    @property
+    def name(self) -> str:
+        """What the user types."""
+        return self.run.__name__.removesuffix("_command")
+
+    @property
+    def description(self) -> str:
+        """What the command's own help begins with."""
+        return str(self.run.__doc__)
 
 
 @dataclass(frozen=True)

@@ -71,17 +71,17 @@ def _number(identifier: str) -> int:
 
 def refresh(choose: str = "") -> None:
     """Read the folders, fill the list, and choose the library of an identifier, else the same as before."""
-    from ...core.prior.registry import registered_libraries
+    from ...core.prior.registry import identifier_of, registered_libraries
 
     listed, own = bpy.context.window_manager.keymark_shelf, own_folder()
     wanted = choose or chosen_identifier(bpy.context)
     listed.libraries.clear()
     for found in registered_libraries(folders()):
         item = listed.libraries.add()
-        item.name, item.title, item.problem = found.identifier, found.title, found.problem
-        item.version, item.is_own = found.version, found.path.parent == own
-        if found.library is not None:
-            library = found.library
+        item.name, item.title, item.problem = identifier_of(found), found.title, found.problem
+        item.is_own = found.path.parent == own
+        if (library := found.content) is not None:
+            item.version = library.version
             item.author, item.license, item.description = library.author, library.license, library.description
             item.motions, item.postures = len(library.motions), len(library.postures)
     names = [item.name for item in listed.libraries]

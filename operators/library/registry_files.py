@@ -6,7 +6,13 @@ from pathlib import Path
 
 from ...core.errors import InputError
 from ...core.prior.library import Library, write_library
-from ...core.prior.registry import find_libraries, find_library, library_path, registered_libraries
+from ...core.prior.registry import (
+    find_libraries,
+    find_library,
+    identifier_of,
+    library_path,
+    registered_libraries,
+)
 from ...core.prior.texts import EVERY_LIBRARY
 from . import registry
 
@@ -19,7 +25,9 @@ def load_registered(identifier: str) -> Library:
 def find_registered(identifier: str) -> Library | None:
     """The registered library of exactly this identifier; None where there is no usable one."""
     found = (
-        entry.library for entry in registered_libraries(registry.folders()) if entry.identifier == identifier
+        entry.content
+        for entry in registered_libraries(registry.folders())
+        if identifier_of(entry) == identifier
     )
     return next((library for library in found if library is not None), None)
 
@@ -67,9 +75,9 @@ def write_to_registry(libraries: Iterable[Library]) -> None:
 def _own_file(folder: Path, identifier: str) -> Path:
     """The file of a library in a folder, new or existing: people may have put files there under any name."""
     path, there = library_path(folder, identifier), registered_libraries([folder])
-    found = next((each.path for each in there if each.library and each.identifier == identifier), path)
-    other = next((each for each in there if each.path == found and each.identifier != identifier), None)
-    damaged = next((each for each in there if each.path == found and each.library is None), None)
+    found = next((each.path for each in there if each.content and identifier_of(each) == identifier), path)
+    other = next((each for each in there if each.path == found and identifier_of(each) != identifier), None)
+    damaged = next((each for each in there if each.path == found and each.content is None), None)
     if other is not None or damaged is not None:
         held = "something that is no library" if other is None else f"the library '{other.title}'"
         raise InputError(f"{found}: holds {held}, which would be lost; give that file another name first")

@@ -177,13 +177,13 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Learn the library, and write it into the user's folder."""
         from ...core.prior.learning import LibraryMetadata
-        from ...core.prior.registry import registered_libraries
+        from ...core.prior.registry import identifier_of, registered_libraries
         from ..bridge.library.posed_library import library_from_action
         from .registry_files import write_to_registry
 
         take = active_take(context.scene)
         title = self.title.strip() or take.name
-        known = {entry.identifier for entry in registered_libraries(folders())}
+        known = set(map(identifier_of, registered_libraries(folders())))
         about = LibraryMetadata(
             title=title,
             author=self.author.strip() or "Unknown",

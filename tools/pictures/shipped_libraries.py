@@ -4,7 +4,8 @@ import numpy as np
 from keymark.core.arrays import Image
 from keymark.core.body.kinematics import Body
 from keymark.core.prior.library import Library, LibraryPosture
-from keymark.core.prior.registry import SHIPPED, registered_libraries
+from keymark.core.prior.registry import SHIPPED, find_libraries
+from keymark.core.prior.texts import EVERY_LIBRARY
 from keymark.core.report.canvas import GRAY, INK, Canvas
 from keymark.core.report.mannequin import posture_picture
 
@@ -20,7 +21,7 @@ def some_postures(library: Library) -> list[LibraryPosture]:
 
 def draw_libraries() -> Image:
     """Draw a row a library."""
-    libraries = [found.library for found in registered_libraries([SHIPPED]) if found.library is not None]
+    libraries = find_libraries(EVERY_LIBRARY, [SHIPPED])
     row = CELL + GAP
     canvas = Canvas(TITLE + FIGURES * (CELL + GAP), len(libraries) * row)
     for number, library in enumerate(libraries):

@@ -2,13 +2,13 @@
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
-from difflib import get_close_matches
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ...errors import InputError, shown
 from ...files.fields import listed
-from ...files.json_file import ENDING, is_other_format, is_path, json_files, read_json
+from ...files.json_file import ENDING, is_path, json_files
+from ...files.registry import Registered, find_registered, registered_files
 from ...prior.library import LARGEST_BYTES
 from ...prior.texts import identifier_from, name_key
 from ...take.character_settings import AUTO, NO_MAP
@@ -50,42 +50,12 @@ def check_map(character_map: CharacterMap, character: Character, where: str = ""
 # --- Registry of character maps
 
 
-@dataclass(frozen=True)
-class RegisteredMap:
-    """A character map file in a registered folder."""
-
-    path: Path
-    character_map: CharacterMap | None  # the map; None if the file is invalid
-    problem: str = ""  # the sentence of the error that makes it invalid
-
-    @property
-    def title(self) -> str:
-        """The map's title; an invalid file's name."""
-        return self.character_map.title if self.character_map else self.path.name
+def registered_maps(folders: Sequence[Path]) -> tuple[Registered[CharacterMap], ...]:
+    """All character maps in some folders, in order of title; a library, though larger, is no damaged map."""
+    return registered_files(folders, CharacterMap, LARGEST_BYTES, lambda one: name_key(one.title))
 
 
-def registered_maps(folders: Sequence[Path]) -> tuple[RegisteredMap, ...]:
-    """All character maps in some folders, in order of title; missing folders count as empty.
-
-    Keyframe libraries may lie in the same folders. Of several maps with one title only the one in the
-    earliest folder is registered, and within a folder the first by file name; the others are available by
-    path only.
-    """
-    found: dict[str, RegisteredMap] = {}
-    broken: list[RegisteredMap] = []
-    for folder in folders:
-        for path in json_files(folder):
-            entry = _read(path)
-            if entry is None:
-                continue
-            if entry.character_map is None:
-                broken.append(entry)
-            else:
-                found.setdefault(name_key(entry.title), entry)
-    return tuple(sorted([*found.values(), *broken], key=lambda entry: (entry.title.casefold(), entry.path)))
-
-
-def find_map(name_or_path: str | Path, folders: Sequence[Path]) -> RegisteredMap:
+def find_map(name_or_path: str | Path, folders: Sequence[Path]) -> Registered[CharacterMap]:
     """Find a map by its title, its file's name without `.json`, or its path.
 
     Raises:
@@ -93,30 +63,24 @@ def find_map(name_or_path: str | Path, folders: Sequence[Path]) -> RegisteredMap
     """
     if is_path(name_or_path):
         path = Path(name_or_path)
-        return RegisteredMap(path, read_character_map(path))
-    text = os.fspath(name_or_path)
-    registered = registered_maps(folders)
-    wanted = name_key(text)
-    named = [entry for entry in registered if wanted in (name_key(entry.title), name_key(entry.path.stem))]
-    for entry in sorted(named, key=lambda entry: entry.character_map is None):
-        if entry.character_map is None:
-            raise InputError(entry.problem)
-        return entry
-    titles = [entry.title for entry in registered if entry.character_map]
-    close = get_close_matches(text[:100], titles, n=1, cutoff=0.6)
-    hint = f" (is {shown(close[0])} meant?)" if close else ""
-    raise InputError(
-        f"there is no character map {shown(text)}{hint}; known are {listed(titles) or 'none'}, "
-        "and the path of a file ends in .json"
+        return Registered(path, read_character_map(path))
+    entries = registered_maps(folders)
+    found = find_registered(
+        os.fspath(name_or_path),
+        entries,
+        lambda entry: (entry.title, entry.path.stem),
+        name_key,
+        "character map",
     )
+    return replace(found, content=found.valid)
 
 
-def map_for(character: Character, folders: Sequence[Path]) -> RegisteredMap | None:
+def map_for(character: Character, folders: Sequence[Path]) -> Registered[CharacterMap] | None:
     """The registered map all of whose bones a character has; of several the one that names the most bones."""
     fitting = [
-        (len(entry.character_map.named_bones), entry)
+        (len(entry.content.named_bones), entry)
         for entry in registered_maps(folders)
-        if entry.character_map is not None and not missing_bones(entry.character_map, character)
+        if entry.content is not None and not missing_bones(entry.content, character)
     ]
     return max(fitting, key=lambda each: each[0])[1] if fitting else None
 
@@ -126,22 +90,10 @@ def map_path(folder: Path, title: str) -> Path:
 
     Never outside of the folder, and never one that holds something else.
     """
-    for path in json_files(folder):
-        entry = _read(path)
-        if entry is not None and entry.character_map and name_key(entry.title) == name_key(title):
-            return path
+    for entry in registered_maps([folder]):
+        if entry.content is not None and name_key(entry.title) == name_key(title):
+            return entry.path
     return folder / (identifier_from(title, [path.stem for path in json_files(folder)], "character") + ENDING)
-
-
-def _read(path: Path) -> RegisteredMap | None:
-    """The map of a file; None for a file of another of Keymark's formats."""
-    try:
-        value = read_json(path, LARGEST_BYTES)  # a library, which is larger, is no damaged map
-        if is_other_format(value, CharacterMap.SCHEMA):
-            return None
-        return RegisteredMap(path, CharacterMap.from_json(value, str(path)))
-    except InputError as error:
-        return RegisteredMap(path, None, str(error))
 
 
 # --- Choice of a character's map
@@ -184,14 +136,12 @@ def map_digests(wanted: str, folders: Sequence[Path]) -> tuple[str, ...]:
     if wanted == NO_MAP:
         return ()
     if wanted != AUTO:
-        entries: Sequence[RegisteredMap] = [find_map(wanted, folders)]
+        entries: Sequence[Registered[CharacterMap]] = [find_map(wanted, folders)]
     else:
         entries = registered_maps(folders)
-    return tuple(sorted(map_digest(entry.character_map) for entry in entries if entry.character_map))
+    return tuple(sorted(map_digest(entry.content) for entry in entries if entry.content))
 
 
-def _checked(entry: RegisteredMap, character: Character, origin: str) -> ChosenMap:
-    if entry.character_map is None:
-        raise InputError(entry.problem)
-    check_map(entry.character_map, character, str(entry.path))
-    return ChosenMap(entry.character_map, origin, entry.path)
+def _checked(entry: Registered[CharacterMap], character: Character, origin: str) -> ChosenMap:
+    check_map(entry.valid, character, str(entry.path))
+    return ChosenMap(entry.valid, origin, entry.path)

@@ -1,6 +1,6 @@
 """Findings of a check, and the checks of a take's keyframes and keypoints."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,6 +10,7 @@ import numpy as np
 from ...arrays import Array
 from ...detect.keypoints import Keypoints, People, mirrored_point
 from ...errors import KeymarkError
+from ...files.fields import listed
 from ...prior.keyframes import interpolate
 from ...take.clip_check import check_frame_count, check_in_front
 from ...take.performer_keypoints import performer_keypoints
@@ -47,7 +48,15 @@ MOST_NAMED = 3
 
 def check_keyframes(take: Take, frames: int, others_found: bool, findings: Findings) -> None:
     """Check keyframes that could be read."""
-    _check_fit(take, findings)
+    if len(take.notes) <= MOST_NAMED:
+        findings.warn(*take.notes)
+    else:
+        residual_cm = 100 * max(keyframe.residual_m for keyframe in take.keyframes)
+        findings.warn(
+            f"the points of {len(take.notes)} of {len(take.keyframes)} keyframes are up to "
+            f"{residual_cm:.0f} cm on average from any posture of this actor; check the actor's "
+            "lengths, and whether these are the performer's own keyframes"
+        )
     with findings.catching():
         check_frame_count(take, frames)  # first: a moving camera may lack the poses of keyframes
         check_in_front(take)
@@ -56,18 +65,6 @@ def check_keyframes(take: Take, frames: int, others_found: bool, findings: Findi
     if not others_found:
         _check_gaps(take, frames, findings)
     _check_picture(take, findings)
-
-
-def _check_fit(take: Take, findings: Findings) -> None:
-    if len(take.notes) <= MOST_NAMED:
-        findings.warn(*take.notes)
-        return
-    residual = [keyframe.residual_m for keyframe in take.keyframes]
-    findings.warn(
-        f"the points of {len(take.notes)} of {len(take.keyframes)} keyframes are up to "
-        f"{100 * max(residual):.0f} cm on average from any posture of this actor; check the actor's "
-        "lengths, and whether these are the performer's own keyframes"
-    )
 
 
 def _check_gaps(take: Take, frames: int, findings: Findings) -> None:
@@ -94,16 +91,12 @@ def _check_picture(take: Take, findings: Findings) -> None:
         if inside.mean() < 0.5:
             outside.append(keyframe.index + take.frame_start)
     if outside:
+        which = listed(map(str, outside), MOST_NAMED)
+        which = f"the keyframes {which}" if len(outside) > 1 else f"keyframe {which}"
         findings.warn(
-            f"through this camera {_frames(outside)} would be seen outside the picture for the most "
+            f"through this camera {which} would be seen outside the picture for the most "
             "part; check where the camera stands and its lens"
         )
-
-
-def _frames(frames: Sequence[int]) -> str:
-    named = ", ".join(str(frame) for frame in frames[:MOST_NAMED])
-    more = f" and {len(frames) - MOST_NAMED} more" if len(frames) > MOST_NAMED else ""
-    return f"keyframe {named}" if len(frames) == 1 else f"the keyframes {named}{more}"
 
 
 LARGEST_ERROR = 0.1

@@ -18,7 +18,6 @@ from ...take.description import Description
 from ...take.evidence import CONTOURS, KEYPOINTS, MARKERS, in_order
 from ...take.take import Take, evidence_of
 from ...take.take_file import read_described
-from ...video.clip import Clip
 from ..discovery import ShootTake
 from .evidence_check import Findings, KeypointReadout, check_keyframes, check_keypoints
 from .footage_check import check_footage, count_frames
@@ -92,15 +91,15 @@ def estimate_cost(
     method: str,
     library: str | None,
     evidence: Collection[str] = (MARKERS, CONTOURS),
+    detects: bool = False,
 ) -> CostEstimate:
-    """Estimate the cost of converting a take."""
+    """Estimate the cost of converting a take, whose conversion may have to detect keypoints."""
     a_frame = SECONDS_A_FRAME[method] + SECONDS_A_MEGAPIXEL * size[0] * size[1] / 1e6
     if method == "map":
         a_frame += SECONDS_FOR_KEYPOINTS * (KEYPOINTS in evidence)
     if method == "map" and CONTOURS in evidence:
         a_frame += SECONDS_FOR_CONTOURS if MARKERS in evidence else SECONDS_FOR_WIDE_CONTOURS
-    if library is not None:
-        a_frame += SECONDS_TO_POSE
+    a_frame += SECONDS_TO_POSE * (library is not None) + SECONDS_TO_DETECT * detects
     return CostEstimate(SECONDS_A_TAKE + frames * a_frame, BYTES_A_TAKE + frames * BYTES_A_FRAME)
 
 
@@ -165,6 +164,9 @@ def check_take(
     findings.problem(*missing)
     frames = None if clip is None else count_frames(clip, findings)
     take = None if missing or clip is None else _read(description, settings, findings)
+    evidence: tuple[str, ...] = ()
+    if take is not None:  # what its motion will be held against, keypoints that are yet to be detected too
+        evidence = in_order((*evidence_of(take), *(KEYPOINTS,) * is_detected(description, settings)))
     markers: tuple[MarkerReadout, ...] = ()
     keypoints: tuple[KeypointReadout, ...] = ()
     if take is not None and clip is not None and frames is not None:
@@ -179,11 +181,27 @@ def check_take(
         check_keyframes(take, frames, settings.library is not None, findings)
         keypoints = check_keypoints(take, frames, findings)
         markers = check_footage(take, clip, frames, findings)
-        if _evidence(take, description, settings) == (CONTOURS,) and not findings.problems:
+        if evidence == (CONTOURS,) and not findings.problems:
             findings.warn(CONTOURS_ALONE)
-    evidence = () if take is None else _evidence(take, description, settings)
-    check = _checked(found.name, findings, clip, frames, take, settings, evidence)
-    return replace(check, markers=markers, keypoints=keypoints)
+    cost, method = None, settings.method or METHODS[0]
+    if clip is not None and frames is not None and not findings.problems:
+        detects = take is not None and KEYPOINTS in evidence and not take.keypoints
+        cost = estimate_cost(frames, clip.size, method, settings.library, evidence, detects)
+    said_fps = None if take is None else take.fps
+    return TakeCheck(
+        name=found.name,
+        problems=findings.problems,
+        warnings=findings.warnings,
+        size=None if clip is None else clip.size,
+        fps=clip.fps if clip is not None and clip.knows_its_rate else said_fps,
+        frames=frames,
+        evidence=evidence,
+        markers=markers,
+        keypoints=keypoints,
+        keyframes=0 if take is None else len(take.keyframes),
+        library=settings.library,
+        cost=cost,
+    )
 
 
 def _read(description: Description, settings: ConversionSettings, findings: Findings) -> Take | None:
@@ -198,62 +216,22 @@ def _read(description: Description, settings: ConversionSettings, findings: Find
     return None
 
 
-def _evidence(take: Take, description: Description, settings: ConversionSettings) -> tuple[str, ...]:
-    """What the take's motion will be held against, keypoints that its conversion detects among it."""
-    detected = (KEYPOINTS,) * is_detected(description, settings)
-    return in_order((*evidence_of(take), *detected))
-
-
-def _checked(
-    name: str,
-    findings: Findings,
-    clip: Clip | None,
-    frames: int | None,
-    take: Take | None,
-    settings: ConversionSettings,
-    evidence: tuple[str, ...],
-) -> TakeCheck:
-    cost = None
-    if clip is not None and frames is not None and not findings.problems:
-        cost = estimate_cost(frames, clip.size, settings.method or METHODS[0], settings.library, evidence)
-        if take is not None and KEYPOINTS in evidence and not take.keypoints:
-            cost = replace(cost, seconds=cost.seconds + SECONDS_TO_DETECT * frames)
-    fps = None if take is None else take.fps
-    return TakeCheck(
-        name=name,
-        problems=findings.problems,
-        warnings=findings.warnings,
-        size=None if clip is None else clip.size,
-        fps=clip.fps if clip is not None and clip.knows_its_rate else fps,
-        frames=frames,
-        evidence=evidence,
-        keyframes=0 if take is None else len(take.keyframes),
-        library=settings.library,
-        cost=cost,
-    )
+FEWEST_ALIKE, USUAL_SHARE = 5, 0.8
+"""Number of clips, and share of them alike, from which on one that differs is an outlier."""
 
 
 def flag_outliers(checks: Sequence[TakeCheck]) -> list[TakeCheck]:
     """The checks, with a warning for each clip whose size or rate is an outlier of the shoot."""
     sizes = [None if one.size is None else f"{one.size[0]} x {one.size[1]} pixels" for one in checks]
     rates = [None if one.fps is None else f"{one.fps:.4g} frames per second" for one in checks]
-    warned = []
-    for check, size, rate in zip(checks, _outliers(sizes), _outliers(rates), strict=True):
-        more = [
-            f"the clip has {own}, nearly all others have {usual}; check that it is this camera's"
-            for own, usual in filter(None, (size, rate))
-        ]
-        check = replace(check, warnings=(*check.warnings, *more))
-        warned.append(check)
+    warned = list(checks)
+    for values in (sizes, rates):
+        known = Counter(value for value in values if value is not None)
+        usual, count = known.most_common(1)[0] if known else ("", 0)
+        if known.total() < FEWEST_ALIKE or count < USUAL_SHARE * known.total():
+            continue
+        for index, own in enumerate(values):
+            if own not in (None, usual):
+                more = f"the clip has {own}, nearly all others have {usual}; check that it is this camera's"
+                warned[index] = replace(warned[index], warnings=(*warned[index].warnings, more))
     return warned
-
-
-def _outliers(values: Sequence[str | None]) -> list[tuple[str, str] | None]:
-    """Each outlier with the usual value; None where a value is usual or unknown, or none is usual."""
-    known = Counter(value for value in values if value is not None)
-    if known.total() < 5:
-        return [None] * len(values)
-    usual, count = known.most_common(1)[0]
-    if count < 0.8 * known.total():
-        return [None] * len(values)
-    return [None if value in (None, usual) else (str(value), usual) for value in values]

@@ -56,8 +56,10 @@ def import_character(
     armature = _chosen(file, found)
     members = _members(armature, found.values())
     notes: tuple[str, ...] = ()
-    if not animated:
-        notes = _mute_tracks(armature) if suffix == BLEND else _clear_motions(armature, members)
+    if suffix == BLEND and not animated:
+        notes = _mute_tracks(armature)
+    elif not animated:
+        _clear_motions(armature, members)
     _into_collection(scene, armature.name, members)
     armature.hide_viewport = False  # else Blender would not evaluate it
     scene.view_layers[0].update()
@@ -89,27 +91,27 @@ def _imported(file: CharacterFile, scene: bpy.types.Scene, animated: bool) -> di
         if path.suffix.lower() == VRM:  # a GLB under another name
             path = Path(shutil.copyfile(path, Path(folder) / f"{path.stem}.glb"))
         try:
-            _importer(path.suffix.lower(), animated)(filepath=str(path))
+            importer = next(
+                (one for start, one in IMPORTERS.items() if path.suffix.lower().startswith(start)),
+                IMPORTERS[".g"],
+            )
+            importer(animated)(filepath=str(path))
         except (RuntimeError, AttributeError, OSError, ValueError, ArithmeticError, LookupError) as error:
             raise _unreadable(file.path, error) from error
-    return {_name_in_file(one.name, before): one for one in scene.objects}
+    found = {}
+    for one in scene.objects:  # without the number that a name got because it was taken
+        stem, _, number = one.name.rpartition(".")
+        found[stem if number.isdigit() and stem in before else one.name] = one
+    return found
 
 
-def _importer(suffix: str, animated: bool) -> Callable[..., object]:
-    """Blender's own importer of a kind of file."""
-    if suffix == ".fbx":
-        return partial(bpy.ops.wm.fbx_import, use_anim=animated)
-    if suffix == ".bvh":
-        return partial(bpy.ops.import_anim.bvh, update_scene_fps=True, rotate_mode="NATIVE")
-    if suffix.startswith(".usd"):
-        return bpy.ops.wm.usd_import
-    return partial(bpy.ops.import_scene.gltf, disable_bone_shape=True)  # balls that would fill the view
-
-
-def _name_in_file(name: str, taken: Iterable[str]) -> str:
-    """An imported object's name without the number that it got because the name was taken."""
-    stem, _, number = name.rpartition(".")
-    return stem if number.isdigit() and stem in taken else name
+IMPORTERS: dict[str, Callable[[bool], Callable[..., object]]] = {
+    ".fbx": lambda animated: partial(bpy.ops.wm.fbx_import, use_anim=animated),
+    ".bvh": lambda _: partial(bpy.ops.import_anim.bvh, update_scene_fps=True, rotate_mode="NATIVE"),
+    ".usd": lambda _: bpy.ops.wm.usd_import,
+    ".g": lambda _: partial(bpy.ops.import_scene.gltf, disable_bone_shape=True),
+}
+"""Blender's own importers by the beginning of endings; bones of glTF would be balls that fill the view."""
 
 
 def _unreadable(path: Path, error: Exception) -> InputError:
@@ -143,7 +145,12 @@ def _members(armature: bpy.types.Object, found: Iterable[bpy.types.Object]) -> l
     """The armature, what hangs on it or is deformed by it, and the objects that these need."""
     objects = list(found)
     members = {armature, *armature.children_recursive}
-    members |= {one for one in objects if _is_moved_by(one, armature)}
+    for one in objects:
+        targets = [getattr(modifier, "object", None) for modifier in one.modifiers]
+        if one.type not in NOT_ALONG:
+            targets += [getattr(constraint, "target", None) for constraint in one.constraints]
+        if armature in targets:
+            members.add(one)
     for one in list(members):
         members.update(one.children_recursive)
     users = bpy.data.user_map(subset=objects)
@@ -156,13 +163,6 @@ def _members(armature: bpy.types.Object, found: Iterable[bpy.types.Object]) -> l
     return [one for one in objects if one in members]
 
 
-def _is_moved_by(one: bpy.types.Object, armature: bpy.types.Object) -> bool:
-    if any(getattr(modifier, "object", None) == armature for modifier in one.modifiers):
-        return True
-    targets = [getattr(constraint, "target", None) for constraint in one.constraints]
-    return one.type not in NOT_ALONG and armature in targets
-
-
 def _mute_tracks(armature: bpy.types.Object) -> tuple[str, ...]:
     tracks = armature.animation_data.nla_tracks if armature.animation_data is not None else ()
     playing = [track for track in tracks if not track.mute]
@@ -173,7 +173,7 @@ def _mute_tracks(armature: bpy.types.Object) -> tuple[str, ...]:
     return (said,) if playing else ()
 
 
-def _clear_motions(armature: bpy.types.Object, members: Iterable[bpy.types.Object]) -> tuple[str, ...]:
+def _clear_motions(armature: bpy.types.Object, members: Iterable[bpy.types.Object]) -> None:
     for one in members:
         one.animation_data_clear()
         keys = getattr(one.data, "shape_keys", None)
@@ -181,7 +181,6 @@ def _clear_motions(armature: bpy.types.Object, members: Iterable[bpy.types.Objec
             keys.animation_data_clear()
     for bone in armature.pose.bones:
         bone.matrix_basis.identity()
-    return ()
 
 
 def _into_collection(scene: bpy.types.Scene, name: str, members: Sequence[bpy.types.Object]) -> None:

@@ -46,9 +46,11 @@ def measure(
     showing = _show(armature_object, action, frames, bones, properties, {}, feet)
     poses = yield from scaled(showing, 0.0, 0.5 if in_fk else 1.0)
     shown = {role: poses[role][:, :3, 3] for role in bones}
-    soles = {
-        role: _sole(character, bones[role], points, poses[role]) for role, points in motion.soles.items()
-    }
+    soles = {}
+    for role, points in motion.soles.items():  # at rest in the armature's space
+        rest, shown_poses = character.bone(bones[role]).rest, poses[role]
+        local = character.scale * (points - rest[:3, 3]) @ rest[:3, :3]
+        soles[role] = shown_poses[:, None, :3, 3] + local @ np.swapaxes(shown_poses[:, :3, :3], -1, -2)
     meshes = feet.places()
     # Toes of a foot that a mesh shows are in the mesh, too.
     soles = {role: points for role, points in soles.items() if f"foot.{role[-1]}" not in meshes} | meshes
@@ -185,10 +187,3 @@ def _switched(
         for curve, values_before in zip(switches, before, strict=True):
             for key, value in zip(curve.keyframe_points, values_before, strict=True):
                 key.co[1] = value
-
-
-def _sole(character: Character, bone: str, points: Array, poses: Array) -> Array:
-    """(F, N, 3) points of a sole in the world [m], of points (N, 3) at rest in the armature's space."""
-    rest = character.bone(bone).rest
-    local = character.scale * (points - rest[:3, 3]) @ rest[:3, :3]
-    return poses[:, None, :3, 3] + local @ np.swapaxes(poses[:, :3, :3], -1, -2)

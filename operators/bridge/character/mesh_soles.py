@@ -20,7 +20,7 @@ NEAR = 0.35  # largest distance of a sole's vertex from ankle or toe, in lengths
 SOLE = 0.02  # height of the band above the lowest vertex of a foot that is its sole, in lengths of the leg
 LOWEST, HIGHEST = 0.01, 0.3  # height of an ankle over its sole, in lengths of the leg; others are not feet
 HEEL = 0.01  # least length of a foot's sole on either side of the ankle, in lengths of the leg
-DIRECTIONS = 8  # directions along the ground in which a sole's outermost vertices are kept
+ANGLES = 2.0 * np.pi * np.arange(8) / 8  # directions along the ground in which outermost vertices are kept
 MOST_VERTICES = 400_000  # vertices of a mesh that is looked at
 
 
@@ -156,18 +156,11 @@ def _soles_of(
         sole = points[heights[role] < low + SOLE * leg]
         if not len(sole):
             continue
-        kept = _outermost(sole, stance)
+        level = sole @ stance[:2].T  # kept are the lowest point, and the farthest along the ground
+        outermost = (level @ [np.cos(ANGLES), np.sin(ANGLES)]).argmax(axis=0)
+        kept = sole[np.unique([*outermost, (sole @ stance[2]).argmin()])]
         soles[role] = tuple((float(x), float(y), float(z)) for x, y, z in kept)
         if role.startswith("foot"):
             ahead = -((kept - ankle) @ stance[1])
     both = len(ahead) > 0 and ahead.min() < -HEEL * leg and ahead.max() > HEEL * leg
     return soles if both else {}
-
-
-def _outermost(points: Array, stance: Array) -> Array:
-    """The lowest point, and those farthest along the ground in several directions."""
-    level = points @ stance[:2].T
-    angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
-    rows = [int((level @ [np.cos(angle), np.sin(angle)]).argmax()) for angle in angles]
-    rows.append(int((points @ stance[2]).argmin()))
-    return points[np.unique(rows)]

@@ -15,7 +15,22 @@ def read_character(armature_object: bpy.types.Object | None) -> Character:
         InputError: It is not an armature that can be retargeted; the sentence says why and what to do.
     """
     checked = require_character(armature_object)
-    return Character(checked.name, _bones(checked.data), object_space(checked).scale)
+    bones = [bone for bone in checked.data.bones if bone.parent is None]
+    for bone in bones:  # parents before children
+        bones += bone.children
+    index = {bone.name: number for number, bone in enumerate(bones)}
+    read = (
+        CharacterBone(
+            bone.name,
+            -1 if bone.parent is None else index[bone.parent.name],
+            np.array(bone.matrix_local, dtype=np.float64),
+            np.array(bone.tail_local, dtype=np.float64),
+            deforms=bone.use_deform,
+            connected=bone.use_connect and bone.parent is not None,
+        )
+        for bone in bones
+    )
+    return Character(checked.name, tuple(read), object_space(checked).scale)
 
 
 def require_character(armature_object: bpy.types.Object | None) -> bpy.types.Object:
@@ -103,24 +118,3 @@ def _library_name(armature_object: bpy.types.Object) -> str:
     if armature_object.override_library is not None:
         reference = armature_object.override_library.reference
     return f"'{bpy.path.basename(reference.library.filepath)}'" if reference.library else "another file"
-
-
-def _bones(armature: bpy.types.Armature) -> tuple[CharacterBone, ...]:
-    ordered: list[bpy.types.Bone] = []
-    waiting = [bone for bone in armature.bones if bone.parent is None]
-    while waiting:
-        bone = waiting.pop(0)
-        ordered.append(bone)
-        waiting += bone.children
-    index = {bone.name: number for number, bone in enumerate(ordered)}
-    return tuple(
-        CharacterBone(
-            bone.name,
-            -1 if bone.parent is None else index[bone.parent.name],
-            np.array(bone.matrix_local, dtype=np.float64),
-            np.array(bone.tail_local, dtype=np.float64),
-            deforms=bone.use_deform,
-            connected=bone.use_connect and bone.parent is not None,
-        )
-        for bone in ordered
-    )

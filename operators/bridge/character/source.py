@@ -11,7 +11,6 @@ from ....core.body.kinematics import Extremities, SegmentMotion, extremity_names
 from ....core.errors import InputError
 from ....core.feet.natural_extremities import natural_extremities
 from ....core.files.paths import real_path
-from ....core.keys.rig import Rig, RigPose
 from ....core.progress import Job, Progress, within
 from ....core.take.motion import Motion
 from ..actions import existing_channelbag
@@ -37,7 +36,14 @@ def read_source(
         InputError: The armature is not an actor's, or the Action holds no motion of it.
     """
     body = read_body(armature_object, HUMAN)
-    keyed = _keyed_extremities(armature_object, action)
+    channelbag = existing_channelbag(action, armature_object)
+    curves = channelbag.fcurves if channelbag is not None else ()
+    paths = {curve.data_path for curve in curves if not curve.mute and not curve.is_empty}
+    keyed = tuple(
+        name
+        for name in extremity_names(HUMAN)
+        if any(bone_path(name, channel) in paths for channel in ALL_PATHS)
+    )
     rig = read_rig(armature_object, body, keyed)
     scene = next(iter(armature_object.users_scene), bpy.context.scene)
     rate = scene.render.fps / scene.render.fps_base
@@ -49,26 +55,10 @@ def read_source(
     yield Progress("Reading the motion", SEEN)
     time_s = (frames - frames[0]) * scene.render.fps_base / scene.render.fps
     natural = natural_extremities(body, posture, time_s).without(keyed)
-    turns = {name: _turn(rig, shown, name) for name in keyed}
+    index = {bone.name: number for number, bone in enumerate(rig.bones)}
+    turns = {name: shown.local(rig, index[name], slice(None)) for name in keyed}
     extremities = Extremities({**natural.turns, **turns})
     return segment_motion(body, posture, np.asarray(time_s), extremities), frames
-
-
-def _keyed_extremities(armature_object: bpy.types.Object, action: bpy.types.Action) -> tuple[str, ...]:
-    channelbag = existing_channelbag(action, armature_object)
-    curves = channelbag.fcurves if channelbag is not None else ()
-    keyed = {curve.data_path for curve in curves if not curve.mute and not curve.is_empty}
-    return tuple(
-        name
-        for name in extremity_names(HUMAN)
-        if any(bone_path(name, channel) in keyed for channel in ALL_PATHS)
-    )
-
-
-def _turn(rig: Rig, shown: RigPose, name: str) -> Array:
-    """(F, 3, 3) the turn of a hand or foot in its parent's frame."""
-    index = next(number for number, bone in enumerate(rig.bones) if bone.name == name)
-    return shown.local(rig, index, slice(None))
 
 
 # --- Camera and clip of a result, copied out of its motion.blend into another scene

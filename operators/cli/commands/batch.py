@@ -20,7 +20,7 @@ from ..batch.machine_resources import available_memory_bytes, processor_count
 from ..batch.outcomes import BatchOutcomes
 from ..batch.worker_pool import WorkerPool
 from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, Job, worker_command_line
-from ..console import Console, arguments_console
+from ..console import Console
 from ..options import PICTURES, SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option, output
 from ..parser import Command, UsageError, argument, require_blender
 
@@ -31,8 +31,14 @@ MOST_PARTS = 10**6
 MOST_NAMED = 5
 
 
-def batch_command(arguments: argparse.Namespace) -> None:
-    """Convert the takes that the command line names, and report the outcome of each."""
+def batch_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Converts every take below a folder, or those of a list, each into DIR under its way from SHOOT.
+
+    Takes that were converted before from the same input and settings are skipped, so that a batch that
+    was interrupted goes on when it is called again. A take that fails stops no other. DIR/summary.html
+    shows what came out. Exit status: 0 all takes are converted, 1 some failed, 2 the shoot is unusable,
+    130 interrupted.
+    """
     shoot, takes, defaults = _plan(arguments)
     require_blender("writing motion.blend needs")
     output: Path = arguments.output
@@ -43,12 +49,7 @@ def batch_command(arguments: argparse.Namespace) -> None:
     except OSError as error:
         raise InputError(f"{output}: cannot be written ({error.strerror}); name a folder that can") from error
     jobs = [Job(take, output / take.name, defaults, arguments.again, arguments.debug) for take in takes]
-    with arguments_console(arguments) as console:
-        _convert(shoot, jobs, arguments, console)
-
-
-def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, console: Console) -> None:
-    outcomes = BatchOutcomes(shoot, arguments.output, jobs, console)
+    outcomes = BatchOutcomes(shoot, output, jobs, console)
     pool = WorkerPool(jobs, worker_command_line(), outcomes, HEARTBEAT_TIMEOUT_S, arguments.debug)
     try:
         pool.run(arguments.jobs or _usual_workers())
@@ -118,14 +119,6 @@ def _usual_workers() -> int:
 
 
 BATCH = Command(
-    name="batch",
-    description=(
-        "Converts every take below a folder, or those of a list, each into DIR under its way from SHOOT. "
-        "Takes that were converted before from the same input and settings are skipped, so that a batch that "
-        "was interrupted goes on when it is called again. A take that fails stops no other. DIR/summary.html "
-        "shows what came out. Exit status: 0 all takes are converted, 1 some failed, 2 the shoot is "
-        "unusable, 130 interrupted."
-    ),
     arguments=(
         argument("shoot", metavar="SHOOT", type=Path, help=SHOOT_HELP),
         *output("DIR", "folder for all results, new or old"),

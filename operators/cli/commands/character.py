@@ -3,11 +3,10 @@
 import argparse
 
 from ....core.retarget.character import ROLES
-from ....core.retarget.maps.character_map import CharacterMap, IkControls, write_character_map
-from ....core.retarget.maps.map_registry import ChosenMap
+from ....core.retarget.maps.character_map import CharacterMap, write_character_map
 from ....core.retarget.retarget_record import GIVEN, SAVED
 from ....core.take.character_settings import CharacterFile
-from ..console import arguments_console, terminal_columns, wrapped
+from ..console import Console, terminal_columns, wrapped
 from ..conversion.character_result import opened_character
 from ..options import CHARACTER_HELP, MAP, REPLACE_HELP, output
 from ..parser import Command, argument, refuse_existing, require_blender
@@ -17,52 +16,50 @@ UNSURE = 0.75
 SOURCE_WORDS = {"preset": "convention", "names": "names", "shape": "shape", "you": "a person"}
 
 
-def character_command(arguments: argparse.Namespace) -> None:
-    """Show which bones play which role, how surely, and what is doubtful; write the map."""
+def character_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Opens a character, recognizes which bones play which role, and says how surely and what it doubts.
+
+    With --map it checks that the map is for this character; with --output it writes the map, to be
+    corrected, kept and shared. Nothing else is written. Needs Blender.
+    """
     require_blender("opening a character needs")
     file = CharacterFile.parse(arguments.character)
     if arguments.output is not None:
         refuse_existing(arguments.output, arguments.replace)
-    with arguments_console(arguments) as console:
-        console.stage("Opening the character")
-        with opened_character(file, arguments.map, arguments.debug) as (_, opened):
-            name, chosen = opened.character.name, opened.chosen
-            console.stage("Finding how the controls act")
-            character_map, found = opened.completed(arguments.debug)
-            notes = (*opened.imported.notes, *found)
-        result = {
-            "file": str(file.path),
-            "object": name,
-            "origin": chosen.origin,
-            "map_file": None if chosen.path is None else str(chosen.path),
-            "map": character_map.to_json(),
-            "doubts": list(chosen.doubts),
-            "notes": list(notes),
-            "files": [],
-        }
-        lines = [*_heading(str(file.path), name, chosen), *map_lines(character_map)]
-        columns = terminal_columns()
-        for title, sentences in (("Doubtful:", chosen.doubts), ("Notes:", notes)):
-            if sentences:
-                lines.append(title)
-                lines += [
-                    line for sentence in sentences for line in wrapped(f"{sentence.rstrip('.')}.", 2, columns)
-                ]
-        if arguments.output is not None:
-            write_character_map(arguments.output, character_map)
-            result["files"] = [str(arguments.output)]
-            lines.append(f"Written: {arguments.output}")
-        console.finish(result, "\n".join(lines))
-
-
-def _heading(file: str, name: str, chosen: ChosenMap) -> list[str]:
-    title = chosen.character_map.title
-    if chosen.origin == GIVEN:
-        return [f"{file}: '{name}' has all bones of the map {title}:"]
-    if chosen.origin == SAVED:
-        return [f"{file}: '{name}', by the saved map {title} ({chosen.path}):"]
-    preset = chosen.character_map.preset
-    return [f"{file}: '{name}', recognized{f' as {preset}' if preset else ''}:"]
+    console.stage("Opening the character")
+    with opened_character(file, arguments.map, arguments.debug) as (_, opened):
+        name, chosen = opened.character.name, opened.chosen
+        console.stage("Finding how the controls act")
+        character_map, found = opened.completed(arguments.debug)
+        notes = (*opened.imported.notes, *found)
+    result = {
+        "file": str(file.path),
+        "object": name,
+        "origin": chosen.origin,
+        "map_file": None if chosen.path is None else str(chosen.path),
+        "map": character_map.to_json(),
+        "doubts": list(chosen.doubts),
+        "notes": list(notes),
+        "files": [],
+    }
+    title, preset = chosen.character_map.title, chosen.character_map.preset
+    heading = {
+        GIVEN: f" has all bones of the map {title}",
+        SAVED: f", by the saved map {title} ({chosen.path})",
+    }.get(chosen.origin, f", recognized{f' as {preset}' if preset else ''}")
+    lines = [f"{file.path}: '{name}'{heading}:", *map_lines(character_map)]
+    columns = terminal_columns()
+    for title, sentences in (("Doubtful:", chosen.doubts), ("Notes:", notes)):
+        if sentences:
+            lines.append(title)
+            lines += [
+                line for sentence in sentences for line in wrapped(f"{sentence.rstrip('.')}.", 2, columns)
+            ]
+    if arguments.output is not None:
+        write_character_map(arguments.output, character_map)
+        result["files"] = [str(arguments.output)]
+        lines.append(f"Written: {arguments.output}")
+    console.finish(result, "\n".join(lines))
 
 
 def map_lines(character_map: CharacterMap) -> list[str]:
@@ -76,7 +73,13 @@ def map_lines(character_map: CharacterMap) -> list[str]:
         by = f" (keyed: {', '.join(keyed)})" if keyed != list(bones.bones) else ""
         source = SOURCE_WORDS[bones.source]
         lines.append(f"{mark} {role:<12} {bones.confidence:4.0%}  {source:<10}  {', '.join(bones.bones)}{by}")
-    lines += [f"  IK of {limb:<6} {_control_names(controls)}" for limb, controls in character_map.ik.items()]
+    for limb, controls in character_map.ik.items():
+        parts = [controls.goal]
+        parts += [f"pole {controls.pole}"] if controls.pole else []
+        parts += [f"toes {controls.toe}"] if controls.toe else []
+        if (switch := controls.switch) is not None:
+            parts.append(f"switch {switch.property} of {switch.bone}")
+        lines.append(f"  IK of {limb:<6} {', '.join(parts)}")
     missing = [role for role in ROLES if role not in character_map.roles]
     if missing:
         lines.append(f"  without: {', '.join(missing)}")
@@ -87,22 +90,7 @@ def map_lines(character_map: CharacterMap) -> list[str]:
     return lines
 
 
-def _control_names(controls: IkControls) -> str:
-    parts = [controls.goal]
-    parts += [f"pole {controls.pole}"] if controls.pole else []
-    parts += [f"toes {controls.toe}"] if controls.toe else []
-    if controls.switch is not None:
-        parts.append(f"switch {controls.switch.property} of {controls.switch.bone}")
-    return ", ".join(parts)
-
-
 CHARACTER = Command(
-    name="character",
-    description=(
-        "Opens a character, recognizes which bones play which role, and says how surely and what it doubts. "
-        "With --map it checks that the map is for this character; with --output it writes the map, to be "
-        "corrected, kept and shared. Nothing else is written. Needs Blender."
-    ),
     arguments=(
         argument("character", metavar="FILE[:OBJECT]", help=CHARACTER_HELP),
         MAP,

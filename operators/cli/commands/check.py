@@ -2,9 +2,9 @@
 
 import argparse
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from ....core.shoot.check.take_check import TakeCheck, check_take, flag_outliers
 from ....core.shoot.discovery import Shoot, ShootTake, open_shoot
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.evidence import KEYPOINTS
-from ..console import arguments_console, terminal_columns, wrapped
+from ..console import Console, terminal_columns, wrapped
 from ..conversion.character_result import CharacterChecks
 from ..library_search_path import requested_libraries
 from ..options import SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option
@@ -35,15 +35,18 @@ SEPARATOR = "  "
 NARROWEST_NAME = 12
 
 
-def check_command(arguments: argparse.Namespace) -> None:
-    """Check the takes that the command line names, and list the problems of each."""
+def check_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Reads everything a batch would read, samples frames of every clip, and writes nothing.
+
+    It says for each take whether it would convert, what it would be held against, how well its markers and
+    keypoints are seen, and what is likely to go wrong.
+    """
     defaults = given_settings(arguments)
-    with arguments_console(arguments) as console:
-        shoot = open_shoot(arguments.shoot)
-        characters = CharacterChecks(shoot, arguments.debug)
-        job = _check_takes(shoot, defaults, characters, arguments.jobs or 1, arguments.debug)
-        checks = run(job, console.progress)
-        console.finish(check_summary(checks), check_text(shoot, checks, terminal_columns()))
+    shoot = open_shoot(arguments.shoot)
+    characters = CharacterChecks(shoot, arguments.debug)
+    job = _check_takes(shoot, defaults, characters, arguments.jobs or 1, arguments.debug)
+    checks = run(job, console.progress)
+    console.finish(check_summary(checks), check_text(shoot, checks, terminal_columns()))
     failing = sum(not check.converts for check in checks)
     if failing:
         raise ConversionError(f"{failing} of {pluralize(len(checks), 'take')} would not convert")
@@ -54,41 +57,27 @@ def _check_takes(
 ) -> Job[list[TakeCheck]]:
     """Check all takes, several at a time in threads: decoders release the interpreter lock."""
     find_libraries = cache(requested_libraries)
-    tasks = [partial(_check_one, take, find_libraries, characters, defaults, debug) for take in shoot.takes]
-    checks: dict[int, TakeCheck] = {}
+
+    def checked(take: ShootTake) -> TakeCheck:
+        try:
+            return check_take(take, find_libraries, defaults, characters.check)
+        except Exception as error:  # it is a problem of this take and does not stop the others
+            if debug:
+                raise
+            what = describe_unexpected(error)
+            problem = f"{take.path}: the check failed unexpectedly ({what}); --debug shows where"
+            return TakeCheck(take.name, (problem,), ())
+
     yield Progress(STAGE, 0.0)
-    for index, check in _in_threads(tasks, jobs):
-        checks[index] = check
-        yield Progress(STAGE, len(checks) / len(tasks))
-    return flag_outliers([checks[index] for index in sorted(checks)])
-
-
-def _check_one(
-    take: ShootTake,
-    find_libraries: Callable[[str], object],
-    characters: CharacterChecks,
-    defaults: ConversionSettings,
-    debug: bool,
-) -> TakeCheck:
-    """Check one take; an unexpected error becomes a problem of this take and does not stop the others."""
-    try:
-        return check_take(take, find_libraries, defaults, characters.check)
-    except Exception as error:
-        if debug:
-            raise
-        what = describe_unexpected(error)
-        problem = f"{take.path}: the check failed unexpectedly ({what}); --debug shows where"
-        return TakeCheck(take.name, (problem,), ())
-
-
-def _in_threads(tasks: Sequence[Callable[[], TakeCheck]], jobs: int) -> Iterator[tuple[int, TakeCheck]]:
     pool = ThreadPoolExecutor(jobs)
     try:
-        running = {pool.submit(task): index for index, task in enumerate(tasks)}
-        for done in as_completed(running):
-            yield running[done], done.result()
+        running = [pool.submit(checked, take) for take in shoot.takes]
+        for done, task in enumerate(as_completed(running), 1):
+            task.result()
+            yield Progress(STAGE, done / len(running))
     finally:
         pool.shutdown(cancel_futures=True)
+    return flag_outliers([task.result() for task in running])
 
 
 def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
@@ -104,8 +93,12 @@ def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
 
 
 def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = None) -> str:
-    """The checks as text for people."""
-    shared = _shared(checks)
+    """The checks as text for people; what several takes share, as an error in a shoot, is said once."""
+    shared: dict[str, list[str]] = {}
+    for check in checks:
+        for sentence in _marked(check):
+            shared.setdefault(sentence, []).append(check.name)
+    shared = {sentence: takes for sentence, takes in shared.items() if len(takes) >= FEWEST_IN_COMMON}
     lines = _table(shoot, checks, shared, columns)
     together: dict[tuple[str, ...], list[str]] = {}
     for sentence, takes in shared.items():
@@ -114,26 +107,17 @@ def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = 
         where = f"{len(those)} takes ({listed(those, MOST_NAMED)})"
         lines += ["", f"In {'all takes' if len(those) == len(checks) else where}:"]
         lines += [line for sentence in sentences for line in wrapped(sentence, 2, columns)]
-    lines += ["", *(line for said in _evidence_lines(checks) for line in wrapped(said, 0, columns))]
-    return "\n".join([*lines, *wrapped(_last_line(checks), 0, columns)])
-
-
-def _evidence_lines(checks: Sequence[TakeCheck]) -> list[str]:
-    takes: dict[tuple[str, ...], list[str]] = {}
+    held: dict[tuple[str, ...], list[str]] = {}
     for check in checks:
         if check.evidence and check.converts:
-            takes.setdefault(check.evidence, []).append(check.name)
-    if len(takes) == 1:
-        return [f"Held against {_words(kinds)}." for kinds in takes]
-    return [
-        f"Held against {_words(kinds)}: {pluralize(len(names), 'take')} ({listed(names, MOST_NAMED)})."
-        for kinds, names in takes.items()
-    ]
-
-
-def _words(kinds: Sequence[str]) -> str:
-    *names, last = (kind.replace("_", " ") for kind in kinds)
-    return f"{', '.join(names)} and {last}" if names else last
+            held.setdefault(check.evidence, []).append(check.name)
+    lines.append("")
+    for kinds, names in held.items():
+        *most, last = (kind.replace("_", " ") for kind in kinds)
+        words = f"Held against {', '.join(most)} and {last}" if most else f"Held against {last}"
+        which = f": {pluralize(len(names), 'take')} ({listed(names, MOST_NAMED)})" if len(held) > 1 else ""
+        lines += wrapped(f"{words}{which}.", 0, columns)
+    return "\n".join([*lines, *wrapped(_last_line(checks), 0, columns)])
 
 
 def _table(
@@ -175,17 +159,12 @@ def _cells(check: TakeCheck, keypoints: Sequence[str], markers: Sequence[str]) -
     frames = "-" if check.frames is None else str(check.frames)
     posed = str(check.keyframes) if check.library is None else f"{check.keyframes}+{check.library}"
     seen = {readout.name: f"{100 * readout.found // readout.sampled}%" for readout in check.markers}
-    detected = [_keypoints(check) for _ in keypoints]
-    return (frames, size, rate, posed, *detected, *(seen.get(name, "-") for name in markers))
-
-
-def _keypoints(check: TakeCheck) -> str:
-    """How often the performer is seen, and how far from posed joints, of the best source of keypoints."""
-    if not check.keypoints:
-        return "-"
-    best = max(check.keypoints, key=lambda readout: readout.seen_frames)
-    apart = "" if best.error_px is None else f" {best.error_px:.0f}px"
-    return f"{100.0 * best.seen_frames:.0f}%{apart}"
+    # How often the performer is seen, and how far from posed joints, of the best source of keypoints.
+    best = max(check.keypoints, key=lambda readout: readout.seen_frames, default=None)
+    if best is not None:
+        apart = "" if best.error_px is None else f" {best.error_px:.0f}px"
+        seen[KEYPOINTS] = f"{100.0 * best.seen_frames:.0f}%{apart}"
+    return (frames, size, rate, posed, *(seen.get(name, "-") for name in (*keypoints, *markers)))
 
 
 def _aligned(cells: Sequence[str], widths: Sequence[int]) -> list[str]:
@@ -197,15 +176,6 @@ def _aligned(cells: Sequence[str], widths: Sequence[int]) -> list[str]:
         whole = SEPARATOR.join([words, name])
         return [whole, SEPARATOR.join([" " * widths[0], " " * widths[1], *numbers]).rstrip()]
     return [SEPARATOR.join([words, f"{name:{widths[1]}}", *numbers]).rstrip()]
-
-
-def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
-    """Sentences that several takes share, with the takes: an error in a shoot's description is one error."""
-    found: dict[str, list[str]] = {}
-    for check in checks:
-        for sentence in _marked(check):
-            found.setdefault(sentence, []).append(check.name)
-    return {sentence: takes for sentence, takes in found.items() if len(takes) >= FEWEST_IN_COMMON}
 
 
 def _last_line(checks: Sequence[TakeCheck]) -> str:
@@ -220,17 +190,10 @@ def _last_line(checks: Sequence[TakeCheck]) -> str:
     if not costs:
         return line
     seconds, size = sum(one.seconds for one in costs), sum(one.size_bytes for one in costs)
-    return f"{line} Roughly {_time(seconds)} of one processor and {_size(size)} for those that convert."
-
-
-def _time(seconds: float) -> str:
-    if seconds < 90.0:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
-
-
-def _size(size_bytes: int) -> str:
-    return f"{size_bytes / 1e6:.0f} MB" if size_bytes < 1e9 else f"{size_bytes / 1e9:.1f} GB"
+    time = f"{seconds:.0f} s" if seconds < 90.0 else f"{seconds / 60.0:.0f} min"
+    time = time if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+    room = f"{size / 1e6:.0f} MB" if size < 1e9 else f"{size / 1e9:.1f} GB"
+    return f"{line} Roughly {time} of one processor and {room} for those that convert."
 
 
 def _status(check: TakeCheck) -> str:
@@ -275,12 +238,6 @@ def _take(check: TakeCheck) -> dict[str, Any]:
 
 
 CHECK = Command(
-    name="check",
-    description=(
-        "Reads everything a batch would read, samples frames of every clip, and says for each take whether "
-        "it would convert, what it would be held against, how well its markers and keypoints are seen, and "
-        "what is likely to go wrong. Nothing is written."
-    ),
     arguments=(
         argument("shoot", metavar="SHOOT", type=Path, help=f"{SHOOT_HELP}, or one take"),
         jobs_option(MOST_JOBS, "look at N takes at a time"),

@@ -8,20 +8,24 @@ from ....core.shoot.discovery import take_path
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence import KEYPOINTS
-from ..console import arguments_console
+from ..console import Console
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
 from ..options import PICTURES, SETTINGS, given_settings, output, setting_options
 from ..parser import Command, UsageError, argument
 
 
-def convert_command(arguments: argparse.Namespace) -> None:
-    """Convert the take that the command line names, and list the files that were made."""
-    with arguments_console(arguments) as console:
-        console.stage("Reading the take")
-        description = describe(take_path(arguments.take))
-        settings = _settings(arguments, description)
-        conversion = convert_take(description, arguments.output, console, settings, arguments.debug)
-        console.finish(conversion_summary(conversion), conversion_text(conversion))
+def convert_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Reconstructs a take's motion.
+
+    OUT then holds motion.json, motion.blend, motion.bvh and, in report/, pictures of the result; it
+    changes only once all of them are complete. With --keyframes auto or --library nothing needs to be
+    posed: TAKE/keyframes.json is left aside, and OUT gets the keyframes that were found.
+    """
+    console.stage("Reading the take")
+    description = describe(take_path(arguments.take))
+    settings = _settings(arguments, description)
+    conversion = convert_take(description, arguments.output, console, settings, arguments.debug)
+    console.finish(conversion_summary(conversion), conversion_text(conversion))
 
 
 def _settings(arguments: argparse.Namespace, description: Description) -> ConversionSettings:
@@ -45,13 +49,6 @@ def _settings(arguments: argparse.Namespace, description: Description) -> Conver
 
 
 CONVERT = Command(
-    name="convert",
-    description=(
-        "Reconstructs a take's motion. OUT then holds motion.json, motion.blend, motion.bvh and, in report/, "
-        "pictures of the result; it changes only once all of them are complete. With --keyframes auto or "
-        "--library nothing needs to be posed: TAKE/keyframes.json is left aside, and OUT gets the keyframes "
-        "that were found."
-    ),
     arguments=(
         argument("take", metavar="TAKE", type=Path, help="folder with take.json, or a clip of a shoot"),
         *output("OUT", "folder for the result, new or old"),

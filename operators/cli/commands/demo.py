@@ -21,7 +21,7 @@ from ....core.take.evidence import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
 from ....core.take.examples import AEROBIC, GREETING, POSED_BY_HAND, example_folder
 from ....core.take.motion import Motion
 from ....core.take.take import Take
-from ..console import arguments_console
+from ..console import Console
 from ..conversion.convert_take import conversion_summary, convert_take
 from ..options import HEIGHT, bare_clip_fields
 from ..parser import Command, argument, require_blender
@@ -36,11 +36,11 @@ CHARACTER_FILE = "human.blend"
 COLUMNS = {"mpjpe": "all", "rooted": "about hips", "depth": "in depth", "image": "across", "jitter": "jitter"}
 
 
-def demo_command(arguments: argparse.Namespace) -> None:
-    """Convert the demonstration take, once more without its markers, and print the error of each method."""
+def demo_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Converts the take that comes with Keymark, and prints how far each method is from the truth."""
     demo = example_folder(AEROBIC)
     require_blender("the demonstration needs")
-    with arguments_console(arguments) as console, tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder:
         console.announce(
             "The demonstration, twice four seconds of video, takes five steps and about a minute."
         )
@@ -77,6 +77,7 @@ def demo_command(arguments: argparse.Namespace) -> None:
             "map": _score(done.take, done.reconstruction.motion),
             UNMARKED_FOLDER: _score(done.take, unmarked.reconstruction.motion),
         }
+        best = BLEND if character is None else CHARACTER_BLEND
         result = {
             **conversion_summary(done),
             "scores_mm": {name: score.to_dict() for name, score in scores.items()},
@@ -89,15 +90,11 @@ def demo_command(arguments: argparse.Namespace) -> None:
             f"Open in Blender: {output / BLEND}",
             missing or f"On a character: {output / CHARACTER_BLEND} (Rigify's basic human)",
             f"Without markers: {output / UNMARKED_FOLDER / BLEND}",
-            f"Animated from clip and height: {_best(output / ANIMATED_FOLDER, character)}",
+            f"Animated from clip and height: {output / ANIMATED_FOLDER / best}",
             *(f"  {finding}" for finding in animated.notes[:4]),
             f"Pictures:        {output / REPORT}",
         ]
         console.finish(result, "\n".join(lines))
-
-
-def _best(folder: Path, character: CharacterSettings | None) -> Path:
-    return folder / (BLEND if character is None else CHARACTER_BLEND)
 
 
 def _character(folder: Path) -> tuple[CharacterSettings | None, str]:
@@ -153,11 +150,6 @@ def write_demo_character(file: Path) -> None:
 
 
 DEMO = Command(
-    name="demo",
-    description=(
-        "Converts the take that comes with Keymark, whose true motion is known, and prints how far each "
-        "method is from it."
-    ),
     arguments=(
         argument(
             "--output",

@@ -2,7 +2,7 @@
 
 import argparse
 import os
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,10 +17,10 @@ from ....core.files.kinds import read_field
 from ....core.progress import run, stretch
 from ....core.shoot.discovery import VIDEOS, ShootTake, find_takes, open_shoot
 from ....core.take.clip_check import open_footage
-from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, Description, find_shoot_files, sidecar_file
+from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, find_shoot_files, sidecar_file
 from ....core.take.take_file import FRAME_RATE, FRAME_START
 from ....core.video.image_sequence import find_images
-from ..console import Console, arguments_console
+from ..console import Console
 from ..options import output
 from ..parser import Command, UsageError, argument, refuse_existing
 
@@ -63,31 +63,55 @@ class Outcome:
         return {"take": self.name, "keypoints": output, "detected": found, "error": self.error}
 
 
-def detect_command(arguments: argparse.Namespace) -> None:
-    """Detect the keypoints of what the command line names."""
+def detect_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Finds 33 points of everybody in every frame, with a guess of their depth.
+
+    It does so by the network that comes with Keymark, and keeps them beside the clip, where converting uses
+    them.
+    """
     network = PoseNetwork()
     one = _single(arguments.target)
-    with arguments_console(arguments) as console:
-        if one is not None:
-            footage = one if arguments.output is None else replace(one, output=arguments.output)
-            refuse_existing(footage.output, arguments.replace)
-            people = _detect(footage, network, console, 0.0, 1.0)
-            result = {"keypoints": str(footage.output), **_summary(people)}
-            console.finish(result, f"{_found_text(people)}: {footage.output}")
-            return
-        if arguments.output is not None:
-            raise UsageError(
-                f"--output is one file, and {arguments.target} may hold several takes; their keypoints go "
-                "beside them"
-            )
-        outcomes = _detect_all(arguments, network, console)
-        failed = [outcome.name for outcome in outcomes if outcome.error is not None]
-        there = sum(outcome.error is None and outcome.people is None for outcome in outcomes)
-        found = len(outcomes) - len(failed) - there
-        counts = {"detected": found, "there_already": there, "failed": len(failed)}
-        takes = pluralize(len(outcomes), "take")
-        text = f"{takes}: {found} detected, {there} there already, {len(failed)} failed"
-        console.finish({**counts, "takes": [outcome.to_dict() for outcome in outcomes]}, text)
+    if one is not None:
+        footage = one if arguments.output is None else replace(one, output=arguments.output)
+        refuse_existing(footage.output, arguments.replace)
+        people = _detect(footage, network, console, 0.0, 1.0)
+        result = {"keypoints": str(footage.output), **_summary(people)}
+        console.finish(result, f"{_found_text(people)}: {footage.output}")
+        return
+    if arguments.output is not None:
+        raise UsageError(
+            f"--output is one file, and {arguments.target} may hold several takes; their keypoints go "
+            "beside them"
+        )
+    target = arguments.target
+    shoot = find_takes(target, undescribed=True) if target.is_dir() else open_shoot(target)
+    outcomes: list[Outcome] = []
+    for index, take in enumerate(shoot.takes):  # one that fails does not stop the others
+        output = None
+        try:
+            footage = _footage(take)
+            output = footage.output
+            outcome = Outcome(take.name, output)
+            if arguments.replace or not os.path.lexists(output):
+                share = 1.0 / len(shoot.takes)
+                people = _detect(footage, network, console, index * share, (index + 1) * share)
+                outcome = Outcome(take.name, output, people)
+        except KeymarkError as error:
+            outcome = Outcome(take.name, output, error=str(error))
+        except Exception as error:
+            if arguments.debug:
+                raise
+            what = f"failed unexpectedly ({describe_unexpected(error)}); --debug shows where"
+            outcome = Outcome(take.name, output, error=what)
+        outcomes.append(outcome)
+        console.take_line(outcome.text, outcome.error and outcome.text)
+    failed = [outcome.name for outcome in outcomes if outcome.error is not None]
+    there = sum(outcome.error is None and outcome.people is None for outcome in outcomes)
+    found = len(outcomes) - len(failed) - there
+    counts = {"detected": found, "there_already": there, "failed": len(failed)}
+    takes = pluralize(len(outcomes), "take")
+    text = f"{takes}: {found} detected, {there} there already, {len(failed)} failed"
+    console.finish({**counts, "takes": [outcome.to_dict() for outcome in outcomes]}, text)
     if failed:
         raise ConversionError(f"{len(failed)} of {len(outcomes)} takes failed: {listed(failed, MOST_NAMED)}")
 
@@ -107,43 +131,6 @@ def _summary(people: People) -> dict[str, Any]:
     }
 
 
-def _detect_all(arguments: argparse.Namespace, network: PoseNetwork, console: Console) -> list[Outcome]:
-    """Look at every take in turn; one that fails does not stop the others."""
-    target = arguments.target
-    shoot = find_takes(target, undescribed=True) if target.is_dir() else open_shoot(target)
-    takes = shoot.takes
-    outcomes: list[Outcome] = []
-    for index, take in enumerate(takes):
-        outcome = _outcome(take, network, arguments, console, index / len(takes), (index + 1) / len(takes))
-        outcomes.append(outcome)
-        console.take_line(outcome.text, None if outcome.error is None else outcome.text)
-    return outcomes
-
-
-def _outcome(
-    take: ShootTake,
-    network: PoseNetwork,
-    arguments: argparse.Namespace,
-    console: Console,
-    first: float,
-    last: float,
-) -> Outcome:
-    output = None
-    try:
-        footage = _footage(take)
-        output = footage.output
-        if os.path.lexists(output) and not arguments.replace:
-            return Outcome(take.name, output)
-        return Outcome(take.name, output, _detect(footage, network, console, first, last))
-    except KeymarkError as error:
-        return Outcome(take.name, output, error=str(error))
-    except Exception as error:
-        if arguments.debug:
-            raise
-        what = f"failed unexpectedly ({describe_unexpected(error)}); --debug shows where"
-        return Outcome(take.name, output, error=what)
-
-
 def _detect(footage: Footage, network: PoseNetwork, console: Console, first: float, last: float) -> People:
     if not os.access(footage.output.parent, os.W_OK | os.X_OK):
         raise InputError(f"{footage.output}: cannot be written; its folder must exist and be writable")
@@ -160,15 +147,10 @@ def _single(path: Path) -> Footage | None:
     if path.name in ("", ".."):  # the file beside it is named after the folder
         path = Path(os.path.abspath(path))
     is_take = path.is_dir() and (path / TAKE_FILE).is_file()
-    is_clip = (path.suffix.lower() in VIDEOS and path.is_file()) or _is_sequence(path)
+    is_clip = path.suffix.lower() in VIDEOS and path.is_file()
+    with suppress(InputError, OSError):
+        is_clip = is_clip or find_images(path) is not None
     return _footage(ShootTake(path.name, path)) if is_take or is_clip else None
-
-
-def _is_sequence(path: Path) -> bool:
-    try:
-        return find_images(path) is not None
-    except (InputError, OSError):
-        return False
 
 
 def _footage(take: ShootTake) -> Footage:
@@ -178,28 +160,17 @@ def _footage(take: ShootTake) -> Footage:
     if not take.overrides and not any(map(os.path.isfile, described)) and not find_shoot_files(path.parent):
         return Footage(take.name, path, None, 1, sidecar_file(path, KEYPOINT_FILE))
     description = take.describe()
-    fields = description.fields
+    fields, named = description.fields, description.settings.keypoints or ()
     return Footage(
         name=take.name,
         clip=description.clip,
         fps=read_field(fields, "fps", FRAME_RATE, None),
         frame_start=read_field(fields, "frame_start", FRAME_START, 1),
-        output=_keypoint_file(description),
+        output=named[0] if len(named) == 1 else description.file_called(Path(KEYPOINT_FILE)),
     )
 
 
-def _keypoint_file(description: Description) -> Path:
-    """The file that a take's keypoints go into: the one that it names, or that of the usual name."""
-    named = description.settings.keypoints or ()
-    return named[0] if len(named) == 1 else description.file_called(Path(KEYPOINT_FILE))
-
-
 DETECT = Command(
-    name="detect",
-    description=(
-        "Finds 33 points of everybody in every frame, with a guess of their depth, by the network that comes "
-        "with Keymark, and keeps them beside the clip, where converting uses them."
-    ),
     arguments=(
         argument(
             "target",

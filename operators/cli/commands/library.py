@@ -2,16 +2,17 @@
 
 import argparse
 from collections import Counter
+from math import hypot
 from pathlib import Path
 from typing import Any
 
 from ....core.errors import InputError
 from ....core.files.fields import listed
-from ....core.prior.library import Library, LibraryMotion, read_library, write_library
-from ....core.prior.registry import find_library, registered_libraries
+from ....core.prior.library import Library, read_library, write_library
+from ....core.prior.registry import find_library, identifier_of, registered_libraries
 from ....core.prior.texts import LONGEST_NAME, checked_identifier, identifier_from
 from ..blender_silence import blender_silence
-from ..console import Console, arguments_console
+from ..console import Console
 from ..library_search_path import library_folders
 from ..options import REPLACE_HELP, output
 from ..parser import Command, CommandGroup, UsageError, argument, refuse_existing, require_blender
@@ -52,21 +53,18 @@ def library_lines(library: Library) -> list[str]:
         *([library.description] if library.description else []),
         f"By {library.author}; license {library.license}; posed on {100.0 * library.actor.stature_m:.0f} cm",
         f"{library.size}:",
-        *(f"  {_motion_line(motion)}" for motion in library.motions),
     ]
+    for motion in library.motions:
+        kind, distance_m = "again and again, " * motion.cyclic, hypot(*motion.travel[:2])
+        travel = f", {distance_m:.2f} m on" if distance_m >= 0.01 else ""
+        lines.append(
+            f"  {motion.name}: {len(motion.steps)} postures, {kind}{motion.duration_s:.2f} s{travel}"
+        )
     steps = Counter(step.posture for motion in library.motions for step in motion.steps)
     loose = [posture.name for posture in library.postures if not steps[posture.name]]
     if loose:
         lines.append(f"  in no motion: {', '.join(loose)}")
     return [*lines, *(f"Source: {source}" for source in library.sources)]
-
-
-def _motion_line(motion: LibraryMotion) -> str:
-    kind = "again and again, " * motion.cyclic
-    x, y, _ = motion.travel
-    distance_m = (x * x + y * y) ** 0.5
-    travel = f", {distance_m:.2f} m on" if distance_m >= 0.01 else ""
-    return f"{motion.name}: {len(motion.steps)} postures, {kind}{motion.duration_s:.2f} s{travel}"
 
 
 def write_new_library(console: Console, arguments: argparse.Namespace, library: Library) -> None:
@@ -76,182 +74,173 @@ def write_new_library(console: Console, arguments: argparse.Namespace, library: 
     console.finish(result, "\n".join([*library_lines(library), f"Written: {arguments.output}"]))
 
 
-def list_command(arguments: argparse.Namespace) -> None:
-    """List the libraries of the search path, those that cannot be used with the reason."""
-    with arguments_console(arguments) as console:
-        found = registered_libraries(library_folders())
-        rows = [
-            {
-                "identifier": entry.identifier,
-                "title": entry.title,
-                "version": entry.version,
-                "postures": len(entry.library.postures) if entry.library else 0,
-                "file": str(entry.path),
-                "problem": entry.problem,
-            }
-            for entry in found
-        ]
-        width = max((len(entry.identifier) for entry in found), default=0)
-        lines = [
-            f"{entry.identifier:{width}}  {entry.title}, {entry.library.size}"
-            if entry.library
-            else f"{entry.identifier:{width}}  cannot be used: {entry.problem}"
-            for entry in found
-        ]
-        console.finish({"libraries": rows}, "\n".join(lines) or "There are no libraries.")
+def list_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Lists the libraries that come with Keymark and those in the folders of KEYMARK_LIBRARIES."""
+    found = registered_libraries(library_folders())
+    rows = [
+        {
+            "identifier": identifier_of(entry),
+            "title": entry.title,
+            "version": entry.content.version if entry.content else 0,
+            "postures": len(entry.content.postures) if entry.content else 0,
+            "file": str(entry.path),
+            "problem": entry.problem,
+        }
+        for entry in found
+    ]
+    width = max((len(identifier_of(entry)) for entry in found), default=0)
+    lines = [
+        f"{identifier_of(entry):{width}}  {entry.title}, {entry.content.size}"
+        if entry.content
+        else f"{identifier_of(entry):{width}}  cannot be used: {entry.problem}"
+        for entry in found
+    ]
+    console.finish({"libraries": rows}, "\n".join(lines) or "There are no libraries.")
 
 
-def show_command(arguments: argparse.Namespace) -> None:
-    """Print a library's contents."""
-    with arguments_console(arguments) as console:
-        library = find_library(arguments.library, library_folders())
-        console.finish(library_summary(library), "\n".join(library_lines(library)))
+def show_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Says what a library holds, and draws it."""
+    library = find_library(arguments.library, library_folders())
+    console.finish(library_summary(library), "\n".join(library_lines(library)))
 
 
-def check_command(arguments: argparse.Namespace) -> None:
-    """Read library files and print what they hold."""
-    with arguments_console(arguments) as console:
-        problems, lines, good = [], [], []
-        for file in arguments.files:
-            try:
-                library = read_library(file)
-            except InputError as error:
-                problems.append(str(error))
-                continue
-            good.append({"file": str(file), **library_summary(library)})
-            lines.append(f"{file}: {library.title}, version {library.version}, {library.size}")
-        if problems:
-            raise InputError("; ".join(problems))
-        console.finish({"libraries": good}, "\n".join(lines))
+def check_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Reads library files as strictly as Keymark always does and says what is wrong with each that is."""
+    problems, lines, good = [], [], []
+    for file in arguments.files:
+        try:
+            library = read_library(file)
+        except InputError as error:
+            problems.append(str(error))
+            continue
+        good.append({"file": str(file), **library_summary(library)})
+        lines.append(f"{file}: {library.title}, version {library.version}, {library.size}")
+    if problems:
+        raise InputError("; ".join(problems))
+    console.finish({"libraries": good}, "\n".join(lines))
 
 
-def blend_command(arguments: argparse.Namespace) -> None:
-    """Write a library's postures as pose assets, with their catalog, into the folder of an asset library."""
+def blend_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Writes a folder to add to Blender's asset libraries: a pose asset for each posture, the catalog.
+
+    Needs Blender.
+    """
     require_blender("pose assets need")
-    with arguments_console(arguments) as console:
-        library = find_library(arguments.library, library_folders())
-        file = arguments.output / f"{checked_identifier(library.identifier, 'the identifier')}.blend"
-        refuse_existing(file, arguments.replace)
-        console.stage("Writing Blender's files")
-        with blender_silence(arguments.debug):
-            from ...bridge.assets.catalogs import NAME
-            from ...bridge.library.library_file import write_library_blend
+    library = find_library(arguments.library, library_folders())
+    file = arguments.output / f"{checked_identifier(library.identifier, 'the identifier')}.blend"
+    refuse_existing(file, arguments.replace)
+    console.stage("Writing Blender's files")
+    with blender_silence(arguments.debug):
+        from ...bridge.assets.catalogs import NAME
+        from ...bridge.library.library_file import write_library_blend
 
-            write_library_blend(file, library)
-        files = [str(file), str(arguments.output / NAME)]
-        text = f"{library.title}: {len(library.postures)} pose assets\n" + "\n".join(f"  {f}" for f in files)
-        console.finish({**library_summary(library), "files": files}, text)
+        write_library_blend(file, library)
+    files = [str(file), str(arguments.output / NAME)]
+    text = f"{library.title}: {len(library.postures)} pose assets\n" + "\n".join(f"  {f}" for f in files)
+    console.finish({**library_summary(library), "files": files}, text)
 
 
-def read_command(arguments: argparse.Namespace) -> None:
-    """Write the library of a .blend's pose assets as a library file."""
+def read_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Writes as a library file what `blend` wrote, or what was posed since.
+
+    Needs Blender.
+    """
     require_blender("pose assets need")
     refuse_existing(arguments.output, arguments.replace)
-    with arguments_console(arguments) as console:
-        console.stage("Reading the pose assets")
-        with blender_silence(arguments.debug):
-            from ...bridge.library.library_file import read_library_blend
+    console.stage("Reading the pose assets")
+    with blender_silence(arguments.debug):
+        from ...bridge.library.library_file import read_library_blend
 
-            found = read_library_blend(arguments.file)
-        chosen = [one for one in found if arguments.identifier in (None, one.identifier)]
-        if len(chosen) != 1:
-            names = ", ".join(one.identifier for one in found)
-            raise InputError(f"{arguments.file}: holds the libraries {names}; name one with --identifier")
-        write_new_library(console, arguments, chosen[0])
+        found = read_library_blend(arguments.file)
+    chosen = [one for one in found if arguments.identifier in (None, one.identifier)]
+    if len(chosen) != 1:
+        names = ", ".join(one.identifier for one in found)
+        raise InputError(f"{arguments.file}: holds the libraries {names}; name one with --identifier")
+    write_new_library(console, arguments, chosen[0])
 
 
-def learn_command(arguments: argparse.Namespace) -> None:
-    """Make a library of a finished motion."""
+def learn_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Makes a library of a motion's postures at spread-out, distinct frames.
+
+    With it the next take of the same kind needs fewer keyframes or none. A motion that repeats itself becomes
+    one average cycle.
+    """
     from ....core.prior.learning import LibraryMetadata, learn_library
     from ....core.take.motion import read_motion
 
     refuse_existing(arguments.output, arguments.replace)
     if arguments.identifier is not None:
         checked_identifier(arguments.identifier, "--identifier")
-    with arguments_console(arguments) as console:
-        console.stage("Reading the motion")
-        motion = read_motion(arguments.motion).without_absence()
-        given = {
-            name: getattr(arguments, name) or "" for name in ("title", "author", "license", "identifier")
-        }
-        about = LibraryMetadata(**given)
-        console.stage("Choosing postures")
-        library = learn_library(motion.body, motion.posture, motion.time_s, about, arguments.count)
-        write_new_library(console, arguments, library)
+    console.stage("Reading the motion")
+    motion = read_motion(arguments.motion).without_absence()
+    given = {name: getattr(arguments, name) or "" for name in ("title", "author", "license", "identifier")}
+    about = LibraryMetadata(**given)
+    console.stage("Choosing postures")
+    library = learn_library(motion.body, motion.posture, motion.time_s, about, arguments.count)
+    write_new_library(console, arguments, library)
 
 
-def merge_command(arguments: argparse.Namespace) -> None:
-    """Make one library of two."""
+def merge_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Writes the postures and motions of both libraries as one, on the proportions of the first.
+
+    Two versions of one library are merged by name; different libraries become a new one, in which
+    postures of the same name get a number.
+    """
     from ....core.prior.merging import differing_names, join_libraries, merge_versions
 
     refuse_existing(arguments.output, arguments.replace)
-    with arguments_console(arguments) as console:
-        folders = library_folders()
-        first, second = (find_library(name, folders) for name in (arguments.library, arguments.other))
-        if first.identifier == second.identifier:
-            conflicts, changed = arguments.conflicts, differing_names(first, second)
-            if changed and conflicts is None:
-                names = listed(map(repr, changed), 5)
-                raise UsageError(
-                    f"both versions of {first.identifier} have {names}, and differ; add --conflicts"
-                )
-            library = merge_versions(first, second, conflicts == "replace")
-        else:
-            title = arguments.title or f"{first.title} and {second.title}"[:LONGEST_NAME].strip()
-            identifier = arguments.identifier or identifier_from(title, [first.identifier, second.identifier])
-            library = join_libraries(first, second, identifier, title)
-        write_new_library(console, arguments, library)
+    folders = library_folders()
+    first, second = (find_library(name, folders) for name in (arguments.library, arguments.other))
+    if first.identifier == second.identifier:
+        conflicts, changed = arguments.conflicts, differing_names(first, second)
+        if changed and conflicts is None:
+            names = listed(map(repr, changed), 5)
+            raise UsageError(f"both versions of {first.identifier} have {names}, and differ; add --conflicts")
+        library = merge_versions(first, second, conflicts == "replace")
+    else:
+        title = arguments.title or f"{first.title} and {second.title}"[:LONGEST_NAME].strip()
+        identifier = arguments.identifier or identifier_from(title, [first.identifier, second.identifier])
+        library = join_libraries(first, second, identifier, title)
+    write_new_library(console, arguments, library)
 
 
-def mirror_command(arguments: argparse.Namespace) -> None:
-    """Exchange left and right."""
+def mirror_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Writes a library with left and right exchanged in every posture and motion.
+
+    Matching does so by itself; it is for posing.
+    """
     from ....core.prior.transfer import mirrored_library
 
     refuse_existing(arguments.output, arguments.replace)
-    with arguments_console(arguments) as console:
-        library = find_library(arguments.library, library_folders())
-        write_new_library(console, arguments, mirrored_library(library))
+    library = find_library(arguments.library, library_folders())
+    write_new_library(console, arguments, mirrored_library(library))
 
 
 LIBRARY_NAME = argument("library", metavar="LIBRARY", help=LIBRARY_HELP)
 LIBRARY_FILE = output("FILE", "the new library file", replace=REPLACE_HELP)
 
 LIST = Command(
-    name="list",
     summary="list the libraries that can be named",
-    description="Lists the libraries that come with Keymark and those in the folders of KEYMARK_LIBRARIES.",
     run=list_command,
 )
 
 
 SHOW = Command(
-    name="show",
     summary="say what a library holds",
-    description="Says what a library holds, and draws it.",
     arguments=(LIBRARY_NAME,),
     run=show_command,
 )
 
 
 CHECK = Command(
-    name="check",
     summary="check library files",
-    description=(
-        "Reads library files as strictly as Keymark always does and says what is wrong with each that is."
-    ),
     arguments=(argument("files", metavar="FILE", type=Path, nargs="+", help="library files"),),
     run=check_command,
 )
 
 
 MERGE = Command(
-    name="merge",
     summary="join two libraries",
-    description=(
-        "Writes the postures and motions of both libraries as one, on the proportions of the first. Two "
-        "versions of one library are merged by name; different libraries become a new one, in which "
-        "postures of the same name get a number."
-    ),
     arguments=(
         argument("library", metavar="A", help=f"{LIBRARY_HELP}, which gives title, author and proportions"),
         argument("other", metavar="B", help=LIBRARY_HELP),
@@ -270,24 +259,14 @@ MERGE = Command(
 
 
 MIRROR = Command(
-    name="mirror",
     summary="exchange left and right",
-    description=(
-        "Writes a library with left and right exchanged in every posture and motion. Matching does so by "
-        "itself; it is for posing."
-    ),
     arguments=(LIBRARY_NAME, *LIBRARY_FILE),
     run=mirror_command,
 )
 
 
 LEARN = Command(
-    name="learn",
     summary="make a library of a finished motion",
-    description=(
-        "Makes a library of a motion's postures at spread-out, distinct frames, so that the next take of the "
-        "same kind needs fewer keyframes or none. A motion that repeats itself becomes one average cycle."
-    ),
     arguments=(
         argument("motion", metavar="MOTION", type=Path, help="motion.json, as convert writes it"),
         argument("--title", metavar="TEXT", required=True, help="what people read"),
@@ -307,21 +286,14 @@ LEARN = Command(
 
 
 BLEND = Command(
-    name="blend",
     summary="write a library as Blender pose assets",
-    description=(
-        "Writes a folder to add to Blender's asset libraries: a .blend with a pose asset for each posture, "
-        "and the catalog. Needs Blender."
-    ),
     arguments=(LIBRARY_NAME, *output("DIR", "folder of the assets", replace=REPLACE_HELP)),
     run=blend_command,
 )
 
 
 READ = Command(
-    name="read",
     summary="read a library from Blender pose assets",
-    description="Writes as a library file what `blend` wrote, or what was posed since. Needs Blender.",
     arguments=(
         argument("file", metavar="FILE.blend", type=Path, help="a .blend that Keymark wrote"),
         argument("--identifier", metavar="NAME", help="which library, where the .blend holds several"),

@@ -17,7 +17,7 @@ from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion import write_motion
 from ....core.take.reference import REFERENCE_ENDINGS, read_reference
 from ..blender_silence import blender_silence
-from ..console import Console, arguments_console
+from ..console import Console
 from ..conversion.blender_files import hidden_files, refuse_unsupported_output
 from ..conversion.character_result import (
     EXPORTS,
@@ -35,8 +35,13 @@ FILES = (MOTION, BVH, CHARACTER_BLEND, RETARGET, CHARACTER_PICTURE, *(file for _
 USUAL_RATE = 30.0
 
 
-def mend_command(arguments: argparse.Namespace) -> None:
-    """Mend the motion that the command line names, and list the files that were made."""
+def mend_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Mends a motion that another program made: its jitter, exchanged sides, sliding feet and floor.
+
+    No footage is needed. DIR then holds motion.json and motion.bvh, and character.blend: the armature of the
+    file itself with its fingers, face and toes as they were, or the character that --character names. DIR
+    changes only once all files are complete. Needs Blender.
+    """
     require_blender("mending a motion needs")
     settings = character_settings(arguments)
     formats = export_formats(arguments.format)
@@ -46,57 +51,56 @@ def mend_command(arguments: argparse.Namespace) -> None:
     refuse_unsupported_output(folder)
     if (folder / CONVERSION).exists():
         raise InputError(f"{folder}: holds the result of a conversion; name another folder for the motion")
-    with arguments_console(arguments) as console:
-        kept: dict[str, str] = {}
-        notes: tuple[str, ...] = ()
-        with output_folder(folder, (*FILES, AS_MADE), MOTION, kept) as staging:
-            if file.path.suffix.lower() in REFERENCE_ENDINGS:
-                mended = _mend_points(file, posed, arguments, console)
-            else:
-                own = None if settings is not None else (staging, real_path(folder), formats)
-                mended, notes = _mend_armature(file, posed, arguments, console, own)
-            motion = mended.motion
-            console.stage("Writing the motion")
-            write_motion(motion, staging / MOTION)
-            with blender_silence(arguments.debug):
-                from ...bridge.character.source import show_result
-                from ...bridge.motions.mend_action import write_actor_bvh
+    kept: dict[str, str] = {}
+    notes: tuple[str, ...] = ()
+    with output_folder(folder, (*FILES, AS_MADE), MOTION, kept) as staging:
+        if file.path.suffix.lower() in REFERENCE_ENDINGS:
+            mended = _mend_points(file, posed, arguments, console)
+        else:
+            own = None if settings is not None else (staging, real_path(folder), formats)
+            mended, notes = _mend_armature(file, posed, arguments, console, own)
+        motion = mended.motion
+        console.stage("Writing the motion")
+        write_motion(motion, staging / MOTION)
+        with blender_silence(arguments.debug):
+            from ...bridge.character.source import show_result
+            from ...bridge.motions.mend_action import write_actor_bvh
 
-                write_actor_bvh(motion, staging / BVH)
-            if settings is not None:
-                record = write_character_result(
-                    settings,
-                    motion,
-                    absolute_path(file.path).stem,
-                    lambda scene, shown: show_result(scene, None, shown),
-                    (staging, real_path(folder)),
-                    console,
-                    arguments.debug,
-                    formats,
-                    picture=False,
-                )
-                notes = (*notes, *record.doubts, *record.notes)
-            made = [name for name in FILES if (staging / name).exists()]
-            write_made_digests(staging, made)
-            before = {MOTION: ""} if (folder / AS_MADE).exists() else {}
-            kept.update(changed_files(folder, staging, FILES, (CHARACTER_BLEND,), before))
-        notes = (*mended.notes, *notes, *(kept_note(*names) for names in kept.items()))
-        files = [str(folder / name) for name in made]
-        summary = {
-            "frames": len(motion.time_s),
-            "frame_start": motion.frame_start,
-            "fps": motion.fps,
-            "posed": [index + motion.frame_start for index in motion.keyframe_indices],
-            "exchanged": int(mended.exchanged.sum()),
-            "rests": len(mended.contacts),
-            "notes": list(notes),
-            "files": files,
-        }
-        lines = [f"Note: {note.rstrip('.')}." for note in notes]
-        lines.append(
-            f"{len(motion.time_s)} frames at {motion.fps:g} a second, {len(mended.contacts)} rests of feet:"
-        )
-        console.finish(summary, "\n".join([*lines, *(f"  {name}" for name in files)]))
+            write_actor_bvh(motion, staging / BVH)
+        if settings is not None:
+            record = write_character_result(
+                settings,
+                motion,
+                absolute_path(file.path).stem,
+                lambda scene, shown: show_result(scene, None, shown),
+                (staging, real_path(folder)),
+                console,
+                arguments.debug,
+                formats,
+                picture=False,
+            )
+            notes = (*notes, *record.doubts, *record.notes)
+        made = [name for name in FILES if (staging / name).exists()]
+        write_made_digests(staging, made)
+        before = {MOTION: ""} if (folder / AS_MADE).exists() else {}
+        kept.update(changed_files(folder, staging, FILES, (CHARACTER_BLEND,), before))
+    notes = (*mended.notes, *notes, *(kept_note(*names) for names in kept.items()))
+    files = [str(folder / name) for name in made]
+    summary = {
+        "frames": len(motion.time_s),
+        "frame_start": motion.frame_start,
+        "fps": motion.fps,
+        "posed": [index + motion.frame_start for index in motion.keyframe_indices],
+        "exchanged": int(mended.exchanged.sum()),
+        "rests": len(mended.contacts),
+        "notes": list(notes),
+        "files": files,
+    }
+    lines = [f"Note: {note.rstrip('.')}." for note in notes]
+    lines.append(
+        f"{len(motion.time_s)} frames at {motion.fps:g} a second, {len(mended.contacts)} rests of feet:"
+    )
+    console.finish(summary, "\n".join([*lines, *(f"  {name}" for name in files)]))
 
 
 def _mend_points(
@@ -168,13 +172,6 @@ def _posed(text: str) -> tuple[int, ...]:
 
 
 MEND = Command(
-    name="mend",
-    description=(
-        "Mends a motion that another program made, without footage: its jitter, exchanged sides, sliding "
-        "feet and floor. DIR then holds motion.json and motion.bvh, and character.blend: the armature of the "
-        "file itself with its fingers, face and toes as they were, or the character that --character names. "
-        "DIR changes only once all files are complete. Needs Blender."
-    ),
     arguments=(
         argument(
             "motion",

@@ -17,7 +17,7 @@ from ....core.shoot.outcomes import Failure, Result, Results, find_results, read
 from ....core.take.conversion_record import CHARACTER_BLEND, MOTION
 from ....core.take.motion import Motion, read_motion
 from ..blender_silence import blender_silence
-from ..console import Console, arguments_console, terminal_columns, wrapped
+from ..console import Console, terminal_columns, wrapped
 from ..options import output
 from ..parser import Command, argument, require_blender
 
@@ -33,25 +33,29 @@ MOST_NAMED = 5
 STAGE = "Gathering the motions"
 
 
-def merge_command(arguments: argparse.Namespace) -> None:
-    """Gather all results below a folder in one .blend of Action assets."""
-    require_blender("an asset library needs")
-    with arguments_console(arguments) as console:
-        console.stage("Looking for results")
-        found = find_results(arguments.results)
-        _check_output(arguments.output, found)
-        name = arguments.name or absolute_path(arguments.results).name
-        gathering = MotionGathering(found, read_failures(arguments.results), name, console)
-        console.stage(STAGE)
-        with blender_silence(arguments.debug):
-            from ...bridge.assets.catalogs import NAME
-            from ...bridge.assets.motions import write_motion_library
+def merge_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Gathers the motions found below DIR in one .blend to add to Blender's asset libraries.
 
-            write_motion_library(arguments.output, gathering.assets())
-        files = [str(arguments.output), str(arguments.output.parent / NAME)]
-        problems = gathering.problems
-        counts = {"motions": gathering.count, "character_actions": gathering.character_count}
-        console.finish({**counts, "wrong": problems, "files": files}, _text(counts, files, problems))
+    Catalogs are by shoot and folder: each motion is an Action, which any actor of Keymark's can be given, and
+    an actor to drag into a scene. Exit status: 0 all takes are in it, 1 some have failed or are damaged and
+    the others are in it, 2 there are none.
+    """
+    require_blender("an asset library needs")
+    console.stage("Looking for results")
+    found = find_results(arguments.results)
+    _check_output(arguments.output, found)
+    name = arguments.name or absolute_path(arguments.results).name
+    gathering = MotionGathering(found, read_failures(arguments.results), name, console)
+    console.stage(STAGE)
+    with blender_silence(arguments.debug):
+        from ...bridge.assets.catalogs import NAME
+        from ...bridge.assets.motions import write_motion_library
+
+        write_motion_library(arguments.output, gathering.assets())
+    files = [str(arguments.output), str(arguments.output.parent / NAME)]
+    problems = gathering.problems
+    counts = {"motions": gathering.count, "character_actions": gathering.character_count}
+    console.finish({**counts, "wrong": problems, "files": files}, _text(counts, files, problems))
     if problems:
         named = listed(sorted(problems), MOST_NAMED)
         raise ConversionError(f"{arguments.output} lacks takes or holds earlier results of them: {named}")
@@ -197,13 +201,6 @@ def _text(counts: dict[str, int], files: Sequence[str], problems: dict[str, str]
 
 
 MERGE = Command(
-    name="merge",
-    description=(
-        "Gathers the motions found below DIR in one .blend to add to Blender's asset libraries, with "
-        "catalogs by shoot and folder: each as an Action, which any actor of Keymark's can be given, and as "
-        "an actor to drag into a scene. Exit status: 0 all takes are in it, 1 some have failed or are "
-        "damaged and the others are in it, 2 there are none."
-    ),
     arguments=(
         argument("results", metavar="DIR", type=Path, help="folder of results, as batch writes it"),
         *output("FILE", "the .blend to write, new or old"),

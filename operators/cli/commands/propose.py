@@ -12,7 +12,7 @@ from ....core.take.performer_keypoints import performer_keypoints
 from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
 from ....core.take.take_file import read_described
-from ..console import arguments_console
+from ..console import Console
 from ..options import given_settings, setting_options
 from ..parser import Command, argument
 
@@ -20,46 +20,38 @@ UNPOSED = "no keyframe is posed yet; pose these frames, or let convert find them
 READING_SHARE = 0.9
 
 
-def propose_command(arguments: argparse.Namespace) -> None:
-    """Print the frames that are worth posing, with the performer's speed for `--json`."""
-    with arguments_console(arguments) as console:
-        take = _read(arguments)
-        moved = run(_speed_job(take), console.progress)
-        speed = moved.values
-        indices = propose_keyframes(speed, arguments.count, arguments.largest_gap)
-        frames = [int(index) + take.frame_start for index in indices]
-        notes = [moved.note] if moved.note else []
-        if not take.keyframes and (take.markers or take.keypoints):
-            notes.append(UNPOSED)
-        rounded = [round(float(value), 3) for value in speed]
-        lines = [" ".join(str(frame) for frame in frames), *(f"Note: {note}." for note in notes)]
-        result = {"frames": frames, "speed_px_per_frame": rounded, "notes": notes}
-        console.finish(result, "\n".join(lines))
+def propose_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Proposes frames to pose as keyframes: about evenly spaced, where the performer moves slowly.
 
-
-def _read(arguments: argparse.Namespace) -> Take:
+    The performer is followed by markers or keypoints, else by what moves in the picture.
+    """
     description = describe(take_path(arguments.take))
     settings = given_settings(arguments).with_defaults(description.settings)
-    return read_described(description, keyframes_required=False, settings=settings)
+    take = read_described(description, keyframes_required=False, settings=settings)
+    # Its keyframes have no part in it; pictures are kept only where nothing else tells how fast it moves.
+    bare = not take.markers and not take.keypoints
+    moved = run(_speed_job(replace(take, keyframes=(), contours=take.contours and bare)), console.progress)
+    speed = moved.values
+    indices = propose_keyframes(speed, arguments.count, arguments.largest_gap)
+    frames = [int(index) + take.frame_start for index in indices]
+    notes = [moved.note] if moved.note else []
+    if not take.keyframes and (take.markers or take.keypoints):
+        notes.append(UNPOSED)
+    rounded = [round(float(value), 3) for value in speed]
+    lines = [" ".join(str(frame) for frame in frames), *(f"Note: {note}." for note in notes)]
+    result = {"frames": frames, "speed_px_per_frame": rounded, "notes": notes}
+    console.finish(result, "\n".join(lines))
 
 
 def _speed_job(take: Take) -> Job[EvidenceSpeed]:
-    """V_sum of the take's evidence; its keyframes have no part in it."""
-    # Pictures are kept only where nothing else tells how fast the performer moves.
-    bare = not take.markers and not take.keypoints
-    unposed = replace(take, keyframes=(), contours=take.contours and bare)
-    reading = yield from stretch(read_footage(unposed), 0.0, READING_SHARE)
-    keypoints = performer_keypoints(unposed, None, reading.tracks)
-    moved = evidence_speed(reading.tracks, unposed.marker_segments, keypoints, reading.album)
+    """V_sum of the take's evidence."""
+    reading = yield from stretch(read_footage(take), 0.0, READING_SHARE)
+    keypoints = performer_keypoints(take, None, reading.tracks)
+    moved = evidence_speed(reading.tracks, take.marker_segments, keypoints, reading.album)
     return (yield from within("Measuring the speed", moved, READING_SHARE, 1.0))
 
 
 PROPOSE = Command(
-    name="propose",
-    description=(
-        "Follows the performer by markers or keypoints, else by what moves in the picture, and proposes "
-        "frames to pose as keyframes: about evenly spaced, where the performer moves slowly."
-    ),
     arguments=(
         argument("take", metavar="TAKE", type=Path, help="take to pose, as in convert"),
         *setting_options("keypoints", "evidence"),

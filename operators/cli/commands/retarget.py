@@ -14,7 +14,7 @@ from ....core.take.character_settings import CharacterSettings
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, CHARACTER_PICTURE, MOTION
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion import read_motion
-from ..console import Console, arguments_console
+from ..console import Console
 from ..conversion.blender_files import refuse_unsupported_output
 from ..conversion.character_result import (
     EXPORTS,
@@ -37,8 +37,13 @@ FIGURES = {
 }
 
 
-def retarget_command(arguments: argparse.Namespace) -> None:
-    """Put the motion that the command line names onto a character, and list the files that were made."""
+def retarget_command(arguments: argparse.Namespace, console: Console) -> None:
+    """Puts the motion of a finished conversion onto a character.
+
+    DIR then holds character.blend, the character with the motion as its Action in front of the camera
+    that filmed it, and retarget.json, which says what was recognized, how surely, and how good the result
+    is. DIR changes only once all files are complete. Needs Blender.
+    """
     require_blender("a character needs")
     settings = character_settings(arguments)
     assert settings is not None, "the option is required"
@@ -48,12 +53,11 @@ def retarget_command(arguments: argparse.Namespace) -> None:
     refuse_unsupported_output(output)
     if (output / CONVERSION).exists():
         raise InputError(f"{output}: holds the result of a conversion; name another folder for the character")
-    with arguments_console(arguments) as console:
-        record, files, notes = _retarget(
-            output, settings, formats, (motion_file, blend), console, arguments.debug
-        )
-        result = {**record.to_json(), "notes": list(notes), "files": [str(file) for file in files]}
-        console.finish(result, _text(record, notes, files))
+    record, files, notes = _retarget(
+        output, settings, formats, (motion_file, blend), console, arguments.debug
+    )
+    result = {**record.to_json(), "notes": list(notes), "files": [str(file) for file in files]}
+    console.finish(result, _text(record, notes, files))
 
 
 def _retarget(
@@ -118,13 +122,6 @@ def _text(record: RetargetRecord, notes: tuple[str, ...], files: list[Path]) -> 
 
 
 RETARGET = Command(
-    name="retarget",
-    description=(
-        "Puts the motion of a finished conversion onto a character. DIR then holds character.blend, the "
-        "character with the motion as its Action in front of the camera that filmed it, and retarget.json, "
-        "which says what was recognized, how surely, and how good the result is. DIR changes only once all "
-        "files are complete. Needs Blender."
-    ),
     arguments=(
         argument(
             "motion",

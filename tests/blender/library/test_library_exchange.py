@@ -13,7 +13,7 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library, LibraryPosture, read_library, write_library
-from keymark.core.prior.registry import registered_libraries
+from keymark.core.prior.registry import identifier_of, registered_libraries
 from keymark.operators.bridge.actions import channelbag_for
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.keyframes import write_keyframes
@@ -51,9 +51,9 @@ def imported(library: Library, folder: Path, **settings: bool) -> set[str]:
 def titles(folder: Path) -> list[tuple[str, str, int, int]]:
     """Identifier, title, version and number of postures of the libraries in a folder."""
     return [
-        (entry.identifier, entry.title, entry.version, len(entry.library.postures))
+        (identifier_of(entry), entry.title, entry.content.version, len(entry.content.postures))
         for entry in registered_libraries([folder])
-        if entry.library is not None
+        if entry.content is not None
     ]
 
 

@@ -195,21 +195,6 @@ def test_a_take_without_keyframes_is_told_how_to_get_some(shoot: Path, check: Ca
     assert check(shoot)[0] == 0
 
 
-def test_options_that_contradict_each_other_are_one_line(
-    shoot: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    for words, sentence in (
-        (
-            ["--keyframes", "auto", "--library", "waving"],
-            "--keyframes auto finds keyframes with all libraries",
-        ),
-        (["--keyframes", "posed.json"], "--keyframes: invalid choice: 'posed.json'"),
-    ):
-        assert main(["check", str(shoot), *words]) == 2
-        (line,) = capsys.readouterr().err.splitlines()
-        assert sentence in line
-
-
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_what_nobody_thought_of_stops_one_take_and_ctrl_c_all(
     pristine: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, jobs: str

@@ -15,6 +15,7 @@ from keymark.operators.cli.main import main
 
 FRAMES = 10
 TAKE = "day1/take01"
+KEYPOINTS = f"{TAKE}.keypoints.json"
 
 
 @pytest.fixture(scope="module")
@@ -39,10 +40,6 @@ def check(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, dict[s
         return status, json.loads(capsys.readouterr().out)["takes"][0]
 
     return run
-
-
-def rewrite(shoot: Path, change: Callable[[dict[str, Any]], object]) -> None:
-    edit_json(shoot / f"{TAKE}.keypoints.json", change)
 
 
 def no_markers(shoot: Path) -> None:
@@ -118,7 +115,7 @@ def test_keypoints_that_look_wrong_are_said(
 ) -> None:
     if change is late:  # which is seen in fast movement only
         faster(shoot)
-    rewrite(shoot, change)
+    edit_json(shoot / KEYPOINTS, change)
     status, take = check(shoot)
     assert status == 0 and take["status"] == "look"
     assert any(sentence in warning for warning in take["warnings"]), take["warnings"]
@@ -150,7 +147,7 @@ def faster(shoot: Path) -> None:
 def test_keypoints_that_stop_a_take_are_said(
     shoot: Path, check: Callable[..., Any], change: Callable[[dict[str, Any]], object], sentence: str
 ) -> None:
-    rewrite(shoot, change)
+    edit_json(shoot / KEYPOINTS, change)
     status, take = check(shoot)
     assert status == 1 and len(take["problems"]) == 1 and sentence in take["problems"][0]
     assert "take01.keypoints.json" in take["problems"][0] and len(take["markers"]) == 5
@@ -161,7 +158,7 @@ def test_two_people_need_a_keyframe(shoot: Path, check: Callable[..., Any]) -> N
         other = [[[x / 2, y, score] for x, y, score in frame] for frame in value["frames"]]
         value["people"] = [list(pair) for pair in zip(value.pop("frames"), other, strict=True)]
 
-    rewrite(shoot, doubled)
+    edit_json(shoot / KEYPOINTS, doubled)
     status, take = check(shoot)
     assert status == 0 and take["keypoints"][0]["people"] == 2 and take["warnings"] == []
     assert take["keypoints"][0]["error_px"] < 0.5

@@ -182,19 +182,7 @@ DAMAGES: dict[str, tuple[Callable[[Path], Any], str]] = {
     "clip is no video": (no_video, "clip.mp4"),
     "take.json cut off": (cut("take.json"), "take.json: line"),
     "keyframes.json cut off": (cut("keyframes.json"), "keyframes.json: line"),
-    "wrong type": (edit("take.json", lambda v: v.update(camera=3)), "take.json: camera is 3"),
-    "NaN": (edit("take.json", lambda v: v.update(fps=float("nan"))), "take.json: NaN"),
-    "unknown segment": (
-        edit("take.json", lambda v: v["markers"].update(tail={"color_srgb": [9, 8, 7]})),
-        r"take.json: markers: 'tail' is bound to the unknown segment 'tail'; known are trunk, ",
-    ),
-    "no color": (
-        edit("take.json", lambda v: v["markers"].update(tail={})),
-        r"take.json: markers.tail: color_srgb is missing; it must be three numbers from 0 to 255",
-    ),
     "keyframe outside": (edit("keyframes.json", lambda v: v["keyframes"][0].update(frame=99)), "frame is 99"),
-    "one keyframe": (edit("keyframes.json", lambda v: v.update(keyframes=v["keyframes"][:1])), "at least 2"),
-    "resolution": (edit("take.json", lambda v: v["camera"].update(resolution=[64, 48])), r"\[64, 48\]"),
     "frame_count": (edit("take.json", lambda v: v.update(frame_count=99)), "frame_count is 99"),
     "camera turned away": (
         edit("take.json", turn_camera_away),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from _command_line import one_line, tree
 from _drawn_clip import MiddleNetwork
-from _synthetic_take import SIZE, true_postures, write_shoot, write_synthetic_take, write_video
+from _synthetic_take import SIZE, edit_json, true_postures, write_shoot, write_synthetic_take, write_video
 from keymark.core.detect.keypoint_file import read_keypoints
 from keymark.core.take.take_file import read_take
 from keymark.operators.cli.main import main
@@ -43,8 +43,7 @@ def test_a_take_gets_its_file_in_its_folder_with_its_own_frame_numbers(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     take = write_synthetic_take(tmp_path / "take", FRAMES)
-    fields = json.loads((take / "take.json").read_text())
-    (take / "take.json").write_text(json.dumps({**fields, "frame_start": 101}))
+    edit_json(take / "take.json", frame_start=101)
     assert main(["detect", str(take), "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
     assert said["seen_frames"] == FRAMES and said["keypoints"] == str(take / "keypoints.json")
@@ -130,8 +129,7 @@ def test_clips_need_no_description(clip: Path, capsys: pytest.CaptureFixture[str
 
 def test_a_take_that_names_its_keypoints_gets_them_there(tmp_path: Path) -> None:
     take = write_synthetic_take(tmp_path / "take", FRAMES)
-    fields = json.loads((take / "take.json").read_text())
-    (take / "take.json").write_text(json.dumps({**fields, "keypoints": "found.json"}))
+    edit_json(take / "take.json", keypoints="found.json")
     assert main(["detect", str(take), "--quiet"]) == 0
     assert (take / "found.json").is_file() and not (take / "keypoints.json").exists()
     assert len(read_take(take, whole=True).keypoints) == 1

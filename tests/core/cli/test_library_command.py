@@ -2,7 +2,6 @@
 
 import json
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -98,25 +97,16 @@ def test_a_motion_is_learned_and_nothing_replaced(
     assert read_library(output).author == "Unknown"
 
 
-def mirror_words(shelf: Path, tmp_path: Path) -> list[object]:
-    return ["mirror", "small_steps", "--output", tmp_path / "out.json"]
-
-
-def merge_words(shelf: Path, tmp_path: Path) -> list[object]:
-    return ["merge", "small_steps", shelf / "any name.json", "--output", tmp_path / "out.json"]
-
-
-@pytest.mark.parametrize("words", [mirror_words, merge_words])
+@pytest.mark.parametrize(
+    "words", [["mirror", "small_steps"], ["merge", "small_steps", "SHELF/any name.json"]]
+)
 def test_what_is_made_of_libraries_is_one(
-    words: Callable[[Path, Path], list[object]],
-    shelf: Path,
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
+    words: list[str], shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    before = (shelf / "any name.json").read_bytes()
-    assert run(*words(shelf, tmp_path), "--json") == 0
-    assert json.loads(capsys.readouterr().out)["files"] == [str(tmp_path / "out.json")]
-    assert len(read_library(tmp_path / "out.json").postures) >= 3
+    before, made = (shelf / "any name.json").read_bytes(), tmp_path / "out.json"
+    assert run(*(word.replace("SHELF", str(shelf)) for word in words), "--output", made, "--json") == 0
+    assert json.loads(capsys.readouterr().out)["files"] == [str(made)]
+    assert len(read_library(made).postures) >= 3
     assert (shelf / "any name.json").read_bytes() == before
 
 

@@ -65,31 +65,6 @@ def test_a_take_without_keyframes_is_matched(
     assert len(read_motion(out / "motion.json").points) == FRAMES
 
 
-def test_keyframes_in_the_take_are_left_aside_and_said_to_be(
-    take: Path, library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (take / "keyframes.json").write_text("no JSON at all", encoding="utf-8")
-    assert convert(take, tmp_path / "out", "--library", library, "--json", "--no-report") == 0
-    notes = said_as_json(capsys)["notes"]
-    assert "left aside" in notes[0] and str(take / "keyframes.json") in notes[0]
-    assert (take / "keyframes.json").read_text(encoding="utf-8") == "no JSON at all"
-
-
-def test_posed_and_matched_keyframes_work_together(
-    take: Path, library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    posed = json.loads((tmp_path / "posed.json").read_text(encoding="utf-8"))["keyframes"]
-    earlier = {**posed[-1], "matched": {"library": "x", "posture": "y", "mirrored": False, "confidence": 0.5}}
-    write_json(tmp_path / "one.json", {"keyframes": [posed[1], earlier]})
-    out = tmp_path / "out"
-    more = ("--library", library, "--keyframes", tmp_path / "one.json", "--no-report", "--json")
-    assert convert(take, out, *more) == 0
-    rows = json.loads((out / "keyframes.json").read_text(encoding="utf-8"))["keyframes"]
-    assert [row["frame"] for row in rows if "matched" not in row] == [posed[1]["frame"]]
-    assert {row["matched"]["library"] for row in rows if "matched" in row} == {"composed"}
-    assert not any("left aside" in note for note in said_as_json(capsys)["notes"])
-
-
 def test_matched_keyframes_can_be_given_back(
     take: Path, library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -138,13 +113,14 @@ def test_posed_keyframes_stay_and_the_others_are_found(
     (note, *_) = said_as_json(capsys)["notes"]
     assert note == f"{posed} is left aside; --keyframes {posed} --library auto would use it too"
     rows = json.loads(posed.read_text(encoding="utf-8"))["keyframes"]
-    write_json(tmp_path / "one.json", {"keyframes": [rows[1]]})
+    match = {"library": "x", "posture": "y", "mirrored": False, "confidence": 0.5}
+    write_json(tmp_path / "one.json", {"keyframes": [rows[1], {**rows[-1], "matched": match}]})
     more = ("--keyframes", tmp_path / "one.json", "--library", "auto", "--json", "--no-report")
     assert convert(take, tmp_path / "both", *more) == 0
     assert not any("left aside" in note for note in said_as_json(capsys)["notes"])
     found = json.loads((tmp_path / "both" / "keyframes.json").read_text(encoding="utf-8"))["keyframes"]
     assert [row["frame"] for row in found if "matched" not in row] == [rows[1]["frame"]]
-    assert len(found) > 1
+    assert {row["matched"]["library"] for row in found if "matched" in row} == {"composed"}
 
 
 def test_found_keyframes_are_said_to_be_doubtful_and_contradictions_are_named(

@@ -18,7 +18,7 @@ from keymark.core.errors import InputError
 from keymark.core.prior.library import Library, LibraryMotion, LibraryPosture, MotionStep, write_library
 from keymark.core.prior.merging import differing_names, join_libraries, merge_versions
 from keymark.core.prior.motion_playback import sample_motion
-from keymark.core.prior.registry import find_library, library_path, registered_libraries
+from keymark.core.prior.registry import find_library, identifier_of, library_path, registered_libraries
 from keymark.core.prior.transfer import leg_length_m, mirrored_library, mirrored_name, transferred
 
 LIBRARY = small_library()
@@ -36,7 +36,7 @@ def folders(tmp_path: Path) -> list[Path]:
 
 def test_the_earliest_folder_counts(folders: list[Path]) -> None:
     registered = registered_libraries(folders)
-    assert [(entry.identifier, entry.title, entry.version) for entry in registered] == [
+    assert [(identifier_of(entry), entry.title, entry.content.version) for entry in registered] == [
         ("walk", "A walk", 3),
         ("small_steps", "Mine", 1),
     ]
@@ -52,8 +52,10 @@ def test_a_broken_file_says_what_is_wrong_and_hides_nothing(folders: list[Path])
     (folders[0] / "broken.json").write_text('{"schema": "keymark-library", ')
     (folders[0] / "notes.txt").write_text("no library")
     (folders[0] / "folder.json").mkdir()
-    broken = next(entry for entry in registered_libraries(folders) if entry.library is None)
-    assert broken.identifier == "broken" and "no valid JSON" in broken.problem and "\n" not in broken.problem
+    broken = next(entry for entry in registered_libraries(folders) if entry.content is None)
+    assert (
+        identifier_of(broken) == "broken" and "no valid JSON" in broken.problem and "\n" not in broken.problem
+    )
     assert len(registered_libraries(folders)) == 3
     with pytest.raises(InputError, match="no valid JSON"):
         find_library("broken", folders)

@@ -8,7 +8,7 @@ from _characters import full_map, plain_character, plain_map
 from _libraries import small_library
 from keymark.core.errors import InputError
 from keymark.core.prior.library import write_library
-from keymark.core.prior.registry import registered_libraries
+from keymark.core.prior.registry import identifier_of, registered_libraries
 from keymark.core.retarget.maps.character_map import write_character_map
 from keymark.core.retarget.maps.map_registry import find_map, map_for, map_path, registered_maps
 
@@ -33,12 +33,12 @@ def test_maps_and_libraries_share_folders(folders: list[Path]) -> None:
         ("Anna, größer", "anna.json"),
         ("Plain", "mine.json"),
     ]
-    assert [entry.identifier for entry in registered_libraries(folders)] == ["small_steps"]
+    assert [identifier_of(entry) for entry in registered_libraries(folders)] == ["small_steps"]
 
 
 def test_a_broken_file_says_what_is_wrong_and_hides_nothing(folders: list[Path]) -> None:
     (folders[0] / "broken.json").write_text('{"schema": "keymark-character", ')
-    broken = next(entry for entry in registered_maps(folders) if entry.character_map is None)
+    broken = next(entry for entry in registered_maps(folders) if entry.content is None)
     assert broken.title == "broken.json" and "no valid JSON" in broken.problem
     assert len(registered_maps(folders)) == 3
     with pytest.raises(InputError, match="no valid JSON"):
@@ -47,7 +47,7 @@ def test_a_broken_file_says_what_is_wrong_and_hides_nothing(folders: list[Path])
 
 def test_maps_are_found_by_title_file_and_path(folders: list[Path]) -> None:
     for name in ("anna, GRÖSSER", "anna", folders[2] / "anna.json", str(folders[2] / "anna.json")):
-        found = find_map(name, folders).character_map
+        found = find_map(name, folders).content
         assert found == full_map()
     with pytest.raises(
         InputError, match="no character map 'Plane' .is 'Plain' meant.*known are Anna, größer"
