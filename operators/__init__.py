@@ -64,8 +64,10 @@ def unregister() -> None:
 def _do(way: str, module: ModuleType) -> None:
     """Register or unregister a module: by its own function, or else Blender's classes in it.
 
-    `attach` adds what needs these classes, and `detach` removes it.
+    What needs these classes is in `ATTACHED`, properties of Blender's own types by path, or is added by
+    `attach` and removed by `detach`.
     """
+    from bpy import types
     from bpy.utils import register_classes_factory
 
     classes = [
@@ -74,11 +76,16 @@ def _do(way: str, module: ModuleType) -> None:
         if name.startswith("KEYMARK_") and each.__module__ == module.__name__
     ]
     by_classes = dict(zip(("register", "unregister"), register_classes_factory(classes), strict=True))
-    if way == "unregister" and hasattr(module, "detach"):
-        module.detach()
+    attached = getattr(module, "ATTACHED", {})
+    if way == "unregister":
+        getattr(module, "detach", tuple)()
+        for path in attached:
+            delattr(getattr(types, path.split(".")[0]), path.split(".")[1])
     getattr(module, way, by_classes[way])()
-    if way == "register" and hasattr(module, "attach"):
-        module.attach()
+    if way == "register":
+        for path, field in attached.items():
+            setattr(getattr(types, path.split(".")[0]), path.split(".")[1], field)
+        getattr(module, "attach", tuple)()
 
 
 def _listed(folder: str, names: str) -> tuple[str, ...]:

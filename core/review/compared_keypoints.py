@@ -1,7 +1,6 @@
 """Keypoints beside the places where the motion puts them: which were followed, and how well."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,8 +9,10 @@ from numpy.typing import NDArray
 from ..arrays import Array, BoolArray
 from ..detect.keypoints import FACE
 from .confidence import misfits
+from .field_arrays import Arrays, from_arrays, to_arrays
 
 PREFIX = "keypoint_"  # of the names of the arrays in a cache
+DRAWN = ("seen", "predicted", "confidence", "distance_px", "expected_px")
 PARTS = {
     **{name.partition(".")[0]: "head" for name in (*FACE, "crown")},
     **dict.fromkeys(("index", "thumb", "pinky"), "wrist"),
@@ -93,29 +94,11 @@ class ComparedKeypoints:
         return columns
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """All fields as plain arrays for `from_arrays`."""
-        return {
-            PREFIX + field.name: np.asarray(getattr(self, field.name), dtype=_dtype(field.name))
-            for field in fields(self)
-        }
+        """All fields as plain arrays for `from_arrays`; places and numbers are only drawn."""
+        return to_arrays(self, DRAWN, PREFIX)
 
     @classmethod
-    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]], frames: int) -> "ComparedKeypoints":
+    def from_arrays(cls, arrays: Arrays, frames: int) -> "ComparedKeypoints":
         """Restore them; none from arrays of before there were keypoints. KeyError: an array is missing."""
-        if PREFIX + "names" not in arrays:
-            return cls.none(frames)
-        numbers = ("seen", "predicted", "confidence", "distance_px", "expected_px")
-        return cls(
-            names=tuple(arrays[PREFIX + "names"].tolist()),
-            sources=tuple(arrays[PREFIX + "sources"].tolist()),
-            thrown_out=np.asarray(arrays[PREFIX + "thrown_out"], dtype=np.bool_),
-            swapped=np.asarray(arrays[PREFIX + "swapped"], dtype=np.bool_),
-            **{name: np.asarray(arrays[PREFIX + name], dtype=np.float64) for name in numbers},
-        )
-
-
-def _dtype(name: str) -> type:
-    """Kind of an array in a cache: places and numbers are only drawn, in single precision."""
-    if name in ("names", "sources"):
-        return np.str_
-    return np.bool_ if name in ("thrown_out", "swapped") else np.float32
+        known = PREFIX + "names" in arrays
+        return cls(**from_arrays(cls, arrays, PREFIX)) if known else cls.none(frames)

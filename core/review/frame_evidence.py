@@ -9,9 +9,8 @@ import numpy as np
 from ..arrays import Array
 from ..body.kinematics import extremity_names
 from ..estimate.keypoint_evidence import KeypointEvidence
-from ..estimate.keypoint_fit import KeypointFit, keypoint_fit
+from ..estimate.keypoint_fit import keypoint_fit
 from ..estimate.reconstruct import Reconstruction
-from ..estimate.whole_clip import WholeClipResult
 from ..take.evidence import UsedEvidence, UsedKeypoints
 from ..terms.contours import SHARES, SIDES, SURFACE_SHARE
 from ..terms.keypoints import ObservedKeypoints
@@ -54,7 +53,10 @@ def contour_sight(reconstruction: Reconstruction) -> Generator[float, None, Cont
     seen = np.isfinite(squared)
     number = seen @ own
     misfit = np.where(seen, squared, 0.0) @ own / np.maximum(number, 1.0)
-    quality = _relative(number / own.sum(axis=0))
+    share = number / own.sum(axis=0)
+    usual = np.median(share, axis=0)
+    # Nobody misses a part that seldom shows.
+    quality = np.where(usual < SELDOM, 1.0, np.clip(share / np.maximum(usual, SELDOM), 0.0, 1.0))
     along = predicted.pixel.reshape(len(frame), -1, len(SHARES), len(SIDES), 2)
     lines = np.swapaxes(along, 2, 3).reshape(len(frame), -1, len(SHARES), 2)
     there = motion.there
@@ -63,30 +65,23 @@ def contour_sight(reconstruction: Reconstruction) -> Generator[float, None, Cont
     return ContourSight(tuple(parts), quality, misfit, lines)
 
 
-def _relative(share: Array) -> Array:
-    """Shares (F, O) of what usually shows of each part; 1 for one that seldom shows, as nobody misses it."""
-    usual = np.median(share, axis=0)
-    return np.asarray(np.where(usual < SELDOM, 1.0, np.clip(share / np.maximum(usual, SELDOM), 0.0, 1.0)))
-
-
 # --- Evidence of each frame of any kind together
 
 
-LIMBS: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "upper_arm": ("shoulder", "elbow"),
-        "forearm": ("elbow", "wrist"),
-        "hand": ("wrist",),
-        "thigh": ("hip", "knee"),
-        "shin": ("knee", "ankle"),
-        "foot": ("ankle",),
-    }
-)
 ENDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        **{
-            f"{part}.{side}": tuple(f"{end}.{side}" for end in LIMBS[part]) for part in LIMBS for side in "LR"
-        },
+        f"{segment}.{side}": tuple(f"{end}.{side}" for end in ends)
+        for segment, *ends in (
+            ("upper_arm", "shoulder", "elbow"),
+            ("forearm", "elbow", "wrist"),
+            ("hand", "wrist"),
+            ("thigh", "hip", "knee"),
+            ("shin", "knee", "ankle"),
+            ("foot", "ankle"),
+        )
+        for side in "LR"
+    }
+    | {
         "trunk": ("shoulder.L", "shoulder.R", "hip.L", "hip.R"),
         "chest": ("shoulder.L", "shoulder.R"),
         "pelvis": ("hip.L", "hip.R"),
@@ -151,28 +146,25 @@ def compare_keypoints(reconstruction: Reconstruction) -> ComparedKeypoints:
 
     A method that does not follow keypoints is compared with them as if they were where they usually are.
     """
-    if not reconstruction.keypoints.names:
-        return ComparedKeypoints.none(len(reconstruction.motion.time_s))
-    fit = reconstruction.keypoint_fit or _usual_fit(reconstruction)
+    keypoints, motion, fit = reconstruction.keypoints, reconstruction.motion, reconstruction.keypoint_fit
+    if not keypoints.names:
+        return ComparedKeypoints.none(len(motion.time_s))
+    if fit is None:
+        camera = reconstruction.model.camera
+        evidence = KeypointEvidence.usual(motion.body, camera, keypoints.names, keypoints.sources)
+        none = np.zeros(keypoints.score.shape, dtype=bool)
+        fit = keypoint_fit(evidence, keypoints, ObservedKeypoints.of(keypoints), none, motion.posture)
     return ComparedKeypoints(
         names=fit.keypoints.names,
         sources=fit.keypoints.sources,
         seen=fit.keypoints.pixel,
-        predicted=np.where(reconstruction.motion.there[:, None, None], fit.predicted_px, np.nan),
+        predicted=np.where(motion.there[:, None, None], fit.predicted_px, np.nan),
         confidence=ObservedKeypoints.of(fit.keypoints).confidence,
         distance_px=fit.residual_px,
         expected_px=fit.std_px,
         thrown_out=fit.thrown_out,
         swapped=fit.swapped,
     )
-
-
-def _usual_fit(reconstruction: Reconstruction) -> KeypointFit:
-    keypoints, motion = reconstruction.keypoints, reconstruction.motion
-    camera = reconstruction.model.camera
-    evidence = KeypointEvidence.usual(motion.body, camera, keypoints.names, keypoints.sources)
-    none = np.zeros(keypoints.score.shape, dtype=bool)
-    return keypoint_fit(evidence, keypoints, ObservedKeypoints.of(keypoints), none, motion.posture)
 
 
 # --- Evidence that a reconstruction rests on beside its keyframes
@@ -184,19 +176,8 @@ def used_evidence(reconstruction: Reconstruction) -> UsedEvidence:
     solution = reconstruction.solution
     if method != "map" or solution is None:
         return UsedEvidence(markers if method == "ekf" else ())
-    return UsedEvidence(
-        markers, _used_keypoints(reconstruction), _uses_hints(solution), solution.contours is not None
-    )
-
-
-def _uses_hints(solution: WholeClipResult) -> bool:
-    """Whether any believed point has a guessed depth."""
     trusted = solution.evidence.keypoints.trust > 0.0
-    return bool(np.isfinite(solution.problem.data.points.depth_m[:, trusted]).any())
-
-
-def _used_keypoints(reconstruction: Reconstruction) -> tuple[UsedKeypoints, ...]:
-    """The sources of keypoints, in their order."""
+    hints = bool(np.isfinite(solution.problem.data.points.depth_m[:, trusted]).any())
     compared = compare_keypoints(reconstruction)
     seen = np.isfinite(compared.seen).all(axis=-1)
     used = []
@@ -209,4 +190,4 @@ def _used_keypoints(reconstruction: Reconstruction) -> tuple[UsedKeypoints, ...]
         )
         names = tuple(dict.fromkeys(compared.names[index] for index in own))
         used.append(UsedKeypoints(source, names, 1.0 - doubted if count else 0.0, swapped))
-    return tuple(used)
+    return UsedEvidence(markers, tuple(used), hints, solution.contours is not None)

@@ -1,8 +1,6 @@
 """Review of a motion: markers, keypoints, points, confidence, and frames worth another keyframe."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from types import MappingProxyType
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,6 +16,7 @@ from ..terms.region_model import RegionModel
 from ..terms.regions import NOISE, limb_widths
 from .compared_keypoints import ComparedKeypoints
 from .confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
+from .field_arrays import Arrays, from_arrays, to_arrays
 from .frame_evidence import (
     ContourSight,
     MarkerSight,
@@ -32,11 +31,8 @@ __all__ = ["Reason", "Review", "WeakFrame", "review"]
 
 STAGE = "Judging the motion"
 CHUNK_FRAMES = 100  # so few that a job can be canceled within some hundredths of a second
-NAMES = ("marker_names", "point_names")
-KINDS: Mapping[str, type] = MappingProxyType(
-    {**dict.fromkeys(NAMES, np.str_), **dict.fromkeys(("observed", "predicted", "contours"), np.float32)}
-)
-"""Kinds of arrays in a cache that numpy would not choose: large ones are only drawn, in single precision."""
+DRAWN = ("observed", "predicted", "contours")
+WEAK = ("index", "reason", "strength", "marker", "point")
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,63 +58,36 @@ class Review:
     keypoints: ComparedKeypoints  # N of the performer; none in a review kept before there were any
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """All fields as plain arrays for `from_arrays`; none needs pickling."""
-        arrays: dict[str, NDArray[Any]] = {}
-        for field in fields(self):
-            if field.name in ("weak_frames", "keypoints"):
-                continue
-            kind = KINDS.get(field.name)
-            arrays[field.name] = np.asarray(getattr(self, field.name), dtype=kind)
+        """All fields as plain arrays for `from_arrays`."""
         weak = self.weak_frames
-        arrays["weak_index"] = np.array([frame.index for frame in weak], dtype=np.int64)
-        arrays["weak_reason"] = np.array([str(frame.reason) for frame in weak], dtype=np.str_)
-        arrays["weak_strength"] = np.array([frame.strength for frame in weak], dtype=np.float64)
-        markers = [-1 if frame.marker is None else frame.marker for frame in weak]
-        arrays["weak_marker"] = np.array(markers, dtype=np.int64)
-        arrays["weak_point"] = np.array([frame.point or "" for frame in weak], dtype=np.str_)
-        return {**arrays, **self.keypoints.to_arrays()}
+        return {
+            **to_arrays(self, DRAWN),
+            "weak_index": np.array([frame.index for frame in weak], dtype=np.int64),
+            "weak_reason": np.array([str(frame.reason) for frame in weak], dtype=np.str_),
+            "weak_strength": np.array([frame.strength for frame in weak], dtype=np.float64),
+            "weak_marker": np.array([-1 if each.marker is None else each.marker for each in weak], np.int64),
+            "weak_point": np.array([frame.point or "" for frame in weak], dtype=np.str_),
+            **self.keypoints.to_arrays(),
+        }
 
     @classmethod
-    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Review":
-        """Restore a review, also of a version that knew no keypoints.
+    def from_arrays(cls, arrays: Arrays) -> "Review":
+        """Restore a review, also of a version that knew neither keypoints nor contours.
 
         Raises:
             KeyError: An array is missing.
             ValueError: A reason is unknown.
         """
-        others = (*NAMES, "size", "keyframe_indices", "weak_frames", "keypoints", "contours")
-        plain = {
-            field.name: np.asarray(arrays[field.name], dtype=np.float64)
-            for field in fields(cls)
-            if field.name not in others
-        }
-        width, height = arrays["size"].tolist()
-        return cls(
-            size=(int(width), int(height)),
-            marker_names=tuple(arrays["marker_names"].tolist()),
-            point_names=tuple(arrays["point_names"].tolist()),
-            keyframe_indices=np.asarray(arrays["keyframe_indices"], dtype=np.intp),
-            weak_frames=_weak_frames(arrays),
-            contours=_contours(arrays, len(plain["frames"])),
-            keypoints=ComparedKeypoints.from_arrays(arrays, len(plain["frames"])),
-            **plain,
+        frames, weak = len(arrays["frames"]), len(arrays["weak_index"])
+        new = {"contours": ContourSight.none(frames).lines, "weak_point": np.full(weak, "")}
+        plain = from_arrays(cls, {**new, **arrays})
+        columns = [{**new, **arrays}[f"weak_{name}"].tolist() for name in WEAK]
+        weak_frames = tuple(
+            WeakFrame(index, Reason(reason), strength, None if marker < 0 else marker, point or None)
+            for index, reason, strength, marker, point in zip(*columns, strict=True)
         )
-
-
-def _contours(arrays: Mapping[str, NDArray[Any]], frames: int) -> Array:
-    if "contours" not in arrays:
-        return ContourSight.none(frames).lines
-    return np.asarray(arrays["contours"], dtype=np.float64)
-
-
-def _weak_frames(arrays: Mapping[str, NDArray[Any]]) -> tuple[WeakFrame, ...]:
-    names = ("weak_index", "weak_reason", "weak_strength", "weak_marker")
-    columns = [arrays[name].tolist() for name in names]
-    points = arrays["weak_point"].tolist() if "weak_point" in arrays else [""] * len(columns[0])
-    return tuple(
-        WeakFrame(index, Reason(reason), strength, None if marker < 0 else marker, point or None)
-        for index, reason, strength, marker, point in zip(*columns, points, strict=True)
-    )
+        keypoints = ComparedKeypoints.from_arrays(arrays, frames)
+        return cls(weak_frames=weak_frames, keypoints=keypoints, **plain)
 
 
 def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> Job[Review]:

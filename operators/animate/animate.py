@@ -10,6 +10,7 @@ from ..actor.properties import Stature
 from ..character.characters import candidates
 from ..footage.load_footage import PATTERNS, load_into_take
 from ..shell.base_operator import chosen_file
+from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import bones_editable, idle
 from ..shell.results import EXTENSION
@@ -45,29 +46,22 @@ def _characters(
 class KEYMARK_OT_animate(Stature, JobOperator, bpy.types.Operator):
     """From a clip and the performer's height to a moving character; every step can be corrected afterwards"""
 
-    bl_idname = "keymark.animate"
     bl_label = "Animate"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (bones_editable, idle)
 
-    filepath: bpy.props.StringProperty(
-        name="File Path",
-        description="A video, or one image of a numbered sequence",
-        subtype="FILE_PATH",
-        options={"SKIP_SAVE"},
+    filepath: Text(
+        "File Path", "A video, or one image of a numbered sequence", subtype="FILE_PATH", options=SKIP_SAVE
     )
-    character: bpy.props.EnumProperty(
-        name="Character", description="Who performs the motion", items=_characters, options={"SKIP_SAVE"}
-    )
-    character_file: bpy.props.StringProperty(
-        name="Character File",
-        description="File of the character, and after a colon the name of its armature where it has several",
+    character: Choice("Character", "Who performs the motion", items=_characters, options=SKIP_SAVE)
+    character_file: Text(
+        "Character File",
+        "File of the character, and after a colon the name of its armature where it has several",
         options={"SKIP_SAVE", "HIDDEN"},
     )
-    asking: bpy.props.StringProperty(options={"SKIP_SAVE", "HIDDEN"})
-    clip: bpy.props.StringProperty(options={"SKIP_SAVE", "HIDDEN"})
-    filter_glob: bpy.props.StringProperty(default=PATTERNS, options={"HIDDEN", "SKIP_SAVE"})
-    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    asking: Text(options={"SKIP_SAVE", "HIDDEN"})
+    clip: Text(options={"SKIP_SAVE", "HIDDEN"})
+    filter_glob: Text(default=PATTERNS, options={"HIDDEN", "SKIP_SAVE"})
+    filter_folder: Switch(default=True, options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for what is missing, the clip first; then run as a job."""
@@ -151,6 +145,3 @@ def _keep_folder(folder: Path) -> None:
     if file is not None:
         with suppress(OSError, ValueError):
             file.write_text(str(folder), encoding="utf-8")
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_animate,))

@@ -38,6 +38,12 @@ def shown_index(frames: Array, at: ArrayLike) -> IndexArray:
     return np.asarray(np.where(asked < frames[-1] + 1.0, index, -1), dtype=np.intp)
 
 
+def show_frame(scene: bpy.types.Scene, frame: float) -> None:
+    """Let the scene show a frame, which may lie between whole ones."""
+    whole = floor(frame)
+    scene.frame_set(whole, subframe=frame - whole)
+
+
 @contextmanager
 def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
     """Yield a function that evaluates the scene at a frame, fractional ones too; then restore its frame.
@@ -48,12 +54,8 @@ def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
     armatures = [one for one in scene.objects if one.type == "ARMATURE" and one.is_editable]
     poses = [(actor, pose_of(actor)) for actor in armatures if actor.animation_data is not None]
 
-    def go_to(frame: float) -> None:
-        whole = floor(frame)
-        scene.frame_set(whole, subframe=frame - whole)
-
     try:
-        yield go_to
+        yield lambda frame: show_frame(scene, frame)
     finally:
         scene.frame_set(before[0], subframe=before[1])
         for actor, pose in poses:

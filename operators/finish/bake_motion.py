@@ -12,6 +12,7 @@ from ..bridge.actions import assign_action
 from ..bridge.assets.catalogs import catalog_file, ensure_catalog
 from ..bridge.export_formats import FORMATS, export_motion
 from ..shell.base_operator import BaseOperator, warn, warn_if_outdated
+from ..shell.fields import HIDDEN, Choice, Text
 from ..shell.job_operator import JobOperator
 from ..shell.notices import give_notices
 from ..shell.requirements import actor, idle, motion
@@ -101,9 +102,7 @@ def keep_baked(operator: bpy.types.Operator, scene: bpy.types.Scene, result: Fin
 class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     """Make the final Action, anew: your corrected motion with few keys, its resting feet standing still"""
 
-    bl_idname = "keymark.bake_motion"
     bl_label = "Bake Final Action"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, motion, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[FinishedTake]":
@@ -117,9 +116,7 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
 class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
     """Mark the motion, the final Action if there is one, as an asset with catalog, tags and picture"""
 
-    bl_idname = "keymark.mark_asset"
     bl_label = "Mark Asset"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, motion, idle)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -133,20 +130,17 @@ class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
 class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
     """Write the actor's armature with its motion, the final Action if there is one, for another program"""
 
-    bl_idname = "keymark.export_motion"
     bl_label = "Export Motion"
     bl_options = {"REGISTER"}
 
-    format: bpy.props.EnumProperty(
-        name="Format",
-        description="Format of the file",
+    format: Choice(
+        "Format",
+        "Format of the file",
         items=[(kind, listed.name, listed.description) for kind, listed in FORMATS.items()],
         default="BVH",
     )
-    filepath: bpy.props.StringProperty(name="File", description="File to write", subtype="FILE_PATH")
-    filter_glob: bpy.props.StringProperty(
-        default=";".join(f"*{listed.suffix}" for listed in FORMATS.values()), options={"HIDDEN"}
-    )
+    filepath: Text("File", "File to write", subtype="FILE_PATH")
+    filter_glob: Text(default=";".join(f"*{listed.suffix}" for listed in FORMATS.values()), options=HIDDEN)
 
     requirements = (actor, motion, idle)
 
@@ -190,8 +184,3 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         if away:
             warn(self, away)
         self.report({"INFO"}, f"Wrote {path}")
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_bake_motion, KEYMARK_OT_mark_asset, KEYMARK_OT_export_motion)
-)

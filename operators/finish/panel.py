@@ -93,8 +93,3 @@ class KEYMARK_PT_asset(Popover, bpy.types.Panel):
         for name in ("catalog", "tags", "author", "license", "description"):
             column.prop(settings, name)
         column.operator("keymark.mark_asset", icon="ASSET_MANAGER")
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_PT_finish, KEYMARK_PT_finish_options, KEYMARK_PT_asset)
-)

@@ -2,7 +2,6 @@
 
 PROPERTIES = ("marker_properties", "keypoint_properties")
 MODULES = (
-    "marker_list",
     "marker_search",
     "pick_marker_color",
     "ignore_region",

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 import numpy as np
+from bpy.types import Context, Event, OperatorProperties, PropertyGroup
 
 from ...core.arrays import Array
 from ...core.errors import InputError, KeymarkError
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     from ...core.camera.camera_fit import CameraFit
 
 
-def standing_performer(take: bpy.types.PropertyGroup, stature_m: float) -> "Uprights":
+def standing_performer(take: PropertyGroup, stature_m: float) -> "Uprights":
     """Moments in which somebody of that stature is upright; none without keypoints of this clip."""
     from ...core.body.actor import Actor
     from ...core.body.kinematics import Body
@@ -84,7 +85,7 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
     _mouse: Any = None  # (2,) [window px]
 
     @classmethod
-    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+    def description(cls, context: Context, properties: OperatorProperties) -> str:
         if properties.kind == HEIGHT:
             return (
                 "Find the camera from the performer: click on the floor between the feet, then on the "
@@ -93,14 +94,14 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
             )
         return "Find the camera from lines that you draw over the picture; the floor's grid shows the result"
 
-    def prepare(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    def prepare(self, context: Context, take: PropertyGroup) -> None:
         of_performer = self.kind == HEIGHT
         self._drawing = Drawing(
             self.kind, of_performer, read_lines(take), stature_m=take.stature, of_performer=of_performer
         )
         show(self._drawing)
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: Context, event: Event) -> set[str]:
         drawing, pressed = self._drawing, event.value == "PRESS"
         self._mouse = np.array([event.mouse_x, event.mouse_y], dtype=np.float64)
         if event.type in ("MOUSEMOVE", "LEFTMOUSE"):
@@ -115,14 +116,14 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
         self.ask(context)
         return {"RUNNING_MODAL"}
 
-    def go_on(self, context: bpy.types.Context) -> None:
+    def go_on(self, context: Context) -> None:
         self._drawing.next_kind()
 
-    def go_back(self, context: bpy.types.Context) -> None:
+    def go_back(self, context: Context) -> None:
         if not self._drawing.type("\b"):
             self._drawing.remove(self._distance_of_line(context))
 
-    def _point(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def _point(self, context: Context, event: Event) -> set[str]:
         drawing, view = self._drawing, self._view(context)
         action = "MOVE" if event.type == "MOUSEMOVE" else event.value
         if view is None or (action == "MOVE" and drawing.held is None):
@@ -143,7 +144,7 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
         self.ask(context)
         return {"RUNNING_MODAL"}
 
-    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+    def request(self, context: Context) -> tuple[FootageRequest, str]:
         """Find the camera by what is drawn so far, and say what to draw next."""
         drawing = self._drawing
         drawing.fit = None
@@ -156,7 +157,7 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
             wanted = PERFORMER_REQUEST if drawing.lines or drawing.fit is None else WALK_REQUEST
         return FootageRequest(*wanted), KEYS
 
-    def done(self, context: bpy.types.Context) -> set[str]:
+    def done(self, context: Context) -> set[str]:
         """Keep the lines and set the camera; if they say nothing of it, everything is as before."""
         take, lines = active_take(context.scene), self._drawing.complete
         before = read_lines(take), take.stature
@@ -172,12 +173,12 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
             take.stature = before[1]
         return done
 
-    def cancel(self, context: bpy.types.Context) -> None:
+    def cancel(self, context: Context) -> None:
         show(None)
         super().cancel(context)
         redraw_sidebars_soon()
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         take = active_take(context.scene)
         fit = self._fit(take, read_lines(take), take.stature)
         if fit is None:
@@ -185,9 +186,7 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
         write_fit(take, fit)
         self.report({"INFO"}, f"{values(fit)}")
 
-    def _fit(
-        self, take: bpy.types.PropertyGroup, lines: list[DrawnLine], stature_m: float
-    ) -> "CameraFit | None":
+    def _fit(self, take: PropertyGroup, lines: list[DrawnLine], stature_m: float) -> "CameraFit | None":
         """The camera by lines, and by keypoints where the performer tells it; None without any."""
         evidence = evidence_of(lines, stature_m)
         if self.kind == HEIGHT:
@@ -196,7 +195,7 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
             evidence = replace(evidence, uprights=evidence.uprights + self._upright[1])
         return fit_take(take, evidence) if lines or len(evidence.uprights) else None
 
-    def _view(self, context: bpy.types.Context) -> FootageView | None:
+    def _view(self, context: Context) -> FootageView | None:
         """The view of the footage under the mouse, which may lie beside the picture."""
         x, y = self._mouse
         return view_of_footage_under(context, active_take(context.scene), int(x), int(y))
@@ -204,7 +203,7 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
     def _in_region(self, view: FootageView) -> Array:
         return np.asarray(self._mouse - (view.region.x, view.region.y))
 
-    def _distance_of_line(self, context: bpy.types.Context) -> Callable[[DrawnLine], float]:
+    def _distance_of_line(self, context: Context) -> Callable[[DrawnLine], float]:
         """Tells the distance from the mouse to a line in the region, as a share of how near is near."""
         view = self._view(context)
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from bpy.types import Context, PropertyGroup
 
 from ...core.body.human import HUMAN
 from ...core.detect.keypoints import BODY_POINTS
@@ -21,14 +22,14 @@ from .marker_properties import segment_title
 from .tracks import body_point_items
 
 
-def set_click(take: bpy.types.PropertyGroup, point: str, pixel: Sequence[float], frame: int) -> None:
+def set_click(take: PropertyGroup, point: str, pixel: Sequence[float], frame: int) -> None:
     """Set where a point is in a frame of the clip, in place of an earlier click."""
     remove_click(take, point, frame)
     click = take.follow.clicks.add()
     click.point, click.frame, click.pixel = point, frame, pixel
 
 
-def remove_click(take: bpy.types.PropertyGroup, point: str, frame: int) -> bool:
+def remove_click(take: PropertyGroup, point: str, frame: int) -> bool:
     """Remove the click on a point in a frame; return whether there was one."""
     clicks = take.follow.clicks
     found = [i for i in range(len(clicks)) if (clicks[i].point, clicks[i].frame) == (point, frame)]
@@ -61,33 +62,33 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
     _before: Any = None
     """The chosen point and the clicks when the operator began; Blender would evaluate a type named here."""
 
-    def prepare(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    def prepare(self, context: Context, take: PropertyGroup) -> None:
         self._before = take.follow.clicked_point, clicked_points(take)
 
-    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+    def request(self, context: Context) -> tuple[FootageRequest, str]:
         point = active_take(context.scene).follow.clicked_point
         return FootageRequest(f"Click on: {segment_title(point)}", side_of(point)), KEYS
 
-    def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
+    def clicked(self, context: Context, pixel: tuple[float, float]) -> set[str]:
         take = active_take(context.scene)
         set_click(take, take.follow.clicked_point, pixel, clip_frame(take))
         self.go_on(context)
         self.ask(context)
         return {"RUNNING_MODAL"}
 
-    def go_on(self, context: bpy.types.Context) -> None:
+    def go_on(self, context: Context) -> None:
         """Choose the next point in the order of the menu that was not clicked on in this frame yet."""
         take = active_take(context.scene)
         begun, done = BODY_POINTS.index(take.follow.clicked_point) + 1, clicked_here(take)
         order = (*BODY_POINTS[begun:], *BODY_POINTS[:begun])
         take.follow.clicked_point = next((point for point in order if point not in done), order[0])
 
-    def go_back(self, context: bpy.types.Context) -> None:
+    def go_back(self, context: Context) -> None:
         """Choose the point before; a click on it takes the place of an earlier one."""
         follow = active_take(context.scene).follow
         follow.clicked_point = BODY_POINTS[BODY_POINTS.index(follow.clicked_point) - 1]
 
-    def done(self, context: bpy.types.Context) -> set[str]:
+    def done(self, context: Context) -> set[str]:
         """Keep the clicks, as one step of undo; without any nothing has happened."""
         take = active_take(context.scene)
         changed = clicked_points(take) != self._before[1]
@@ -98,7 +99,7 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, f"{len(clicked_here(take))} points are clicked on in this frame")
         return {"FINISHED"}
 
-    def cancel(self, context: bpy.types.Context) -> None:
+    def cancel(self, context: Context) -> None:
         if self._before is not None:
             take = active_take(context.scene)
             take.follow.clicked_point, clicks = self._before
@@ -109,7 +110,7 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         super().cancel(context)
         redraw_sidebars_soon()
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         take, (x, y) = active_take(context.scene), self.pixel
         width, height = take.clip.size
         if not (0.0 <= x <= width and 0.0 <= y <= height):
@@ -127,7 +128,7 @@ class KEYMARK_OT_remove_clicks(BaseOperator, bpy.types.Operator):
 
     point: Text("Body Point", "The point to remove; empty for all", options=SKIP_SAVE)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         take = active_take(context.scene)
         points = [self.point] if self.point else clicked_here(take)
         removed = [point for point in points if remove_click(take, point, clip_frame(take))]
@@ -149,15 +150,15 @@ class KEYMARK_OT_click_performer(ClickSequence, BaseOperator, bpy.types.Operator
         options=SKIP_SAVE,
     )
 
-    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+    def request(self, context: Context) -> tuple[FootageRequest, str]:
         return FootageRequest("Click on the performer"), "Esc: Cancel"
 
-    def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
+    def clicked(self, context: Context, pixel: tuple[float, float]) -> set[str]:
         self.cancel(context)
         self.pixel = pixel
         return self.execute(context)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Vouch for the seen joint that is nearest to the click: points by hand are the performer's."""
         take, frame = active_take(context.scene), context.scene.frame_current
         seen = [

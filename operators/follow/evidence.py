@@ -5,6 +5,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 import bpy
+from bpy.types import Context, PropertyGroup
 
 from ..bridge.footage_camera import may_move
 from ..bridge.scene_evidence import ClickedPoint, SceneEvidence, file_state
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from ...core.markers.region_tracks import MarkerStyle
 
 
-def scene_evidence(take: bpy.types.PropertyGroup) -> SceneEvidence:
+def scene_evidence(take: PropertyGroup) -> SceneEvidence:
     """What a take follows.
 
     Raises:
@@ -37,35 +38,35 @@ def scene_evidence(take: bpy.types.PropertyGroup) -> SceneEvidence:
     )
 
 
-def followed_markers(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
+def followed_markers(take: PropertyGroup) -> "tuple[MarkerStyle, ...]":
     """The styles of a take's markers, none where these are switched off."""
     return marker_styles(take) if take.follow.use_markers else ()
 
 
-def clicked_points(take: bpy.types.PropertyGroup) -> tuple[ClickedPoint, ...]:
+def clicked_points(take: PropertyGroup) -> tuple[ClickedPoint, ...]:
     """The points that were clicked on."""
     return tuple(ClickedPoint(click.point, click.frame, tuple(click.pixel)) for click in take.follow.clicks)
 
 
-def has_keypoints(take: bpy.types.PropertyGroup) -> bool:
+def has_keypoints(take: PropertyGroup) -> bool:
     """Whether a take follows any keypoints: files, motion tracks or clicked points."""
     follow = take.follow
     loaded = follow.use_keypoints and (any(entry.is_used for entry in follow.files) or len(follow.clicks))
     return bool(loaded or (follow.use_tracks and assigned_tracks(take)))
 
 
-def has_contours(take: bpy.types.PropertyGroup) -> bool:
+def has_contours(take: PropertyGroup) -> bool:
     """Whether a take's contours can be followed: they are switched on, and the camera stands still."""
     return bool(take.follow.use_contours and take.camera is not None and not may_move(take.camera))
 
 
-def clip_frame(take: bpy.types.PropertyGroup) -> int:
+def clip_frame(take: PropertyGroup) -> int:
     """The scene's current frame, counted from the clip's first."""
     scene = take.id_data
     return int(scene.frame_current - footage_of(scene, take).first_frame)
 
 
-def clicked_here(take: bpy.types.PropertyGroup) -> list[str]:
+def clicked_here(take: PropertyGroup) -> list[str]:
     """The points that were clicked on in the current frame."""
     return [click.point for click in take.follow.clicks if click.frame == clip_frame(take)]
 
@@ -73,7 +74,7 @@ def clicked_here(take: bpy.types.PropertyGroup) -> list[str]:
 # --- Requirements of operators that follow the footage
 
 
-def anything_to_follow(context: bpy.types.Context) -> str | None:
+def anything_to_follow(context: Context) -> str | None:
     """The take follows markers, keypoints, tracks or contours."""
     take = find_take(context.scene)
     if take is None or _has_points(take) or has_contours(take):
@@ -83,13 +84,13 @@ def anything_to_follow(context: bpy.types.Context) -> str | None:
     return "Switch on the contours, load keypoints, assign tracks or add markers first (step Performer)"
 
 
-def keypoint_files(context: bpy.types.Context) -> str | None:
+def keypoint_files(context: Context) -> str | None:
     """The take has a file of keypoints."""
     take = find_take(context.scene)
     return None if take and len(take.follow.files) else "Load keypoints first"
 
 
-def points_to_follow(context: bpy.types.Context) -> str | None:
+def points_to_follow(context: Context) -> str | None:
     """The take follows markers, keypoints or tracks; contours alone are not enough."""
     take = find_take(context.scene)
     missing = take is not None and not _has_points(take)
@@ -100,7 +101,7 @@ def points_to_follow(context: bpy.types.Context) -> str | None:
     )
 
 
-def _has_points(take: bpy.types.PropertyGroup) -> bool:
+def _has_points(take: PropertyGroup) -> bool:
     return bool((take.follow.use_markers and len(take.markers)) or has_keypoints(take))
 
 
@@ -128,7 +129,7 @@ def forget_states() -> None:
     _states.clear()
 
 
-def keypoint_path(entry: bpy.types.PropertyGroup) -> Path:
+def keypoint_path(entry: PropertyGroup) -> Path:
     """The path of a file of keypoints, which may be missing.
 
     Blender keeps relative paths of its own in step when a .blend is saved elsewhere, those of extensions not:
@@ -143,7 +144,7 @@ def keypoint_path(entry: bpy.types.PropertyGroup) -> Path:
     return relative
 
 
-def add_keypoint_file(take: bpy.types.PropertyGroup, path: Path, replace: bool = False) -> None:
+def add_keypoint_file(take: PropertyGroup, path: Path, replace: bool = False) -> None:
     """Add a file of keypoints to a take, switched on and chosen; one that it has is not added twice.
 
     With `replace` it takes the place of the chosen one.

@@ -5,8 +5,8 @@ A file that cannot be read is remembered with its sentence, so that drawing does
 
 from dataclasses import dataclass
 
-import bpy
 import numpy as np
+from bpy.types import PropertyGroup
 
 from ...core.arrays import Array
 from ...core.detect.keypoints import People
@@ -33,7 +33,7 @@ class KeypointReading:
 _readings: LruCache[KeypointReading] = LruCache(12)
 
 
-def keypoint_reading(take: bpy.types.PropertyGroup, entry: bpy.types.PropertyGroup) -> KeypointReading:
+def keypoint_reading(take: PropertyGroup, entry: PropertyGroup) -> KeypointReading:
     """What a file of a take's keypoints says, or why it says nothing."""
     path = keypoint_path(entry)
     state = recent_state(path)
@@ -79,7 +79,7 @@ class FrameKeypoints:
         return int(np.isfinite(self.pixel).all(axis=-1).sum(axis=-1).max(initial=0))
 
 
-def keypoints_at(take: bpy.types.PropertyGroup, scene_frame: int) -> tuple[FrameKeypoints, ...]:
+def keypoints_at(take: PropertyGroup, scene_frame: int) -> tuple[FrameKeypoints, ...]:
     """What each source of a take that is switched on sees in a scene frame, in every frame the same sources.
 
     Clicks and tracks are listed without any point where they have none; a file that cannot be read is left
@@ -105,7 +105,7 @@ def keypoints_at(take: bpy.types.PropertyGroup, scene_frame: int) -> tuple[Frame
     return tuple(found)
 
 
-def clicks_at(take: bpy.types.PropertyGroup, scene_frame: int) -> FrameKeypoints:
+def clicks_at(take: PropertyGroup, scene_frame: int) -> FrameKeypoints:
     """The points that were clicked on in a scene frame."""
     first = footage_of(take.id_data, take).first_frame
     here = [click for click in clicked_points(take) if first + click.frame == scene_frame]
@@ -130,7 +130,7 @@ def _one_person(source: str, seen: Seen, is_tracked: bool = False) -> FrameKeypo
 # --- Labels of the panels
 
 
-def keypoints_label(take: bpy.types.PropertyGroup) -> str:
+def keypoints_label(take: PropertyGroup) -> str:
     """How many points all files and clicks see in the current frame, as in `27 of 33`; empty without any."""
     if not take.follow.use_keypoints:
         return "Off"
@@ -141,7 +141,7 @@ def keypoints_label(take: bpy.types.PropertyGroup) -> str:
     return f"{seen} of {sum(len(each.names) for each in sources)}"
 
 
-def tracks_label(take: bpy.types.PropertyGroup) -> str:
+def tracks_label(take: PropertyGroup) -> str:
     """How many of the assigned tracks are seen in the current frame: `4 of 6`; empty without any."""
     if not take.follow.use_tracks:
         return "Off"
@@ -153,7 +153,7 @@ def tracks_label(take: bpy.types.PropertyGroup) -> str:
     return f"{seen} of {len(assigned)}"
 
 
-def contours_label(take: bpy.types.PropertyGroup) -> str:
+def contours_label(take: PropertyGroup) -> str:
     """Whether contours can be followed."""
     if not take.follow.use_contours:
         return "Off"
@@ -162,6 +162,6 @@ def contours_label(take: bpy.types.PropertyGroup) -> str:
     return "Camera moves" if may_move(take.camera) else "Camera stands still"
 
 
-def clicked_label(take: bpy.types.PropertyGroup) -> str:
+def clicked_label(take: PropertyGroup) -> str:
     """How many points were clicked on in the current frame, and in all."""
     return f"{len(clicked_here(take))} here, {len(take.follow.clicks)} in all"

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 import numpy as np
+from bpy.types import Context, Event, PropertyGroup, Scene
 
 from ...core.errors import InputError
 from ..shell.base_operator import reported
@@ -103,14 +104,14 @@ class KEYMARK_OT_ignore_region(MarkerTool, bpy.types.Operator):
     _brushed: Any = None
     """The regions that were brushed; None in a script. Blender would evaluate a type named here."""
 
-    def prepare(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    def prepare(self, context: Context, take: PropertyGroup) -> None:
         super().prepare(context, take)
         with reported(self):
             update_masks(context.scene)
         show_masks(context, preview_of(take) is not None)
         take_brush(Brush(take.clip.size[0]))
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: Context, event: Event) -> set[str]:
         """Brush until Enter, then look for the markers anew; Esc takes all strokes back."""
         brush = brush_at_work()
         if self._job is not None:
@@ -129,26 +130,26 @@ class KEYMARK_OT_ignore_region(MarkerTool, bpy.types.Operator):
             return {"RUNNING_MODAL"}
         return super().modal(context, event)
 
-    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+    def request(self, context: Context) -> tuple[FootageRequest, str]:
         brush = brush_at_work()
         radius = 0.0 if brush is None else brush.radius_px
         detail = "as a wall or a chair of a marker's color"
         return FootageRequest("Brush over what is no marker", detail, radius), KEYS
 
-    def clicked(self, context: bpy.types.Context, pixel: Pixel) -> set[str]:
+    def clicked(self, context: Context, pixel: Pixel) -> set[str]:
         brush = brush_at_work()
         if brush is not None:
             brush.press(pixel)
             redraw_footage(context)
         return {"RUNNING_MODAL"}
 
-    def go_back(self, context: bpy.types.Context) -> None:
+    def go_back(self, context: Context) -> None:
         brush = brush_at_work()
         if brush is not None and brush.strokes:
             brush.strokes.pop()
             brush.is_down = False
 
-    def done(self, context: bpy.types.Context) -> set[str]:
+    def done(self, context: Context) -> set[str]:
         brush = brush_at_work()
         if brush is None or not brush.strokes:
             return super().done(context)
@@ -160,19 +161,19 @@ class KEYMARK_OT_ignore_region(MarkerTool, bpy.types.Operator):
                 point.loc, point.time = pixel, time
         return self.look(context)
 
-    def cancel(self, context: bpy.types.Context) -> None:
+    def cancel(self, context: Context) -> None:
         take_brush(None)
         super().cancel(context)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
+    def start(self, scene: Scene) -> "Job[MarkerSearch]":
         brushed = self._from_path(active_take(scene)) if self._brushed is None else self._brushed
         return search_markers(scene, more=brushed)
 
-    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+    def finish(self, scene: Scene, result: MarkerSearch) -> None:
         write_and_warn(self, scene, result, masks=self.masks_before is not None and result.check is not None)
         self.report({"INFO"}, f"Brushed regions are never a marker: {len(result.more)} more")
 
-    def _from_path(self, take: bpy.types.PropertyGroup) -> "tuple[IgnoredRegion, ...]":
+    def _from_path(self, take: PropertyGroup) -> "tuple[IgnoredRegion, ...]":
         """The strokes that the properties say."""
         if not len(self.path):
             raise InputError("path is empty; give at least one pixel of the footage")

@@ -1,13 +1,14 @@
 """Properties of what a take follows: which kinds are switched on, and its sources of keypoints."""
 
 import bpy
+from bpy.types import Context, PropertyGroup
 
 from ..shell.fields import HIDDEN, RELATIVE_PATH, Choice, Entries, Integer, Switch, Text, Vector
 from ..shell.takes import redraw_footage
 from .tracks import body_point_items
 
 
-def _changed(_group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _changed(_group: PropertyGroup, context: Context) -> None:
     redraw_footage(context)  # where the keypoints are drawn
 
 

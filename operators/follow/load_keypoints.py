@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
+from bpy.types import Context, Event, PropertyGroup, Scene
 
 from ...core.errors import InputError
 from ...core.progress import run
@@ -45,13 +46,13 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
     filter_glob: Text(default="*.json", options=HIDDEN)
     filter_folder: Switch(default=True, options=HIDDEN)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         if self.filepath:
             return self.execute(context)
         clip = active_take(context.scene).clip
         return browse(self, context, str(Path(bpy.path.abspath(clip.filepath)).parent))
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Read the keypoints and hold them against the clip, and only then add them to the take."""
         from ..bridge.scene_evidence import read_keypoint_file
         from ..bridge.take_from_scene import clip_frames
@@ -82,7 +83,7 @@ def _whole(path: Path) -> Path:
     return path.parent if is_one_frame(read_json_value(path, LARGEST_BYTES)) else path
 
 
-def follow_file(take: bpy.types.PropertyGroup, path: Path, replace: bool = False) -> None:
+def follow_file(take: PropertyGroup, path: Path, replace: bool = False) -> None:
     """Let a take follow the keypoints in a file, with `replace` in place of the chosen one's."""
     add_keypoint_file(take, path, replace)
     take.follow.use_keypoints = True
@@ -96,7 +97,7 @@ class KEYMARK_OT_remove_keypoints(BaseOperator, bpy.types.Operator):
     bl_label = "Remove Keypoints"
     requirements = (keypoint_files, idle)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         remove_active(active_take(context.scene).follow, "files", "active_file")
         redraw_footage(context)
 
@@ -115,7 +116,7 @@ class Detected:
     frame_start: int
 
 
-def detect(scene: bpy.types.Scene) -> "Job[Detected]":
+def detect(scene: Scene) -> "Job[Detected]":
     """Find everybody in the active take's clip; the scene stays as it is."""
     from ...core.detect.pose_network import PoseNetwork
     from ...core.detect.pose_tracking import find_people
@@ -129,7 +130,7 @@ def detect(scene: bpy.types.Scene) -> "Job[Detected]":
     return Detected(identifier, output, people, clip.fps, first)
 
 
-def keep_detected(scene: bpy.types.Scene, found: Detected) -> str:
+def keep_detected(scene: Scene, found: Detected) -> str:
     """Write the keypoints beside the clip and let the take follow them; returns a sentence on them."""
     from ...core.detect.keypoint_file import write_keypoints
 
@@ -146,14 +147,14 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
     bl_label = "Detect Keypoints"
     requirements = (footage, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[Detected]":
+    def start(self, scene: Scene) -> "Job[Detected]":
         return detect(scene)
 
-    def finish(self, scene: bpy.types.Scene, result: Detected) -> None:
+    def finish(self, scene: Scene, result: Detected) -> None:
         self.report({"INFO"}, keep_detected(scene, result))
 
 
-def keypoint_output(take: bpy.types.PropertyGroup, clip: Path) -> Path:
+def keypoint_output(take: PropertyGroup, clip: Path) -> Path:
     """The file that the keypoints go into: beside the clip, where nothing else lies."""
     from ...core.take.description import sidecar_file
 

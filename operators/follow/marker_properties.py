@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import bpy
+from bpy.types import Context, PropertyGroup
 
 from ...core.body.human import HUMAN
 from ..shell.fields import HIDDEN, Choice, Entries, Integer, Number, Switch, Text, Vector
@@ -13,13 +14,13 @@ if TYPE_CHECKING:
     from ...core.markers.ignored_regions import IgnoredRegion
 
 
-def take_of(entry: bpy.types.PropertyGroup, entries: str) -> bpy.types.PropertyGroup | None:
+def take_of(entry: PropertyGroup, entries: str) -> PropertyGroup | None:
     """The take in whose list of that name an entry is."""
     takes = entry.id_data.keymark.takes
     return next((take for take in takes if any(each == entry for each in getattr(take, entries))), None)
 
 
-def clear_readouts(take: bpy.types.PropertyGroup | None) -> None:
+def clear_readouts(take: PropertyGroup | None) -> None:
     """Clear the readouts of a take's markers: each depends on all markers, and on what is ignored."""
     for marker in take.markers if take is not None else ():
         marker.sampled = 0
@@ -28,22 +29,22 @@ def clear_readouts(take: bpy.types.PropertyGroup | None) -> None:
 # --- Regions of the picture that are never a marker
 
 
-def _changed(region: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _changed(region: PropertyGroup, context: Context) -> None:
     clear_readouts(take_of(region, "ignored_regions"))
 
 
 def _scene_frame(name: str, description: str, counted: str) -> Any:
     """A region's first or last frame, `counted` from the clip's first, as the scene's frame."""
 
-    def clip_start(region: bpy.types.PropertyGroup) -> int:
+    def clip_start(region: PropertyGroup) -> int:
         take = take_of(region, "ignored_regions")
         has_clip = take is not None and take.clip is not None
         return footage_of(region.id_data, take).first_frame if has_clip else 1
 
-    def shown(region: bpy.types.PropertyGroup) -> int:
+    def shown(region: PropertyGroup) -> int:
         return int(getattr(region, counted)) + clip_start(region)
 
-    def choose(region: bpy.types.PropertyGroup, frame: int) -> None:
+    def choose(region: PropertyGroup, frame: int) -> None:
         chosen = max(frame - clip_start(region), 0)
         setattr(region, counted, chosen)
         if region.last < region.first:
@@ -85,7 +86,7 @@ class KEYMARK_PG_ignored_region(bpy.types.PropertyGroup):
 PLACES = 2  # Decimals of a pixel that files keep: Blender's own numbers are of single precision
 
 
-def ignored_regions(take: bpy.types.PropertyGroup) -> "tuple[IgnoredRegion, ...]":
+def ignored_regions(take: PropertyGroup) -> "tuple[IgnoredRegion, ...]":
     """The regions of a take."""
     from ...core.markers.ignored_regions import IgnoredRegion
 
@@ -104,7 +105,7 @@ def ignored_regions(take: bpy.types.PropertyGroup) -> "tuple[IgnoredRegion, ...]
     return tuple(regions)
 
 
-def add_ignored_regions(take: bpy.types.PropertyGroup, regions: "Iterable[IgnoredRegion]") -> None:
+def add_ignored_regions(take: PropertyGroup, regions: "Iterable[IgnoredRegion]") -> None:
     """Add regions to a take; the last becomes the active one."""
     length = take.clip.frame_duration if take.clip is not None else 1
     for region in regions:
@@ -134,12 +135,12 @@ def segment_title(segment: str) -> str:
     return part.replace("_", " ").title() + {"L": " Left", "R": " Right", "": ""}[side]
 
 
-def _on_changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _on_changed(marker: PropertyGroup, context: Context) -> None:
     if marker.is_picked:
         clear_readouts(take_of(marker, "markers"))
 
 
-def _on_segment_changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _on_segment_changed(marker: PropertyGroup, context: Context) -> None:
     if marker.name == marker.named_after:
         marker.name = marker.named_after = marker.segment
 
@@ -187,26 +188,15 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
     def is_picked(self) -> bool:
         return bool(self.is_property_set("color"))
 
-    def has_readout(self, take: bpy.types.PropertyGroup) -> bool:
+    def has_readout(self, take: PropertyGroup) -> bool:
         """Whether the readout is of the footage of the take that the marker belongs to."""
         contents = take.clip_state.contents
         return bool(self.sampled and take.clip is not None and self.checked_clip == contents)
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (KEYMARK_PG_stroke_point, KEYMARK_PG_ignored_region, KEYMARK_PG_marker)
-)
-
-
-def register() -> None:
-    """Register the groups, and the switch for masks, which no file keeps."""
-    _register_classes()
-    bpy.types.WindowManager.keymark_show_masks = Switch(
+ATTACHED = {
+    "WindowManager.keymark_show_masks": Switch(
         "Show Masks", "Highlight the markers' colors over the footage", default=False
     )
-
-
-def unregister() -> None:
-    """Take it all back."""
-    del bpy.types.WindowManager.keymark_show_masks
-    _unregister_classes()
+}
+"""No file keeps it."""

@@ -1,22 +1,30 @@
-"""The search for a take's markers in its footage, and the operators that look for them without a click."""
+"""The lists of markers and of what is never one, and the search for the markers in the footage."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import bpy
+from bpy.types import Context, PropertyGroup, Scene
 
 from ...core.errors import InputError
 from ...core.progress import within
 from ..bridge.footage import Footage
 from ..footage.take_footage import update_clip_digest
-from ..shell.base_operator import capitalized, warn
+from ..shell.base_operator import BaseOperator, Unchanged, capitalized, remove_active, warn
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import footage, idle, markers, picked_color
-from ..shell.takes import active_take, find_take, footage_of, redraw_footage, take_by_identifier
-from .marker_properties import add_ignored_regions, ignored_regions
-from .marker_styles import Rgb, append_usual_markers, set_marker_color, styles_with_colors
-from .mask_previews import keep_preview, show_masks, update_masks
+from ..shell.takes import active_take, ensure_take, find_take, footage_of, redraw_footage, take_by_identifier
+from .marker_properties import SEGMENTS, add_ignored_regions, clear_readouts, ignored_regions
+from .marker_styles import (
+    USUAL_SEGMENTS,
+    Rgb,
+    append_marker,
+    append_usual_markers,
+    set_marker_color,
+    styles_with_colors,
+)
+from .mask_previews import keep_preview, preview_of, show_masks, update_masks
 
 if TYPE_CHECKING:
     from ...core.markers.ignored_regions import IgnoredRegion
@@ -51,7 +59,7 @@ def find_markers(
 
 
 def _write_readouts(
-    take: bpy.types.PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck"
+    take: PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck"
 ) -> list[str]:
     """Store a check with the markers, and its colors for previews; return all warnings."""
     update_clip_digest(take)
@@ -86,7 +94,7 @@ class MarkerSearch:
 
 
 def search_markers(
-    scene: bpy.types.Scene, colors: Mapping[str, Rgb] | None = None, more: "tuple[IgnoredRegion, ...]" = ()
+    scene: Scene, colors: Mapping[str, Rgb] | None = None, more: "tuple[IgnoredRegion, ...]" = ()
 ) -> "Job[MarkerSearch]":
     """Look for the active take's markers with new colors, or without more regions of the picture."""
     take, new = active_take(scene), dict(colors or {})
@@ -96,7 +104,7 @@ def search_markers(
     return MarkerSearch(identifier, new, more, styles, ignored, check)
 
 
-def write_search(scene: bpy.types.Scene, found: MarkerSearch, masks: bool = False) -> list[str]:
+def write_search(scene: Scene, found: MarkerSearch, masks: bool = False) -> list[str]:
     """Store colors, regions and what was found of the markers, with their masks shown; return all warnings.
 
     Raises:
@@ -121,7 +129,7 @@ def write_search(scene: bpy.types.Scene, found: MarkerSearch, masks: bool = Fals
 
 
 def write_and_warn(
-    operator: bpy.types.Operator, scene: bpy.types.Scene, found: MarkerSearch, masks: bool = False
+    operator: bpy.types.Operator, scene: Scene, found: MarkerSearch, masks: bool = False
 ) -> list[str]:
     """The same, with every warning reported."""
     return [warn(operator, sentence) for sentence in write_search(scene, found, masks)]
@@ -133,15 +141,15 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
     bl_label = "Check Markers"
     requirements = (footage, markers, picked_color, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
+    def start(self, scene: Scene) -> "Job[MarkerSearch]":
         return search_markers(scene)
 
-    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+    def finish(self, scene: Scene, result: MarkerSearch) -> None:
         if not write_and_warn(self, scene, result):
             self.report({"INFO"}, f"All {len(result.styles)} markers with a color are found well")
 
 
-def still_areas(context: bpy.types.Context) -> str | None:
+def still_areas(context: Context) -> str | None:
     """Some still area of a marker's color is known that is surely no marker."""
     take = find_take(context.scene)
     if take is not None and has_still_areas(take):
@@ -149,7 +157,7 @@ def still_areas(context: bpy.types.Context) -> str | None:
     return "Check the markers first; no still area of a marker's color is known"
 
 
-def has_still_areas(take: bpy.types.PropertyGroup) -> bool:
+def has_still_areas(take: PropertyGroup) -> bool:
     """Whether the markers' readouts name any still area."""
     return any(marker.has_readout(take) and len(marker.still_areas) for marker in take.markers)
 
@@ -160,7 +168,7 @@ class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
     bl_label = "Ignore Still Areas"
     requirements = (footage, markers, still_areas, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
+    def start(self, scene: Scene) -> "Job[MarkerSearch]":
         from ...core.markers.ignored_regions import IgnoredRegion
 
         take = active_take(scene)
@@ -168,6 +176,89 @@ class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
         boxes = dict.fromkeys(tuple(area.box) for marker in found for area in marker.still_areas)
         return search_markers(scene, more=tuple(IgnoredRegion(box=box) for box in boxes))
 
-    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+    def finish(self, scene: Scene, result: MarkerSearch) -> None:
         write_and_warn(self, scene, result)
         self.report({"INFO"}, f"Still areas are never a marker: {len(result.more)} more")
+
+
+class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
+    """Add a marker on the next body part that usually wears one"""
+
+    bl_label = "Add Marker"
+
+    def run(self, context: Context) -> None:
+        take = ensure_take(context.scene)
+        marked = {marker.segment for marker in take.markers}
+        free = [segment for segment in (*USUAL_SEGMENTS, *SEGMENTS) if segment not in marked]
+        if not free:
+            raise InputError("every body part has a marker already")
+        append_marker(take, free[0])
+
+
+class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
+    """Add the five markers that help most: trunk, both forearms and both shins"""
+
+    bl_label = "Add Usual Five"
+
+    def run(self, context: Context) -> None:
+        take = ensure_take(context.scene)
+        if {marker.segment for marker in take.markers}.issuperset(USUAL_SEGMENTS):
+            raise Unchanged("trunk, forearms and shins have markers already")
+        append_usual_markers(take)
+
+
+class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
+    """Remove the active marker"""
+
+    bl_label = "Remove Marker"
+    requirements = (markers,)
+
+    def run(self, context: Context) -> None:
+        take = active_take(context.scene)
+        if take.markers[min(take.active_marker, len(take.markers) - 1)].is_picked:
+            clear_readouts(take)
+        remove_active(take, "markers", "active_marker")
+
+
+def some_ignored(context: Context) -> str | None:
+    """Some region of the picture is ignored."""
+    take = find_take(context.scene)
+    return None if take and len(take.ignored_regions) else "No region of the picture is left out"
+
+
+class KEYMARK_OT_remove_ignored_region(BaseOperator, bpy.types.Operator):
+    """Search the chosen region of the picture for markers again"""
+
+    bl_label = "Remove Region"
+    requirements = (some_ignored, idle)
+
+    def run(self, context: Context) -> None:
+        take = active_take(context.scene)
+        remove_active(take, "ignored_regions", "active_ignored")
+        clear_readouts(take)
+        redraw_footage(context)
+
+
+class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
+    """Highlight the markers' colors over the footage, in the camera view and the Movie Clip editor"""
+
+    bl_label = "Show Masks"
+    bl_options = {"REGISTER"}
+    requirements = (footage, markers, picked_color, idle)
+
+    def run(self, context: Context) -> None:
+        manager = context.window_manager
+        if not manager.keymark_show_masks:
+            if preview_of(active_take(context.scene)) is None:
+                _check_markers()
+            update_masks(context.scene)
+        manager.keymark_show_masks = not manager.keymark_show_masks
+        redraw_footage(context)
+
+
+def _check_markers() -> None:
+    """Run the check of the markers, on a timer in the user interface."""
+    try:
+        bpy.ops.keymark.check_markers("INVOKE_DEFAULT")
+    except RuntimeError as error:
+        raise InputError(str(error).removeprefix("Error: ").strip()) from error

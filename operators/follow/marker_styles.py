@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import bpy
+from bpy.types import PropertyGroup
 
 from ...core.errors import InputError, pluralize
 from ..shell.footage_view import clip_index
@@ -20,7 +20,7 @@ USUAL_SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 """The five segments whose markers help most, in the order in which they are offered."""
 
 
-def append_marker(take: bpy.types.PropertyGroup, segment: str) -> None:
+def append_marker(take: PropertyGroup, segment: str) -> None:
     """Add a marker with a unique name after its segment, and make it the active one."""
     name = unique_name(segment, [marker.name for marker in take.markers])
     marker = take.markers.add()
@@ -29,7 +29,7 @@ def append_marker(take: bpy.types.PropertyGroup, segment: str) -> None:
     take.active_marker = len(take.markers) - 1
 
 
-def append_usual_markers(take: bpy.types.PropertyGroup) -> None:
+def append_usual_markers(take: PropertyGroup) -> None:
     """Add those of the usual five that are missing; the first of them becomes the active one."""
     marked, first = {marker.segment for marker in take.markers}, len(take.markers)
     for segment in USUAL_SEGMENTS:
@@ -38,7 +38,7 @@ def append_usual_markers(take: bpy.types.PropertyGroup) -> None:
     take.active_marker = first
 
 
-def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
+def marker_styles(take: PropertyGroup) -> "tuple[MarkerStyle, ...]":
     """Return the styles of a take's markers.
 
     Raises:
@@ -58,7 +58,7 @@ def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
     return tuple(styles)
 
 
-def styles_with_colors(take: bpy.types.PropertyGroup, colors: Mapping[str, Rgb]) -> "tuple[MarkerStyle, ...]":
+def styles_with_colors(take: PropertyGroup, colors: Mapping[str, Rgb]) -> "tuple[MarkerStyle, ...]":
     """The styles of a take's markers that have a color, once some are given new ones by their names.
 
     A take without markers counts as one with the usual five.
@@ -82,12 +82,12 @@ def styles_with_colors(take: bpy.types.PropertyGroup, colors: Mapping[str, Rgb])
     )
 
 
-def set_marker_color(marker: bpy.types.PropertyGroup, color_srgb: Rgb) -> None:
+def set_marker_color(marker: PropertyGroup, color_srgb: Rgb) -> None:
     """Set a marker's color from bytes."""
     marker.color = [value / 255 for value in color_srgb]
 
 
-def markers_label(take: bpy.types.PropertyGroup) -> str:
+def markers_label(take: PropertyGroup) -> str:
     """As in `4 of 5`, once the clip was read for these markers; before that how many there are."""
     count = len(take.markers)
     if not count or take.clip is None:

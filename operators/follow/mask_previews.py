@@ -7,7 +7,7 @@ preview back, and a preview of other colors is never shown.
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import bpy
+from bpy.types import Context, PropertyGroup, Scene
 
 from ...core.arrays import Array, Image, SingleArray
 from ..bridge.footage import Footage
@@ -49,9 +49,7 @@ _picked: dict[str, Preview] = {}
 """Preview of colors that are being picked and are not the take's yet, by the take's identifier."""
 
 
-def keep_preview(
-    take: bpy.types.PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck"
-) -> None:
+def keep_preview(take: PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck") -> None:
     """Cache the learned colors of a take's markers."""
     _previews.pop(key := _key(take), None)
     _previews[key] = _preview(styles, check)
@@ -69,7 +67,7 @@ def end_picked() -> None:
     _picked.clear()
 
 
-def preview_of(take: bpy.types.PropertyGroup) -> Preview | None:
+def preview_of(take: PropertyGroup) -> Preview | None:
     """Return the preview of a take's markers as they are now; None if they were not checked."""
     if take.clip is None:
         return None
@@ -82,7 +80,7 @@ def clear_previews() -> None:
     _picked.clear()
 
 
-def update_masks(scene: bpy.types.Scene) -> Preview | None:
+def update_masks(scene: Scene) -> Preview | None:
     """Make the masks of the current frame, unless they are made already; return their preview."""
     take = find_take(scene)
     preview = preview_of(take) if take is not None else None
@@ -94,7 +92,7 @@ def update_masks(scene: bpy.types.Scene) -> Preview | None:
     return preview
 
 
-def show_masks(context: bpy.types.Context, shown: bool) -> bool:
+def show_masks(context: Context, shown: bool) -> bool:
     """Switch the masks on or off; return whether they were shown."""
     before = bool(context.window_manager.keymark_show_masks)
     context.window_manager.keymark_show_masks = shown
@@ -102,7 +100,7 @@ def show_masks(context: bpy.types.Context, shown: bool) -> bool:
     return before
 
 
-def is_of_frame(preview: Preview, scene: bpy.types.Scene) -> bool:
+def is_of_frame(preview: Preview, scene: Scene) -> bool:
     """Whether a preview of the active take's markers is of the scene's current frame.
 
     It is compared by the clip's time: another scene may show the same clip at other times, and a clip may be
@@ -112,7 +110,7 @@ def is_of_frame(preview: Preview, scene: bpy.types.Scene) -> bool:
     return take is not None and preview.time_s == footage_of(scene, take).shown_s
 
 
-def ignored_mask(take: bpy.types.PropertyGroup, more: "tuple[IgnoredRegion, ...]" = ()) -> Image | None:
+def ignored_mask(take: PropertyGroup, more: "tuple[IgnoredRegion, ...]" = ()) -> Image | None:
     """The mask (rows, columns) of what is ignored in the current frame, and of more; None if nothing is."""
     from ...core.markers.ignored_regions import IgnoredPixels
 
@@ -144,7 +142,7 @@ def _preview(styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck") -> Preview
     return Preview(check, labels, tuple((red, green, blue) for red, green, blue in colors))
 
 
-def _key(take: bpy.types.PropertyGroup) -> tuple[object, ...]:
+def _key(take: PropertyGroup) -> tuple[object, ...]:
     """Return the key: the footage's digest, names and colors of markers that have one, what is ignored."""
     picked = tuple((marker.name, tuple(marker.color)) for marker in take.markers if marker.is_picked)
     return take.clip_state.contents, picked, ignored_regions(take)

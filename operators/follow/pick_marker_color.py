@@ -5,6 +5,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import bpy
+from bpy.types import Context, Event, PropertyGroup, Scene
 
 from ...core.errors import InputError
 from ..shell.base_operator import reported, warn
@@ -30,14 +31,14 @@ class MarkerTool(ClickSequence, JobOperator):
 
     masks_before: bool | None = None  # Whether masks were shown before; None in a script, which shows none
 
-    def prepare(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    def prepare(self, context: Context, take: PropertyGroup) -> None:
         self.masks_before = bool(context.window_manager.keymark_show_masks)
         context.window_manager.keymark_progress.show("", 0.0)
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: Context, event: Event) -> set[str]:
         return (ClickSequence if self._job is None else JobOperator).modal(self, context, event)
 
-    def look(self, context: bpy.types.Context) -> set[str]:
+    def look(self, context: Context) -> set[str]:
         """Begin to look for the markers; what `modal` returns."""
         stop_asking(context)
         with reported(self):
@@ -46,7 +47,7 @@ class MarkerTool(ClickSequence, JobOperator):
         self.cancel(context)
         return {"CANCELLED"}
 
-    def cancel(self, context: bpy.types.Context) -> None:
+    def cancel(self, context: Context) -> None:
         stop_asking(context)
         if self.masks_before is not None:
             show_masks(context, self.masks_before)
@@ -84,7 +85,7 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
     _looking: Generator[Any, None, Any] | None = None
     """The search for the colors picked so far, whose masks are then shown."""
 
-    def prepare(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    def prepare(self, context: Context, take: PropertyGroup) -> None:
         """Ask for the markers without a color, for all where each has one, or for the usual five."""
         super().prepare(context, take)
         markers = [marker for marker in take.markers if not marker.is_picked] or list(take.markers)
@@ -93,17 +94,17 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
         self._here, self._colors = 0, {}
         self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: Context, event: Event) -> set[str]:
         if self._job is None and event.type == "TIMER":
             self._go_on_looking(context)
             return {"PASS_THROUGH"}
         return super().modal(context, event)
 
-    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+    def request(self, context: Context) -> tuple[FootageRequest, str]:
         keys = KEYS.format(number=len(self._colors) + 1, count=len(self._wanted))
         return request_for(self._wanted[self._here][1]), keys
 
-    def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
+    def clicked(self, context: Context, pixel: tuple[float, float]) -> set[str]:
         from ..bridge.footage import footage_color
 
         name = self._wanted[self._here][0]
@@ -119,12 +120,12 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
         self.ask(context)
         return {"RUNNING_MODAL"}
 
-    def go_on(self, context: bpy.types.Context) -> None:
+    def go_on(self, context: Context) -> None:
         count = len(self._wanted)
         after = [(self._here + step) % count for step in range(1, count + 1)]
         self._here = next((one for one in after if self._wanted[one][0] not in self._colors), self._here)
 
-    def go_back(self, context: bpy.types.Context) -> None:
+    def go_back(self, context: Context) -> None:
         if not self._colors:
             return
         last, _ = self._colors.popitem()
@@ -136,7 +137,7 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
             self._stop_looking()
             show_masks(context, False)
 
-    def done(self, context: bpy.types.Context) -> set[str]:
+    def done(self, context: Context) -> set[str]:
         """Look for all markers with a color; without a click nothing has happened."""
         if not self._colors:
             return super().done(context)
@@ -145,12 +146,12 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
         self._timer = None
         return self.look(context)
 
-    def cancel(self, context: bpy.types.Context) -> None:
+    def cancel(self, context: Context) -> None:
         self._stop_looking()
         end_picked()
         super().cancel(context)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
+    def start(self, scene: Scene) -> "Job[MarkerSearch]":
         from ..bridge.footage import footage_color
 
         source, colors = footage_of(scene, active_take(scene)), self._colors
@@ -160,18 +161,18 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
             raise InputError("clicks is empty; click on at least one marker")
         return (yield from search_markers(scene, colors))
 
-    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+    def finish(self, scene: Scene, result: MarkerSearch) -> None:
         write_and_warn(self, scene, result, masks=self._colors is not None)
         self.report({"INFO"}, f"{len(result.colors)} markers are picked")
 
-    def _begin_to_look(self, context: bpy.types.Context) -> None:
+    def _begin_to_look(self, context: Context) -> None:
         self._stop_looking()
         take = active_take(context.scene)
         styles = styles_with_colors(take, self._colors)
         search = find_markers(footage_of(context.scene, take), styles, ignored_regions(take))
         self._looking = _seen(take.identifier, styles, search)
 
-    def _go_on_looking(self, context: bpy.types.Context) -> None:
+    def _go_on_looking(self, context: Context) -> None:
         """Go on looking for the colors picked so far; at the end show their masks."""
         if self._looking is None:
             return
@@ -212,18 +213,18 @@ class KEYMARK_OT_pick_marker_color(MarkerTool, bpy.types.Operator):
         "Row", "Row of the marker in the list, from 0; -1 for the active one", default=-1, options=SKIP_SAVE
     )
 
-    def prepare(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    def prepare(self, context: Context, take: PropertyGroup) -> None:
         super().prepare(context, take)
         show_masks(context, False)  # the footage itself is what is clicked on
 
-    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+    def request(self, context: Context) -> tuple[FootageRequest, str]:
         return request_for(self._marker(active_take(context.scene)).segment), "Esc: Cancel"
 
-    def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
+    def clicked(self, context: Context, pixel: tuple[float, float]) -> set[str]:
         self.pixel = pixel
         return self.look(context)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
+    def start(self, scene: Scene) -> "Job[MarkerSearch]":
         """The color is read from the clip's file: the viewport's has gone through color management."""
         from ..bridge.footage import footage_color
 
@@ -231,7 +232,7 @@ class KEYMARK_OT_pick_marker_color(MarkerTool, bpy.types.Operator):
         name, color = self._marker(take).name, footage_color(footage_of(scene, take), self.pixel)
         return (yield from search_markers(scene, {name: color}))
 
-    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+    def finish(self, scene: Scene, result: MarkerSearch) -> None:
         write_search(scene, result, masks=self.masks_before is not None)
         ((name, color),) = result.colors.items()
         marker = next(each for each in take_by_identifier(scene, result.take).markers if each.name == name)
@@ -240,6 +241,6 @@ class KEYMARK_OT_pick_marker_color(MarkerTool, bpy.types.Operator):
         found = f"found in {marker.found} of {marker.sampled} frames"
         self.report({"INFO"}, f"Marker {name} has the color {color}, {found}")
 
-    def _marker(self, take: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
+    def _marker(self, take: PropertyGroup) -> PropertyGroup:
         row = int(take.active_marker) if self.row < 0 else self.row
         return take.markers[min(row, len(take.markers) - 1)]

@@ -1,6 +1,7 @@
 """Which of a clip's motion tracks follow which body points: as a person chose, else by the tracks' names."""
 
 import bpy
+from bpy.types import Context, PropertyGroup
 
 from ...core.body.human import HUMAN
 from ...core.detect.keypoints import FACE, FEET, HANDS, SPINE
@@ -14,20 +15,20 @@ from ..shell.takes import active_take, redraw_footage
 from .marker_properties import segment_title
 
 
-def assigned_tracks(take: bpy.types.PropertyGroup) -> tuple[AssignedTrack, ...]:
+def assigned_tracks(take: PropertyGroup) -> tuple[AssignedTrack, ...]:
     """The motion tracks of a take's clip that follow a body point."""
     tracks = [(owner, track.name) for owner, track in clip_tracks(take.clip)] if take.clip is not None else []
     points = [(owner, name, point_of(take, owner, name)) for owner, name in tracks]
     return tuple(AssignedTrack(*each) for each in points if each[-1])
 
 
-def point_of(take: bpy.types.PropertyGroup, owner: str, track: str) -> str:
+def point_of(take: PropertyGroup, owner: str, track: str) -> str:
     """The body point that a motion track follows; empty for none."""
     choices = {(choice.owner, choice.track): choice.point for choice in take.follow.tracks}
     return choices.get((owner, track), named_point(track) or "")
 
 
-def assign(take: bpy.types.PropertyGroup, owner: str, track: str, point: str) -> None:
+def assign(take: PropertyGroup, owner: str, track: str, point: str) -> None:
     """Let a motion track follow a body point, or none where it is empty."""
     choices = take.follow.tracks
     for number in reversed(range(len(choices))):
@@ -72,7 +73,7 @@ class KEYMARK_OT_assign_track(BaseOperator, bpy.types.Operator):
         items=body_point_items("No Body Point"),
     )
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         take = active_take(context.scene)
         if (self.owner, self.track) not in {(owner, track.name) for owner, track in clip_tracks(take.clip)}:
             raise InputError(f"clip '{take.clip.name}' has no track '{self.track}' of object '{self.owner}'")

@@ -9,6 +9,5 @@ MODULES = (
     "drag_joints",
     "panel",
     "pose_all",
-    "candidates",
     "change_match",
 )

@@ -1,15 +1,30 @@
-"""Found keyframes: jump to them, accept and remove them."""
+"""Found keyframes and offered poses: jump to them, take a candidate, accept, remove."""
+
+from math import degrees
 
 import bpy
+from bpy.types import Context, OperatorProperties, PropertyGroup
 
 from ...core.body.human import HUMAN
+from ...core.errors import InputError
+from ...core.prior.texts import COMPOSED
+from ..bridge.scene_frames import show_frame
+from ..overlays.candidates import look_at
 from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.contradictions import note_contradictions
-from ..shell.fields import Choice, Switch
-from ..shell.keyed_frames import doubtful_matches, match_at, state_of
+from ..shell.fields import Choice, Integer, Switch
+from ..shell.keyed_frames import (
+    doubtful_matches,
+    match_at,
+    offered_at,
+    show_keyframes,
+    state_of,
+)
 from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take
+from .corrections import LIMBS
 from .found_keyframes import chosen_match, undecided_matches
+from .store_keyframe import improve_neighbors
 
 
 class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
@@ -29,7 +44,7 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
     only_doubtful: Switch("Only Doubtful", "Go to doubtful ones only, the most doubtful first", default=False)
 
     @classmethod
-    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+    def description(cls, context: Context, properties: OperatorProperties) -> str:
         if properties.only_doubtful:
             return (
                 "Go to the most doubtful found keyframe: first those in which something that is seen "
@@ -38,7 +53,7 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
             )
         return f"Go to the {properties.direction.lower()} found keyframe"
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         take, now = active_take(context.scene), context.scene.frame_current_final
         if self.only_doubtful:  # the most doubtful one or, where that is shown, the one after it
             places, here = doubtful_matches(take), match_at(take, now)
@@ -61,7 +76,7 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
     bl_label = "Accept"
     requirements = (actor, matches, idle)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         from ..bridge.keyframes import take_over
 
         take = active_take(context.scene)
@@ -80,7 +95,7 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
     bl_label = "Remove"
     requirements = (actor, matches, idle)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         from ..bridge.keyframes import remove_keyframes
 
         take = active_take(context.scene)
@@ -101,7 +116,7 @@ class KEYMARK_OT_remove_found(BaseOperator, bpy.types.Operator):
     bl_label = "Remove All Found"
     requirements = (actor, matches, idle)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Remove their keys and entries; what the animator has decided on stays."""
         from .found_result import clear_found
 
@@ -111,3 +126,121 @@ class KEYMARK_OT_remove_found(BaseOperator, bpy.types.Operator):
         count = clear_found(take)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         self.report({"INFO"}, f"Removed {count} found keyframes")
+
+
+NOTICEABLE_TURN_DEG = 15.0
+PAIRS = {("arm.L", "arm.R"): "arms", ("leg.L", "leg.R"): "legs"}
+"""Limbs that are named together."""
+
+
+def candidate_title(match: PropertyGroup, candidate: PropertyGroup) -> str:
+    """What tells a candidate from the first one: its turn, then the name of its posture.
+
+    Postures that were composed have the name of one that they resemble, which often is the same for all and
+    tells a person little: instead the limbs are named that are elsewhere.
+    """
+    turn = _turn(degrees(candidate.turned))
+    if match.library != COMPOSED:
+        named = str(candidate.name)
+        return f"{turn}: {named}" if turn else named[:1].upper() + named[1:]
+    elsewhere, words = candidate.limbs.split(), []
+    for pair, both in PAIRS.items():
+        there = [LIMBS[name] for name in pair if name in elsewhere]
+        words += [both] if len(there) == len(pair) else there
+    limbs = ", ".join(words)
+    if turn:
+        return f"{turn}: {limbs}" if limbs else turn
+    if limbs:
+        return f"Other {limbs}"
+    return "As found" if candidate == match.candidates[0] else "Nearly as found"
+
+
+def _turn(angle_deg: float) -> str:
+    """Words for a turn to the left; none where it is hardly seen."""
+    if abs(angle_deg) < NOTICEABLE_TURN_DEG:
+        return ""
+    if abs(angle_deg) > 180.0 - NOTICEABLE_TURN_DEG:
+        return "Turned round"
+    return f"{abs(angle_deg):.0f}° {'left' if angle_deg > 0.0 else 'right'}"
+
+
+class CandidateOperator(BaseOperator):
+    """Base of operators that take one of what a frame may show, which is drawn while their tooltip is."""
+
+    candidate: Integer("Candidate", "Index of the posture; 0 is the one that was likeliest", default=0, min=0)
+
+    @classmethod
+    def source(cls, take: PropertyGroup) -> PropertyGroup:
+        """What has the candidates; raises InputError where there is nothing."""
+        raise NotImplementedError
+
+    @classmethod
+    def description(cls, context: Context, properties: OperatorProperties) -> str:
+        try:
+            source = cls.source(active_take(context.scene))
+        except InputError:
+            return str(cls.__doc__)
+        if properties.candidate >= len(source.candidates):
+            return str(cls.__doc__)
+        look_at(context, properties.candidate)
+        return f"{candidate_title(source, source.candidates[properties.candidate])}. {cls.__doc__}"
+
+    def chosen(self, take: PropertyGroup) -> PropertyGroup:
+        """What has the candidates, if the wanted one is among them."""
+        source = self.source(take)
+        count = len(source.candidates)
+        if self.candidate >= count:
+            raise InputError(
+                f"frame {source.frame:g} has {count} candidates; candidate must be 0 to {count - 1}"
+            )
+        return source
+
+
+class KEYMARK_OT_replace_match(CandidateOperator, bpy.types.Operator):
+    """Key this posture instead; what is keyed at the frame is replaced"""
+
+    bl_label = "Take Candidate"
+    requirements = (actor, matches, idle)
+
+    source = staticmethod(chosen_match)
+
+    def run(self, context: Context) -> None:
+        from .match_edits import key_candidate
+
+        take = active_take(context.scene)
+        match = self.chosen(take)
+        match.chosen, match.by_hand = self.candidate, True
+        key_candidate(take, match)
+        show_frame(context.scene, match.frame)
+        frame, number = float(match.frame), self.candidate + 1
+        note_contradictions(take, frame, ())
+        improved = improve_neighbors(context, take, frame)  # moves the entries of others in memory
+        also = f"; {improved} found ones around it were posed anew" if improved else ""
+        self.report({"INFO"}, f"Frame {frame:g} shows candidate {number}{also}")
+
+
+class KEYMARK_OT_show_offered(CandidateOperator, bpy.types.Operator):
+    """Pose the actor like this; nothing is keyed until you store it"""
+
+    bl_label = "Show Candidate"
+    requirements = (actor, idle)
+
+    @classmethod
+    def source(cls, take: PropertyGroup) -> PropertyGroup:
+        frame = take.id_data.frame_current_final
+        offered = offered_at(take, frame)
+        if offered is None:
+            raise InputError(f"frame {frame:g} offers no poses; fit it to the footage first")
+        return offered
+
+    def run(self, context: Context) -> None:
+        from ..bridge.keyframes import candidate_posture
+        from ..bridge.pose import write_posture
+
+        take = active_take(context.scene)
+        offered = self.chosen(take)
+        show_keyframes(take)
+        write_posture(take.armature, candidate_posture(offered.candidates[self.candidate]))
+        if offered.chosen != self.candidate:
+            note_contradictions(take, context.scene.frame_current_final, ())
+        offered.chosen = self.candidate

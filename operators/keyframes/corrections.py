@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
+from bpy.types import Context, OperatorProperties, PropertyGroup, Scene
 
 from ...core.body.human import HUMAN, TRUNK, limb_of
 from ...core.errors import InputError
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 DRAGGING = "keymark.drag_joints"
 
 
-def shown_pose(take: bpy.types.PropertyGroup) -> "tuple[Body, Posture]":
+def shown_pose(take: PropertyGroup) -> "tuple[Body, Posture]":
     """The actor's sizes, and the posture that it shows now."""
     from ..bridge.actor_lengths import read_body
     from ..bridge.pose import read_posture
@@ -47,24 +48,20 @@ def shown_pose(take: bpy.types.PropertyGroup) -> "tuple[Body, Posture]":
     return body, read_posture(take.armature, body).posture
 
 
-def camera_now(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Camera":
+def camera_now(scene: Scene, take: PropertyGroup) -> "Camera":
     """The take's camera as it stands in the current frame."""
     from ..bridge.camera_placement import read_camera
 
     return read_camera(footage_of(scene, take), np.array([scene.frame_current_final]))
 
 
-def is_keyed(take: bpy.types.PropertyGroup, frame: float) -> bool:
+def is_keyed(take: PropertyGroup, frame: float) -> bool:
     """Whether a frame holds a keyframe."""
     return take.keyframe_action is not None and has_frame(keyframes_of(take), frame)
 
 
 def set_corrected(
-    operator: bpy.types.Operator,
-    context: bpy.types.Context,
-    take: bpy.types.PropertyGroup,
-    posture: "Posture",
-    in_depth: bool,
+    operator: bpy.types.Operator, context: Context, take: PropertyGroup, posture: "Posture", in_depth: bool
 ) -> None:
     """Give the actor a corrected posture; where this frame holds a keyframe, that is the new one at once.
 
@@ -86,8 +83,8 @@ def set_corrected(
 
 
 def put_right(
-    scene: bpy.types.Scene,
-    take: bpy.types.PropertyGroup,
+    scene: Scene,
+    take: PropertyGroup,
     body: "Body",
     found: "Posture",
     shown: "Posture",
@@ -129,10 +126,10 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
     direction: Choice("Neighbor", "The keyframe whose pose is copied", items=DIRECTIONS)
 
     @classmethod
-    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+    def description(cls, context: Context, properties: OperatorProperties) -> str:
         return {name: text for name, _, text in DIRECTIONS}[properties.direction]
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Copy everything but the place."""
         from ...core.body.posture import Posture
         from ..bridge.pose import read_posture
@@ -185,11 +182,11 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
     )
 
     @classmethod
-    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+    def description(cls, context: Context, properties: OperatorProperties) -> str:
         facing = {name: text for name, _, text in FACINGS}[properties.facing]
         return f"{facing}, at the same place; the pose is fitted to the footage again"
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         from ...core.posing.turned import Facing, Sides, facing_of, turned
 
         take, scene = active_take(context.scene), context.scene
@@ -208,9 +205,7 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, f"Turned: {title}; not fitted to the footage" if fitted is None else fits)
 
 
-def _fitted(
-    context: bpy.types.Context, take: bpy.types.PropertyGroup, ways: "list[Turned]"
-) -> "list[Posture]":
+def _fitted(context: Context, take: PropertyGroup, ways: "list[Turned]") -> "list[Posture]":
     """Turned postures fitted to the frame, the likeliest first; none if it shows nothing to fit to.
 
     The actor's pose is as before.
@@ -247,7 +242,7 @@ LIMBS = {
 """Names of the parts of the body, the performer's own left and right."""
 
 
-def selected_limbs(take: bpy.types.PropertyGroup) -> list[str]:
+def selected_limbs(take: PropertyGroup) -> list[str]:
     """The parts of the body of which a bone is selected, in the order of `LIMBS`; the active one alone.
 
     With all bones of the actor selected, as by A, nothing is meant in particular but the active bone.
@@ -264,7 +259,7 @@ def selected_limbs(take: bpy.types.PropertyGroup) -> list[str]:
     return [name for name in LIMBS if name in chosen]
 
 
-def limb_chosen(context: bpy.types.Context) -> str | None:
+def limb_chosen(context: Context) -> str | None:
     """A bone is selected in Pose Mode, or joints are being dragged, where the one under the mouse counts."""
     take = find_take(context.scene)
     if job_is_running(context, DRAGGING) or take is None or take.armature is None:
@@ -307,7 +302,7 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
         options=SKIP_SAVE,
     )
 
-    def run(self, context: bpy.types.Context) -> set[str] | None:
+    def run(self, context: Context) -> set[str] | None:
         """Show of each part the way after the one that is shown, from the last back to the first."""
         from ...core.posing.depth_flip import flipped
 

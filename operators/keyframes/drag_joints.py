@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 import numpy as np
+from bpy.types import Context, Event, PropertyGroup, Scene
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN, limb_of
 from ..bridge.object_space import joint_places
 from ..follow.marker_properties import segment_title
-from ..overlays.outlines import window
+from ..overlays.marks import window
 from ..overlays.tools import Handles, show_handles, show_keys
 from ..shell.base_operator import BaseOperator, reported
 from ..shell.fields import Choice, Switch, Vector
@@ -46,7 +47,7 @@ class JointDrag:
     shown: "Posture | None" = None  # The posture it has come to
     in_depth: bool = False  # whether it was put right in space, not in the picture alone
 
-    def follow(self, event: bpy.types.Event) -> None:
+    def follow(self, event: Event) -> None:
         """Take a movement of the mouse: across the view, or in depth with Ctrl held, where up is away."""
         step = np.array([event.mouse_x - self.mouse[0], event.mouse_y - self.mouse[1]], dtype=np.float64)
         self.mouse = event.mouse_x, event.mouse_y
@@ -67,6 +68,23 @@ class JointDrag:
         """(3,) where the joint is dragged to [m]."""
         across = self.view.place(self.position + self.moved, self.start)
         return np.asarray(across + self.depth_m * self.sight)
+
+    def show(self, take: PropertyGroup) -> None:
+        """Show the posture that the drag has come to; nothing is keyed."""
+        from ...core.posing.dragged import dragged
+        from ..bridge.pose import write_posture
+
+        pushed, floor_m = self.depth_m != 0.0, take.matching.known_floor_m
+        self.shown = dragged(self.body, self.posture, self.joint, self.place, self.sight, pushed, floor_m)
+        write_posture(take.armature, self.shown)
+
+    def restore(self, take: PropertyGroup) -> None:
+        """Give the actor the pose from which the drag began."""
+        from ..bridge.object_space import evaluated
+        from ..bridge.scene_frames import restore_pose
+
+        restore_pose(take.armature, self.pose)
+        evaluated(take.armature)
 
 
 class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
@@ -90,7 +108,7 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
     )
     pushed: Switch("In Depth", "Whether the place along the line of sight counts as much as across it")
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         from ...core.posing.dragged import dragged
 
         take = active_take(context.scene)
@@ -109,9 +127,7 @@ ASIDE = np.cos(np.radians(10.0))
 """A view turned by more than this from the camera's shows depth: of a drag of 10 cm 17 mm or more."""
 
 
-def _shows_depth(
-    context: bpy.types.Context, take: bpy.types.PropertyGroup, sight: Array, place: Array
-) -> bool:
+def _shows_depth(context: Context, take: PropertyGroup, sight: Array, place: Array) -> bool:
     """Whether a view that looks in a direction (3,) at a place shows the depth that the camera does not."""
     return take.camera is None or bool(camera_now(context.scene, take).sight(place) @ sight < ASIDE)
 
@@ -127,7 +143,7 @@ HOVER_KEYS = "{joint}   |   {keys}"
 DRAG_KEYS = "{joint}   |   Ctrl: In Depth, Up Is Away   |   Shift: Precise   |   Esc, Right Click: Cancel"
 
 
-def not_dragging(context: bpy.types.Context) -> str | None:
+def not_dragging(context: Context) -> str | None:
     """Joints are not being dragged already."""
     running = job_is_running(context, DRAGGING)
     return "Joints can be dragged already; Enter in the viewport ends it" if running else None
@@ -148,21 +164,21 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
     _handles: Any = None
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def poll(cls, context: Context) -> bool:
         return all_met(cls, context, actor, idle, not_dragging)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         self._handles = Handles()
         show_handles(self._handles)
         context.window_manager.modal_handler_add(self)
         self._show(context)
         return {"RUNNING_MODAL"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: Context) -> set[str]:
         """Nothing without a mouse: `keymark.move_joint` moves a joint from a script."""
         return {"CANCELLED"}
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: Context, event: Event) -> set[str]:
         take = find_take(context.scene)
         if take is None or actor(context) is not None:
             self.cancel(context)
@@ -193,7 +209,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             self._hover(context, take, view, event)
             self._begin(context, take, view, event)
         elif undo and pressed and self._done and not event.shift:
-            self._restore(self._done.pop(), take)
+            self._done.pop().restore(take)
             self._show(context)
         elif pressed == "F" and self._handles.hovered and not self._done:
             limb = limb_of(self._handles.hovered)
@@ -205,12 +221,12 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             return {"PASS_THROUGH"} if passed else {"RUNNING_MODAL"}
         return {"RUNNING_MODAL"}
 
-    def cancel(self, context: bpy.types.Context) -> None:
+    def cancel(self, context: Context) -> None:
         """End the tool; what is not stored is taken back. Blender calls this as well."""
         drags, self._drag, self._done = [*self._done, self._drag], None, ()
         take = find_take(context.scene) if context.scene is not None else None
         if drags[0] is not None and take is not None and take.armature is not None:
-            self._restore(drags[0], take)
+            drags[0].restore(take)
         show_handles(None)
         if context.window is not None:  # None while Blender closes it or opens another file
             context.workspace.status_text_set(None)
@@ -218,7 +234,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             redraw_editors(context, "VIEW_3D")
         redraw_sidebars_soon()
 
-    def _store(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> set[str]:
+    def _store(self, context: Context, take: PropertyGroup) -> set[str]:
         """Store what the drags have come to, and end the tool."""
         drags, self._done = self._done, ()
         if drags:
@@ -228,13 +244,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         self.cancel(context)
         return {"FINISHED"} if drags else {"CANCELLED"}
 
-    def _hover(
-        self,
-        context: bpy.types.Context,
-        take: bpy.types.PropertyGroup,
-        view: WorldInRegion | None,
-        event: bpy.types.Event,
-    ) -> None:
+    def _hover(self, context: Context, take: PropertyGroup, view: WorldInRegion | None, event: Event) -> None:
         hovered = None if view is None else nearest_joint(take, view, event.mouse_x, event.mouse_y)
         if hovered == self._handles.hovered:
             return
@@ -245,13 +255,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             context.window.cursor_modal_set("SCROLL_XY")
         self._show(context)
 
-    def _begin(
-        self,
-        context: bpy.types.Context,
-        take: bpy.types.PropertyGroup,
-        view: WorldInRegion,
-        event: bpy.types.Event,
-    ) -> None:
+    def _begin(self, context: Context, take: PropertyGroup, view: WorldInRegion, event: Event) -> None:
         joint = self._handles.hovered
         if joint is None:
             return
@@ -268,13 +272,13 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
                 pose, mouse = pose_of(take.armature), (event.mouse_x, event.mouse_y)
                 self._drag = JointDrag(joint, view, start, position, body, posture, pose, mouse)
 
-    def _dragging(
-        self, context: bpy.types.Context, take: bpy.types.PropertyGroup, event: bpy.types.Event
-    ) -> set[str]:
+    def _dragging(self, context: Context, take: PropertyGroup, event: Event) -> set[str]:
+        from ..bridge.pose import write_posture
+
         drag = self._drag
         if event.value == "PRESS" and event.type in BACK:
             self._drag = None
-            self._restore(drag, take)
+            drag.restore(take)
             self._show(context)
         elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self._drag = None
@@ -283,35 +287,23 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
                 drag.in_depth = pushed or _shows_depth(context, take, drag.sight, drag.place)
                 self._done.append(drag)
                 if not any(each.in_depth for each in self._done):
-                    with reported(self):
-                        self._lean(context.scene, take, drag)
+                    with reported(self):  # shows the likeliest depth of what drags in the picture come to
+                        places = {each.joint: each.place for each in self._done}
+                        first = self._done[0].posture
+                        drag.shown = put_right(
+                            context.scene, take, drag.body, first, drag.shown, places, drag.joint
+                        )
+                        write_posture(take.armature, drag.shown)
             else:
-                self._restore(drag, take)
+                drag.restore(take)
             self._show(context)
         elif event.type == "MOUSEMOVE":
             drag.follow(event)
-            _preview(take, drag)
+            drag.show(take)
             self._show(context)
         return {"RUNNING_MODAL"}
 
-    def _lean(self, scene: bpy.types.Scene, take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
-        """Show the likeliest depth of what drags in the picture have come to."""
-        from ..bridge.pose import write_posture
-
-        assert drag.shown is not None  # it has moved
-        places = {each.joint: each.place for each in self._done}
-        drag.shown = put_right(scene, take, drag.body, self._done[0].posture, drag.shown, places, drag.joint)
-        write_posture(take.armature, drag.shown)
-
-    def _restore(self, drag: JointDrag, take: bpy.types.PropertyGroup) -> None:
-        """Give the actor the pose from which a drag began."""
-        from ..bridge.object_space import evaluated
-        from ..bridge.scene_frames import restore_pose
-
-        restore_pose(take.armature, drag.pose)
-        evaluated(take.armature)
-
-    def _read_keyframes(self, scene: bpy.types.Scene, take: bpy.types.PropertyGroup, body: "Body") -> None:
+    def _read_keyframes(self, scene: Scene, take: PropertyGroup, body: "Body") -> None:
         """Read all keyframes, counted from the first of them and the current frame."""
         from ..bridge.keyframes import read_keyframes
 
@@ -323,20 +315,16 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             source = take.armature, take.keyframe_action, body, frames
             self._keyframes = read_keyframes(scene, *source).keyframes
 
-    def _paths(self, drag: JointDrag, posture: "Posture") -> Array:
-        """(2, I, 3) how a drag changes its joint's path around this frame: before and after [m]."""
-        from ...core.posing.dragged import paths_through
-
-        count = 1 + max(self._index, self._keyframes[-1].index)
-        shown = window(self._index, count)
-        return paths_through(drag.body, self._keyframes, self._index, posture, drag.joint, shown)
-
-    def _show(self, context: bpy.types.Context) -> None:
-        """Show the keys, and how the joint dragged last moves around this frame."""
+    def _show(self, context: Context) -> None:
+        """Show the keys, and the path of the joint dragged last around this frame: before and after."""
         drag = self._drag or (self._done[-1] if self._done else None)
         self._handles.path = None
         if drag is not None and drag.shown is not None and self._keyframes:
-            self._handles.path = drag.joint, self._paths(drag, drag.shown)
+            from ...core.posing.dragged import paths_through
+
+            shown = window(self._index, 1 + max(self._index, self._keyframes[-1].index))
+            where = self._keyframes, self._index
+            self._handles.path = drag.joint, paths_through(drag.body, *where, drag.shown, drag.joint, shown)
         if self._drag is not None and drag is not None:
             words = DRAG_KEYS.format(joint=segment_title(drag.joint))
         else:
@@ -347,9 +335,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         redraw_editors(context, "VIEW_3D")
 
 
-def nearest_joint(
-    take: bpy.types.PropertyGroup, view: WorldInRegion, mouse_x: int, mouse_y: int
-) -> str | None:
+def nearest_joint(take: PropertyGroup, view: WorldInRegion, mouse_x: int, mouse_y: int) -> str | None:
     """The joint that a view shows nearest to the mouse; None if none is near."""
     mouse = np.array([mouse_x - view.region.x, mouse_y - view.region.y], dtype=np.float64)
     positions = [view.position(place) for place in joint_places(take.armature)]
@@ -357,13 +343,3 @@ def nearest_joint(
     nearest = int(np.argmin(away))
     reach = 18.0 * (float(bpy.context.preferences.system.ui_scale) or 1.0)
     return HUMAN.point_names[nearest] if away[nearest] <= reach else None
-
-
-def _preview(take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
-    """Show the posture that the drag has come to; nothing is keyed."""
-    from ...core.posing.dragged import dragged
-    from ..bridge.pose import write_posture
-
-    pushed, floor_m = drag.depth_m != 0.0, take.matching.known_floor_m
-    drag.shown = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, pushed, floor_m)
-    write_posture(take.armature, drag.shown)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
+from bpy.types import Context, Event, PropertyGroup
 
 from ..follow.evidence import points_to_follow, scene_evidence
 from ..shell.base_operator import BaseOperator
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from ...core.posing.candidates import Candidate
 
 
-def offer_poses(take: bpy.types.PropertyGroup, frame: float, candidates: Sequence["Candidate"]) -> None:
+def offer_poses(take: PropertyGroup, frame: float, candidates: Sequence["Candidate"]) -> None:
     """Offer candidates at a scene frame, the one that the actor shows first, in place of all others."""
     from ...core.prior.texts import COMPOSED
     from .match_edits import add_candidate
@@ -59,14 +60,14 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
         ],
     )
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         """Fit the pose, and enter Pose Mode, so that the animator can correct it."""
         finished = self.execute(context)
         if finished == {"FINISHED"}:
             _to_pose_mode(context, active_take(context.scene).armature)
         return finished
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         from ..bridge.pose import write_posture
         from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
         from ..library.registry_files import all_libraries
@@ -102,7 +103,7 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
             self.report({"INFO"}, f"{off}; {advice}")
 
 
-def _to_pose_mode(context: bpy.types.Context, armature_object: bpy.types.Object) -> None:
+def _to_pose_mode(context: Context, armature_object: bpy.types.Object) -> None:
     """Make the actor active, in Pose Mode, if it is visible and no other object is being edited."""
     layer = context.view_layer
     active = layer.objects.active

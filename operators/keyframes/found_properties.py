@@ -3,9 +3,11 @@
 from typing import TYPE_CHECKING
 
 import bpy
+from bpy.types import Context, PropertyGroup
 
 from ...core.body.human import HUMAN
 from ...core.prior.texts import EVERY_LIBRARY
+from ..bridge.scene_frames import show_frame
 from ..library.registry import library_items
 from ..shell.fields import HIDDEN, Choice, Entries, Integer, Number, Switch, Text, Vector
 from ..shell.keyed_frames import match_at
@@ -25,7 +27,7 @@ Entry = tuple[str, str, str, str, int]
 _entries: list[Entry] = []  # Items of the menu of libraries: Blender keeps no copy of the strings
 
 
-def _libraries(matching: bpy.types.PropertyGroup, context: bpy.types.Context | None) -> list[Entry]:
+def _libraries(matching: PropertyGroup, context: Context | None) -> list[Entry]:
     """All of them as one entry, each registered library, and the chosen one even if it is missing."""
     every = (EVERY_LIBRARY, "All Libraries", "Each limb may come from another library", "ASSET_MANAGER")
     rows = [every, *(item[:4] for item in library_items(matching, context))]
@@ -36,16 +38,16 @@ def _libraries(matching: bpy.types.PropertyGroup, context: bpy.types.Context | N
     return _entries
 
 
-def _library_number(matching: bpy.types.PropertyGroup) -> int:
+def _library_number(matching: PropertyGroup) -> int:
     names = [entry[0] for entry in _libraries(matching, None)]
     return names.index(matching.library_name) if matching.library_name in names else 0
 
 
-def _set_library(matching: bpy.types.PropertyGroup, number: int) -> None:
+def _set_library(matching: PropertyGroup, number: int) -> None:
     matching.library_name = _libraries(matching, None)[number][0]
 
 
-def _shown_match(matching: bpy.types.PropertyGroup) -> int:
+def _shown_match(matching: PropertyGroup) -> int:
     """The found keyframe of the current frame; elsewhere the one that was chosen last."""
     scene = matching.id_data
     take = next((take for take in scene.keymark.takes if take.matching == matching), None)
@@ -53,11 +55,11 @@ def _shown_match(matching: bpy.types.PropertyGroup) -> int:
     return here if here >= 0 else min(matching.active_match, max(len(matching.matches) - 1, 0))
 
 
-def _choose_match(matching: bpy.types.PropertyGroup, index: int) -> None:
+def _choose_match(matching: PropertyGroup, index: int) -> None:
     """Go to the frame of the found keyframe that was clicked in the list."""
     matching.active_match = index
     if index < len(matching.matches):
-        matching.matches[index].go_to(matching.id_data)
+        show_frame(matching.id_data, matching.matches[index].frame)
 
 
 class KEYMARK_PG_candidate(bpy.types.PropertyGroup):
@@ -92,7 +94,7 @@ class KEYMARK_PG_match(bpy.types.PropertyGroup):
     by_hand: Switch("Chosen by Hand", "Whether a person chose the candidate, so that it is not doubtful")
 
     @property
-    def candidate(self) -> bpy.types.PropertyGroup:
+    def candidate(self) -> PropertyGroup:
         return self.candidates[min(self.chosen, len(self.candidates) - 1)]
 
     @property
@@ -108,10 +110,6 @@ class KEYMARK_PG_match(bpy.types.PropertyGroup):
 
         chosen = self.candidate
         return Matched(self.library, chosen.name, chosen.mirrored, min(max(self.confidence, 0.0), 1.0))
-
-    def go_to(self, scene: bpy.types.Scene) -> None:
-        whole = int(self.frame // 1.0)
-        scene.frame_set(whole, subframe=self.frame - whole)
 
 
 class FloorSettings:

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from math import pi
 
-import bpy
 import numpy as np
+from bpy.types import PropertyGroup
 
 from ...core.arrays import Array
 from ...core.body.actor import Actor
@@ -22,7 +22,7 @@ ELSEWHERE_M = 0.15
 """Distance between joints of two candidates above which anybody sees that a limb is elsewhere [m]."""
 
 
-def add_match(take: bpy.types.PropertyGroup, frame: float, library: str) -> bpy.types.PropertyGroup:
+def add_match(take: PropertyGroup, frame: float, library: str) -> PropertyGroup:
     """Add a found keyframe without candidates, in order of frame; others may move in memory."""
     matches = take.matching.matches
     place = sum(match.frame < frame for match in matches)
@@ -33,7 +33,7 @@ def add_match(take: bpy.types.PropertyGroup, frame: float, library: str) -> bpy.
 
 
 def add_candidate(
-    match: bpy.types.PropertyGroup, posture: Posture, name: str, mirrored: bool, confidence: float
+    match: PropertyGroup, posture: Posture, name: str, mirrored: bool, confidence: float
 ) -> None:
     """Add a posture that a found keyframe's frame may show; the first one added is the one it has."""
     candidate = match.candidates.add()
@@ -62,7 +62,7 @@ def _heading(posture: Posture) -> float:
     return float(headings_rad(Posture.stack([posture]))[0])
 
 
-def key_matches(take: bpy.types.PropertyGroup, frames: Array, postures: Sequence[Posture]) -> None:
+def key_matches(take: PropertyGroup, frames: Array, postures: Sequence[Posture]) -> None:
     """Key postures at scene frames (K,) as found ones, and assign the keyframes to the actor."""
     actor = actor_of(take)
     take.keyframe_action = take.keyframe_action or new_keyframe_action(actor)
@@ -71,6 +71,6 @@ def key_matches(take: bpy.types.PropertyGroup, frames: Array, postures: Sequence
     assign_action(actor, take.keyframe_action)
 
 
-def key_candidate(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> None:
+def key_candidate(take: PropertyGroup, match: PropertyGroup) -> None:
     """Key the chosen candidate of a found keyframe at its frame."""
     key_matches(take, np.array([round(match.frame, 3)]), [candidate_posture(match.candidate)])

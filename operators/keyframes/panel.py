@@ -30,7 +30,7 @@ from ..shell.panel import (
 )
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
-from .candidates import candidate_title
+from .change_match import candidate_title
 from .corrections import DRAGGING, LIMBS, selected_limbs
 
 MOST_SHOWN = 4  # candidates, the likeliest; with more the step would not fit the sidebar of a small screen

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import bpy
+from bpy.types import Context, OperatorProperties, Scene
 
 from ...core.progress import within
 from ..bridge.scene_frames import scene_frames
@@ -45,7 +46,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
     bl_label = "Propose Keyframes"
     requirements = (footage, all_colors, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
+    def start(self, scene: Scene) -> "Job[Outcome]":
         """Return the job; a clip that was read for these markers before is not read again."""
         from ...core.markers.reading import of_same_footage, read_clip, reading_key
         from ...core.prior.keyframe_proposals import evidence_speed, propose_keyframes
@@ -69,7 +70,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         proposed = tuple(round(float(frame)) for frame in frames[chosen])
         return Outcome(identifier, reading, proposed, speed.values, frames, speed.note)
 
-    def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
+    def finish(self, scene: Scene, result: Outcome) -> None:
         take = take_by_identifier(scene, result.take)
         keep_reading(take, result.reading)
         keep_speed(take, result.scene_frames, result.speed)
@@ -81,7 +82,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         give_notices(take, "keyframes", "proposals", notes)
 
 
-def proposals(context: bpy.types.Context) -> str | None:
+def proposals(context: Context) -> str | None:
     """The take has proposed keyframes."""
     return None if proposed_frames(find_take(context.scene)) else "Propose keyframes first"
 
@@ -107,12 +108,12 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
     )
 
     @classmethod
-    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+    def description(cls, context: Context, properties: OperatorProperties) -> str:
         if properties.skip_posed:
             return "Go to the next proposed keyframe that is not posed yet"
         return f"Go to the {properties.direction.lower()} proposed keyframe"
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         scene, take = context.scene, find_take(context.scene)
         frames = unposed_proposals(take) if self.skip_posed else proposed_frames(take)
         if not frames:

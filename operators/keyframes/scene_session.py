@@ -8,7 +8,6 @@ import bpy
 
 from ...core.arrays import Array
 from ...core.progress import stretch
-from ..bridge.keyframes import Matches
 from ..follow.evidence import scene_evidence
 from ..shell.results import MADE, reading_of
 from ..shell.takes import footage_of
@@ -16,6 +15,7 @@ from ..shell.takes import footage_of
 if TYPE_CHECKING:
     from ...core.progress import Job
     from ...core.session.session import Session
+    from ..bridge.keyframes import Matches
 
 READ = 0.1
 """Share of a job after which the scene is read."""
@@ -40,7 +40,7 @@ class SceneSession:
 
 
 def read_session(
-    scene: bpy.types.Scene, settings: bpy.types.PropertyGroup, matches: Matches, **wanted: Any
+    scene: bpy.types.Scene, settings: bpy.types.PropertyGroup, matches: "Matches", **wanted: Any
 ) -> "Job[SceneSession]":
     """Read what the session of a take starts from; the scene stays as it is.
 

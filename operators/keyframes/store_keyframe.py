@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
+from bpy.types import Context, PropertyGroup, Scene
 
 from ...core.body.human import HUMAN
 from ...core.errors import KeymarkError
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 SAME_POSE = 1e-3  # change of a pose below which nobody changed it [m, rad]
 
 
-def improve_neighbors(context: bpy.types.Context, take: bpy.types.PropertyGroup, frame: float) -> int:
+def improve_neighbors(context: Context, take: PropertyGroup, frame: float) -> int:
     """Pose the found keyframes around one that was just stored, accepted or replaced; return their number.
 
     To be called within the same operator, so that one undo takes both back. Posed keyframes, and those whose
@@ -56,7 +57,7 @@ def improve_neighbors(context: bpy.types.Context, take: bpy.types.PropertyGroup,
     return 0
 
 
-def _reading(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Reading | None":
+def _reading(scene: Scene, take: PropertyGroup) -> "Reading | None":
     """The kept reading, if it is of this footage, these markers and these ignored regions."""
     from ...core.markers.reading import of_same_footage, reading_key
 
@@ -68,9 +69,7 @@ def _reading(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Reading 
     return reading if of_same_footage(reading.key, key) else None
 
 
-def _pose_anew(
-    scene: bpy.types.Scene, settings: bpy.types.PropertyGroup, reading: "Reading", frame: float
-) -> int:
+def _pose_anew(scene: Scene, settings: PropertyGroup, reading: "Reading", frame: float) -> int:
     from ...core.posing.pose_clip import pose_clip
     from ...core.posing.turned import section_around, take_around
     from ...core.session.stages import seen_in
@@ -100,7 +99,7 @@ def _pose_anew(
 
 
 @contextmanager
-def _waiting(context: bpy.types.Context) -> Iterator[None]:
+def _waiting(context: Context) -> Iterator[None]:
     """The mouse shows meanwhile that Blender is busy."""
     window = None if bpy.app.background else context.window
     if window is not None:
@@ -112,14 +111,14 @@ def _waiting(context: bpy.types.Context) -> Iterator[None]:
             window.cursor_modal_restore()
 
 
-def note_corrected(take: bpy.types.PropertyGroup, frame: float, in_depth: bool) -> None:
+def note_corrected(take: PropertyGroup, frame: float, in_depth: bool) -> None:
     """Remember that the pose shown at a frame without a key was corrected, and whether in depth as well."""
     matching = take.matching
     before = matching.corrected_in_depth and abs(matching.corrected_frame - frame) < SAME_FRAME
     matching.corrected_frame, matching.corrected_in_depth = frame, in_depth or before
 
 
-def _depth_found(take: bpy.types.PropertyGroup, body: "Body", posture: "Posture", frame: float) -> bool:
+def _depth_found(take: PropertyGroup, body: "Body", posture: "Posture", frame: float) -> bool:
     """Whether the pose shown has the depth that was found: corrected in the picture alone, or as keyed."""
     from ..bridge.pose import read_posture
     from ..bridge.scene_frames import at_scene_frame, showing_action
@@ -135,7 +134,7 @@ def _depth_found(take: bpy.types.PropertyGroup, body: "Body", posture: "Posture"
     return float(np.abs(posture.minus(keyed)).max()) < SAME_POSE
 
 
-def key_pose(context: bpy.types.Context, take: bpy.types.PropertyGroup, depth_found: bool = False) -> int:
+def key_pose(context: Context, take: PropertyGroup, depth_found: bool = False) -> int:
     """Key the actor's pose as it stands, in the take's keyframe Action at the current frame.
 
     `depth_found`: whether it was put right in the picture alone, which tells its neighbors nothing: whether
@@ -157,7 +156,7 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
     bl_label = "Store Keyframe"
     requirements = (actor, idle)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         from ..bridge.actor_lengths import read_body
         from ..bridge.keyframes import NOTICEABLE_M
         from ..bridge.pose import read_posture

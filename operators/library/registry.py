@@ -122,14 +122,11 @@ class KEYMARK_PG_shelf(bpy.types.PropertyGroup):
     active: Integer("Active Library", "The library that is chosen in the list", min=0)
 
 
-def attach() -> None:
-    """Add the registry to the window manager."""
-    bpy.types.WindowManager.keymark_shelf = Group(type=KEYMARK_PG_shelf, options=SKIP_SAVE)
+ATTACHED = {"WindowManager.keymark_shelf": Group(type=KEYMARK_PG_shelf, options=SKIP_SAVE)}
 
 
 def detach() -> None:
-    """Remove it, and cancel a reading of the folders that was asked for."""
+    """Cancel a reading of the folders that was asked for."""
     if timers.is_registered(_refresh_now):
         timers.unregister(_refresh_now)
     _items.clear()
-    del bpy.types.WindowManager.keymark_shelf

@@ -6,6 +6,7 @@ footage and from any other side, where depth shows. The one that the frame has i
 
 import bpy
 import numpy as np
+from bpy.types import Context, PropertyGroup, Scene
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
@@ -36,7 +37,7 @@ _looked_at: tuple[float, int] | None = None
 """Scene frame, and the candidate there whose button the mouse was over last."""
 
 
-def look_at(context: bpy.types.Context, candidate: int) -> None:
+def look_at(context: Context, candidate: int) -> None:
     """Draw a candidate of the current frame; called where Blender asks for the tooltip of its button."""
     global _looked_at
     wanted = float(context.scene.frame_current_final), candidate
@@ -45,7 +46,7 @@ def look_at(context: bpy.types.Context, candidate: int) -> None:
         redraw_footage(context)
 
 
-def looked_at(scene: bpy.types.Scene) -> int:
+def looked_at(scene: Scene) -> int:
     """The candidate of the current frame whose button the mouse was over last; -1 for none."""
     frame, candidate = _looked_at or (None, -1)
     return candidate if frame == scene.frame_current_final else -1
@@ -57,7 +58,7 @@ def candidate_color(index: int) -> Color:
     return (red, green, blue, GHOST)
 
 
-def draw(context: bpy.types.Context) -> list[Item]:
+def draw(context: Context) -> list[Item]:
     """The figure of the candidate, at a frame that nobody has decided on."""
     scene = context.scene
     settings, take = scene.keymark.overlays, find_take(scene)
@@ -74,7 +75,7 @@ def draw(context: bpy.types.Context) -> list[Item]:
     return picture(positions, candidate, match.chosen, settings)
 
 
-def _shown(take: bpy.types.PropertyGroup, frame: float) -> bpy.types.PropertyGroup | None:
+def _shown(take: PropertyGroup, frame: float) -> PropertyGroup | None:
     """What there is to choose from at a scene frame: a found keyframe's candidates, or those offered."""
     place = match_at(take, frame)
     match = take.matching.matches[place] if place >= 0 else None
@@ -83,7 +84,7 @@ def _shown(take: bpy.types.PropertyGroup, frame: float) -> bpy.types.PropertyGro
     return offered_at(take, frame)
 
 
-def candidate_points(armature_object: bpy.types.Object, match: bpy.types.PropertyGroup) -> Array:
+def candidate_points(armature_object: bpy.types.Object, match: PropertyGroup) -> Array:
     """(N, 13, 3) points of a found keyframe's candidates in the world."""
     places = [[*candidate.place, *candidate.turns] for candidate in match.candidates]
     lengths = [bone.length for bone in armature_object.data.bones]
@@ -101,7 +102,7 @@ def candidate_points(armature_object: bpy.types.Object, match: bpy.types.Propert
     return points
 
 
-def picture(positions: Array, candidate: int, chosen: int, settings: bpy.types.PropertyGroup) -> list[Item]:
+def picture(positions: Array, candidate: int, chosen: int, settings: PropertyGroup) -> list[Item]:
     """The figure of a candidate, with its number where it is farthest from the chosen one.
 
     `positions` (N, 13, 2) are region pixels of all candidates' points, NaN where not seen.

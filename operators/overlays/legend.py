@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import lru_cache
 
-import bpy
 import numpy as np
+from bpy.types import Area, Region
 
 from ...core.arrays import Array
 from .drawing import (
@@ -120,13 +120,13 @@ def _sample(look: Look, x: float, y: float, style: Style) -> list[Item]:
         marks = diamonds(middle, style.diamond * scale)
         return [thin(segments(marks, closed=True)), Fill(marks, color)]
     if look.figure == "line":
-        dots = circles(np.linspace(*line, 5)[1:-1], (style.dot + 1.0) * scale, 8)
+        dots = circles(np.linspace(line[0], line[1], 5)[1:-1], (style.dot + 1.0) * scale, 8)
         drawn = dashes(line, style.dash * scale, style.gap * scale) if look.dashed else line[None]
         return [thin(drawn), *([Fill(dots, color)] if look.dotted else [])]
     return []
 
 
-def corner(area: bpy.types.Area, region: bpy.types.Region, scale: float) -> tuple[float, float]:
+def corner(area: Area, region: Region, scale: float) -> tuple[float, float]:
     """The top left corner of a region's part that no toolbar, header or name of the view covers [region px].
 
     Below, where a legend would lie as well, the performer's feet are.

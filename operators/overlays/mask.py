@@ -7,6 +7,7 @@ import bpy
 import gpu
 import numpy as np
 from bpy.app.handlers import persistent
+from bpy.types import Context, Scene
 
 from ...core.arrays import Image, SingleArray
 from ...core.errors import KeymarkError
@@ -36,7 +37,7 @@ _textures: dict[str, tuple[object, gpu.types.GPUTexture]] = {}
 """By what it shows, the texture that was drawn last, and what it was made of."""
 
 
-def draw(context: bpy.types.Context) -> list[Item]:
+def draw(context: Context) -> list[Item]:
     """The masks of the scene's frame."""
     take = find_take(context.scene)
     if take is None or not context.window_manager.keymark_show_masks:
@@ -90,7 +91,9 @@ def over_footage(drawn: gpu.types.GPUTexture, view: FootageView) -> Picture:
 
 def _names(masks: Sequence[ColorMask], view: FootageView) -> list[Label]:
     """Each mask's name above its larger outlines, higher where another name is."""
-    labels, boxes, gap = [], [], NAME_GAP * ui_scale()
+    labels: list[Label] = []
+    boxes: list[tuple[float, float, float, float]] = []
+    gap = NAME_GAP * ui_scale()
     for mask in masks:
         width, height = text_size(mask.label)
         longest = len(mask.outlines[0]) if mask.outlines else 0
@@ -119,7 +122,7 @@ def free_height(
 # --- Regions that are never a marker
 
 
-def draw_ignored(context: bpy.types.Context) -> list[Item]:
+def draw_ignored(context: Context) -> list[Item]:
     """The regions that are never a marker, with the masks and while they are painted."""
     take, brush = find_take(context.scene), brush_at_work()
     if take is None or (brush is None and not context.window_manager.keymark_show_masks):
@@ -144,7 +147,7 @@ def hatched(mask: Image) -> SingleArray:
 
 
 @persistent
-def _frame_changed(scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
+def _frame_changed(scene: Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Make the masks of the scene's current frame."""
     if not bpy.context.window_manager.keymark_show_masks or bpy.app.is_job_running("RENDER"):
         return
@@ -160,7 +163,7 @@ def _frame_changed(scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph | Non
 
 
 @persistent
-def _stopped(scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
+def _stopped(scene: Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Make the masks that playback has left out."""
     _cost.last_s = 0.0
     _frame_changed(scene)
@@ -171,7 +174,7 @@ class Cost:
 
     last_s = 0.0
 
-    def is_fast(self, scene: bpy.types.Scene) -> bool:
+    def is_fast(self, scene: Scene) -> bool:
         """Whether they take no more than their share of a frame's time, so that playback keeps its speed."""
         return self.last_s <= LARGEST_SHARE * scene.render.fps_base / scene.render.fps
 

@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import bpy
 import numpy as np
+from bpy.types import Context, PropertyGroup, Scene
 
-from ...core.arrays import Array, BoolArray
+from ...core.arrays import Array
 from ..follow.frame_keypoints import FrameKeypoints, keypoints_at
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.results import review_of
@@ -27,14 +27,17 @@ from .drawing import (
     ui_scale,
 )
 from .figures import circles, limb_lines, segments
-from .keypoint_marks import all_sources, compared_marks, not_yet_compared, seen_marks
 from .legend import SOURCE_SAMPLES, Row, Sample, corner, legend
-from .outlines import (
+from .marks import (
+    all_sources,
+    compared_marks,
     hidden_markers,
+    not_yet_compared,
     observed_outlines,
     paths,
     predicted_contours,
     predicted_outlines,
+    seen_marks,
     window,
 )
 from .views import MotionView, motion_view
@@ -46,41 +49,28 @@ if TYPE_CHECKING:
 def skeleton(
     review: "Review", index: int, positions: Array, pixels_per_meter: Array, style: Style
 ) -> list[Item]:
-    """The body of one frame: its points (13, 2) in region pixels, and the size (13,) of a meter at each."""
-    sigma = review.sigma_m[index]
-    uncertain = sigma > UNCERTAIN_M
-    colors = np.array([style.color(side_color(name)) for name in review.point_names])
-    return [
-        *_limbs(review.point_names, positions, style),
-        *_joints(positions, uncertain, colors, style),
-        _deviations(positions[uncertain], (sigma * pixels_per_meter)[uncertain], colors[uncertain], style),
-    ]
+    """The body of one frame: its points (13, 2) in region pixels, and the size (13,) of a meter at each.
 
-
-def _limbs(names: tuple[str, ...], positions: Array, style: Style) -> list[Item]:
-    """Lines in the colors of their sides; those of the right have a dark core."""
+    Lines and discs have the colors of their sides; lines of the right have a dark core. An uncertain point is
+    a ring, in a dashed circle as large as its standard deviation.
+    """
+    names, sigma = review.point_names, review.sigma_m[index]
+    uncertain, seen = sigma > UNCERTAIN_M, np.isfinite(positions).all(axis=-1)
+    colors = np.array([style.color(side_color(name)) for name in names])
     lines, sides = limb_lines(names, positions)
-    colors = np.array([style.color(SIDES[side]) for side in sides.tolist()]).reshape(-1, 4)
+    limb_colors = np.array([style.color(SIDES[side]) for side in sides.tolist()]).reshape(-1, 4)
     width = style.limb * style.width * style.body_scale
-    return [
-        Stroke(lines, colors, width, style.halo),
-        Stroke(lines[sides == "R"], style.color(CORE), style.core * width),
-    ]
-
-
-def _joints(positions: Array, uncertain: BoolArray, colors: Array, style: Style) -> list[Item]:
-    """Discs, and rings for uncertain points."""
     rims = circles(positions, style.size(style.joint), 16)
-    seen = np.isfinite(positions).all(axis=-1)
-    edges = Stroke(segments(rims[seen], closed=True), np.repeat(colors[seen], 16, axis=0), 1.5, style.halo)
-    return [edges, Fill(rims[seen & ~uncertain], colors[seen & ~uncertain])]
-
-
-def _deviations(positions: Array, radii: Array, colors: Array, style: Style) -> Stroke:
-    """Dashed circles as large as the points' standard deviations."""
-    seen = np.isfinite(positions).all(axis=-1) & np.isfinite(radii)
-    parts = segments(circles(positions[seen], radii[seen], 48), closed=True)[::2]
-    return Stroke(parts, np.repeat(colors[seen], 24, axis=0), 1.0, style.halo)
+    radii = sigma * pixels_per_meter
+    vague = uncertain & seen & np.isfinite(radii)
+    around = segments(circles(positions[vague], radii[vague], 48), closed=True)[::2]
+    return [
+        Stroke(lines, limb_colors, width, style.halo),
+        Stroke(lines[sides == "R"], style.color(CORE), style.core * width),
+        Stroke(segments(rims[seen], closed=True), np.repeat(colors[seen], 16, axis=0), 1.5, style.halo),
+        Fill(rims[seen & ~uncertain], colors[seen & ~uncertain]),
+        Stroke(around, np.repeat(colors[vague], 24, axis=0), 1.0, style.halo),
+    ]
 
 
 # --- Parts of the picture: the items of each, and the rows of the legend that explain them
@@ -90,7 +80,7 @@ def _deviations(positions: Array, radii: Array, colors: Array, style: Style) -> 
 class Shown:
     """A frame of a take's motion that is drawn."""
 
-    take: bpy.types.PropertyGroup
+    take: PropertyGroup
     review: "Review"
     index: int  # index in the clip of the scene's current frame
 
@@ -174,7 +164,7 @@ EXPLAINED = ("keypoints", "observed", "predicted", "skeleton", "paths")
 """The same from the top of the legend down."""
 
 
-def shown(scene: bpy.types.Scene) -> Shown | None:
+def shown(scene: Scene) -> Shown | None:
     """The active take's motion at the scene's frame; None without a motion there."""
     take = find_take(scene)
     review = None if take is None else review_of(take)
@@ -185,16 +175,16 @@ def shown(scene: bpy.types.Scene) -> Shown | None:
     return Shown(take, review, index) if away[index] <= 0.75 else None
 
 
-def draw(context: bpy.types.Context) -> list[Item]:
+def draw(context: Context) -> list[Item]:
     """The motion in the scene's frame."""
     what = shown(context.scene)
     view = None if what is None else motion_view(context, what.take)
-    return [] if view is None else picture(context, what, view, context.scene.keymark.overlays)
+    if what is None or view is None:
+        return []
+    return picture(context, what, view, context.scene.keymark.overlays)
 
 
-def picture(
-    context: bpy.types.Context, what: Shown, view: MotionView, settings: bpy.types.PropertyGroup
-) -> list[Item]:
+def picture(context: Context, what: Shown, view: MotionView, settings: PropertyGroup) -> list[Item]:
     """All enabled items, and their legend."""
     scale = ui_scale()
     meter = view.pixels_per_meter(what.review, what.index)
@@ -214,7 +204,7 @@ def picture(
 # --- Overlay of keypoints where there is no motion yet
 
 
-def draw_keypoints(context: bpy.types.Context) -> list[Item]:
+def draw_keypoints(context: Context) -> list[Item]:
     """The keypoints of the scene's frame."""
     scene = context.scene
     settings, take = scene.keymark.overlays, find_take(scene)
@@ -227,10 +217,7 @@ def draw_keypoints(context: bpy.types.Context) -> list[Item]:
 
 
 def picture_keypoints(
-    context: bpy.types.Context,
-    seen: tuple[FrameKeypoints, ...],
-    view: FootageView,
-    settings: bpy.types.PropertyGroup,
+    context: Context, seen: tuple[FrameKeypoints, ...], view: FootageView, settings: PropertyGroup
 ) -> list[Item]:
     """The keypoints of a frame, and their legend."""
     scale = ui_scale()

@@ -1,21 +1,10 @@
 """The popover of the overlays, of the viewport and of the Movie Clip editor."""
 
 import bpy
+from bpy.types import Context
 
 from ..shell.panel import Popover
 from . import registry
-
-SWITCHES = (
-    "observed",
-    "predicted",
-    "keypoints",
-    "skeleton",
-    "candidates",
-    "paths",
-    "floor_grid",
-    "timeline",
-    "legend",
-)
 
 
 class KEYMARK_PT_overlays(Popover, bpy.types.Panel):
@@ -23,13 +12,14 @@ class KEYMARK_PT_overlays(Popover, bpy.types.Panel):
 
     bl_label = "Overlays"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         layout, settings = self.layout, context.scene.keymark.overlays
         for name, sentence in registry.failures().items():
             layout.label(text="Switched off after an error:", icon="ERROR")
             layout.label(text=name)
             layout.label(text=sentence)
         column = layout.column()
-        for name in SWITCHES:
-            column.prop(settings, f"show_{name}")
+        for each in settings.bl_rna.properties:
+            if each.identifier.startswith("show_"):
+                column.prop(settings, each.identifier)
         column.prop(settings, "opacity")

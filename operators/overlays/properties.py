@@ -1,11 +1,12 @@
 """Properties of the overlays. Blender's own overlay switch hides all of them in the 3D viewport."""
 
 import bpy
+from bpy.types import Context, PropertyGroup
 
 from ..shell.fields import Number, Switch
 
 
-def _changed(_settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _changed(_settings: PropertyGroup, context: Context) -> None:
     from . import registry  # only now: panels and properties are registered before there is anything to draw
 
     registry.try_again()
@@ -51,12 +52,12 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
         "right, feet stand on it, and what is parallel on the floor is parallel in the grid",
         default=False,
     )
-    show_legend: _switch("Legend", "Explain lines and marks in a corner, and name the hidden markers")
     show_timeline: _switch(
         "In the Timeline",
         "Speed in the footage, proposed and found keyframes, confidence and weak frames, in "
         "Timeline and Dope Sheet",
     )
+    show_legend: _switch("Legend", "Explain lines and marks in a corner, and name the hidden markers")
     opacity: Number(
         "Opacity", "Opacity of all overlays", subtype="FACTOR", default=1.0, min=0.0, max=1.0, update=_changed
     )

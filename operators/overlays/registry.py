@@ -7,6 +7,7 @@ from typing import Any
 
 import bpy
 import gpu
+from bpy.types import Context
 
 from ...core.errors import KeymarkError
 from ..shell.job_progress import job_is_running
@@ -14,7 +15,7 @@ from ..shell.takes import FOOTAGE_EDITORS, redraw_editors
 from . import candidates, mask, motion, timeline, tools
 from .drawing import Item, paint
 
-DrawFunction = Callable[[bpy.types.Context], Iterable[Item]]
+DrawFunction = Callable[[Context], Iterable[Item]]
 
 DRAGGING = "keymark.drag_joints"
 logger = logging.getLogger(__name__)
@@ -88,7 +89,7 @@ def try_again() -> None:
     _failures.clear()
 
 
-def redraw(context: bpy.types.Context) -> None:
+def redraw(context: Context) -> None:
     """Redraw every editor that shows an overlay."""
     redraw_editors(context, *FOOTAGE_EDITORS, "DOPESHEET_EDITOR")
 

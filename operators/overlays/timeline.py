@@ -2,10 +2,9 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-import bpy
 import numpy as np
+from bpy.types import Context, PropertyGroup, Region, Scene
 
 from ...core.arrays import Array, BoolArray
 from ..bridge.scene_frames import scene_frames
@@ -14,10 +13,6 @@ from ..shell.results import FootageSpeed, LruCache, reading_of, review_of, speed
 from ..shell.takes import find_take, footage_of
 from .drawing import Color, Fill, Item, Label, Stroke, faded, ui_scale
 from .figures import diamonds, segments, squares
-
-if TYPE_CHECKING:
-    from ...core.markers.reading import Reading
-
 
 CONFIDENCE_COLORS = np.array([[0.90, 0.42, 0.10], [0.93, 0.83, 0.35], [0.22, 0.55, 0.90]])
 """Of low, middle and high confidence, also for color-blind eyes."""
@@ -149,7 +144,7 @@ class Timeline:
         return float(np.clip(0.6 * apart, 0.4 * size * self.pixel, size * self.pixel))
 
 
-def timeline_of(region: bpy.types.Region, pixel: float) -> Timeline | None:
+def timeline_of(region: Region, pixel: float) -> Timeline | None:
     """The layout of a region of Timeline or Dope Sheet; None where it is too low to draw into."""
     # Positions are whole pixels: far apart, they still give an exact scale.
     far = 100_000.0
@@ -163,7 +158,7 @@ def timeline_of(region: bpy.types.Region, pixel: float) -> Timeline | None:
     return None
 
 
-def draw(context: bpy.types.Context) -> list[Item]:
+def draw(context: Context) -> list[Item]:
     """What a take has to show in Timeline and Dope Sheet."""
     take, timeline = find_take(context.scene), None
     if context.space_data.mode in MODES and context.scene.keymark.overlays.show_timeline:
@@ -171,47 +166,32 @@ def draw(context: bpy.types.Context) -> list[Item]:
     return [] if take is None or timeline is None else picture(context.scene, take, timeline)
 
 
-def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Timeline) -> list[Item]:
-    """All items that have data."""
+def picture(scene: Scene, take: PropertyGroup, timeline: Timeline) -> list[Item]:
+    """All items that have data; graph and strip are kept, so that a redraw of the same view only draws."""
     items: list[Item] = []
-    speed = _speed(scene, take)
+    speed, review = _speed(scene, take), review_of(take)
     if speed is not None:
-        items += _drawn(
-            f"speed {speed.key} {timeline}", lambda: speed_graph(speed.frames, speed.values, timeline)
-        )
-    review = review_of(take)
+        key = f"speed {speed.key} {timeline}"
+        items += _views.get(key, lambda: speed_graph(speed.frames, speed.values, timeline)) or []
     if review is not None and np.isfinite(review.confidence).any():
-        items += _drawn(
-            f"confidence {take.review_key} {timeline}",
-            lambda: confidence_strip(review.frames, review.confidence, timeline),
-        )
-    weak = [weak.frame for weak in take.review.weak_frames]
-    proposed = [proposal.frame for proposal in take.proposals]
-    posed = posed_frames(take) if weak or proposed else ()
-    if weak:
-        frames = np.array(weak, dtype=np.float64)
-        items += weak_pointers(frames[~have_frames(posed, frames)], timeline)
-    matched = matched_frames(take)
-    if proposed:
-        frames = np.array(proposed, dtype=np.float64)
-        still = frames[~have_frames(matched, frames)]
-        if len(still):
-            done = have_frames(posed, still)
-            items += marks(diamonds, still, _level(still, speed), done, PROPOSED, timeline)
-    if matched:
-        frames = np.array(matched, dtype=np.float64)
-        found = take.matching.matches
-        doubtful = {round(found[place].frame, 3) for place in doubtful_matches(take)}
-        sure = np.array([frame not in doubtful for frame in matched])
-        items += marks(squares, frames, _level(frames, speed), sure, MATCHED, timeline)
+        key = f"confidence {take.review_key} {timeline}"
+        items += _views.get(key, lambda: confidence_strip(review.frames, review.confidence, timeline)) or []
+    weak = np.array([weak.frame for weak in take.review.weak_frames], dtype=np.float64)
+    proposed = np.array([proposal.frame for proposal in take.proposals], dtype=np.float64)
+    posed = posed_frames(take) if len(weak) or len(proposed) else ()
+    found = matched_frames(take)
+    items += weak_pointers(weak[~have_frames(posed, weak)], timeline)
+    still, matched = proposed[~have_frames(found, proposed)], np.array(found)
+    doubtful = [round(take.matching.matches[place].frame, 3) for place in doubtful_matches(take)]
+    for shape, frames, filled, color in (
+        (diamonds, still, have_frames(posed, still), PROPOSED),
+        (squares, matched, ~np.isin(matched, doubtful), MATCHED),
+    ):
+        if len(frames):
+            graph = None if speed is None else (speed.frames, relative(speed.values))
+            level = np.zeros(len(frames)) if graph is None else np.interp(frames, *graph)
+            items += marks(shape, frames, level, filled, color, timeline)
     return items
-
-
-def _level(frames: Array, speed: "FootageSpeed | None") -> Array:
-    """Heights of marks at frames (K,) on the graph, 0 to 1; 0 without a graph."""
-    if speed is None:
-        return np.zeros(len(frames))
-    return np.asarray(np.interp(frames, speed.frames, relative(speed.values)))
 
 
 def relative(speed: Array) -> Array:
@@ -282,10 +262,9 @@ def marks(
 
 _speeds: LruCache[FootageSpeed] = LruCache()
 _views: LruCache[list[Item]] = LruCache(16)
-"""Cache of drawn items: a redraw without a change of view only draws."""
 
 
-def _speed(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> FootageSpeed | None:
+def _speed(scene: Scene, take: PropertyGroup) -> FootageSpeed | None:
     """The speed in the footage that keyframes were proposed by; else of the motion's review or the reading.
 
     The reading tells of markers alone.
@@ -296,24 +275,15 @@ def _speed(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> FootageSpee
     marked = reading is not None and reading.tracks.visible.any() and take.clip is not None
     if review is not None and (not marked or review.keypoints.names):
         return FootageSpeed(take.review_key, review.frames, review.speed)
-    return _marker_speed(scene, take, reading) if reading is not None and marked else None
-
-
-def _marker_speed(
-    scene: bpy.types.Scene, take: bpy.types.PropertyGroup, reading: "Reading"
-) -> FootageSpeed | None:
-    # Imported late: Keymark registers without SciPy.
-    from ...core.prior.keyframe_proposals import marker_speed
-
-    footage = footage_of(scene, take)
+    if reading is None or not marked:
+        return None
+    footage, tracks = footage_of(scene, take), reading.tracks
     key = f"{take.reading_key} {footage.first_frame} {footage.rate}"
 
     def read() -> FootageSpeed:
-        frames = scene_frames(reading.tracks.time_s, footage.first_frame, footage.rate)
-        return FootageSpeed(key, frames, marker_speed(reading.tracks))
+        from ...core.prior.keyframe_proposals import marker_speed  # late: Keymark registers without SciPy
+
+        frames = scene_frames(tracks.time_s, footage.first_frame, footage.rate)
+        return FootageSpeed(key, frames, marker_speed(tracks))
 
     return _speeds.get(key, read)
-
-
-def _drawn(key: str, make: Callable[[], list[Item]]) -> list[Item]:
-    return _views.get(key, make) or []

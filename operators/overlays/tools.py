@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-import bpy
 import numpy as np
+from bpy.types import Context
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
@@ -59,14 +59,14 @@ def show_handles(handles: Handles | None) -> None:
     _handles = handles
 
 
-def show_keys(context: bpy.types.Context, words: str) -> None:
+def show_keys(context: Context, words: str) -> None:
     """Show in the status bar, and beside the joint under the mouse, what keys do now."""
     context.workspace.status_text_set(words)
     if _handles is not None:
         _handles.keys = words
 
 
-def draw_joints(context: bpy.types.Context) -> list[Item]:
+def draw_joints(context: Context) -> list[Item]:
     """A ring at each joint of the active take's actor in a 3D view, a larger one under the mouse."""
     take = find_take(context.scene)
     if _handles is None or take is None or take.armature is None:
@@ -111,7 +111,7 @@ COLORS: dict[str, Color] = {
 """Plumb lines have the color of Blender's Z axis, level ones those of X and Y."""
 
 
-def draw_camera_lines(context: bpy.types.Context) -> list[Item]:
+def draw_camera_lines(context: Context) -> list[Item]:
     """The lines and the camera found, while the tool runs."""
     tool, view = running(), _view(context)
     if view is None or tool is None:
@@ -137,7 +137,7 @@ def draw_camera_lines(context: bpy.types.Context) -> list[Item]:
     return items
 
 
-def _view(context: bpy.types.Context) -> FootageView | None:
+def _view(context: Context) -> FootageView | None:
     """The region that is drawn as it shows the active take's footage; None if it does not."""
     take = find_take(context.scene)
     return None if take is None else footage_view(context.scene, take, context.area, context.region)
@@ -159,7 +159,7 @@ GRID: Color = (0.55, 0.95, 1.0, 0.9)
 HORIZON: Color = (1.0, 0.85, 0.45, 0.9)
 
 
-def draw_floor_grid(context: bpy.types.Context) -> list[Item]:
+def draw_floor_grid(context: Context) -> list[Item]:
     """The floor as the take's camera sees it, or the camera that is being found."""
     take, tool = find_take(context.scene), running()
     settings = context.scene.keymark.overlays
@@ -203,7 +203,7 @@ def _grid(key: tuple[float | int, ...]) -> "FloorGrid":
 TITLE_SIZE, DETAIL_SIZE, NEAR_SIZE = 22.0, 14.0, 13.0
 
 
-def draw_request(context: bpy.types.Context) -> list[Item]:
+def draw_request(context: Context) -> list[Item]:
     """What is asked for, at the region's top, below its headers, and beside the mouse."""
     take, request, view = find_take(context.scene), shown_request(), _view(context)
     if request is None or take is None:
@@ -232,7 +232,7 @@ def draw_request(context: bpy.types.Context) -> list[Item]:
     return items + _near(context, words, x, y + 18.0 * scale)
 
 
-def _near(context: bpy.types.Context, rows: list[str], x: float, y: float) -> list[Item]:
+def _near(context: Context, rows: list[str], x: float, y: float) -> list[Item]:
     """Lines of text, the lowest first, to the right of a place, within what no sidebar covers."""
     scale, (_, _, free_px, _) = ui_scale(), free_box(context.area, context.region)
     items: list[Item] = []

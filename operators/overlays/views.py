@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
+from bpy.types import Context, PropertyGroup, Region
 
 from ...core.arrays import Array, IndexArray
 from ...core.camera.camera import Camera
@@ -46,9 +47,7 @@ class WorldView:
         return np.where(divisor > 1e-6, divisor, np.nan)
 
 
-def world_view(
-    region: bpy.types.Region, view: bpy.types.RegionView3D, footage: FootageView | None
-) -> WorldView:
+def world_view(region: Region, view: bpy.types.RegionView3D, footage: FootageView | None) -> WorldView:
     """A region of a 3D viewport as a view of the motion."""
     right = np.array(view.view_matrix, dtype=np.float64)[0, :3]
     return WorldView(
@@ -86,7 +85,7 @@ class ClipView:
 MotionView = WorldView | ClipView
 
 
-def motion_view(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> MotionView | None:
+def motion_view(context: Context, take: PropertyGroup) -> MotionView | None:
     """The region that is drawn as a view of a take's motion; None where overlays are off or show nothing."""
     space = context.space_data
     footage = footage_view(context.scene, take, context.area, context.region)

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..review.panel import draw_review
+from ..review.weak_frames import draw_review
 from ..shell.panel import Popover, draw_progress, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
@@ -77,8 +77,3 @@ class KEYMARK_PT_reconstruct_notes(Popover, bpy.types.Panel):
         column = self.layout.column()
         for note in active_take(context.scene).notes:
             draw_sentence(column, context, note.text)
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_PT_reconstruct, KEYMARK_PT_reconstruct_options, KEYMARK_PT_reconstruct_notes)
-)

@@ -11,6 +11,7 @@ from ..follow.evidence import anything_to_follow
 from ..keyframes.found_keyframes import known_matches
 from ..keyframes.scene_session import READ, go_on, read_session
 from ..shell.base_operator import BaseOperator, capitalized, warn
+from ..shell.fields import Choice
 from ..shell.job_operator import JobOperator
 from ..shell.keyed_frames import straighten_unposed
 from ..shell.requirements import actor, all_colors, footage, idle, two_keyframes
@@ -86,9 +87,7 @@ def keep_motion(
 class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     """Reconstruct every frame from the footage and the keyframes; the motion becomes an Action of its own"""
 
-    bl_idname = "keymark.reconstruct"
     bl_label = "Reconstruct"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, actor, anything_to_follow, all_colors, two_keyframes, idle)
     preview: Any = None
     """The running `LivePreview`; not named as type, since Blender evaluates annotations of its classes."""
@@ -131,14 +130,12 @@ MISSING = {
 class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
     """Animate the actor by its keyframes, the reconstructed motion or the final Action"""
 
-    bl_idname = "keymark.show_action"
     bl_label = "Show on Actor"
-    bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, idle)
 
-    which: bpy.props.EnumProperty(
-        name="Show",
-        description="Action of the take to show",
+    which: Choice(
+        "Show",
+        "Action of the take to show",
         items=[
             ("KEYFRAMES", "Keyframes", "Animate the actor by its keyframes"),
             ("MOTION", "Motion", "Animate the actor by the reconstructed motion"),
@@ -160,6 +157,3 @@ class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
             straighten_unposed(settings)
         assign_action(settings.armature, action)
         return None
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_reconstruct, KEYMARK_OT_show_action))

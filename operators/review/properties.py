@@ -1,7 +1,9 @@
 """Properties of the review: confidence of a take's motion, and its weak frames."""
 
 import bpy
+from bpy.types import Context, PropertyGroup
 
+from ..bridge.scene_frames import show_frame
 from ..shell.fields import Choice, Entries, Integer, Number, Text
 
 REASONS = (
@@ -12,10 +14,10 @@ REASONS = (
 )
 
 
-def _chosen(review: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _chosen(review: PropertyGroup, context: Context) -> None:
     """Go to the weak frame that was clicked in the list."""
     if review.active_weak_frame < len(review.weak_frames):
-        review.weak_frames[review.active_weak_frame].go_to(review.id_data)
+        show_frame(review.id_data, review.weak_frames[review.active_weak_frame].frame)
 
 
 class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
@@ -25,10 +27,6 @@ class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
     reason: Choice("Reason", "Reason why a keyframe helps here", items=REASONS)
     marker: Text("Marker", "Marker that is the reason, if any")
     point: Text("Body Point", "Body point whose keypoints are the reason, if any")
-
-    def go_to(self, scene: bpy.types.Scene) -> None:
-        whole = int(self.frame // 1.0)
-        scene.frame_set(whole, subframe=self.frame - whole)
 
 
 class KEYMARK_PG_review(bpy.types.PropertyGroup):

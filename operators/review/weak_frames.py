@@ -1,24 +1,71 @@
-"""Frames worth another keyframe: jump to them and pose them; look at the actor from the side."""
+"""Frames worth another keyframe: drawn as a list, jumped to and posed; the actor seen from the side."""
 
 import bpy
 import numpy as np
+from bpy.types import Context, OperatorProperties, PropertyGroup, UILayout
 from mathutils import Matrix, Vector
 
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..bridge.object_space import evaluated
-from ..bridge.scene_frames import at_scene_frame, showing_action
+from ..bridge.scene_frames import at_scene_frame, show_frame, showing_action
+from ..follow.marker_properties import segment_title
 from ..footage.camera_view import look_through, viewports
 from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.fields import Choice
 from ..shell.keyed_frames import (
     depth_is_found,
+    is_posed,
     new_keyframe_action,
     straighten_unposed,
 )
+from ..shell.panel import RowList, draw_sentence
 from ..shell.requirements import actor, camera, idle, motion, weak_frames
 from ..shell.takes import active_take
+
+
+class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
+    """Weak frames, the one that needs a keyframe most first: frame, and reason."""
+
+    def draw_row(self, context: Context, layout: UILayout, item: PropertyGroup) -> None:
+        row = layout.row(align=True)
+        number = row.row()
+        number.ui_units_x = 2.2
+        number.label(text=f"{item.frame:g}")
+        reason = item.bl_rna.properties["reason"].enum_items[item.reason]
+        row.label(text=reason_words(item), icon=reason.icon, translate=False)
+        if is_posed(active_take(context.scene), item.frame):
+            row.label(text="", icon="KEYTYPE_KEYFRAME_VEC")
+
+
+def reason_words(item: PropertyGroup) -> str:
+    """The reason of a weak frame, with the marker or the body point that it lies with."""
+    words = item.bl_rna.properties["reason"].enum_items[item.reason].name
+    what = "" if item.reason == "FAR" else item.marker or (item.point and segment_title(item.point))
+    return f"{words}: {what}" if what else words
+
+
+def draw_review(column: UILayout, context: Context, take: PropertyGroup) -> None:
+    """Draw how sure the motion is, and the frames worth another keyframe."""
+    from ...core.review.confidence import TOLERANCE_SHARE
+
+    review = take.review
+    if review.confidence >= 0.0:
+        near_cm = 100.0 * TOLERANCE_SHARE * take.stature
+        words = f"Joints Within {near_cm:.0f} cm: {100.0 * review.confidence:.0f} %"
+        column.progress(factor=review.confidence, text=words, type="BAR")
+    if not len(review.weak_frames):
+        draw_sentence(column, context, "No frame needs another keyframe", "CHECKMARK")
+        return
+    column.label(text="Worth Another Keyframe")
+    column.template_list(
+        "KEYMARK_UL_weak_frames", "", review, "weak_frames", review, "active_weak_frame", rows=4
+    )
+    row = column.row(align=True)
+    row.operator("keymark.jump_to_weak_frame", text="", icon="TRIA_UP").direction = "PREVIOUS"
+    row.operator("keymark.pose_from_motion", icon="KEY_HLT").where = "WEAK"
+    row.operator("keymark.jump_to_weak_frame", text="", icon="TRIA_DOWN").direction = "NEXT"
 
 
 class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
@@ -38,14 +85,14 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
     )
 
     @classmethod
-    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+    def description(cls, context: Context, properties: OperatorProperties) -> str:
         return {
             "CHOSEN": "Go to the frame that is chosen in the list",
             "NEXT": "Go to the next frame of the list; the worst comes first",
             "PREVIOUS": "Go to the previous frame of the list; the worst comes first",
         }[properties.direction]
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         review = active_take(context.scene).review
         step = {"CHOSEN": 0, "NEXT": 1, "PREVIOUS": -1}[self.direction]
         # At first, the worst frame itself is the next one.
@@ -75,7 +122,7 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         ],
     )
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Key the motion's pose in the keyframe Action, and let that animate the actor."""
         from ..bridge.keyframes import store_pose
 
@@ -93,8 +140,7 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
             store_pose(take.armature, action, HUMAN, frame, depth_is_found(take, frame))
         take.keyframe_action = action
         assign_action(take.armature, action)
-        whole = int(frame // 1.0)
-        scene.frame_set(whole, subframe=frame - whole)
+        show_frame(scene, frame)
         self.report({"INFO"}, f"Stored the reconstructed pose at frame {frame:g}; now correct it")
 
 
@@ -105,7 +151,7 @@ class KEYMARK_OT_look_from_side(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER"}
     requirements = (camera, actor)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Set the context's viewport, or all of them if the context is another editor."""
         take, own = active_take(context.scene), context.space_data
         spaces = [own] if isinstance(own, bpy.types.SpaceView3D) else list(viewports(context.window_manager))

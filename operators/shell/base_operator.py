@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import ClassVar
 
 import bpy
+from bpy.types import Context, PropertyGroup
 
 from ...core.errors import InputError, KeymarkError
 from ..bridge.keys import keys_changed
@@ -15,7 +16,7 @@ from .requirements import Requirement, all_met
 from .takes import redraw_sidebars_soon
 
 
-def warn_if_outdated(operator: bpy.types.Operator, take: bpy.types.PropertyGroup) -> None:
+def warn_if_outdated(operator: bpy.types.Operator, take: PropertyGroup) -> None:
     """Warn that a take's final Action, which is about to be used, was baked from an earlier motion."""
     if take.finish.action is not None and take.finish.outdated:
         operator.report({"WARNING"}, "The final Action is of an earlier motion; bake it again for the newest")
@@ -83,11 +84,11 @@ class BaseOperator:
             cls.bl_idname = f"keymark.{cls.__name__.removeprefix(PREFIX)}"
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def poll(cls, context: Context) -> bool:
         """Whether all requirements are met."""
         return all_met(cls, context, *cls.requirements)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: Context) -> set[str]:
         """Run; an expected failure becomes the operator's error report, and the operator is cancelled."""
         keys_changed()  # a script may have set some that Blender has called no handler for yet
         with reported(self):
@@ -95,11 +96,11 @@ class BaseOperator:
         return {"CANCELLED"}
 
     @abstractmethod
-    def run(self, context: bpy.types.Context) -> set[str] | None:
+    def run(self, context: Context) -> set[str] | None:
         """Do the work; without a change raise `Unchanged`, or return {"CANCELLED"}, for no step of undo."""
 
 
-def remove_active(owner: bpy.types.PropertyGroup, entries: str, active: str) -> None:
+def remove_active(owner: PropertyGroup, entries: str, active: str) -> None:
     """Remove the active entry of an owner's list, by the names of both; the one before it becomes active."""
     index = min(getattr(owner, active), len(getattr(owner, entries)) - 1)
     getattr(owner, entries).remove(index)
@@ -112,7 +113,7 @@ def remove_active(owner: bpy.types.PropertyGroup, entries: str, active: str) -> 
 _folders: dict[str, str] = {}  # folder that each operator's browser was left in, for this session
 
 
-def browse(operator: bpy.types.Operator, context: bpy.types.Context, folder: str = "") -> set[str]:
+def browse(operator: bpy.types.Operator, context: Context, folder: str = "") -> set[str]:
     """Show the file browser where this operator's was left last, first in `folder`; returns as `invoke`."""
     begin = _folders.get(operator.bl_idname, folder)
     if begin:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import bpy
 
 from ...core.detect.keypoints import BODY_POINTS
+from .fields import HIDDEN, Number, Text
 
 SAME_FRAME = 0.5  # a note nearer to a frame than this [frames] is of that frame
 SEPARATOR = "\n"  # between names, which are of one line each
@@ -17,13 +18,9 @@ SEPARATOR = "\n"  # between names, which are of one line each
 class KEYMARK_PG_contradiction(bpy.types.PropertyGroup):
     """What no plausible posture explains at a frame."""
 
-    frame: bpy.props.FloatProperty(name="Frame", description="The scene frame")
-    names: bpy.props.StringProperty(
-        name="Names", description="Names of the markers and keypoints, a line each", options={"HIDDEN"}
-    )
-    reading: bpy.props.StringProperty(
-        name="Reading", description="Key of the reading of the clip that it was found in", options={"HIDDEN"}
-    )
+    frame: Number("Frame", "The scene frame")
+    names: Text("Names", "Names of the markers and keypoints, a line each", options=HIDDEN)
+    reading: Text("Reading", "Key of the reading of the clip that it was found in", options=HIDDEN)
 
 
 def note_contradictions(take: bpy.types.PropertyGroup, frame: float, names: Sequence[str]) -> None:
@@ -49,6 +46,3 @@ def _is_followed(take: bpy.types.PropertyGroup, name: str) -> bool:
     if any(marker.name == name for marker in take.markers):
         return bool(take.follow.use_markers)
     return name in BODY_POINTS and bool(take.follow.use_keypoints or take.follow.use_tracks)
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_contradiction,))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from bpy.types import Area, Context, Event, PropertyGroup, Region
 from bpy_extras.view3d_utils import location_3d_to_region_2d, region_2d_to_location_3d, region_2d_to_vector_3d
 
 from ...core.arrays import Array
@@ -29,7 +30,7 @@ NAVIGATION = frozenset(
 class WorldInRegion:
     """A region of a 3D viewport, through a camera or not."""
 
-    region: bpy.types.Region
+    region: Region
     view: bpy.types.RegionView3D
 
     def position(self, place: Array) -> Array | None:
@@ -48,7 +49,7 @@ class WorldInRegion:
         return np.asarray(found / np.linalg.norm(found))
 
 
-def view_under(context: bpy.types.Context, mouse_x: int, mouse_y: int) -> WorldInRegion | None:
+def view_under(context: Context, mouse_x: int, mouse_y: int) -> WorldInRegion | None:
     """The 3D view under the mouse [window px]; None over another editor, a sidebar or a header."""
     area = area_under(context, mouse_x, mouse_y)
     if area is None or area.type != "VIEW_3D":
@@ -60,12 +61,12 @@ def view_under(context: bpy.types.Context, mouse_x: int, mouse_y: int) -> WorldI
     return WorldInRegion(views[0], views[0].data) if views and not covering else None
 
 
-def area_under(context: bpy.types.Context, x: int, y: int) -> bpy.types.Area | None:
+def area_under(context: Context, x: int, y: int) -> Area | None:
     """The editor under the mouse [window px]; None between them."""
     return next((area for area in context.screen.areas if _contains(area, x, y)), None)
 
 
-def _contains(box: bpy.types.Region | bpy.types.Area, x: int, y: int) -> bool:
+def _contains(box: Region | Area, x: int, y: int) -> bool:
     return box.x <= x < box.x + box.width and box.y <= y < box.y + box.height
 
 
@@ -88,33 +89,33 @@ class ClickSequence:
     cursor = "CROSSHAIR"
     ends_beside = True  # whether a click beside the footage ends it; a brush is easily put down there
 
-    def cancel(self, context: bpy.types.Context) -> None:
+    def cancel(self, context: Context) -> None:
         """Take everything back, and stop asking; Blender calls this as well."""
         stop_asking(context)
 
-    def prepare(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    def prepare(self, context: Context, take: PropertyGroup) -> None:
         """Note what is now, before anything is asked for."""
 
     @abstractmethod
-    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+    def request(self, context: Context) -> tuple[FootageRequest, str]:
         """What to click on next, and the keys for the status bar."""
 
-    def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
+    def clicked(self, context: Context, pixel: tuple[float, float]) -> set[str]:
         """Take a click on a pixel of the footage; what `modal` returns."""
         return {"RUNNING_MODAL"}
 
-    def done(self, context: bpy.types.Context) -> set[str]:
+    def done(self, context: Context) -> set[str]:
         """Keep what was clicked on, by default nothing; what `modal` returns."""
         self.cancel(context)
         return {"CANCELLED"}
 
-    def go_on(self, context: bpy.types.Context) -> None:
+    def go_on(self, context: Context) -> None:
         """Skip what is asked for."""
 
-    def go_back(self, context: bpy.types.Context) -> None:
+    def go_back(self, context: Context) -> None:
         """Take the last click back."""
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         """Begin to ask, where an editor of the window shows the footage."""
         take = active_take(context.scene)
         with reported(self):
@@ -130,7 +131,7 @@ class ClickSequence:
             return {"RUNNING_MODAL"}
         return {"CANCELLED"}
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: Context, event: Event) -> set[str]:
         """Take an event."""
         if cancel_click(self, context, event):
             return {"CANCELLED"}
@@ -146,11 +147,11 @@ class ClickSequence:
                 return self._pressed(context, event)
         return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
 
-    def ask(self, context: bpy.types.Context) -> None:
+    def ask(self, context: Context) -> None:
         """Show what is asked for now."""
         ask(context, *self.request(context))
 
-    def _pressed(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def _pressed(self, context: Context, event: Event) -> set[str]:
         pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
         if pixel is not None:
             return self.clicked(context, pixel)

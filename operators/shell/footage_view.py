@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
+from bpy.types import Area, Context, Event, PropertyGroup, Region, Scene
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from numpy.typing import ArrayLike
 
@@ -23,7 +24,7 @@ from .takes import FOOTAGE_EDITORS, areas, footage_of, redraw_footage
 class FootageView:
     """A region that shows a take's footage."""
 
-    region: bpy.types.Region
+    region: Region
     size: tuple[int, int]  # width and height of the footage [px]
     top_left: Array  # (2,) position of the picture's top left corner in the region, y up [px]
     extent: Array  # (2,) vector from there to the bottom right corner [px]
@@ -47,9 +48,7 @@ class FootageView:
         return np.asarray(flat)
 
 
-def footage_view(
-    scene: bpy.types.Scene, take: bpy.types.PropertyGroup, area: bpy.types.Area, region: bpy.types.Region
-) -> FootageView | None:
+def footage_view(scene: Scene, take: PropertyGroup, area: Area, region: Region) -> FootageView | None:
     """Return how a region of an editor shows a take's footage; None if it does not.
 
     Instead of a missing file Blender shows a picture of another size, which is not the footage.
@@ -65,7 +64,7 @@ def footage_view(
 
 
 def view_of_footage_under(
-    context: bpy.types.Context, take: bpy.types.PropertyGroup, mouse_x: int, mouse_y: int
+    context: Context, take: PropertyGroup, mouse_x: int, mouse_y: int
 ) -> FootageView | None:
     """The region under the mouse [window px] that shows the footage; the mouse may lie beside the picture."""
     for area in context.screen.areas:
@@ -79,7 +78,7 @@ def view_of_footage_under(
 
 
 def pixel_under(
-    context: bpy.types.Context, take: bpy.types.PropertyGroup, mouse_x: int, mouse_y: int
+    context: Context, take: PropertyGroup, mouse_x: int, mouse_y: int
 ) -> tuple[float, float] | None:
     """The footage pixel under the mouse [window px]; None if no editor shows the footage there."""
     view = view_of_footage_under(context, take, mouse_x, mouse_y)
@@ -89,7 +88,7 @@ def pixel_under(
     return (float(x), float(y)) if 0.0 <= x < view.size[0] and 0.0 <= y < view.size[1] else None
 
 
-def shows_footage(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> bool:
+def shows_footage(context: Context, take: PropertyGroup) -> bool:
     """Whether any editor of the window shows the footage."""
     return any(
         footage_view(context.scene, take, area, region) is not None
@@ -99,10 +98,7 @@ def shows_footage(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> 
 
 
 def _camera_view(
-    scene: bpy.types.Scene,
-    take: bpy.types.PropertyGroup,
-    space: bpy.types.SpaceView3D,
-    region: bpy.types.Region,
+    scene: Scene, take: PropertyGroup, space: bpy.types.SpaceView3D, region: Region
 ) -> FootageView | None:
     camera = space.camera if space.use_local_camera else scene.camera
     view = space.region_3d
@@ -122,10 +118,7 @@ def _camera_view(
 
 
 def _clip_view(
-    scene: bpy.types.Scene,
-    take: bpy.types.PropertyGroup,
-    space: bpy.types.SpaceClipEditor,
-    region: bpy.types.Region,
+    scene: Scene, take: PropertyGroup, space: bpy.types.SpaceClipEditor, region: Region
 ) -> FootageView:
     view = region.view2d
     top_left, bottom_right = (
@@ -144,7 +137,7 @@ def _undistorted(lens: Camera) -> Camera:
     return replace(lens, distortion=(0.0, 0.0, 0.0))
 
 
-def clip_index(take: bpy.types.PropertyGroup, scene_frame: int | None = None) -> int:
+def clip_index(take: PropertyGroup, scene_frame: int | None = None) -> int:
     """Index of the clip's frame that is shown in a scene frame, the current one by default; -1 for none.
 
     Where the rate varies and the clip was not read yet, the frame is a guess.
@@ -191,7 +184,7 @@ def side_of(name: str) -> str:
     return SIDES.get(name[-2:], "")
 
 
-def ask(context: bpy.types.Context, request: FootageRequest, keys: str) -> None:
+def ask(context: Context, request: FootageRequest, keys: str) -> None:
     """Ask for something, in the header and beside the mouse, with the keys that may be pressed."""
     global _request
     request.keys = keys
@@ -205,14 +198,14 @@ def ask(context: bpy.types.Context, request: FootageRequest, keys: str) -> None:
     redraw_footage(context)
 
 
-def follow_mouse(context: bpy.types.Context, event: bpy.types.Event) -> None:
+def follow_mouse(context: Context, event: Event) -> None:
     """Let the request follow the mouse."""
     if _request is not None and (event.mouse_x, event.mouse_y) != _request.mouse:
         _request.mouse = event.mouse_x, event.mouse_y
         redraw_footage(context)
 
 
-def stop_asking(context: bpy.types.Context) -> None:
+def stop_asking(context: Context) -> None:
     """Ask for nothing; status bar, headers and cursor are as before."""
     global _request
     _request = None

@@ -11,6 +11,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import bpy
+from bpy.types import Context, Event, Scene
 
 from ...core.errors import InputError
 from ...core.progress import run as run_job
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from ...core.progress import Progress
 
 
-def cancel_job(operator: Any, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+def cancel_job(operator: Any, context: Context, event: Event) -> bool:
     """Cancel a modal operator's job if the event is Esc, and report it; return whether it was cancelled."""
     if event.type != "ESC" or event.value != "PRESS":
         return False
@@ -32,7 +33,7 @@ def cancel_job(operator: Any, context: bpy.types.Context, event: bpy.types.Event
     return True
 
 
-def cancel_click(operator: Any, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+def cancel_click(operator: Any, context: Context, event: Event) -> bool:
     """Cancel an operator that waits for a click on Esc or a right click; return whether it was cancelled."""
     if event.type not in ("ESC", "RIGHTMOUSE") or event.value != "PRESS":
         return False
@@ -59,11 +60,11 @@ class JobOperator(BaseOperator):
     _begun: float = 0.0
 
     @abstractmethod
-    def start(self, scene: bpy.types.Scene) -> Generator[Any, None, Any]:
+    def start(self, scene: Scene) -> Generator[Any, None, Any]:
         """The job; it must leave the scene as it was."""
 
     @abstractmethod
-    def finish(self, scene: bpy.types.Scene, result: Any) -> None:
+    def finish(self, scene: Scene, result: Any) -> None:
         """Write the job's result into the scene."""
 
     def watch(self, progress: "Progress") -> None:
@@ -72,13 +73,13 @@ class JobOperator(BaseOperator):
     def unwatch(self) -> None:
         """Remove the preview: everything is as before `watch`."""
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Run the whole job at once."""
         result = run_job(self.start(context.scene))
         keys_changed()  # a script may have set some meanwhile
         self.finish(context.scene, result)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         """Run the job in time slices, so that the user interface stays alive."""
         if bpy.app.background:  # there are no timer events
             return self.execute(context)
@@ -88,7 +89,7 @@ class JobOperator(BaseOperator):
             return {"RUNNING_MODAL"}
         return {"CANCELLED"}
 
-    def begin(self, context: bpy.types.Context) -> None:
+    def begin(self, context: Context) -> None:
         """Start the job and its timer, whose events Blender passes to `modal`."""
         self._job = self.start(context.scene)
         self._scene_uid = context.scene.session_uid
@@ -97,7 +98,7 @@ class JobOperator(BaseOperator):
         self._slice_end = self._begun = monotonic()
         self._show(context, "Starting", 0.0)
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: Context, event: Event) -> set[str]:
         """Run the job for one time slice, or cancel it."""
         if cancel_job(self, context, event):
             return {"CANCELLED"}
@@ -127,7 +128,7 @@ class JobOperator(BaseOperator):
             return {"RUNNING_MODAL"}
         return {"CANCELLED"}
 
-    def cancel(self, context: bpy.types.Context) -> None:
+    def cancel(self, context: Context) -> None:
         """Close the job, and remove its preview, timer and progress bar; Blender calls this as well."""
         if self._job is not None:
             self._job.close()
@@ -141,7 +142,7 @@ class JobOperator(BaseOperator):
         redraw_sidebars(context)
         redraw_sidebars_soon()
 
-    def _scene(self) -> bpy.types.Scene:
+    def _scene(self) -> Scene:
         """The scene that the job was started in, which may have been renamed.
 
         Raises:
@@ -152,7 +153,7 @@ class JobOperator(BaseOperator):
                 return scene
         raise InputError("the scene of this job was removed while it ran; nothing was changed")
 
-    def _show(self, context: bpy.types.Context, stage: str, fraction: float) -> None:
+    def _show(self, context: Context, stage: str, fraction: float) -> None:
         left = time_left(monotonic() - self._begun, fraction)
         context.window_manager.keymark_progress.show(stage, fraction, left)
         words = f"{stage}: {100.0 * fraction:.0f}%   |   "

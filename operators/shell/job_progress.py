@@ -1,6 +1,9 @@
 """The running job: whether there is one, its progress, and the time left."""
 
 import bpy
+from bpy.types import Context
+
+from .fields import Group, Number, Text
 
 OPERATOR_PREFIX = "KEYMARK_OT_"
 TOOLS = ("KEYMARK_OT_drag_joints",)
@@ -12,10 +15,10 @@ EARLIEST_S, LEAST_FRACTION = 1.5, 0.03
 class KEYMARK_PG_progress(bpy.types.PropertyGroup):
     """Progress of the running job; in the window manager, so that no file keeps it."""
 
-    stage: bpy.props.StringProperty()
-    fraction: bpy.props.FloatProperty(min=0.0, max=1.0)
-    time_left: bpy.props.StringProperty()
-    frame: bpy.props.FloatProperty(description="The scene frame at which the job was begun")
+    stage: Text()
+    fraction: Number(min=0.0, max=1.0)
+    time_left: Text()
+    frame: Number("Frame", "The scene frame at which the job was begun")
 
     def show(self, stage: str, fraction: float, time_left: str = "") -> None:
         """Set all three."""
@@ -24,7 +27,10 @@ class KEYMARK_PG_progress(bpy.types.PropertyGroup):
         self.time_left = time_left
 
 
-def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
+ATTACHED = {"WindowManager.keymark_progress": Group(type=KEYMARK_PG_progress)}
+
+
+def job_is_running(context: Context, job: str = "") -> bool:
     """Whether one of Keymark's jobs runs in any window; an open file browser is none.
 
     `job` is how its operator's name begins, as `keymark.reconstruct`; any but `TOOLS` by default.
@@ -39,7 +45,7 @@ def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
     )
 
 
-def steady_frame(context: bpy.types.Context) -> float:
+def steady_frame(context: Context) -> float:
     """The scene's frame; while a job runs, the one at which it was begun.
 
     Previews go through the clip, and panels that followed them would change their height under the mouse.
@@ -59,18 +65,6 @@ def time_left(elapsed_s: float, fraction: float) -> str:
     # Rounded more coarsely the longer it is, so that the label does not flicker.
     step = 10.0 if seconds > 30.0 else 5.0 if seconds > 10.0 else 1.0
     return f"about {max(step * round(seconds / step), 1.0):.0f} s left"
-
-
-def register() -> None:
-    """Add the progress to the window manager."""
-    bpy.utils.register_class(KEYMARK_PG_progress)
-    bpy.types.WindowManager.keymark_progress = bpy.props.PointerProperty(type=KEYMARK_PG_progress)
-
-
-def unregister() -> None:
-    """Remove it."""
-    del bpy.types.WindowManager.keymark_progress
-    bpy.utils.unregister_class(KEYMARK_PG_progress)
 
 
 def is_browsing(operator: bpy.types.Operator, manager: bpy.types.WindowManager) -> bool:

@@ -8,27 +8,18 @@ from collections.abc import Iterable
 
 import bpy
 
+from .fields import HIDDEN, Number, Switch, Text
 from .keyed_frames import has_frame, keyframes_of
 
 
 class KEYMARK_PG_notice(bpy.types.PropertyGroup):
     """A sentence about a step of a take."""
 
-    step: bpy.props.StringProperty(name="Step", description="The step it is about", options={"HIDDEN"})
-    about: bpy.props.StringProperty(
-        name="About",
-        description="What of the step it is about; a newer notice replaces it",
-        options={"HIDDEN"},
-    )
-    text: bpy.props.StringProperty(name="Notice", description="The sentence")
-    of_keyframe: bpy.props.BoolProperty(
-        name="Of a Keyframe",
-        description="It holds while there is a keyframe at its frame",
-        options={"HIDDEN"},
-    )
-    frame: bpy.props.FloatProperty(
-        name="Frame", description="The scene frame that it is about", options={"HIDDEN"}
-    )
+    step: Text("Step", "The step it is about", options=HIDDEN)
+    about: Text("About", "What of the step it is about; a newer notice replaces it", options=HIDDEN)
+    text: Text("Notice", "The sentence")
+    of_keyframe: Switch("Of a Keyframe", "It holds while there is a keyframe at its frame", options=HIDDEN)
+    frame: Number("Frame", "The scene frame that it is about", options=HIDDEN)
 
 
 def give_notices(
@@ -61,6 +52,3 @@ def notices_of(take: bpy.types.PropertyGroup, step: str) -> list[str]:
         for entry in take.notices
         if entry.step == step and (not entry.of_keyframe or has_frame(posed, entry.frame))
     ]
-
-
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_notice,))

@@ -7,6 +7,7 @@ from abc import abstractmethod
 from textwrap import wrap
 
 import bpy
+from bpy.types import Context, PropertyGroup, UILayout
 
 from .contradictions import contradictions_at
 from .job_progress import job_is_running, steady_frame
@@ -32,9 +33,9 @@ class SubPanel(SidebarPanel):
     """A panel inside the main panel, with properties in Blender's two columns."""
 
     bl_parent_id = "KEYMARK_PT_main"
-    layout: bpy.types.UILayout
+    layout: UILayout
 
-    def column(self) -> bpy.types.UILayout:
+    def column(self) -> UILayout:
         """The panel's column of properties."""
         return property_column(self.layout)
 
@@ -51,7 +52,7 @@ class TakePanel(SubPanel):
     """A panel of the active take; hidden without a take, and in a step that is folded."""
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def poll(cls, context: Context) -> bool:
         """Whether there is a take, and the step that the panel is in, if it is in one, is open."""
         take = find_take(context.scene)
         if take is None:
@@ -66,10 +67,10 @@ class RowList:
 
     def draw_item(
         self,
-        context: bpy.types.Context,
-        layout: bpy.types.UILayout,
+        context: Context,
+        layout: UILayout,
         data: bpy.types.AnyType,
-        item: bpy.types.PropertyGroup,
+        item: PropertyGroup,
         icon: int,
         active_data: bpy.types.AnyType,
         active_property: str,
@@ -78,13 +79,11 @@ class RowList:
         self.draw_row(context, layout, item)
 
     @abstractmethod
-    def draw_row(
-        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
-    ) -> None:
+    def draw_row(self, context: Context, layout: UILayout, item: PropertyGroup) -> None:
         """Draw one item."""
 
 
-def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, *jobs: str) -> bool:
+def draw_progress(layout: UILayout, context: Context, *jobs: str) -> bool:
     """Draw the progress of the running job, of any or these operators', on one line; return whether one runs.
 
     It replaces one line, so that nothing moves when a job begins or ends: where panels change their height,
@@ -102,34 +101,30 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, *jobs:
     return True
 
 
-def property_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
+def property_column(layout: UILayout) -> UILayout:
     """A column of properties in Blender's two columns; in a narrow sidebar names are in the fields."""
     layout.use_property_split = is_roomy(bpy.context)
     layout.use_property_decorate = False
     return layout.column()
 
 
-def side_by_side(layout: bpy.types.UILayout) -> bpy.types.UILayout:
+def side_by_side(layout: UILayout) -> UILayout:
     """Where buttons stand side by side; in a narrow sidebar, which cuts names, in a column."""
     return layout.row(align=True) if is_roomy(bpy.context) else layout.column(align=True)
 
 
-def is_roomy(context: bpy.types.Context) -> bool:
+def is_roomy(context: Context) -> bool:
     """Whether the sidebar that is drawn has room for two things in a row."""
     return context.region is None or unscaled_width(context) >= ROOMY_PX
 
 
-def unscaled_width(context: bpy.types.Context) -> float:
+def unscaled_width(context: Context) -> float:
     """Width of the sidebar that is drawn, at a UI scale of 1 [px]."""
     return float(context.region.width / (context.preferences.system.ui_scale or 1.0))
 
 
 def draw_sentence(
-    layout: bpy.types.UILayout,
-    context: bpy.types.Context,
-    sentence: str,
-    icon: str = "DOT",
-    most_lines: int | None = None,
+    layout: UILayout, context: Context, sentence: str, icon: str = "DOT", most_lines: int | None = None
 ) -> None:
     """Draw a translated sentence, wrapped to the width of the sidebar; further lines end in dots."""
     column = layout.column(align=True)
@@ -139,34 +134,32 @@ def draw_sentence(
         column.label(text=line, icon=icon if number == 0 else "BLANK1", translate=False)
 
 
-def sentence_height(context: bpy.types.Context, sentence: str) -> float:
+def sentence_height(context: Context, sentence: str) -> float:
     """Height of what `draw_sentence` draws, in rows."""
     return LINE_HEIGHT * len(_lines(context, sentence))
 
 
-def _lines(context: bpy.types.Context, sentence: str, most_lines: int | None = None) -> list[str]:
+def _lines(context: Context, sentence: str, most_lines: int | None = None) -> list[str]:
     letters = max(16, int((unscaled_width(context) - MARGIN_PX) / LETTER_PX))
     kept = sentence.replace(" %", "\N{NO-BREAK SPACE}%")
     return wrap(kept, letters, max_lines=most_lines, placeholder=" ...")
 
 
-def draw_contradictions(
-    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-) -> None:
+def draw_contradictions(layout: UILayout, context: Context, take: PropertyGroup) -> None:
     """Draw what no plausible pose explains in the current frame, in a line, if there is anything."""
     names = contradictions_at(take, steady_frame(context))
     if names:
         draw_sentence(layout, context, f"Unexplained: {', '.join(names)}", "ERROR", most_lines=1)
 
 
-def right_end(layout: bpy.types.UILayout) -> bpy.types.UILayout:
+def right_end(layout: UILayout) -> UILayout:
     """The right end of a row."""
     row = layout.row()
     row.alignment = "RIGHT"
     return row
 
 
-def draw_readout(layout: bpy.types.UILayout, text: str) -> None:
+def draw_readout(layout: UILayout, text: str) -> None:
     """Draw what is seen in this frame, at the right end of a header, if it does not lie on the name there."""
     if is_roomy(bpy.context) or len(text) <= 7:
         row = right_end(layout)

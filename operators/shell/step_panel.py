@@ -4,6 +4,7 @@ from abc import abstractmethod
 from typing import ClassVar
 
 import bpy
+from bpy.types import Context, PropertyGroup, UILayout
 
 from .notices import notices_of
 from .panel import TakePanel, draw_progress, draw_sentence, is_roomy, property_column
@@ -22,7 +23,7 @@ class StepPanel(TakePanel):
     step: ClassVar[str]  # a name of `steps.STEPS`
     options: ClassVar[str] = ""  # the popover of what is rarely changed
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         """Draw the header; where it is open, the notices and the step."""
         take = active_take(context.scene)
         header, body = self.layout.panel_prop(context.window_manager.keymark_steps, self.step)
@@ -38,9 +39,7 @@ class StepPanel(TakePanel):
         property_column(body)
         self.draw_step(context, body, take)
 
-    def _draw_state(
-        self, header: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-    ) -> None:
+    def _draw_state(self, header: UILayout, context: Context, take: PropertyGroup) -> None:
         """Draw at the header's end what the step has come to, if it fits, or that something is wrong."""
         state = header.row()
         state.alignment = "RIGHT"
@@ -49,9 +48,7 @@ class StepPanel(TakePanel):
         icon = "ERROR" if wrong else "CHECKMARK" if is_behind(take, self.step) else "NONE"
         state.label(text=self.summary(take) if is_roomy(context) else "", icon=icon, translate=False)
 
-    def _draw_action(
-        self, header: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-    ) -> None:
+    def _draw_action(self, header: UILayout, context: Context, take: PropertyGroup) -> None:
         """Draw what is next in a step that is folded, where it can be pressed; or that it runs."""
         action, text = self.action(take)
         if not action or draw_progress(header, context, action):
@@ -63,22 +60,20 @@ class StepPanel(TakePanel):
             button.operator(action, text=text if is_roomy(context) else "", icon="PLAY", translate=False)
 
     @abstractmethod
-    def draw_step(
-        self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup
-    ) -> None:
+    def draw_step(self, context: Context, body: UILayout, take: PropertyGroup) -> None:
         """Draw the step below its header, with properties in Blender's two columns."""
 
     @classmethod
-    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+    def summary(cls, take: PropertyGroup) -> str:
         """What the step has come to, in few letters; nothing by default."""
         return ""
 
     @classmethod
-    def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
+    def is_wrong(cls, take: PropertyGroup) -> bool:
         """Whether something is wrong with the step that its body tells of."""
         return False
 
     @classmethod
-    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+    def action(cls, take: PropertyGroup) -> tuple[str, str]:
         """The operator that is next while the step is folded, and a short label; none by default."""
         return "", ""

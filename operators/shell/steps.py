@@ -9,6 +9,7 @@ from collections.abc import Callable
 
 import bpy
 
+from .fields import Group, Switch
 from .takes import find_take, placement_is_guess, present_actor, redraw_sidebars_soon
 
 _chosen: dict[str, tuple[str, str]] = {}
@@ -82,7 +83,7 @@ def _switch(name: str) -> "bpy.types.AnyType":
             open_step(take, name, opened)
             redraw_sidebars_soon()
 
-    return bpy.props.BoolProperty(name="Open", description="Show this and fold the others", get=get, set=set_)
+    return Switch("Open", "Show this and fold the others", get=get, set=set_)
 
 
 class KEYMARK_PG_steps(bpy.types.PropertyGroup):
@@ -92,13 +93,4 @@ class KEYMARK_PG_steps(bpy.types.PropertyGroup):
 KEYMARK_PG_steps.__annotations__ = {name: _switch(name) for name in (*STEPS, *KINDS)}
 
 
-def register() -> None:
-    """Add the switches to the window manager."""
-    bpy.utils.register_class(KEYMARK_PG_steps)
-    bpy.types.WindowManager.keymark_steps = bpy.props.PointerProperty(type=KEYMARK_PG_steps)
-
-
-def unregister() -> None:
-    """Remove them."""
-    del bpy.types.WindowManager.keymark_steps
-    bpy.utils.unregister_class(KEYMARK_PG_steps)
+ATTACHED = {"WindowManager.keymark_steps": Group(type=KEYMARK_PG_steps)}

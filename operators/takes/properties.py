@@ -210,11 +210,4 @@ class KEYMARK_PG_settings(bpy.types.PropertyGroup):
     overlays: Group(type=KEYMARK_PG_overlays)
 
 
-def attach() -> None:
-    """Add Keymark's properties to scenes."""
-    bpy.types.Scene.keymark = Group(type=KEYMARK_PG_settings)
-
-
-def detach() -> None:
-    """Remove them."""
-    del bpy.types.Scene.keymark
+ATTACHED = {"Scene.keymark": Group(type=KEYMARK_PG_settings)}

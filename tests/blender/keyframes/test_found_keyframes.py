@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from _scene_state import differences, scene_state, shown
 from keymark.core.take.motion import Motion
-from keymark.operators.keyframes.candidates import candidate_title
+from keymark.operators.keyframes.change_match import candidate_title
 from keymark.operators.keyframes.found_keyframes import known_matches
 from keymark.operators.overlays.drawing import Fill, Stroke
 from keymark.operators.overlays.timeline import ROOMY, Timeline, picture

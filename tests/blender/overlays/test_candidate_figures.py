@@ -9,7 +9,7 @@ from _scene_state import made_up_frames
 from keymark.core.body.human import HUMAN
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.camera_placement import read_camera
-from keymark.operators.keyframes.candidates import KEYMARK_OT_replace_match
+from keymark.operators.keyframes.change_match import KEYMARK_OT_replace_match
 from keymark.operators.keyframes.match_edits import add_candidate, add_match, key_matches
 from keymark.operators.overlays import candidates, views
 from keymark.operators.overlays.drawing import Label, Stroke, candidate_icon

@@ -1,8 +1,11 @@
-"""The plane figures that overlays are made of."""
+"""The plane figures that overlays are made of, and the time that masks may take in playback."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from keymark.operators.overlays.figures import circles, dashes, diamonds, segments, triangles
+from keymark.operators.overlays.mask import LARGEST_SHARE, Cost
 
 
 def lengths(parts: np.ndarray) -> np.ndarray:
@@ -65,3 +68,13 @@ def test_triangles_cover_a_convex_polygon() -> None:
     area = 0.5 * np.abs(edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0])
     assert area.sum() == pytest.approx(1.5 * np.sqrt(3.0))
     assert len(triangles([[[0, 0], [1, 0], [np.nan, 1], [0, 1]]])) == 0
+
+
+@pytest.mark.parametrize(("share", "is_fast"), [(0.5 * LARGEST_SHARE, True), (2.0 * LARGEST_SHARE, False)])
+@pytest.mark.parametrize("fps", [24, 60])
+def test_masks_that_slow_playback_down_are_left_out(share: float, is_fast: bool, fps: int) -> None:
+    scene = SimpleNamespace(render=SimpleNamespace(fps=fps, fps_base=1.001))
+    cost = Cost()
+    assert cost.is_fast(scene)
+    cost.last_s = share * 1.001 / fps
+    assert cost.is_fast(scene) is is_fast

@@ -12,13 +12,13 @@ from keymark.operators.follow.frame_keypoints import FrameKeypoints
 from keymark.operators.overlays import motion
 from keymark.operators.overlays import motion as keypoint_overlay
 from keymark.operators.overlays.drawing import SOURCES, THROWN_OUT, Label, Stroke, Style
-from keymark.operators.overlays.keypoint_marks import (
+from keymark.operators.overlays.marks import (
     all_sources,
     compared_marks,
     not_yet_compared,
+    predicted_contours,
     seen_marks,
 )
-from keymark.operators.overlays.outlines import predicted_contours
 from keymark.operators.overlays.views import ClipView
 from keymark.operators.shell import takes
 from keymark.operators.shell.footage_view import FootageView

@@ -19,8 +19,7 @@ from keymark.operators.bridge.fcurves import moved_paths, write_motion
 from keymark.operators.bridge.keyframes import keyed_frames
 from keymark.operators.bridge.review_curves import GROUP, SUFFIX, curve_path, write_review_curves
 from keymark.operators.reconstruct.live_preview import show_review
-from keymark.operators.review.panel import reason_words
-from keymark.operators.review.weak_frames import look_from_side
+from keymark.operators.review.weak_frames import look_from_side, reason_words
 from keymark.operators.shell.keyed_frames import is_posed
 from keymark.operators.shell.results import clear_review, review_of
 from keymark.operators.shell.takes import active_take

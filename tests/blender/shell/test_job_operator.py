@@ -1,4 +1,4 @@
-"""Long jobs on a timer: progress, cancelling and failing, driven without a window's events."""
+"""Long jobs on a timer: progress, cancelling, failing, and which of them are running."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -8,6 +8,7 @@ import pytest
 from keymark.core.errors import InputError
 from keymark.core.progress import Progress
 from keymark.operators.shell.job_operator import JobOperator
+from keymark.operators.shell.job_progress import job_is_running
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -136,3 +137,30 @@ def test_a_reconstruction_that_is_cancelled_leaves_the_scene(tiny_take) -> None:
         job.close()
         assert (actor.animation_data.action, len(bpy.data.actions), scene.frame_current) == before
     assert active_take(scene).motion_action is None
+
+
+def modal_operator(name: str, address: int) -> SimpleNamespace:
+    return SimpleNamespace(bl_idname=name, as_pointer=lambda: address)
+
+
+@pytest.mark.parametrize(("browsed", "runs"), [(None, True), (7, False), (8, True)])
+def test_an_open_file_browser_is_no_running_job(browsed: int | None, runs: bool) -> None:
+    modal = modal_operator("KEYMARK_OT_load_footage", 7)
+    asking = None if browsed is None else modal_operator("KEYMARK_OT_load_footage", browsed)
+    space = SimpleNamespace(active_operator=asking)
+    area = SimpleNamespace(type="FILE_BROWSER", spaces=SimpleNamespace(active=space))
+    window = SimpleNamespace(modal_operators=[modal], screen=SimpleNamespace(areas=[area]))
+    context = SimpleNamespace(window_manager=SimpleNamespace(windows=[window]))
+    assert job_is_running(context) is runs
+    assert job_is_running(context, "keymark.load_footage") is runs
+    assert not job_is_running(context, "keymark.reconstruct")
+
+
+def test_dragging_joints_lets_other_operators_go_on() -> None:
+    modal = [modal_operator("KEYMARK_OT_drag_joints", 7)]
+    window = SimpleNamespace(modal_operators=modal, screen=SimpleNamespace(areas=[]))
+    context = SimpleNamespace(window_manager=SimpleNamespace(windows=[window]))
+    assert not job_is_running(context)
+    assert job_is_running(context, "keymark.drag_joints")
+    modal.append(modal_operator("KEYMARK_OT_reconstruct", 8))
+    assert job_is_running(context)

@@ -1,7 +1,8 @@
-"""Keypoints as items: a cross where each is seen, a ring where the motion puts it, marks of what is wrong.
+"""Outlines of regions, paths of points and keypoints as items: what is drawn of a motion beside its body.
 
-Shapes tell apart what colors do: a keypoint that is not believed is a slanting cross, one that its source saw
-on the other side of the body a cross in a square.
+Observed regions are solid, predicted ones dashed. A keypoint is a cross where it is seen, a ring where the
+motion puts it; shapes tell apart what colors do: one that is not believed is a slanting cross, one that its
+source saw on the other side of the body a cross in a square.
 """
 
 from collections.abc import Callable, Sequence
@@ -11,14 +12,112 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core.arrays import Array, BoolArray
+from ...core.arrays import Array, BoolArray, IndexArray
 from ...core.detect.keypoints import mirrored_point
-from .drawing import SOURCES, THROWN_OUT, Item, Stroke, Style
-from .figures import SLANTING, UPRIGHT, circles, segments, squares
+from .drawing import (
+    INK,
+    MIDDLE,
+    PATH_FRAMES,
+    SOURCES,
+    THROWN_OUT,
+    Fill,
+    Item,
+    Label,
+    Stroke,
+    Style,
+    paler,
+    side_color,
+)
+from .figures import SLANTING, UPRIGHT, circles, dashes, diamonds, segments, squares
 
 if TYPE_CHECKING:
     from ...core.review.compared_keypoints import ComparedKeypoints
+    from ...core.review.review import Review
     from ..follow.frame_keypoints import FrameKeypoints
+
+
+MarkerColor = tuple[float, float, float]
+
+
+def hidden_markers(review: "Review", index: int) -> list[int]:
+    """Indices of the markers that were not found in a frame."""
+    return np.flatnonzero(~np.isfinite(review.observed[index]).all(axis=-1).any(axis=-1)).tolist()
+
+
+def observed_outlines(
+    review: "Review", index: int, to_region: Callable[[Array], Array], colors: list[MarkerColor], style: Style
+) -> list[Item]:
+    """A solid outline of each region that was found."""
+    outlines = to_region(review.observed[index])
+    return [
+        Stroke(segments(outline, closed=True), style.color(color), style.width, style.halo)
+        for outline, color in zip(outlines, colors, strict=True)
+    ]
+
+
+def predicted_outlines(
+    review: "Review", index: int, to_region: Callable[[Array], Array], colors: list[MarkerColor], style: Style
+) -> list[Item]:
+    """A dashed, paler outline of each region that the motion predicts; that of a hidden marker is named."""
+    outlines = to_region(review.predicted[index])
+    items: list[Item] = []
+    hidden = hidden_markers(review, index)
+    for marker, (outline, color) in enumerate(zip(outlines, colors, strict=True)):
+        whole = outline[np.isfinite(outline).all(axis=-1)]
+        if not len(whole):
+            continue
+        parts = dashes(whole, style.dash * style.scale, style.gap * style.scale, closed=True)
+        items.append(Stroke(parts, style.color(paler(color)), style.width, style.halo))
+        if marker in hidden:
+            x, y = whole[:, 0].max() + style.gap * style.scale, whole[:, 1].mean()
+            words = f"{review.marker_names[marker]} hidden"
+            items.append(Label(words, float(x), float(y), style.color(INK)))
+    return items
+
+
+def predicted_contours(
+    review: "Review", index: int, to_region: Callable[[Array], Array], style: Style
+) -> list[Item]:
+    """The contour lines of the body that the motion predicts, dashed."""
+    lines = to_region(review.contours[index])
+    parts = [dashes(line, style.dash * style.scale, style.gap * style.scale) for line in lines]
+    return [Stroke(np.concatenate(parts), style.color(MIDDLE), style.width, style.halo)] if parts else []
+
+
+# --- Paths of points over time
+
+
+def window(index: int, frame_count: int) -> IndexArray:
+    """Indices of a path's frames about one, within the clip."""
+    return np.arange(max(0, index - PATH_FRAMES), min(frame_count, index + PATH_FRAMES + 1))
+
+
+def paths(
+    names: Sequence[str],
+    positions: Array,
+    frames: IndexArray,
+    index: int,
+    keyframe_indices: IndexArray,
+    style: Style,
+) -> list[Item]:
+    """The paths of N points: `positions` (N, I, 2) at the clip's `frames` (I,), about the frame `index`."""
+    keyed = np.isin(frames, keyframe_indices)
+    dots, marks = positions[:, ~keyed].reshape(-1, 2), positions[:, keyed]
+    items: list[Item] = []
+    for name, path in zip(names, positions, strict=True):
+        color = style.color(side_color(name))
+        ahead = dashes(path[frames >= index], style.dash * style.scale, style.gap * style.scale)
+        items.append(Stroke(segments(path[frames <= index]), color, style.width, style.halo))
+        items.append(Stroke(ahead, color, style.width, style.halo))
+    items.append(Fill(circles(dots, style.size(style.dot + 0.5 * style.width), 8), style.color(MIDDLE)))
+    # All edges, then all diamonds: alike neighbors are drawn in one call.
+    corners = [diamonds(mark, style.size(style.diamond)) for mark in marks]
+    colors = [style.color(side_color(name)) for name in names]
+    pairs = list(zip(corners, colors, strict=True))
+    items += [Stroke(segments(mark, closed=True), color, 1.5, style.halo) for mark, color in pairs]
+    items += [Fill(mark, color) for mark, color in pairs]
+    return items
+
 
 ToRegion = Callable[[Array], Array]
 ARM, RING = 5.5, 3.5  # half-length of a cross's arms, and radius of a ring [px]
