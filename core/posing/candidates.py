@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import expit, logit
 
 from ..arrays import Array, IndexArray, SingleArray
 from ..body.posture import Posture
@@ -74,10 +75,8 @@ def composed_candidates(
         near = np.linalg.norm(shape - shape[rank], axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
         own = torso if rank == 0 else int(some.stance[rank - 1]) // HEADINGS
         name, flipped = pools.motions.names[pools.torsos.source[own]]
-        share = float(weight[near].sum())
-        found.append(
-            Candidate(everyone[rank], name, flipped, confidence(share, explained, OTHER if rank else CHOSEN))
-        )
+        shares = log_odds(float(weight[near].sum())), log_odds(explained)
+        found.append(Candidate(everyone[rank], name, flipped, confidence(OTHER if rank else CHOSEN, *shares)))
     return MatchedFrame(index, by_confidence(found))
 
 
@@ -86,16 +85,18 @@ def by_confidence(found: Sequence[Candidate]) -> tuple[Candidate, ...]:
     return (*found[:1], *sorted(found[1:], key=lambda each: -each.confidence))
 
 
-def confidence(share: float, explained: float, coefficients: tuple[float, float, float]) -> float:
-    """Probability that a posture is about right.
+def log_odds(probability: float) -> float:
+    """Logarithm of a probability's odds, within `PROBABILITY_BOUNDS`."""
+    return float(logit(np.clip(probability, *PROBABILITY_BOUNDS)))
 
-    Args:
-        share: Posterior probability of the posture and of those near it, among all that are known.
-        explained: Share of the frame that it explains: a posture that beats all others may still be wrong.
-        coefficients: Of a logistic regression: the constant, and those of both logarithms of odds.
+
+def confidence(coefficients: tuple[float, float, float], *tells: float) -> float:
+    """Probability that a posture is about right, by a logistic regression: its constant comes first.
+
+    What tells is the share of the probability that the posture and those near it have among all that are
+    known, and how well it explains the frame: one that beats all others may still be wrong.
     """
-    odds = [np.log(value / (1.0 - value)) for value in np.clip([share, explained], *PROBABILITY_BOUNDS)]
-    return float(1.0 / (1.0 + np.exp(-(np.array(coefficients) @ (1.0, *odds)))))
+    return float(expit(np.dot(coefficients, (1.0, *tells))))
 
 
 def distinct_rows(points: Array, order: IndexArray, apart_m: float, most: int) -> IndexArray:

@@ -13,16 +13,7 @@ from ..body.posture import Posture
 from ..camera.camera import Camera
 from .dragged import planted
 from .inverse_kinematics import Pull, SightLine, pulled
-from .limb_chain import (
-    DISTINCT_M,
-    LimbChain,
-    LimbInSight,
-    depths_m,
-    limb_chain,
-    sight_lines,
-    swing,
-    ways_in_sight,
-)
+from .limb_chain import DISTINCT_M, LimbChain, LimbInSight, swing
 
 
 class FlippedPart(Enum):
@@ -61,22 +52,22 @@ def flipped(
     """
     if part_of_body == TRUNK:
         return tuple(_flipped_trunks(body, posture, camera, part))
-    limb = limb_chain(body.skeleton, part_of_body)
-    return tuple(way.posture for way in _flipped_limbs(body, posture, camera, limb, part))
+    limb = LimbChain.of(body, part_of_body)
+    return tuple(way.posture for way in _flipped_limbs(posture, camera, limb, part))
 
 
 def _flipped_limbs(
-    body: Body, posture: Posture, camera: Camera, limb: LimbChain, part: FlippedPart | None
+    posture: Posture, camera: Camera, limb: LimbChain, part: FlippedPart | None
 ) -> list[LimbInSight]:
-    lines = sight_lines(body, posture, camera, limb)
-    before = depths_m(body, posture, limb, lines)
+    lines = limb.sight_lines(posture, camera)
+    before = limb.depths_m(posture, lines)
     found = []
-    for way in ways_in_sight(body, posture, limb, lines):
-        asked = (way.leans != (before > 0.0)) & (np.abs(before) > FLAT_M)
+    for way in limb.ways_in_sight(posture, lines):
+        changed = (way.leans != (before > 0.0)) & (np.abs(before) > FLAT_M)
         # Joint limits may hold a part back on the side where it was.
-        turned = (before > 0.0) != (depths_m(body, way.posture, limb, lines) > 0.0)
-        wanted = asked.any() if part is None else tuple(asked) == part.value
-        if wanted and turned[asked].all():
+        turned = (before > 0.0) != (limb.depths_m(way.posture, lines) > 0.0)
+        wanted = changed.any() if part is None else tuple(changed) == part.value
+        if wanted and turned[changed].all():
             found.append(way)
     return found
 
@@ -134,10 +125,10 @@ def _with_the_rest(body: Body, before: Posture, leaning: Posture, camera: Camera
     legs = {f"{joint}.{side}": 1.0 for joint in ("hip", "knee") for side in ("L", "R")}
     held = pulled(body, leaning, planted(start), legs)
     for name in LIMBS[:2]:
-        limb = limb_chain(skeleton, name)
-        lines = sight_lines(body, before, camera, limb)
-        leans = depths_m(body, before, limb, lines) > 0.0
-        ways = ways_in_sight(body, held, limb, lines)
+        limb = LimbChain.of(body, name)
+        lines = limb.sight_lines(before, camera)
+        leans = limb.depths_m(before, lines) > 0.0
+        ways = limb.ways_in_sight(held, lines)
         if ways:
             held = min(ways, key=lambda way: (int((way.leans != leans).sum()), way.strain)).posture
     line = SightLine.to(camera, start["head"])

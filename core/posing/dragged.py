@@ -14,7 +14,7 @@ from ..body.skeleton import SIDES
 from ..estimate.performer_placement import SHOE_M, standing_ankle_m
 from ..prior.keyframes import Keyframe, interpolate
 from .inverse_kinematics import Pull, SightLine, pulled
-from .limb_chain import LimbChain, aimed, limb_chain, limb_excess_rad, limb_points, part_lengths_m, swing
+from .limb_chain import LimbChain, swing
 
 ON_SIGHT_M = 0.001  # a joint lies under the mouse: less than a pixel of any footage
 DEPTH_M = 0.03  # its depth may give way where the body does not allow both
@@ -83,7 +83,7 @@ def _dragged(body: Body, posture: Posture, point: str, place: Array, sight: Arra
         return posture.plus(shift)
     part = limb_of(point)
     if part != TRUNK:
-        return _limb_dragged(body, posture, limb_chain(body.skeleton, part), point, place, sight, pushed)
+        return _limb_dragged(posture, LimbChain.of(body, part), point, place, sight, pushed)
     pulls = [_pull(point, place, sight, pushed)]
     if point == "head":
         return pulled(body, posture, pulls, _HEAD)
@@ -124,27 +124,28 @@ def _pull(point: str, place: Array, sight: Array, pushed: bool) -> Pull:
 
 
 def _limb_dragged(
-    body: Body, posture: Posture, limb: LimbChain, point: str, place: Array, sight: Array, pushed: bool
+    posture: Posture, limb: LimbChain, point: str, place: Array, sight: Array, pushed: bool
 ) -> Posture:
     """The posture with a limb whose middle or end was dragged."""
-    places, lengths = limb_points(body, posture, limb), part_lengths_m(body, limb)
+    body, places, (upper, lower) = limb.body, limb.places(posture), limb.lengths_m
     root, before, held = places
     line = SightLine(place, sight)
     if point == limb.points[2]:
-        least, most = _reach_m(body, limb, lengths)
-        end = line.within(place, root, (least, most))
+        most_bent = float(limb.limits[3, 1])
+        reach = float(np.sqrt(upper**2 + lower**2 + 2.0 * upper * lower * np.cos(most_bent))), upper + lower
+        end = line.within(place, root, reach)
         if pushed:
-            away = float(np.linalg.norm(place - root))
-            end = _on_sphere(place, root, float(np.clip(away, least, most)))
-        middle = _bent(places, lengths, end, _bends_to(body, posture, limb))
+            end = _on_sphere(place, root, float(np.clip(np.linalg.norm(place - root), *reach)))
+        # Direction in the world to which the limb's middle comes out when it bends.
+        out = -(body.pose(posture).rotation[limb.above] @ posture.rotations[limb.ball] @ limb.rest[:, 1])
+        middle = _bent(places, limb.lengths_m, end, out)
         pulls = [_pull(point, end, sight, pushed)]
     else:
-        middle = _on_sphere(place, root, lengths[0]) if pushed else _swung_about(places, lengths, line)
-        end = middle + lengths[1] * (held - middle) / max(float(np.linalg.norm(held - middle)), 1e-9)
+        middle = _on_sphere(place, root, upper) if pushed else _swung_about(places, limb.lengths_m, line)
+        end = middle + lower * (held - middle) / max(float(np.linalg.norm(held - middle)), 1e-9)
         pulls = [_pull(point, middle, sight, pushed), Pull(limb.points[2], held, HELD_M)]
-    moved = aimed(body, posture, limb, middle, end)
-    excess = limb_excess_rad(moved, limb)
-    if (np.abs(excess) <= np.abs(limb_excess_rad(posture, limb)) + 1e-9).all():
+    moved = limb.aimed(posture, middle, end)
+    if (np.abs(limb.excess_rad(moved)) <= np.abs(limb.excess_rad(posture)) + 1e-9).all():
         return moved
     free = {limb.points[0]: 1.0, limb.points[1]: 1.0}
     return pulled(body, moved, pulls, free, allowed=posture)
@@ -167,19 +168,6 @@ def _swung_about(places: Array, lengths: tuple[float, float], line: SightLine) -
         return np.asarray(far if depth > 0.0 else near)
     choices = sorted((near, far), key=lambda each: abs(float(np.linalg.norm(end - each)) - lengths[1]))
     return np.asarray(choices[0])
-
-
-def _reach_m(body: Body, limb: LimbChain, lengths: tuple[float, float]) -> tuple[float, float]:
-    """Least and most distance of a limb's end from its root [m]: bent as far as it goes, and straight."""
-    upper, lower = lengths
-    most_bent = float(body.skeleton.limits[limb.dofs[3], 1])
-    return float(np.sqrt(upper**2 + lower**2 + 2.0 * upper * lower * np.cos(most_bent))), upper + lower
-
-
-def _bends_to(body: Body, posture: Posture, limb: LimbChain) -> Array:
-    """(3,) direction in the world to which a limb's middle comes out when it bends."""
-    above = body.pose(posture).rotation[limb.above]
-    return np.asarray(-(above @ posture.rotations[limb.ball] @ limb.rest[:, 1]))
 
 
 def _bent(places: Array, lengths: tuple[float, float], end: Array, out: Array) -> Array:

@@ -14,7 +14,6 @@ from ..camera.camera import Camera
 from ..numerics.robust import DEGREES, Floats, multivariate_cost
 from .match_evidence import LEAST_QUALITY, MatchEvidence
 
-EXCHANGED_COST = 3.0  # cost of taking a detector's left for right in a frame: one in twenty
 ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # of a symmetric matrix, as in `second_moment`
 
 

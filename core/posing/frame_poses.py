@@ -5,16 +5,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array
 from ..body.human import TRUNK, limb_of
 from ..body.posture import Posture
 from ..errors import InputError
-from ..estimate.single_frame import FrameFit, fit_frame, frame_residuals
+from ..estimate.single_frame import fit_frame, frame_residuals
 from ..prior.frame_prior import FramePrior, unrelated_std
 from ..prior.library import Library
 from ..terms.keypoints import JOINT_ERROR_STD_M, USUAL_PLACES
-from .candidates import ABOUT_RIGHT_M, DISTINCT_M, PROBABILITY_BOUNDS, Candidate, by_confidence, distinct_rows
-from .frame_search import FrameShown, Hypotheses, Knowledge, knowledge, points_from_hips, refined, search
+from .candidates import DISTINCT_M, Candidate, by_confidence, confidence, distinct_rows, log_odds
+from .frame_search import (
+    FrameSearch,
+    FrameShown,
+    Hypotheses,
+    Knowledge,
+    agreeing,
+    knowledge,
+    mean_posture,
+    points_from_hips,
+)
 from .plausibility import PARTS, part_shapes
 
 
@@ -27,18 +36,6 @@ def belief_costs(belief: FramePrior, posture: Posture) -> Array:
     told = np.log(np.maximum(unrelated_std(posture.skeleton) / belief.std, 1.0)).sum()
     # Share of the degrees of freedom that vary on their own: a body's change together.
     return np.asarray(0.5 * np.minimum(0.5 * (deviation**2).sum(axis=-1), told))
-
-
-def believed_fit(
-    known: Knowledge, shown: FrameShown, belief: FramePrior, floor_m: float | None
-) -> tuple[FrameFit, float]:
-    """The posture nearest to what keyframes tell that explains the frame, and its cost among hypotheses."""
-    points = shown.points_of(False)
-    fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, points=points)
-    sides = np.array([False] if points is None else [False, True])
-    postures = Posture.stack([fit.posture] * len(sides))
-    cost = refined(known, shown, Hypotheses.given(postures, sides), floor_m).cost.min()
-    return fit, float(cost + belief_costs(belief, postures[:1])[0])
 
 
 # --- What contradicts a frame's plausible postures
@@ -55,22 +52,18 @@ class Unworn:
     shown: FrameShown  # the frame without it
 
 
-def unworn_marker(
-    known: Knowledge, shown: FrameShown, found: Hypotheses, floor_m: float | None
-) -> Unworn | None:
+def unworn_marker(search: FrameSearch, found: Hypotheses) -> Unworn | None:
     """The marker without which the rest of the frame is explained far better; None where there is none."""
-    least = float(found.cost.min())
-    visible = np.flatnonzero(shown.tracks.visible[0])
-    # Nothing is left to gain where all is well explained.
-    alone = len(visible) + int(shown.points.seen.sum()) < 2
-    # What a keypoint costs where the posture is right, its guessed depth included: no gain of leaving a
-    # marker out.
-    if least < UNWORN_COST + 0.5 * shown.points.seen.sum() or alone or not len(visible):
+    shown, least = search.shown, float(found.cost.min())
+    visible, points = np.flatnonzero(shown.tracks.visible[0]), int(shown.points.seen.sum())
+    # Nothing is left to gain where all is well explained. What a keypoint costs where the posture is right,
+    # its guessed depth included, is no gain of leaving a marker out.
+    if least < UNWORN_COST + 0.5 * points or len(visible) + points < 2 or not len(visible):
         return None
     rest = {int(marker): shown.without(int(marker)) for marker in visible}
     gains = {
         # Starts of a search without a marker, which only asks how well the rest can be explained.
-        marker: least - float(search(known, one, floor_m, 24).cost.min())
+        marker: least - float(replace(search, shown=one).hypotheses(24).cost.min())
         for marker, one in rest.items()
     }
     best = max(gains, key=lambda marker: gains[marker])
@@ -99,10 +92,10 @@ def unexplained(known: Knowledge, shown: FrameShown, posture: Posture) -> tuple[
 # --- The postures of one frame, with no keyframe at all
 
 
-NO_TORSO = -1  # stands for the torso of a hypothesis from keyframes
-INTERCEPT, SHARE_COEFFICIENT, COST_COEFFICIENT = 0.6, 0.45, -0.055
-"""Logistic regression, rounded, of being about right, on 184 candidates of 64 frames of four takes with
-truth: of those up to 20, 40, 60, 80 and 100 % sure, 13, 26, 42, 69 and 100 % were."""
+RIGHT = (0.6, 0.45, -0.055)
+"""Logistic regression, rounded, of being about right by the share's odds and the cost, on 184 candidates of
+64 frames of four takes with truth: of those up to 20, 40, 60, 80 and 100 % sure, 13, 26, 42, 69 and 100 %
+were."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,15 +126,15 @@ def find_frame_poses(
     """
     if shown.is_empty:
         raise InputError("neither a marker nor a keypoint is seen in the frame, so no posture can be found")
-    known = knowledge(shown.body, libraries)
-    found = _hypotheses(known, shown, floor_m, belief)
-    unworn = unworn_marker(known, shown, found, floor_m)
+    search = FrameSearch(knowledge(shown.body, libraries), shown, floor_m)
+    found = _hypotheses(search, belief)
+    unworn = unworn_marker(search, found)
     left_out: tuple[str, ...] = ()
     if unworn is not None:
-        shown, left_out = unworn.shown, (unworn.name,)
-        found = _hypotheses(known, shown, floor_m, belief)
-    candidates = _candidates(known, shown, found, floor_m)
-    named = (*left_out, *unexplained(known, shown, candidates[0].posture))
+        search, left_out = replace(search, shown=unworn.shown), (unworn.name,)
+        found = _hypotheses(search, belief)
+    candidates = _candidates(search, found, has_believed=belief is not None)
+    named = (*left_out, *unexplained(search.known, search.shown, candidates[0].posture))
     return FramePoses(candidates, tuple(dict.fromkeys(named)))
 
 
@@ -156,95 +149,46 @@ def near_pose(shown: FrameShown, belief: FramePrior) -> FramePoses:
     return FramePoses((only,), (*names, *fit.misplaced_points), fit.cost)
 
 
-def _hypotheses(
-    known: Knowledge, shown: FrameShown, floor_m: float | None, belief: FramePrior | None
-) -> Hypotheses:
-    """Those of a search; what keyframes tell comes first."""
-    found = search(known, shown, floor_m)
+def _hypotheses(search: FrameSearch, belief: FramePrior | None) -> Hypotheses:
+    """Those of a search; the posture nearest to what keyframes tell that explains the frame comes first."""
+    found, shown = search.hypotheses(), search.shown
     if belief is None:
         return found
-    fit, cost = believed_fit(known, shown, belief, floor_m)
-    first = Hypotheses.given(Posture.stack([fit.posture]), np.array([False]))
-    first = replace(first, cost=np.array([cost]), torso=np.array([NO_TORSO]))
-    rest = replace(found, cost=found.cost + belief_costs(belief, found.posture))
-    return Hypotheses.concatenate([first, rest])
+    points = shown.points_of(False)
+    fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, points=points)
+    sides = np.array([False] if points is None else [False, True])
+    own = Hypotheses(Posture.stack([fit.posture] * len(sides)), np.zeros(len(sides)), sides)
+    least = search.descended(own).cost.min(keepdims=True)
+    first = replace(own.chosen(np.zeros(1, dtype=np.intp)), cost=least)
+    every = Hypotheses.concatenate([first, found])
+    return replace(every, cost=every.cost + belief_costs(belief, every.posture))
 
 
-def _candidates(
-    known: Knowledge, shown: FrameShown, found: Hypotheses, floor_m: float | None
-) -> tuple[Candidate, ...]:
+def _candidates(search: FrameSearch, found: Hypotheses, has_believed: bool) -> tuple[Candidate, ...]:
     """Distinct candidates, each the mean of the hypotheses near it; what keyframes tell stays if it leads."""
-    body = known.pools.body
+    body = search.known.pools.body
     points = points_from_hips(body, found.posture)
-    weight, near = _agreeing(points, found.cost)
+    weight, near = agreeing(points, found.cost)
     share = near @ weight
-    leading = int(found.cost.argmin())
-    kept = found.torso[leading] == NO_TORSO
+    kept = has_believed and int(found.cost.argmin()) == 0
     order = np.argsort(-share, kind="stable")
     if kept:
-        order = np.concatenate([[leading], order])
+        order = np.append(0, order)
     # Means that are brought to the evidence, where some may end alike.
     # Hypotheses that lead to different means are farther apart than this on average, hips aligned.
     chosen = distinct_rows(points, order, 0.13, 8)
-    means = Posture.concatenate([_mean(found.posture, row, near[row] * weight) for row in chosen])
-    start = replace(found.chosen(chosen), posture=means)
-    final = refined(known, shown, start, floor_m)
+    means = Posture.concatenate([mean_posture(found.posture, row, near[row] * weight) for row in chosen])
+    final = search.descended(replace(found.chosen(chosen), posture=means))
     if kept:
         rest = final.posture[np.arange(1, len(chosen))]
         final = replace(final, posture=Posture.concatenate([found.posture[chosen[:1]], rest]))
     made = []
-    ended = points_from_hips(body, final.posture)
-    for rank in distinct_rows(ended, np.arange(len(chosen)), DISTINCT_M, 4):
+    own = search.known.postures
+    for rank in distinct_rows(points_from_hips(body, final.posture), np.arange(len(chosen)), DISTINCT_M, 4):
         posture = final.posture[int(rank)]
-        name, flipped = _nearest(known, posture)
-        sure = _confidence(float(share[chosen[rank]]), float(final.cost[rank]))
-        made.append(Candidate(posture, name, flipped, sure))
+        # The known posture whose trunk is nearest gives the name.
+        shape = part_shapes(own.body, own.body.pose(Posture.stack([posture])))[TRUNK]
+        nearest = int(np.linalg.norm(own.parts[TRUNK] - shape, axis=-1).argmin())
+        sure = confidence(RIGHT, log_odds(float(share[chosen[rank]])), float(final.cost[rank]))
+        made.append(Candidate(posture, own.names[nearest], own.mirrored[nearest], sure))
     return by_confidence(made)
-
-
-def likeliest_mean(known: Knowledge, shown: FrameShown, found: Hypotheses, floor_m: float | None) -> Posture:
-    """The mean of the hypotheses around the one that most agree with, brought to what is seen."""
-    weight, near = _agreeing(points_from_hips(known.pools.body, found.posture), found.cost)
-    row = int((near @ weight).argmax())
-    mean = _mean(found.posture, row, near[row] * weight)
-    start = replace(found.chosen(np.array([row])), posture=mean)
-    return refined(known, shown, start, floor_m).posture[0]
-
-
-ALIKE = 3.0  # costs count for so many times less: what is seen of one body errs together, and so do its parts
-
-
-def _agreeing(points: Array, cost: Array) -> tuple[Array, BoolArray]:
-    """Probabilities (S,) of hypotheses, and (S, S) which of them are about the same.
-
-    `points` (S, P, 3) relative to the hips [m], `cost` (S,).
-    """
-    weight = np.exp(-(cost - cost.min()) / ALIKE)
-    near = np.linalg.norm(points[:, None] - points, axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
-    return weight / weight.sum(), near
-
-
-def _confidence(share: float, cost: float) -> float:
-    """Probability that a candidate is about right, to 10 cm, the hips aligned.
-
-    `share` is the probability of it and of those near it among all hypotheses of the frame, `cost` its own: a
-    posture that beats all others may still explain the frame badly.
-    """
-    bounded = float(np.clip(share, *PROBABILITY_BOUNDS))
-    odds = INTERCEPT + SHARE_COEFFICIENT * np.log(bounded / (1.0 - bounded)) + COST_COEFFICIENT * cost
-    return float(1.0 / (1.0 + np.exp(-odds)))
-
-
-def _nearest(known: Knowledge, posture: Posture) -> tuple[str, bool]:
-    """Name of the known posture whose trunk is nearest, and whether it is mirrored."""
-    own = known.postures
-    shape = part_shapes(own.body, own.body.pose(Posture.stack([posture])))[TRUNK]
-    row = int(np.linalg.norm(own.parts[TRUNK] - shape, axis=-1).argmin())
-    return own.names[row], own.mirrored[row]
-
-
-def _mean(postures: Posture, row: int, weight: Array) -> Posture:
-    """The mean (1,) of postures in the tangent space of one of them, by weights (S,)."""
-    own = np.flatnonzero(weight)
-    step = postures[own].minus(postures[np.full(len(own), row)])
-    return postures[np.array([row])].plus((weight[own] @ step / weight[own].sum())[None])

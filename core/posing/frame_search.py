@@ -15,7 +15,7 @@ from ..detect.keypoints import Keypoints
 from ..estimate.assembly import free_frame_terms
 from ..estimate.clip_problem import KeyframeEvidence
 from ..estimate.performer_placement import place_standing
-from ..estimate.single_frame import exchanged
+from ..estimate.single_frame import EXCHANGED_COST, exchanged
 from ..markers.region_tracks import RegionTracks
 from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
 from ..prior.library import Library
@@ -24,12 +24,11 @@ from ..terms.regions import FEATURES, ObservedRegions, limb_widths
 from ..terms.solver import descend
 from ..terms.state import ClipState
 from ..terms.term import total_cost
-from .candidates import distinct_rows
+from .candidates import ABOUT_RIGHT_M, distinct_rows
 from .compose_clip import WIDE, frame_costs
 from .composed_states import NO_CONTACT_COST
-from .frame_likelihood import EXCHANGED_COST
 from .match_evidence import MatchEvidence
-from .part_features import HEADINGS, StanceFeatures, composed_postures, stance_features
+from .part_features import StanceFeatures, composed_postures, stance_features
 from .part_pools import PartPools, kept, part_pools
 from .plausibility import KnownPostures, known_postures
 
@@ -84,10 +83,6 @@ class FrameShown:
             return None
         return exchanged(self.points, known.model.names, known.sources) if is_exchanged else self.points
 
-    def frames(self, count: int) -> IndexArray:
-        """(count,) the frame's index."""
-        return np.full(count, self.frame, dtype=np.intp)
-
     def without(self, marker: int) -> "FrameShown":
         """The same with a marker hidden."""
         hidden: dict[str, Any] = {}
@@ -104,6 +99,8 @@ class FrameShown:
 MOST_STARTS = 80  # postures that descend side by side
 PLACE_STD_M, TURN_STD_RAD = 0.3, 0.3  # of a descent: sizes are good to a tenth, headings to 15 degrees
 FROM_START = (16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(6)))  # factors of the image noise, one a step
+FROM_NEAR = FROM_START[-4:]
+ALIKE = 3.0  # costs count for so many times less: what is seen of one body errs together, and so do its parts
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,15 +116,8 @@ class Hypotheses:
     """S postures that the frame may show."""
 
     posture: Posture  # (S,) in the world
-    cost: Array  # (S,) negative log probability, up to a constant of the frame
-    torso: IndexArray  # (S,) torso of the pools that each began with
+    cost: Array  # (S,) negative log probability, up to a constant of the frame; 0 where nobody has asked yet
     exchanged: BoolArray  # (S,) whether left and right of the keypoints are exchanged
-
-    @classmethod
-    def given(cls, posture: Posture, exchanged: BoolArray) -> "Hypotheses":
-        """Postures (S,) that come from elsewhere, whose costs nobody has asked yet."""
-        count = len(exchanged)
-        return cls(posture, np.zeros(count), np.zeros(count, dtype=np.intp), exchanged)
 
     @classmethod
     def concatenate(cls, parts: Sequence["Hypotheses"]) -> "Hypotheses":
@@ -135,13 +125,12 @@ class Hypotheses:
         return cls(
             Posture.concatenate([part.posture for part in parts]),
             np.concatenate([part.cost for part in parts]),
-            np.concatenate([part.torso for part in parts]),
             np.concatenate([part.exchanged for part in parts]),
         )
 
     def chosen(self, rows: IndexArray) -> "Hypotheses":
         """Some of them, in the order of their rows."""
-        return Hypotheses(self.posture[rows], self.cost[rows], self.torso[rows], self.exchanged[rows])
+        return Hypotheses(self.posture[rows], self.cost[rows], self.exchanged[rows])
 
 
 def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
@@ -159,113 +148,100 @@ def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
     return kept(Knowledge, usable, body, learn)
 
 
-def search(
-    known: Knowledge, shown: FrameShown, floor_m: float | None, count: int = MOST_STARTS
-) -> Hypotheses:
-    """Hypotheses, in no order, of the postures that a frame may show, from `count` starts.
+@dataclass(frozen=True, eq=False)
+class FrameSearch:
+    """Hypotheses of the postures that one frame may show."""
 
-    Where the floor is not known, it is asked whether z = 0 may be it.
-    """
-    starts, screened, floor_m = _starts(known, shown, floor_m, count)
-    posture, cost = _descended(known, shown, starts, floor_m)
-    # Weight of a start's cost in screening, in which the many compositions around it count: a posture that
-    # only one combination leads to is less likely than its own evidence says.
-    return replace(starts, posture=posture, cost=cost + 0.5 * (screened - screened.min()))
+    known: Knowledge
+    shown: FrameShown
+    floor_m: float | None  # height of the floor [m]; None where it is not known, when z = 0 may be it
 
-
-def _starts(
-    known: Knowledge, shown: FrameShown, floor_m: float | None, count: int
-) -> tuple[Hypotheses, Array, float | None]:
-    """The likeliest distinct compositions, their costs in screening, and the height of the floor if known."""
-    stances = stance_features(known.pools, shown.compared)
-    if floor_m is None:
-        least = [_screened(known, stances, shown, height).cost.min() for height in (0.0, None)]
-        floor_m = 0.0 if least[0] < least[1] + NO_CONTACT_COST else None
-    found = [_screened(known, stances, shown, floor_m)]
-    if shown.compared.keypoints.names:
-        found.append(_screened(known, stances, shown, floor_m, is_exchanged=True))
-    every = Hypotheses.concatenate(found)
-    kept = distinct_rows(
+    def hypotheses(self, count: int = MOST_STARTS) -> Hypotheses:
+        """Hypotheses, in no order, at the end of the descents from `count` starts."""
+        stances = stance_features(self.known.pools, self.shown.compared)
+        floor_m = self.floor_m
+        if floor_m is None:
+            least = [self._screened(stances, height).cost.min() for height in (0.0, None)]
+            floor_m = 0.0 if least[0] < least[1] + NO_CONTACT_COST else None
+        sides = (False, True) if self.shown.compared.keypoints.names else (False,)
+        every = Hypotheses.concatenate([self._screened(stances, floor_m, side) for side in sides])
         # Starts whose points, hips aligned, are nearer than this lead to the same posture.
-        points_from_hips(known.pools.body, every.posture),
-        np.argsort(every.cost),
-        0.05,
-        count,
-    )
-    return every.chosen(kept), every.cost[kept], floor_m
+        points = points_from_hips(self.known.pools.body, every.posture)
+        starts = every.chosen(distinct_rows(points, np.argsort(every.cost), 0.05, count))
+        found = replace(self, floor_m=floor_m).descended(starts, FROM_START)
+        # Weight of a start's cost in screening, in which the many compositions around it count: a posture
+        # that only one combination leads to is less likely than its own evidence says.
+        return replace(found, cost=found.cost + 0.5 * (starts.cost - starts.cost.min()))
 
+    def descended(self, starts: Hypotheses, temperatures: Sequence[float] = FROM_NEAR) -> Hypotheses:
+        """Hypotheses brought to what is seen, by default from near it, with their costs."""
+        order = np.argsort(starts.exchanged, kind="stable")
+        found = [
+            self._side_by_side(starts.posture[own], side, temperatures)
+            for side in (False, True)
+            if len(own := np.flatnonzero(starts.exchanged == side))
+        ]
+        place = np.argsort(order)
+        posture = Posture.concatenate([postures for postures, _ in found])[place]
+        cost = np.concatenate([costs for _, costs in found])[place] + EXCHANGED_COST * starts.exchanged
+        cost = cost + self.known.postures.costs(self.known.pools.body.pose(posture)).sum(axis=-1)
+        # Cost of a body part of which lies behind the camera, where nothing can be compared.
+        return replace(starts, posture=posture, cost=np.where(np.isfinite(cost), cost, 1e3))
 
-def _screened(
-    known: Knowledge,
-    stances: StanceFeatures,
-    shown: FrameShown,
-    floor_m: float | None,
-    is_exchanged: bool = False,
-) -> Hypotheses:
-    evidence = shown.compared.exchanged() if is_exchanged else shown.compared
-    (costs,) = frame_costs(shown.camera, evidence, stances, np.zeros(1, dtype=np.intp), floor_m)
-    placed = place_standing(
-        known.pools.body, shown.camera, 0, shown.tracks, shown.segments, evidence.keypoints
-    )
-    depth = float(shown.camera.depth(placed.translation))
-    states = costs.states(depth * np.array(WIDE))
-    cost = states.cost.astype(np.float64) + (EXCHANGED_COST if is_exchanged else 0.0)
-    posture = composed_postures(known.pools, stances, states.stance, states.limbs, states.hips)
-    return Hypotheses(posture, cost, states.stance // HEADINGS, np.full(len(cost), is_exchanged))
+    def likeliest_mean(self, found: Hypotheses) -> Posture:
+        """The mean of the hypotheses around the one that most agree with, brought to what is seen."""
+        weight, near = agreeing(points_from_hips(self.known.pools.body, found.posture), found.cost)
+        row = int((near @ weight).argmax())
+        mean = mean_posture(found.posture, row, near[row] * weight)
+        return self.descended(replace(found.chosen(np.array([row])), posture=mean)).posture[0]
 
+    def _screened(
+        self, stances: StanceFeatures, floor_m: float | None, is_exchanged: bool = False
+    ) -> Hypotheses:
+        """The likeliest compositions of parts."""
+        shown, pools = self.shown, self.known.pools
+        evidence = shown.compared.exchanged() if is_exchanged else shown.compared
+        (costs,) = frame_costs(shown.camera, evidence, stances, np.zeros(1, dtype=np.intp), floor_m)
+        placed = place_standing(pools.body, shown.camera, 0, shown.tracks, shown.segments, evidence.keypoints)
+        states = costs.states(float(shown.camera.depth(placed.translation)) * np.array(WIDE))
+        cost = states.cost.astype(np.float64) + (EXCHANGED_COST if is_exchanged else 0.0)
+        posture = composed_postures(pools, stances, states.stance, states.limbs, states.hips)
+        return Hypotheses(posture, cost, np.full(len(cost), is_exchanged))
 
-def refined(known: Knowledge, shown: FrameShown, given: Hypotheses, floor_m: float | None) -> Hypotheses:
-    """Hypotheses brought to what is seen, from near it."""
-    posture, cost = _descended(known, shown, given, floor_m, FROM_START[-4:])
-    return replace(given, posture=posture, cost=cost)
-
-
-def _descended(
-    known: Knowledge,
-    shown: FrameShown,
-    starts: Hypotheses,
-    floor_m: float | None,
-    temperatures: Sequence[float] = FROM_START,
-) -> tuple[Posture, Array]:
-    """Postures at the end of all descents, and their costs."""
-    count = len(starts.cost)
-    order, postures, costs = [], [], []
-    for is_exchanged in (False, True):
-        own = np.flatnonzero(starts.exchanged == is_exchanged)
-        if len(own):
-            posture, cost = _side_by_side(shown, starts.posture[own], is_exchanged, floor_m, temperatures)
-            order.append(own)
-            postures.append(posture)
-            costs.append(cost)
-    place = np.argsort(np.concatenate(order)) if count else np.zeros(0, dtype=np.intp)
-    posture = Posture.concatenate(postures)[place]
-    cost = np.concatenate(costs)[place] + EXCHANGED_COST * starts.exchanged
-    cost = cost + known.postures.costs(known.pools.body.pose(posture)).sum(axis=-1)
-    # Cost of a body part of which lies behind the camera, where nothing can be compared.
-    return posture, np.where(np.isfinite(cost), cost, 1e3)
-
-
-def _side_by_side(
-    shown: FrameShown,
-    starts: Posture,
-    is_exchanged: bool,
-    floor_m: float | None,
-    temperatures: Sequence[float],
-) -> tuple[Posture, Array]:
-    """Descents of the same evidence, and the costs of what is seen, floor, balance and limits."""
-    body, model, count = shown.body, shown.evidence.model, starts.batch[0]
-    std = ROUGH_POSE_SHARE * unrelated_std(body.skeleton)
-    std[:3], std[5] = PLACE_STD_M, TURN_STD_RAD
-    width = limb_widths(model, np.median(starts.translation, axis=0)[None], shown.frames(1))
-    nothing = np.zeros((count, len(model.placements) * FEATURES))
-    state = ClipState(body, starts, shown.frames(count), np.diag(std), np.zeros((count, len(std))), nothing)
-    belief, terms = free_frame_terms(
-        shown.evidence, shown.regions, count, floor_m, width, shown.points_of(is_exchanged)
-    )
-    best, _ = descend(state, [belief, *terms], temperatures)
-    return best.posture, total_cost(terms, best)
+    def _side_by_side(
+        self, starts: Posture, is_exchanged: bool, temperatures: Sequence[float]
+    ) -> tuple[Posture, Array]:
+        """Descents of the same evidence, and the costs of what is seen, floor, balance and limits."""
+        shown, model, count = self.shown, self.shown.evidence.model, starts.batch[0]
+        std = ROUGH_POSE_SHARE * unrelated_std(shown.body.skeleton)
+        std[:3], std[5] = PLACE_STD_M, TURN_STD_RAD
+        frames = np.full(count, shown.frame, dtype=np.intp)
+        width = limb_widths(model, np.median(starts.translation, axis=0)[None], frames[:1])
+        bias = np.zeros((count, len(model.placements) * FEATURES))
+        state = ClipState(shown.body, starts, frames, np.diag(std), np.zeros((count, len(std))), bias)
+        points = shown.points_of(is_exchanged)
+        belief, terms = free_frame_terms(shown.evidence, shown.regions, count, self.floor_m, width, points)
+        best, _ = descend(state, [belief, *terms], temperatures)
+        return best.posture, total_cost(terms, best)
 
 
 def points_from_hips(body: Body, posture: Posture) -> Array:
     """(S, P, 3) principal points relative to the hips [m]."""
     return np.asarray(body.points(body.pose(posture)) - posture.translation[:, None])
+
+
+def agreeing(points: Array, cost: Array) -> tuple[Array, BoolArray]:
+    """Probabilities (S,) of hypotheses, and (S, S) which of them are about the same.
+
+    `points` (S, P, 3) relative to the hips [m], `cost` (S,).
+    """
+    weight = np.exp(-(cost - cost.min()) / ALIKE)
+    near = np.linalg.norm(points[:, None] - points, axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
+    return weight / weight.sum(), near
+
+
+def mean_posture(postures: Posture, row: int, weight: Array) -> Posture:
+    """The mean (1,) of postures in the tangent space of one of them, by weights (S,)."""
+    own = np.flatnonzero(weight)
+    step = postures[own].minus(postures[np.full(len(own), row)])
+    return postures[np.array([row])].plus((weight[own] @ step / weight[own].sum())[None])

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import least_squares
 
 from ..arrays import Array
 from ..body import rotations
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..camera.camera import Camera
-from ..numerics.robust import Equations, levenberg_marquardt
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,73 +112,44 @@ def pulled(
             the hips' place as `place` [m]. All others stay.
         allowed: A posture that is allowed whatever the joint limits; by default the one to start from.
     """
-    problem = _Problem(body, posture, pulls, free, posture if allowed is None else allowed)
-    (step,) = levenberg_marquardt(
-        problem.equations,
-        np.zeros((1, len(problem.dofs))),
-        np.add,
-        lambda better, trial, last: np.where(better[:, None], trial, last),
-        40,
-        1e-7,  # share by which a step must lower the cost for another to be worth it
-    )
-    return problem.moved(step)
+    skeleton = body.skeleton
+    std = {i: free[joint] for i, joint in enumerate(map(_owner, skeleton.dof_names)) if joint in free}
+    dofs = np.array(sorted(std), dtype=np.intp)
+    scale = np.array([std[dof] for dof in dofs])
+    columns = [skeleton.point_names.index(pull.point) for pull in pulls]
+    places, weights = (np.array(each) for each in zip(*((p.place, p.weights) for p in pulls), strict=True))
+    values = (posture if allowed is None else allowed).to_vector()
+    lower, upper = np.minimum(skeleton.limits[:, 0], values), np.maximum(skeleton.limits[:, 1], values)
 
+    def full(step: Array) -> Array:
+        every = np.zeros(skeleton.dof_count)
+        every[dofs] = step * scale
+        return every
 
-class _Problem:
-    """Cost of a step of the free joints, with its derivatives."""
+    def rows(step: Array) -> Array:
+        moved = posture.plus(full(step))
+        off = body.points(body.pose(moved))[columns] - places
+        values = moved.to_vector()
+        beyond = (values - np.clip(values, lower, upper)) / LIMIT_STD_RAD
+        return np.concatenate([(weights @ off[..., None]).ravel(), beyond, step])
 
-    def __init__(
-        self, body: Body, posture: Posture, pulls: Sequence[Pull], free: Mapping[str, float], allowed: Posture
-    ) -> None:
-        skeleton = body.skeleton
-        std = {i: free[joint] for i, joint in enumerate(map(_owner, skeleton.dof_names)) if joint in free}
-        self.body, self.start = body, posture
-        self.dofs = np.array(sorted(std), dtype=np.intp)
-        self.stiffness = np.array([std[dof] for dof in self.dofs]) ** -2.0
-        self.columns = [skeleton.point_names.index(pull.point) for pull in pulls]
-        self.places = np.array([pull.place for pull in pulls]).reshape(-1, 3)
-        self.weights = np.array([pull.weights for pull in pulls]).reshape(-1, 3, 3)
-        values = allowed.to_vector()
-        lower, upper = skeleton.limits.T
-        self.lower, self.upper = np.minimum(lower, values), np.maximum(upper, values)
+    def slopes(step: Array) -> Array:
+        moved, about = posture.plus(full(step)), posture.plus_jacobian(full(step))
+        values = moved.to_vector()
+        # d posture vector / d tangent: 1 but for balls, whose components are of rotation vectors.
+        vector, balls = np.eye(len(values)), skeleton.ball_dofs
+        vector[balls[:, :, None], balls[:, None, :]] = rotations.right_jacobian_inverse(values[balls])
+        vector[values == np.clip(values, lower, upper)] = 0.0
+        points = (weights @ body.points_jacobian(body.pose(moved))[columns]).reshape(-1, len(about))
+        jacobian = np.concatenate([points, vector / LIMIT_STD_RAD]) @ about
+        return np.concatenate([jacobian[:, dofs] * scale, np.eye(len(dofs))])
 
-    def moved(self, step: Array) -> Posture:
-        return self.start.plus(self._full(step))
-
-    def equations(self, steps: Array) -> Equations:
-        """Cost, normal matrix (1, N, N) and gradient (1, N) at a step (1, N)."""
-        (step,) = steps
-        posture = self.moved(step)
-        pose = self.body.pose(posture)
-        about = self.start.plus_jacobian(self._full(step))
-        off = self.body.points(pose)[self.columns] - self.places
-        error = (self.weights @ off[..., None]).ravel()
-        slopes = self.weights @ self.body.points_jacobian(pose)[self.columns]
-        jacobian = (slopes.reshape(-1, about.shape[0]) @ about)[:, self.dofs]
-        values = posture.to_vector()
-        beyond = (values - np.clip(values, self.lower, self.upper)) / LIMIT_STD_RAD
-        limits = _vector_slopes(posture, values) @ about / LIMIT_STD_RAD
-        rows = np.concatenate([jacobian, limits[beyond != 0.0][:, self.dofs]])
-        errors = np.concatenate([error, beyond[beyond != 0.0]])
-        cost = errors @ errors + self.stiffness @ step**2
-        normal = rows.T @ rows + np.diag(self.stiffness)
-        return np.array([cost]), normal[None], (rows.T @ errors + self.stiffness * step)[None]
-
-    def _full(self, step: Array) -> Array:
-        full = np.zeros(self.body.skeleton.dof_count)
-        full[self.dofs] = step
-        return full
+    # Of 40 steps each lowers the cost by this share, or is the last.
+    fitted = least_squares(rows, np.zeros(len(dofs)), slopes, method="lm", ftol=1e-7, max_nfev=40)
+    return posture.plus(full(fitted.x))
 
 
 def _owner(dof: str) -> str:
     """The joint that a degree of freedom belongs to, its side included; `place` for the hips' location."""
     joint, _, component = dof.rpartition(".")
     return "place" if component.startswith("location") else joint
-
-
-def _vector_slopes(posture: Posture, values: Array) -> Array:
-    """(D, D) d posture vector / d tangent: 1 but for balls, whose components are of rotation vectors."""
-    slopes = np.eye(len(values))
-    dofs = posture.skeleton.ball_dofs
-    slopes[dofs[:, :, None], dofs[:, None, :]] = rotations.right_jacobian_inverse(values[dofs])
-    return slopes

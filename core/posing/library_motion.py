@@ -15,12 +15,12 @@ from ..arrays import Array, IndexArray, SingleArray, single
 from ..body.human import LIMBS
 from ..body.kinematics import Body
 from ..body.posture import Posture, headings_rad, yaw_rotation, yawed_at
+from ..estimate.single_frame import EXCHANGED_COST
 from ..numerics.markov_chain import Steps, path_posteriors
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..progress import Part
 from .frame_likelihood import (
     ENTRIES,
-    EXCHANGED_COST,
     FrameLikelihood,
     frame_likelihoods,
     image_moments,

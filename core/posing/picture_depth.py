@@ -24,8 +24,7 @@ from ..markers.region_tracks import RegionTracks
 from ..prior.library import Library
 from ..terms.keypoints import ObservedKeypoints
 from ..terms.region_model import RegionModel
-from .frame_poses import ALIKE, likeliest_mean
-from .frame_search import FrameShown, Hypotheses, knowledge, refined, search
+from .frame_search import ALIKE, FrameSearch, FrameShown, Hypotheses, knowledge
 from .inverse_kinematics import Pull, SightLine, pulled
 
 EVIDENT = "person"  # source of points that a person vouches for
@@ -73,16 +72,16 @@ def put_right(
     pixels, depth = camera.project(seen, frame)
     if body.actor.is_average or not usable or not (np.isfinite(pixels).all() and (depth > 0.0).all()):
         return own
-    known, evident = knowledge(body, usable), _shown(body, camera, frame, pixels, std_m)
-    first = refined(known, evident, Hypotheses.given(Posture.stack([own]), np.array([False])), floor_m)
-    sought = search(known, evident, floor_m)
-    sided = sought.chosen(np.flatnonzero(~sought.exchanged))  # left and right of a person's points are right
+    search = FrameSearch(knowledge(body, usable), _shown(body, camera, frame, pixels, std_m), floor_m)
+    first = search.descended(Hypotheses(Posture.stack([own]), np.zeros(1), np.array([False])))
+    found_anew = search.hypotheses()
+    sided = found_anew.chosen(np.flatnonzero(~found_anew.exchanged))  # a person's left and right are right
     every = Hypotheses.concatenate([first, sided])
     sight = camera.sight(seen, frame)
     before, among = (body.points(body.pose(each)) for each in (found, every.posture))
     leaning = _leaning(among, sight) - _leaning(before, sight)
     believed = 0.5 * ((leaning / along_m) ** 2).sum(axis=-1) / ALIKE
-    likeliest = likeliest_mean(known, evident, replace(every, cost=every.cost + believed), floor_m)
+    likeliest = search.likeliest_mean(replace(every, cost=every.cost + believed))
     return _pulled(body, camera, frame, likeliest, likeliest, seen, near_m)
 
 

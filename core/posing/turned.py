@@ -11,7 +11,7 @@ from enum import Enum
 
 import numpy as np
 
-from ..arrays import Array, IndexArray
+from ..arrays import Array
 from ..body.human import LIMBS
 from ..body.kinematics import Body
 from ..body.mirror import mirrored, other_side
@@ -20,7 +20,7 @@ from ..camera.camera import Camera
 from ..prior.keyframes import Keyframe
 from ..take.take import Take
 from .inverse_kinematics import Pull, SightLine, pulled
-from .limb_chain import limb_chain, sight_lines, strain_of, ways_in_sight
+from .limb_chain import LimbChain
 
 HEAD_M, HEAD_DEPTH_M = 0.02, 0.3  # how near the head comes to its sight, and to its turned depth
 
@@ -48,7 +48,7 @@ class Turned:
 
     posture: Posture
     sides: Sides
-    strain: float  # how implausible its limbs are, as in `LimbInSight.strain`
+    strain: float  # how implausible its limbs are, see `LimbChain.strain`
 
 
 def facing_heading_rad(camera: Camera, place: Array, facing: Facing) -> float:
@@ -74,7 +74,7 @@ def turned(body: Body, posture: Posture, camera: Camera, facing: Facing, sides: 
     """A single posture turned about the vertical through its hips, by the frame's own camera."""
     goal = facing_heading_rad(camera, posture.translation, facing)
     if sides is Sides.TURN:
-        along = sum(strain_of(posture, limb_chain(body.skeleton, name)) for name in LIMBS)
+        along = sum(LimbChain.of(body, name).strain(posture) for name in LIMBS)
         return Turned(_at_heading(posture, goal), sides, along)
     if sides is Sides.STAY:
         base, names = _at_heading(posture, goal), {limb: limb for limb in LIMBS}
@@ -90,22 +90,18 @@ def _with_image(
     strain = 0.0
     posture = base
     for name, source in names.items():
-        limb, shown = limb_chain(body.skeleton, name), limb_chain(body.skeleton, source)
-        lines = sight_lines(body, seen, camera, shown)
-        ways = ways_in_sight(body, posture, limb, lines)
+        limb = LimbChain.of(body, name)
+        ways = limb.ways_in_sight(posture, LimbChain.of(body, source).sight_lines(seen, camera))
         if ways:
-            best = min(ways, key=lambda way: way.strain + _changed(way.posture, base, limb.dofs))
+            # Of two ways the one more like before: mean square change of the limb's joints [rad²].
+            changed = [float(np.mean(way.posture.minus(base)[limb.dofs] ** 2)) for way in ways]
+            best = ways[int(np.argmin(np.add([way.strain for way in ways], changed)))]
             posture, strain = best.posture, strain + best.strain
     column = body.skeleton.point_names.index("head")
     head, now = (body.points(body.pose(each))[column] for each in (seen, posture))
     line = SightLine.to(camera, head)
     pull = Pull("head", line.nearest(now), HEAD_M, line.direction, HEAD_DEPTH_M)
     return Turned(pulled(body, posture, [pull], {"neck": 1.0}), sides, strain)
-
-
-def _changed(posture: Posture, base: Posture, dofs: IndexArray) -> float:
-    """Mean square change of a limb's joints [rad²]: of two ways, the one more like before."""
-    return float(np.mean(posture.minus(base)[dofs] ** 2))
 
 
 def _at_heading(posture: Posture, heading_rad: float) -> Posture:

@@ -22,7 +22,7 @@ from keymark.core.body.human import HUMAN, LIMBS, TRUNK
 from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera
 from keymark.core.posing.depth_flip import FLIPPABLE, FlippedPart, flipped
-from keymark.core.posing.limb_chain import DISTINCT_M, limb_chain, limb_excess_rad, sight_lines, ways_in_sight
+from keymark.core.posing.limb_chain import DISTINCT_M, LimbChain
 
 FRONT = camera_at(np.array([0.0, -4.0, 1.2]))
 SEEDS = st.integers(0, 2**32 - 1)
@@ -38,7 +38,7 @@ def posed(**angles: float) -> Posture:
 
 def depths(posture: Posture, camera: Camera, limb: str) -> Array:
     """(2,) how much farther the middle lies than the root, and the end than the middle [m]."""
-    chain = limb_chain(HUMAN, limb)
+    chain = LimbChain.of(BODY, limb)
     eye = camera.matrix_world[:3, 3]
     root, middle, end = points(posture)[chain.columns]
     # Along the lines of sight, which is what a flip changes.
@@ -54,7 +54,7 @@ def depths(posture: Posture, camera: Camera, limb: str) -> Array:
 @given(SEEDS, st.sampled_from(LIMBS))
 def test_a_flipped_limb_keeps_lengths_limits_and_the_rest_of_the_body(seed: int, limb: str) -> None:
     posture, camera = natural_posture(seed), camera_around(seed + 1)
-    chain = limb_chain(HUMAN, limb)
+    chain = LimbChain.of(BODY, limb)
     others = np.setdiff1d(np.arange(34), chain.dofs)
     before = depths(posture, camera, limb)
     for other in flipped(BODY, posture, camera, limb):
@@ -68,14 +68,14 @@ def test_a_flipped_limb_keeps_lengths_limits_and_the_rest_of_the_body(seed: int,
 @given(SEEDS, st.sampled_from(LIMBS))
 def test_a_flip_within_joint_limits_keeps_the_image(seed: int, limb: str) -> None:
     posture, camera = natural_posture(seed), camera_around(seed + 1)
-    chain = limb_chain(HUMAN, limb)
-    lines = sight_lines(BODY, posture, camera, chain)
-    ways = ways_in_sight(BODY, posture, chain, lines)
-    exact = [way for way in ways if way.excess_rad == 0.0 and way.off_m < 1e-9]
+    chain = LimbChain.of(BODY, limb)
+    exact = [
+        way for way in chain.ways_in_sight(posture, chain.sight_lines(posture, camera)) if way.off_m < 1e-9
+    ]
     assert exact  # the posture itself is one of them
     for way in exact:
         np.testing.assert_allclose(pixels(way.posture, camera), pixels(posture, camera), atol=0.01)
-        assert np.abs(limb_excess_rad(way.posture, chain)).max() == 0.0
+        assert np.abs(chain.excess_rad(way.posture)).max() == 0.0
 
 
 @settings(max_examples=30)
