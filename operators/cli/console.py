@@ -12,7 +12,7 @@ from typing import Any
 
 from ...core.errors import ConversionError
 from ...core.progress import Progress
-from .parser import print_error
+from .command import print_error
 
 FEWEST_COLUMNS = 60
 """Narrower terminals are wrapped as if they had this many."""

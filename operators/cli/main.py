@@ -20,9 +20,9 @@ from typing import Any, NoReturn
 
 from ...core.errors import InputError, KeymarkError, describe_unexpected
 from .blender_silence import codec_silence
+from .command import Command, CommandGroup, UsageError, print_error, program_name, version
 from .commands import SUMMARIES
 from .console import Console
-from .parser import Command, CommandGroup, UsageError, print_error, program_name, version
 
 BLENDER_PREFIX = ["--command", "keymark"]
 """What Blender needs before a command; accepted here too, so that farms call both programs alike."""

@@ -12,7 +12,7 @@ from ...core.prior.texts import EVERY_LIBRARY
 from ...core.take.character_settings import CharacterFile, CharacterSettings, RetargetOptions
 from ...core.take.conversion_settings import ConversionSettings, EvidenceKinds
 from ...core.take.evidence import EVIDENCE
-from .parser import Argument, UsageError, argument
+from .command import Argument, UsageError, argument
 
 WHERE = "the command line"
 HEIGHT = "--height"

@@ -14,9 +14,9 @@ from ....core.errors import BusyError, InputError, KeymarkError, describe_unexpe
 from ....core.progress import Progress
 from ....core.shoot.outcomes import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
+from ..command import UsageError
 from ..console import JOB_SHARE, Console
 from ..conversion.convert_take import convert_if_changed
-from ..parser import UsageError
 from .machine_resources import resident_bytes
 from .worker_process import BUSY, CONVERTED, FAILED, UNCHANGED, Done, Job, Message, Ready, Step, message_line
 

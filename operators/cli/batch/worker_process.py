@@ -17,7 +17,7 @@ from typing import Any
 
 from ....core.shoot.discovery import ShootTake
 from ....core.take.conversion_settings import ConversionSettings
-from ..parser import program_name
+from ..command import program_name
 
 LONGEST_BYTES = 2**22
 """Of a line: a list of takes may hold a megabyte on one of them."""

@@ -6,6 +6,7 @@ from pathlib import Path
 from ....core.errors import InputError
 from ....core.take.description import ASSUMED, describe
 from ....core.take.take_file import USUAL_HEIGHT_M, check_height
+from ..command import Command, UsageError, argument
 from ..console import Console
 from ..conversion.character_result import FORMAT, check_exporters, export_formats
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
@@ -18,7 +19,6 @@ from ..options import (
     output,
     setting_options,
 )
-from ..parser import Command, UsageError, argument
 
 
 def animate_command(arguments: argparse.Namespace, console: Console) -> None:

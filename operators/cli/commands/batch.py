@@ -20,9 +20,9 @@ from ..batch.machine_resources import available_memory_bytes, processor_count
 from ..batch.outcomes import BatchOutcomes
 from ..batch.worker_pool import WorkerPool
 from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, Job, worker_command_line
+from ..command import Command, UsageError, argument, require_blender
 from ..console import Console
 from ..options import PICTURES, SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option, output
-from ..parser import Command, UsageError, argument, require_blender
 
 WORKER_BYTES = 1.5 * 2**30
 """Memory that a worker may need; the default number of jobs leaves each this much."""

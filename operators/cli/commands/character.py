@@ -6,10 +6,10 @@ from ....core.retarget.character import ROLES
 from ....core.retarget.maps.character_map import CharacterMap, write_character_map
 from ....core.retarget.retarget_record import GIVEN, SAVED
 from ....core.take.character_settings import CharacterFile
+from ..command import Command, argument, refuse_existing, require_blender
 from ..console import Console, terminal_columns, wrapped
 from ..conversion.character_result import opened_character
 from ..options import CHARACTER_HELP, MAP, REPLACE_HELP, output
-from ..parser import Command, argument, refuse_existing, require_blender
 
 UNSURE = 0.75
 """Confidence below which a role is marked."""

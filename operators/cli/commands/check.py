@@ -16,11 +16,11 @@ from ....core.shoot.check.take_check import TakeCheck, check_take, flag_outliers
 from ....core.shoot.discovery import Shoot, ShootTake, open_shoot
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.evidence import KEYPOINTS
+from ..command import Command, argument
 from ..console import Console, terminal_columns, wrapped
 from ..conversion.character_result import CharacterChecks
 from ..library_search_path import requested_libraries
 from ..options import SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option
-from ..parser import Command, argument
 
 MOST_JOBS = 64
 STAGE = "Looking at the takes"

@@ -8,10 +8,10 @@ from ....core.shoot.discovery import take_path
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence import KEYPOINTS
+from ..command import Command, UsageError, argument
 from ..console import Console
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
 from ..options import PICTURES, SETTINGS, given_settings, output, setting_options
-from ..parser import Command, UsageError, argument
 
 
 def convert_command(arguments: argparse.Namespace, console: Console) -> None:

@@ -21,10 +21,10 @@ from ....core.take.evidence import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
 from ....core.take.examples import AEROBIC, GREETING, POSED_BY_HAND, example_folder
 from ....core.take.motion import Motion
 from ....core.take.take import Take
+from ..command import Command, argument, require_blender
 from ..console import Console
 from ..conversion.convert_take import conversion_summary, convert_take
 from ..options import HEIGHT, bare_clip_fields
-from ..parser import Command, argument, require_blender
 
 MARKED = (MARKERS, CONTOURS)
 UNMARKED = (KEYPOINTS, DEPTH_HINTS, CONTOURS)

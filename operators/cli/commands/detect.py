@@ -20,9 +20,9 @@ from ....core.take.clip_check import open_footage
 from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, find_shoot_files, sidecar_file
 from ....core.take.take_file import FRAME_RATE, FRAME_START
 from ....core.video.image_sequence import find_images
+from ..command import Command, UsageError, argument, refuse_existing
 from ..console import Console
 from ..options import output
-from ..parser import Command, UsageError, argument, refuse_existing
 
 MOST_NAMED = 5
 

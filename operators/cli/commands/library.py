@@ -12,10 +12,10 @@ from ....core.prior.library import Library, read_library, write_library
 from ....core.prior.registry import find_library, identifier_of, registered_libraries
 from ....core.prior.texts import LONGEST_NAME, checked_identifier, identifier_from
 from ..blender_silence import blender_silence
+from ..command import Command, CommandGroup, UsageError, argument, refuse_existing, require_blender
 from ..console import Console
 from ..library_search_path import library_folders
 from ..options import REPLACE_HELP, output
-from ..parser import Command, CommandGroup, UsageError, argument, refuse_existing, require_blender
 
 LIBRARY_HELP = "name or file of a library"
 

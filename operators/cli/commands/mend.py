@@ -17,6 +17,7 @@ from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion import write_motion
 from ....core.take.reference import REFERENCE_ENDINGS, read_reference
 from ..blender_silence import blender_silence
+from ..command import Command, UsageError, argument, require_blender
 from ..console import Console
 from ..conversion.blender_files import hidden_files, refuse_unsupported_output
 from ..conversion.character_result import (
@@ -29,7 +30,6 @@ from ..conversion.character_result import (
 )
 from ..library_search_path import library_folders
 from ..options import character_options, character_settings, checked, output
-from ..parser import Command, UsageError, argument, require_blender
 
 FILES = (MOTION, BVH, CHARACTER_BLEND, RETARGET, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
 USUAL_RATE = 30.0

@@ -17,9 +17,9 @@ from ....core.shoot.outcomes import Failure, Result, Results, find_results, read
 from ....core.take.conversion_record import CHARACTER_BLEND, MOTION
 from ....core.take.motion import Motion, read_motion
 from ..blender_silence import blender_silence
+from ..command import Command, argument, require_blender
 from ..console import Console, terminal_columns, wrapped
 from ..options import output
-from ..parser import Command, argument, require_blender
 
 if TYPE_CHECKING:
     from ...bridge.assets.motions import MotionAsset

@@ -10,9 +10,9 @@ from ....core.progress import run, within
 from ....core.shoot.discovery import find_takes
 from ....core.shoot.template import clip_lines, evidence_lines, shoot_template, survey_clips
 from ....core.take.description import SHOOT_FILE, find_shoot_files
+from ..command import Command, argument, program_name
 from ..console import Console
 from ..options import output
-from ..parser import Command, argument, program_name
 
 
 def new_command(arguments: argparse.Namespace, console: Console) -> None:

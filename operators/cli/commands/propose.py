@@ -12,9 +12,9 @@ from ....core.take.performer_keypoints import performer_keypoints
 from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
 from ....core.take.take_file import read_described
+from ..command import Command, argument
 from ..console import Console
 from ..options import given_settings, setting_options
-from ..parser import Command, argument
 
 UNPOSED = "no keyframe is posed yet; pose these frames, or let convert find them with --keyframes auto"
 READING_SHARE = 0.9

@@ -14,6 +14,7 @@ from ....core.take.character_settings import CharacterSettings
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, CHARACTER_PICTURE, MOTION
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion import read_motion
+from ..command import Command, argument, require_blender
 from ..console import Console
 from ..conversion.blender_files import refuse_unsupported_output
 from ..conversion.character_result import (
@@ -24,7 +25,6 @@ from ..conversion.character_result import (
     write_character_result,
 )
 from ..options import character_options, character_settings, output
-from ..parser import Command, argument, require_blender
 
 RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
 FIGURES = {

@@ -27,9 +27,9 @@ from ....core.take.conversion_record import CHARACTER_BLEND, CHARACTER_PICTURE
 from ....core.take.motion import Motion
 from ....core.take.presence import named_limbs
 from ..blender_silence import blender_silence
+from ..command import UsageError, argument, version
 from ..console import Console
 from ..library_search_path import library_folders
-from ..parser import UsageError, argument, version
 from .blender_files import hidden_files
 
 if TYPE_CHECKING:

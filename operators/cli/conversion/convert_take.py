@@ -33,9 +33,9 @@ from ....core.take.reference import ReferenceMotion
 from ....core.take.steady_camera import followed_camera
 from ....core.take.take import Take
 from ..blender_silence import blender_silence
+from ..command import require_blender, version
 from ..console import Console
 from ..library_search_path import library_folders, requested_libraries
-from ..parser import require_blender, version
 from .blender_files import refuse_unsupported_paths, write_blender_files
 from .character_result import opened_character, write_character_result
 

@@ -11,9 +11,9 @@ import pytest
 from keymark.core.shoot.outcomes import read_failure
 from keymark.operators.cli.batch import worker_pool
 from keymark.operators.cli.batch.outcomes import BatchProgress
+from keymark.operators.cli.command import program_name
 from keymark.operators.cli.commands import batch as command
 from keymark.operators.cli.main import main
-from keymark.operators.cli.parser import program_name
 
 STAND_IN = Path(__file__).resolve().parents[2] / "_stand_in_worker.py"
 
