@@ -17,7 +17,7 @@ load_project()
 from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
 from keymark.core.body.skeleton import SIDES  # noqa: E402
-from keymark.core.finish.mend_motion import Mended, MendOptions, mend_motion  # noqa: E402
+from keymark.core.mend.mend_motion import Mended, MendOptions, mend_motion  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import read_truth  # noqa: E402
 from keymark.core.take.character_settings import CharacterFile  # noqa: E402

@@ -94,12 +94,12 @@ def _longest_rest(path: Array, stray_m: float, first: int, last: int) -> tuple[i
     longest = (first, first)
     start = first
     for stop in range(first + 1, last + 1):
-        while _farthest(path[start : stop + 1]) > stray_m:
+        while not _stays(path[start : stop + 1], stray_m):
             start += 1
         if stop - start > longest[1] - longest[0]:
             longest = (start, stop)
     return longest
 
 
-def _farthest(path: Array) -> float:
-    return float(np.linalg.norm(path - path.mean(axis=0), axis=-1).max())
+def _stays(path: Array, stray_m: float) -> bool:
+    return bool((np.linalg.norm(path - path.mean(axis=0), axis=-1) <= stray_m).all())

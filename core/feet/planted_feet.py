@@ -45,8 +45,9 @@ def plant_feet(
         return PlantedFeet(posture, ())
     target = _targets(body, pose, places, contacts, time_s)
     touched = (target != places).any(axis=(1, 2))
-    dofs = _free_dofs(body)
-    std = np.array([CHANGE_STD[_kind(body.skeleton.dof_names[dof])] for dof in dofs])
+    kinds = [_kind(name) for name in body.skeleton.dof_names]
+    dofs = np.array([dof for dof, kind in enumerate(kinds) if kind in CHANGE_STD], dtype=np.intp)
+    std = np.array([CHANGE_STD[kinds[dof]] for dof in dofs])
     delta = np.zeros((len(time_s), len(dofs)))
     planted = posture
     for number in range(ITERATIONS):
@@ -59,12 +60,6 @@ def plant_feet(
         if np.abs(step).max() < 1e-5:
             break
     return PlantedFeet(planted, contacts)
-
-
-def _free_dofs(body: Body) -> IndexArray:
-    """Degrees of freedom that may change: the hips' place and the legs."""
-    names = body.skeleton.dof_names
-    return np.array([i for i, name in enumerate(names) if _kind(name) in CHANGE_STD], dtype=np.intp)
 
 
 def _kind(name: str) -> str:

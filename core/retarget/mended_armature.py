@@ -15,7 +15,7 @@ from ..body.human import HUMAN
 from ..body.posture_fit import nearest_rotation
 from ..body.skeleton import SIDES
 from ..feet.fading import held_turns
-from ..finish.mend_motion import Mended
+from ..mend.mend_motion import Mended
 from ..numerics.vectors import unit
 from ..numerics.wandering import smooth_path
 from .solve.rest_body import RestBody

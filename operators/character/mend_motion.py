@@ -53,7 +53,7 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
         return browse(self, context)
 
     def run(self, context: bpy.types.Context) -> None:
-        from ...core.finish.mend_motion import MendOptions, mend_motion
+        from ...core.mend.mend_motion import MendOptions, mend_motion
         from ...core.take.character_settings import CharacterFile
         from ...core.take.reference import REFERENCE_ENDINGS, read_reference
         from ..bridge.motions.import_motion import load_motion

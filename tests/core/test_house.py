@@ -30,7 +30,7 @@ ROOMS = (
     ("core.posing",),
     ("core.feet",),
     ("core.keys",),
-    ("core.finish", "core.review"),
+    ("core.mend", "core.review"),
     ("core.retarget",),
     ("core.session",),
     ("core.api",),

@@ -40,24 +40,12 @@ def held_points(
     character: Character, character_map: CharacterMap, soles: Mapping[str, Array]
 ) -> tuple[HeldPoint, ...]:
     """The points that show how each bone with a role is placed and turned; soles (N, 3) are at rest."""
-    return (*_trunk_points(character, character_map), *_limb_points(character, character_map, soles))
-
-
-def _trunk_points(character: Character, character_map: CharacterMap) -> list[HeldPoint]:
-    bones = [character.bone(name) for role in MIDDLE for name in character_map.bones(role)]
-    # Distance of the points that show how a bone of the trunk turns, in lengths from hips to head.
-    size = 0.15 * float(np.ptp([bone.head for bone in bones], axis=0).max()) if bones else 0.0
-    return [
-        HeldPoint(bone.name, place, PointKind.BODY, None)
-        for bone in bones
-        for place in (np.zeros(3), np.array([size, 0.0, 0.0]), np.array([0.0, 0.0, size]))
-    ]
-
-
-def _limb_points(
-    character: Character, character_map: CharacterMap, soles: Mapping[str, Array]
-) -> list[HeldPoint]:
     found = []
+    trunk = [character.bone(name) for role in MIDDLE for name in character_map.bones(role)]
+    # Distance of the points that show how a bone of the trunk turns, in lengths from hips to head.
+    size = 0.15 * float(np.ptp([bone.head for bone in trunk], axis=0).max()) if trunk else 0.0
+    for place in size * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]):
+        found += [HeldPoint(bone.name, place, PointKind.BODY, None) for bone in trunk]
     for limb, roles in LIMBS.items():
         chain = [role for role in roles if role in character_map.roles]
         bones = [character.bone(str(character_map.bone(role))) for role in chain]
@@ -76,7 +64,7 @@ def _limb_points(
             places += [(point, PointKind.SOLE) for point in soles.get(role, ())]
             turn = bone.rest[:3, :3]
             found += [HeldPoint(bone.name, (place - bone.head) @ turn, kind, limb) for place, kind in places]
-    return found
+    return tuple(found)
 
 
 # --- How far key reduction may move a character's points

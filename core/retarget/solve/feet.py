@@ -21,7 +21,6 @@ from ...feet.contacts import RELEASE_SPEED_M_S, Contact, speeds
 from ...feet.fading import Hold, ease, faded, held_turns, smooth_above
 from ...feet.ground import Ground
 from .foot_shape import FootShape
-from .hips import straightness
 from .stage import Stage
 from .two_bone import LimbPose
 
@@ -99,13 +98,11 @@ def floor_lifts(
 
 def sole_depth_m(turn: Array, shape: FootShape) -> Array:
     """(F,) depth of the foot's lowest point under the ankle, the toes bent up as far as they bend [m]."""
-    up = turn[:, 2]  # the world's up in the foot's axes
-    depth = -(up @ shape.foot.T).min(axis=1)
-    if shape.toe_joint is not None and len(shape.toe):
-        bend = np.full(len(turn), MOST_TOE_BEND_RAD)
-        toe = shape.toe_joint + shape.toe @ np.swapaxes(_about_x(-bend), -1, -2)
-        depth = np.maximum(depth, -(toe @ up[..., None])[..., 0].min(axis=1))
-    return np.asarray(depth)
+    points = shape.foot
+    if shape.toe_joint is not None:
+        toe = shape.toe_joint + shape.toe @ _about_x(np.array(-MOST_TOE_BEND_RAD)).T
+        points = np.concatenate([points, toe])
+    return np.asarray(-(turn[:, 2] @ points.T).min(axis=1))
 
 
 def toe_bends(turn: Array, shape: FootShape, height_m: Array) -> Array:
@@ -227,7 +224,7 @@ def _footprint(
     nearly straight count more: there a knee bends a lot for a little way.
     """
     frames = slice(rest.first, rest.last + 1)
-    place = np.average(leg.end[frames], axis=0, weights=straightness(leg)[frames])
+    place = np.average(leg.end[frames], axis=0, weights=leg.straightness[frames])
     found = np.broadcast_to(place, (len(turn), 3)).copy()
     into, out = rest.first - first, rest.last + 1 - first
     found[:into] = place + stand @ shape.heel - turn[:into] @ shape.heel

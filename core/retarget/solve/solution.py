@@ -1,15 +1,15 @@
 """A character's motion on its stage while it is solved: directions, feet, hips, hands, one by one."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, BoolArray
 from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
-from ...feet.fading import smooth_above
+from ...feet.fading import ease, smooth_above, smoothed
 from ...feet.ground import Ground
 from ..character import LIMBS, joint_roles
 from ..character_motion import FootRest, HandGoal
@@ -17,10 +17,9 @@ from .body_frames import bone_turns, joint_places
 from .feet import FootPath, plan_foot, toe_bends
 from .foot_shape import FootShape
 from .hands import above_floor, floor_goals, hand_goals, reach
-from .hips import DEEPEST_SHARE, SINK_S, needed_drop_m, raised_m
 from .rest_body import RestBody
 from .stage import Stage
-from .two_bone import ARM_SOFT, LEG_SOFT, LimbPose, reach_for
+from .two_bone import ARM_SOFT, LEG_SOFT, STRAIGHTEST, LimbPose, reach_for
 
 HINGES = {
     "arm.L": (0.0, 0.0, -1.0),
@@ -29,6 +28,10 @@ HINGES = {
     "leg.R": (1.0, 0.0, 0.0),
 }
 """Axis of elbow or knee by limb, of the performer at rest."""
+SINK_S = 0.12  # time over which the hips go down and up again
+CARRY_S = 0.08  # standard deviation in time of the smoothing of what they are moved by with the feet
+MOMENT_S = 0.07  # standard deviation in time of the smoothing of how far a limb may be stretched
+DEEPEST_SHARE = 0.08  # farthest that they go down or up, as a share of the legs' length
 
 
 @dataclass(eq=False)
@@ -104,15 +107,15 @@ class Solution:
             return
         time_s, leg_m = self.source.time_s, self.body.leg_m
         ankles, over_m = [feet[side].ankle for side in legs], [feet[side].over_m for side in legs]
-        raised = raised_m(list(legs.values()), ankles, over_m, time_s, leg_m)
+        raised = _raised_m(list(legs.values()), ankles, over_m, time_s, leg_m)
         needed = []
         for side, leg in legs.items():
             moved = feet[side].ankle - raised[:, None] * UP
-            needed.append(needed_drop_m(leg, moved, feet[side].planted, LEG_SOFT, time_s))
+            needed.append(_needed_drop_m(leg, moved, feet[side].planted, LEG_SOFT, time_s))
         for side, arm in arms.items():
             goal, share = floor_goals(self.source, self.stage, self.ground, arm, side)
             moved = goal - raised[:, None] * UP
-            needed.append(share * needed_drop_m(arm, moved, share > 0.0, ARM_SOFT, time_s))
+            needed.append(share * _needed_drop_m(arm, moved, share > 0.0, ARM_SOFT, time_s))
         lowered = np.minimum(np.maximum.reduce(needed), DEEPEST_SHARE * leg_m)
         self.hips = self.hips + (raised - smooth_above(lowered, time_s, SINK_S))[:, None] * UP
 
@@ -184,3 +187,36 @@ class Solution:
             for rest in self.ground.rests
             if SIDES[rest.point] in feet
         )
+
+
+# --- How high the hips are
+
+
+def _needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float, time_s: Array) -> Array:
+    """(F,) how much lower a limb must begin to reach its goal (F, 3) where that is needed (F,) [m]."""
+    own = np.minimum(limb.extension_m / limb.length_m, 1.0)
+    # A knee that is straight for a moment only is not stretched to the limit for it: it would snap.
+    allowed = np.maximum(soft, np.minimum(own, smoothed(own, time_s, MOMENT_S, ends_kept=False)))
+    way = goal - limb.start
+    aside = np.sum(way[:, :2] ** 2, axis=-1)
+    below = np.sqrt(np.maximum((allowed * STRAIGHTEST * limb.length_m) ** 2 - aside, 0.0))
+    return np.where(needed, np.maximum(-way[:, 2] - below, 0.0), 0.0)
+
+
+def _raised_m(
+    legs: Sequence[LimbPose], ankles: Sequence[Array], over_m: Sequence[Array], time_s: Array, leg_m: float
+) -> Array:
+    """(F,) how much higher the hips go, or lower, for the legs that stand to keep their bend [m].
+
+    `over_m` (F,) is how much higher the ankles (F, 3) shall be than ankles on the ground.
+    """
+    # What standing legs are weighed against: a bent leg that stands has about 20, a straight one 100.
+    total, weights = np.zeros(len(time_s)), np.full(len(time_s), 1.0)
+    for leg, ankle, over in zip(legs, ankles, over_m, strict=True):
+        # Height of an ankle over its height on the ground, as a share of the leg, from which it does not
+        # stand.
+        weight = leg.straightness * (1.0 - ease(over, 0.0, 0.04 * leg_m))
+        total += weight * (ankle - leg.end)[:, 2]
+        weights += weight
+    limit = DEEPEST_SHARE * leg_m
+    return np.clip(smoothed(total / weights, time_s, CARRY_S, ends_kept=False), -limit, limit)

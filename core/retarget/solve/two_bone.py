@@ -50,6 +50,12 @@ class LimbPose:
         return self.upper_m + self.lower_m
 
     @property
+    def straightness(self) -> Array:
+        """(F,) how much it bends for a little way: a weight, large where it is nearly straight."""
+        # What a leg is longer than the way between its ends, as a share, when it counts as nearly straight.
+        return np.asarray(1.0 / (0.01 + np.maximum(1.0 - self.extension_m / self.length_m, 0.0)))
+
+    @property
     def bend(self) -> Array:
         """(F, 3) unit direction from the line through its ends toward knee or elbow, bent or straight."""
         line = unit(self.end - self.start)

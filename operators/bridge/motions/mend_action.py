@@ -11,7 +11,7 @@ from mathutils import Matrix
 from ....core.arrays import Array
 from ....core.body.skeleton import SIDES
 from ....core.errors import InputError
-from ....core.finish.mend_motion import HIPS, PLACE_M, Mended, MendOptions, mend_motion
+from ....core.mend.mend_motion import HIPS, PLACE_M, Mended, MendOptions, mend_motion
 from ....core.progress import Job, Progress, run, stretch, within
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.mended_armature import ArmaturePoints, Poses, mended_poses
@@ -193,20 +193,14 @@ def _columns(
             new[name] = new[parent.name] @ np.linalg.inv(before[parent.name]) @ old
         if name not in made:
             continue
-        pose = _in_object(into, objects, new[name])
-        above = None if parent is None else _in_object(into, objects, new[parent.name])
-        basis = np.array(
-            [
-                bones[name].convert_local_to_pose(
-                    Matrix(matrix),
-                    bones[name].matrix_local,
-                    **({} if above is None else _above(above[frame], parent)),
-                    invert=True,
-                )
-                for frame, matrix in enumerate(pose)
-            ],
-            dtype=np.float64,
-        )
+        bone, above = bones[name], {}
+        places = _in_object(into, objects, new[name])
+        carriers = places if parent is None else _in_object(into, objects, new[parent.name])
+        basis = np.empty_like(places)
+        for frame, (pose, carrier) in enumerate(zip(places, carriers, strict=True)):
+            if parent is not None:
+                above = {"parent_matrix": Matrix(carrier), "parent_matrix_local": parent.matrix_local}
+            basis[frame] = bone.convert_local_to_pose(Matrix(pose), bone.matrix_local, **above, invert=True)
         mode = pose_bones[name].rotation_mode
         values = {rotation_path(mode): rotation_values(basis[:, :3, :3], mode)}
         if name == hips:
@@ -214,10 +208,6 @@ def _columns(
         for channel, columns in values.items():
             path = bone_path(name, channel)
             yield from ((path, index, name, column) for index, column in enumerate(columns.T))
-
-
-def _above(pose: Array, parent: bpy.types.Bone) -> dict[str, Matrix]:
-    return {"parent_matrix": Matrix(pose), "parent_matrix_local": parent.matrix_local}
 
 
 def _in_object(into: Array, objects: Array, poses: Array) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from ....core.arrays import Array
 from ....core.body.skeleton import SIDES
 from ....core.errors import InputError
-from ....core.finish.mend_motion import MOST_FRAMES
+from ....core.mend.mend_motion import MOST_FRAMES
 from ....core.progress import Part, run
 from ....core.retarget.character import ARM, LEG
 from ....core.retarget.controls.control_spaces import unscaled
@@ -108,21 +108,18 @@ def posed_frames(
     own: set[int] = set()
     every: set[int] = set()
     for curve in curves:
-        keyed = {round(key.co[0]) for key in curve.keyframe_points}
+        keyed = {round(key.co[0]): key.type for key in curve.keyframe_points}
         made = {round(frame) for frame in unchanged_frames(curve, MOTION)}
-        every |= keyed
+        every |= set(keyed)
         if made:
-            own |= keyed - made
+            own |= set(keyed) - made
         else:
-            own |= {round(frame) for frame in animator_frames(curve)} & _of_type_keyframe(curve)
+            animators = {round(frame) for frame in animator_frames(curve)}
+            own |= {frame for frame in animators if keyed[frame] == "KEYFRAME"}
     if len(own) > MOST_POSED * len(every):
         return ()
     first = round(frames[0])
     return tuple(sorted(frame - first for frame in own if 0 <= frame - first < len(frames)))
-
-
-def _of_type_keyframe(curve: bpy.types.FCurve) -> set[int]:
-    return {round(key.co[0]) for key in curve.keyframe_points if key.type == "KEYFRAME"}
 
 
 def read_poses(

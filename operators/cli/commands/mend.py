@@ -7,7 +7,7 @@ from ....core.errors import InputError
 from ....core.files.kinds import Number
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import absolute_path, real_path
-from ....core.finish.mend_motion import Mended, MendOptions, mend_motion
+from ....core.mend.mend_motion import Mended, MendOptions, mend_motion
 from ....core.progress import run
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.session.result import AS_MADE, changed_files, kept_note, write_made_digests

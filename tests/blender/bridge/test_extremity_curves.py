@@ -18,7 +18,7 @@ from keymark.operators.bridge.extremity_curves import (
     turned_extremities,
 )
 from keymark.operators.bridge.fcurves import write_motion
-from keymark.operators.bridge.finish_motion import FinishOptions, finish_motion
+from keymark.operators.bridge.finish_motion import Finished, FinishOptions, finish_motion
 from keymark.operators.bridge.keyframes import store_pose
 from mathutils import Euler, Matrix, Vector
 
@@ -76,6 +76,19 @@ def curve(armature_object: bpy.types.Object, action: bpy.types.Action, bone: str
     return existing_channelbag(action, armature_object).fcurves.find(path, index=1)
 
 
+def final_action(
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action,
+    options: FinishOptions,
+    keyframes: bpy.types.Action | None = None,
+) -> tuple[Finished, bpy.types.Action]:
+    """A motion finished, and the Action that holds it."""
+    finished = run(finish_motion(armature_object, action, keyframes, options, 1.0 / FPS))
+    final = bpy.data.actions.new("Final")
+    finished.write(armature_object, action, final)
+    return finished, final
+
+
 def test_blender_shows_what_was_computed(actor: bpy.types.Object) -> None:
     motion = swaying(actor)
     write_motion(actor, motion)
@@ -125,10 +138,8 @@ def test_planted_soles_lie_flat_and_still_in_blender(
     actor: bpy.types.Object, tolerance_m: float | None
 ) -> None:
     action = write_motion(actor, swaying(actor))
-    finished = run(finish_motion(actor, action, None, FinishOptions(tolerance_m, False, 0.05), 1.0 / FPS))
+    finished, final = final_action(actor, action, FinishOptions(tolerance_m, False, 0.05))
     assert {contact.point for contact in finished.contacts} == {0, 1}
-    final = bpy.data.actions.new("Final")
-    finished.write(actor, action, final)
     assign_action(actor, final)
     feet = tips(actor)[:, [extremity_names(HUMAN).index(f"foot.{side}") for side in ("L", "R")]]
     for contact in finished.contacts:
@@ -147,9 +158,7 @@ def test_a_motion_of_rigid_feet_is_finished_as_it_is(actor: bpy.types.Object) ->
     for name in extremity_names(HUMAN):
         for each in [one for one in bag.fcurves if f'"{name}"' in one.data_path]:
             bag.fcurves.remove(each)
-    finished = run(finish_motion(actor, action, None, FinishOptions(None, False, None), 1.0 / FPS))
-    final = bpy.data.actions.new("Final")
-    finished.write(actor, action, final)
+    _, final = final_action(actor, action, FinishOptions(None, False, None))
     paths = {one.data_path for one in existing_channelbag(final, actor).fcurves}
     assert not any("foot" in path or "hand" in path for path in paths)
 
@@ -159,8 +168,6 @@ def test_a_copied_hand_is_finished_as_it_was_keyed(actor: bpy.types.Object) -> N
     actor.pose.bones["hand.L"].rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
     store_pose(actor, keyframes, HUMAN, 7.0)
     action = write_motion(actor, swaying(actor), keyframe_action=keyframes)
-    finished = run(finish_motion(actor, action, keyframes, FinishOptions(0.01, False, 0.03), 1.0 / FPS))
-    final = bpy.data.actions.new("Final")
-    finished.write(actor, action, final)
+    _, final = final_action(actor, action, FinishOptions(0.01, False, 0.03), keyframes)
     points = curve(actor, final, "hand.L").keyframe_points
     assert [(point.co.x, round(point.co.y, 5)) for point in points] == [(7.0, 0.6)]

@@ -101,19 +101,22 @@ def test_a_catalog_file_keeps_what_is_there(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == [NAME]
 
 
-@pytest.mark.parametrize("catalog", ["", "/", "a:b", "a\nb"])
-def test_a_catalog_that_is_no_path_is_refused(tmp_path: Path, catalog: str) -> None:
-    with pytest.raises(InputError, match="is not a path of names"):
-        ensure_catalog(tmp_path / NAME, catalog)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_file_of_another_kind_is_left_alone(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("before", "catalog", "sentence"),
+    [
+        *((None, catalog, "is not a path of names") for catalog in ("", "/", "a:b", "a\nb")),
+        ("VERSION 7\n", "Keymark", "begins with 'VERSION 7'"),
+    ],
+)
+def test_a_catalog_that_cannot_be_is_refused_and_no_file_is_changed(
+    tmp_path: Path, before: str | None, catalog: str, sentence: str
+) -> None:
     file = tmp_path / NAME
-    file.write_text("VERSION 7\n")
-    with pytest.raises(InputError, match="begins with 'VERSION 7'"):
-        ensure_catalog(file, "Keymark")
-    assert file.read_text() == "VERSION 7\n"
+    if before is not None:
+        file.write_text(before)
+    with pytest.raises(InputError, match=sentence):
+        ensure_catalog(file, catalog)
+    assert (file.read_text() if file.exists() else None) == before
 
 
 def state(scene: bpy.types.Scene) -> tuple[object, ...]:

@@ -85,11 +85,7 @@ def test_resting_soles_lie_flat_where_rigid_ones_dip(step: Posture) -> None:
     shown, rigid = soles(step), soles(step, RIGID)
     for frames, foot in ((slice(5, 25), 0), (slice(55, 85), 0), (slice(5, 85), 1)):
         assert np.abs(shown[frames, foot, :, 2]).max() < 1e-3
-    assert rigid[..., 2].min() < -0.03
-
-
-def test_no_sole_passes_the_ground_between_rests(step: Posture) -> None:
-    assert soles(step)[..., 2].min() > -2e-3
+    assert rigid[..., 2].min() < -0.03 and shown[..., 2].min() > -2e-3  # between rests, too
 
 
 def test_the_heel_rises_first_and_lands_first(step: Posture) -> None:

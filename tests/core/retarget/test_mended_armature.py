@@ -8,7 +8,7 @@ from _performances import RATE, jitter_mm, solved, steps
 from _recorded import assert_recorded
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
-from keymark.core.finish.mend_motion import Mended, MendOptions, mend_motion
+from keymark.core.mend.mend_motion import Mended, MendOptions, mend_motion
 from keymark.core.progress import run
 from keymark.core.retarget.mended_armature import ArmaturePoints, mended_poses
 from keymark.core.retarget.solve.rest_body import RestBody

@@ -157,32 +157,39 @@ def test_feet_on_a_root_are_placed_and_turned() -> None:
     assert max(off_m(motion, poses, name).max() for name in moved) < 0.0051
 
 
+def control(
+    name: str,
+    turner: int,
+    carrier: int,
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    movable: bool = True,
+    residual: float = 0.0,
+) -> Control:
+    """A control that turns, and moves where it can."""
+    kind = ControlKind.HIPS if name == "hips" else ControlKind.FK
+    axes = np.eye(3) if movable else np.zeros((3, 3))
+    space = ControlSpace(turner, np.eye(3), carrier, np.array(origin), axes, 0.0, residual)
+    return Control(PlannedControl(name, kind, name), "XYZ", space, turns=True)
+
+
 def test_a_control_that_cannot_move_only_turns() -> None:
-    plan = PlannedControl("b", ControlKind.HIPS, "b")
-    fixed = ControlSpace(NOTHING, np.eye(3), NOTHING, np.array([1.0, 0.0, 0.0]), np.zeros((3, 3)), 0.0, 0.0)
-    child = ControlSpace(0, np.eye(3), 0, np.array([0.0, 1.0, 0.0]), np.eye(3), 0.0, 0.0)
     controls = [
-        Control(plan, "XYZ", fixed, turns=True),
-        Control(PlannedControl("c", ControlKind.FK, "c"), "XYZ", child, turns=True),
+        control("hips", NOTHING, NOTHING, (1.0, 0.0, 0.0), movable=False),
+        control("c", 0, 0, (0.0, 1.0, 0.0)),
     ]
-    wanted = {name: np.tile(np.eye(4), (2, 1, 1)) for name in "bc"}
-    wanted["b"][:, :3, :3] = rotation_matrices(np.array([[0.0, 0.0, np.pi / 2]] * 2), "XYZ")
+    wanted = {name: np.tile(np.eye(4), (2, 1, 1)) for name in ("hips", "c")}
+    wanted["hips"][:, :3, :3] = rotation_matrices(np.array([[0.0, 0.0, np.pi / 2]] * 2), "XYZ")
     wanted["c"][:, :3, 3] = [0.0, 0.0, 0.004]
     found = control_channels(controls, wanted, 0.5)
     assert found[0].location is None
     assert found[0].place == pytest.approx(np.array([[1.0, 0.0, 0.0]] * 2))
     assert found[1].location is not None
     assert found[1].place == pytest.approx(wanted["c"][:, :3, 3])
-    near = {**wanted, "c": wanted["c"].copy()}
-    near["c"][:, :3, 3] = [0.001, 0.0, 0.0]
-    assert control_channels(controls, near, 0.5)[1].location is None
+    wanted["c"][:, :3, 3] = [0.001, 0.0, 0.0]
+    assert control_channels(controls, wanted, 0.5)[1].location is None
 
 
 def test_controls_are_ordered_by_what_carries_them() -> None:
-    def control(name: str, turner: int, carrier: int) -> Control:
-        space = ControlSpace(turner, np.eye(3), carrier, np.zeros(3), np.eye(3), 0.0, 0.0)
-        return Control(PlannedControl(name, ControlKind.FK, name), "XYZ", space, turns=True)
-
     ordered = ordered_controls([control("c", 1, 2), control("b", 2, 2), control("a", NOTHING, NOTHING)])
     assert [one.name for one in ordered] == ["a", "b", "c"]
     assert (ordered[2].space.turner, ordered[2].space.carrier) == (1, 0)
@@ -192,15 +199,10 @@ def test_controls_are_ordered_by_what_carries_them() -> None:
 
 
 def test_a_control_of_unknown_place_tears_nothing_off() -> None:
-    plans = [PlannedControl(name, ControlKind.FK, name) for name in "bc"]
-    adrift = ControlSpace(NOTHING, np.eye(3), NOTHING, np.zeros(3), np.zeros((3, 3)), 0.0, np.inf)
-    child = ControlSpace(0, np.eye(3), 0, np.array([0.0, 1.0, 0.0]), np.eye(3), 0.0, 0.0)
-    controls = [
-        Control(plan, "XYZ", space, turns=True) for plan, space in zip(plans, (adrift, child), strict=True)
-    ]
+    adrift = control("b", NOTHING, NOTHING, movable=False, residual=np.inf)
     wanted = {name: np.tile(np.eye(4), (2, 1, 1)) for name in "bc"}
     wanted["b"][:, :3, 3] = [[3.0, 0.0, 0.0], [4.0, 0.0, 0.0]]
     wanted["c"][:, :3, 3] = [[3.0, 1.0, 0.0], [4.0, 1.0, 0.0]]
-    found = control_channels(controls, wanted, 1.0)
+    found = control_channels([adrift, control("c", 0, 0, (0.0, 1.0, 0.0))], wanted, 1.0)
     assert found[0].location is None and found[1].location is None
     assert found[1].place == pytest.approx(wanted["c"][:, :3, 3])

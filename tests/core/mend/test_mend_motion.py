@@ -7,8 +7,8 @@ from keymark.core.arrays import Array
 from keymark.core.body.body_volume import sole_offsets
 from keymark.core.errors import InputError
 from keymark.core.feet.place_by_feet import place_by_feet
-from keymark.core.finish.exchanged_sides import exchanged_frames, opposite_points
-from keymark.core.finish.mend_motion import Mended, MendOptions, measured_actor, mend_motion
+from keymark.core.mend.exchanged_sides import exchanged_frames, opposite_points
+from keymark.core.mend.mend_motion import Mended, MendOptions, measured_actor, mend_motion
 from keymark.core.progress import run
 
 FRAMES = slice(0, 90)
