@@ -60,7 +60,7 @@ class CameraFit:
         """Height, tilt and roll found."""
         return CameraPlacement.of(self.camera.matrix_world)
 
-    def said(self, name: str) -> str:
+    def in_words(self, name: str) -> str:
         """One of `PARAMETERS` in words, as `tilt -3.1 ± 0.6°`, with its deviation where it was found."""
         placement = self.placement
         digits, unit = UNITS[name]

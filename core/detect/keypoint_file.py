@@ -71,20 +71,20 @@ class OwnFile(Record):
 
 def read_own(fields: Fields, name: str) -> DetectedFrames:
     """Read a file of our own, whose name stands for a detector that is not named."""
-    said = read_record(OwnFile, fields)
-    layout = LAYOUTS.get(said.layout)
+    own = read_record(OwnFile, fields)
+    layout = LAYOUTS.get(own.layout)
     if layout is None:
         fields.required("names", NAMES.valid)
-        layout = own_layout(NAMES.read(said.names, fields.where, "names"))
-    several = said.people is not None
-    if several == (said.frames is not None):
+        layout = own_layout(NAMES.read(own.names, fields.where, "names"))
+    several = own.people is not None
+    if several == (own.frames is not None):
         found = "both frames and people" if several else "neither frames nor people"
         raise InputError(
             f"{fields.where}: has {found}; it must have frames, with one person in each, or people, with "
             "several"
         )
-    rows = said.people or said.frames or ()
-    world = said.world or (None,) * len(rows)
+    rows = own.people or own.frames or ()
+    world = own.world or (None,) * len(rows)
     if len(world) != len(rows):
         raise InputError(
             f"{fields.where}: world has {len(world)} entries; it must have one for each of the {len(rows)} "
@@ -109,11 +109,11 @@ def read_own(fields: Fields, name: str) -> DetectedFrames:
         entries = [(one, hint, hint_where) for one, hint in pairs]
         everyone.add(index, placed(entries, where), _person(layout))
     return everyone.frames(
-        said.detector or name,
-        size=(said.size[0], said.size[1]),
-        fps=said.fps,
-        frame_start=said.frame_start,
-        by_hand=bool(said.by_hand),
+        own.detector or name,
+        size=(own.size[0], own.size[1]),
+        fps=own.fps,
+        frame_start=own.frame_start,
+        by_hand=bool(own.by_hand),
     )
 
 

@@ -138,17 +138,17 @@ class _Tracking:
             if not people:
                 return
             crops = {one.track: one.pose.crop for one in people}
-            asked = [(index, one.track) for index in pair for one in people]
-            looks = self._network.each([(pictures[index], crops[track]) for index, track in asked])
-            poses = dict(zip(asked, looks, strict=True))
+            looks_at = [(index, one.track) for index in pair for one in people]
+            looks = self._network.each([(pictures[index], crops[track]) for index, track in looks_at])
+            poses = dict(zip(looks_at, looks, strict=True))
             for index in pair:
                 now = []
                 for one in people:
                     pose = poses[index, one.track]
                     if not _is_near(one.pose.crop, crops[one.track]):
                         pose = self._network(pictures[index], one.pose.crop)
-                    others = [other.pose for other in self.seen[index]]
-                    if _is_followed(one.pose, pose, pictures[index]) and not _is_among(pose, others):
+                    known = [other.pose for other in self.seen[index]]
+                    if _is_followed(one.pose, pose, pictures[index]) and not _is_among(pose, known):
                         now.append(_Sighting(one.track, pose))
                         self.seen[index].append(now[-1])
                 people = now
@@ -237,12 +237,12 @@ def _is_inside(pose: Pose, picture: Image) -> bool:
     return bool((pose.crop.center > 0.0).all() and (pose.crop.center < picture.shape[1::-1]).all())
 
 
-def _is_among(pose: Pose, others: Sequence[Pose]) -> bool:
+def _is_among(pose: Pose, known: Sequence[Pose]) -> bool:
     """Whether one of the others is the same person: about the same place and size."""
     return any(
         float(np.linalg.norm(pose.pixel - other.pixel, axis=1).mean())
         < 0.5 * APART * max(pose.crop.side, other.crop.side)
-        for other in others
+        for other in known
     )
 
 

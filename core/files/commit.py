@@ -174,8 +174,8 @@ def files_below(folder: Path) -> tuple[str, ...]:
 def backup_name(file: Path) -> Path:
     """An unused name beside a file, under which it is kept where it is not to be replaced."""
     endings = (f" (changed{'' if number == 1 else f' {number}'})" for number in itertools.count(1))
-    others = (file.with_stem(file.stem + ending) for ending in endings)
-    return next(other for other in others if not os.path.lexists(other))
+    names = (file.with_stem(file.stem + ending) for ending in endings)
+    return next(other for other in names if not os.path.lexists(other))
 
 
 def _move_away(commit: Commit, name: str, moves: Moves) -> None:

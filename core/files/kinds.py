@@ -202,7 +202,7 @@ class Items(Kind):
     """The items, in the plural."""
     least: int
     most: int
-    said: str = ""
+    whole: str = ""
     """What the whole list must be; else a sentence names the item that is wrong."""
     unique: str = ""
     """What an item is, in the singular, where each may stand only once."""
@@ -212,19 +212,19 @@ class Items(Kind):
     @property
     def valid(self) -> str:  # type: ignore[override]
         number = f"{self.least} to {self.most}" if self.least else f"at most {self.most}"
-        return self.said or f"a list of {number} {self.of_what}"
+        return self.whole or f"a list of {number} {self.of_what}"
 
     def read(self, value: Any, where: str, name: str) -> tuple[Any, ...]:
         if not isinstance(value, list):
             refuse(where, name, value, self.valid)
         if not self.least <= len(value) <= self.most:
-            if self.said:
+            if self.whole:
                 refuse(where, name, value, self.valid)
             raise InputError(f"{where}: {name} has {len(value)} of them; it must be {self.valid}")
         try:
             items = [self.item.read(item, where, f"{name}[{index}]") for index, item in enumerate(value)]
         except InputError:
-            if self.said:
+            if self.whole:
                 refuse(where, name, value, self.valid)
             raise
         if self.unique:
@@ -253,7 +253,7 @@ class ByName(Kind):
     """Whether other than the known names are refused."""
     key: Kind | None = None
     item: Kind = field(default_factory=Kind)
-    others: Mapping[str, Kind] = field(default_factory=dict, hash=False)
+    exceptions: Mapping[str, Kind] = field(default_factory=dict, hash=False)
     """Kinds of the names that differ."""
 
     @property
@@ -276,7 +276,7 @@ class ByName(Kind):
             for key in value:
                 self.key.read(key, child.where, "a name")
         return {
-            key: self.others.get(key, self.item).read(
+            key: self.exceptions.get(key, self.item).read(
                 value[key], child.source_of(key), key if _PLAIN.fullmatch(key) else shown(key)
             )
             for key in self.names or value
@@ -362,7 +362,7 @@ class NumberArray(Kind):
         array = number_array(value)
         if array is None or array.ndim != len(self.shape) or not np.all(np.abs(array) <= self.limit):
             refuse(where, name, value, self.valid)
-        if any(length not in (-1, given) for length, given in zip(self.shape, array.shape, strict=True)):
+        if any(length not in (-1, found) for length, found in zip(self.shape, array.shape, strict=True)):
             refuse(where, name, value, self.valid)
         array[absent] = np.nan
         return array

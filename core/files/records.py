@@ -118,8 +118,8 @@ def declared(record: Any) -> Mapping[str, Declared]:
 def _declared(record: Any) -> Mapping[str, Declared]:
     hints = get_type_hints(record, include_extras=True)
     found: dict[str, Declared] = {}
-    given = {field.name: field for field in dataclasses.fields(record)}
-    for field in [given[name] for name in record.ORDER or given]:
+    known = {field.name: field for field in dataclasses.fields(record)}
+    for field in [known[name] for name in record.ORDER or known]:
         kind = kind_of(hints[field.name])
         default = field.default if field.default_factory is MISSING else field.default_factory()
         required = field.name in record.REQUIRED or (default is MISSING and not isinstance(kind, Nullable))

@@ -183,11 +183,11 @@ def _region(region: RegionFields, size: tuple[int, int], frame_start: int, where
         stroke = tuple((x, y) for x, y in region.stroke or ())
         return IgnoredRegion(stroke=stroke, radius_px=region.radius_px or 0.0, frames=frames)
     left, top, right, bottom = region.box
-    said = shown([int(part) if part.is_integer() else part for part in region.box])
+    sides = shown([int(part) if part.is_integer() else part for part in region.box])
     if left >= right or top >= bottom:
-        raise InputError(f"{where}: box is {said}, which holds no pixel; it must be {VALID_BOX}")
+        raise InputError(f"{where}: box is {sides}, which holds no pixel; it must be {VALID_BOX}")
     if left >= size[0] or top >= size[1] or right <= 0.0 or bottom <= 0.0:
         raise InputError(
-            f"{where}: box is {said}, which lies beside the picture of {size[0]} x {size[1]} pixels"
+            f"{where}: box is {sides}, which lies beside the picture of {size[0]} x {size[1]} pixels"
         )
     return IgnoredRegion(box=(left, top, right, bottom), frames=frames)

@@ -70,9 +70,9 @@ def marker_warnings(
 
 def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
     """A sentence on the markers of the same color as one, if there are any."""
-    others = " and ".join(alike)
-    told = f"{name} has almost the same color as {others}; only keyframes and paths tell them apart"
-    return [told] if alike else []
+    names = " and ".join(alike)
+    sentence = f"{name} has almost the same color as {names}; only keyframes and paths tell them apart"
+    return [sentence] if alike else []
 
 
 NEARLY_ALWAYS = 0.9  # share of the samples in which a still pixel has the color; limbs pass before it

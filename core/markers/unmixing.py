@@ -79,15 +79,15 @@ class Palette:
     """A surface that is looked for, and K others that may lie where it does not."""
 
     surface: Surface
-    others: tuple[Surface, ...]
+    rest: tuple[Surface, ...]
 
     @cached_property
     def _colors(self) -> Array:
-        return np.array([other.color for other in self.others]).reshape(-1, 3)
+        return np.array([other.color for other in self.rest]).reshape(-1, 3)
 
     @cached_property
     def _deviations(self) -> Array:
-        return np.array([other.deviation for other in self.others])
+        return np.array([other.deviation for other in self.rest])
 
     def unmix(self, picture: Image, background: SingleArray, deviation: SingleArray) -> Unmixed:
         """The share of the surface in the pixels of a window (rows, columns, 3).
@@ -116,7 +116,7 @@ class Palette:
         seen, without = seen[mixture], without[mixture]
         behind, noise = usual[mixture], spread[mixture]
         own, cost = mixed(seen, behind, noise, self.surface.color, self.surface.deviation)
-        if self.others:
+        if self.rest:
             over, cost_over = self._before_others(seen, self._beside(away, odd, where))
             own, cost = np.where(cost_over < cost, over, own), np.minimum(cost_over, cost)
         left = np.flatnonzero((own > 0.05) & (without - cost > -2.0 * LEAST_GAIN))
@@ -129,7 +129,7 @@ class Palette:
     def _beside(self, away: Array, odd: BoolArray, where: IndexArray) -> BoolArray:
         """(N, K) whether other surfaces are seen beside pixels `where` (N,) of a window."""
         near = away < (3.0 * self._deviations) ** 2
-        beside = np.zeros((len(where), len(self.others)), dtype=np.bool_)
+        beside = np.zeros((len(where), len(self.rest)), dtype=np.bool_)
         mask = np.zeros(odd.shape, dtype=np.uint8)
         for other in np.flatnonzero(near.any(axis=0)).tolist():
             mask[odd] = near[:, other]

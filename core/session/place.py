@@ -107,8 +107,8 @@ def camera_in_words(camera: FoundCamera) -> str:
             f"assumed to be level at {EYE_HEIGHT_M:g} m, lens {lens.lens_mm:.1f} mm ({lens.source}); the "
             "performer stands upright at no two moments, by which it would be found"
         )
-    found = [fit.said(name) for name in PARAMETERS if name not in fit.kept]
-    kept = [fit.said(name) for name in PARAMETERS if name in fit.kept and name != LENS]
-    kept += [f"{fit.said(LENS)} ({lens.source})"] if LENS in fit.kept else []
+    found = [fit.in_words(name) for name in PARAMETERS if name not in fit.kept]
+    kept = [fit.in_words(name) for name in PARAMETERS if name in fit.kept and name != LENS]
+    kept += [f"{fit.in_words(LENS)} ({lens.source})"] if LENS in fit.kept else []
     parts = [", ".join(found) or "nothing found"] + ([f"assumed: {', '.join(kept)}"] if kept else [])
     return f"{'; '.join(parts)}; by {camera.moments} moments in which the performer is upright"

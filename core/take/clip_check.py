@@ -76,16 +76,16 @@ def _too_long(path: Path, fps: float) -> InputError:
 
 def check_size(take: Take, clip: Clip) -> None:
     """Check the size of a clip's frames against the camera's resolution."""
-    given = take.camera.resolution
-    if clip.size == given:
+    stated = take.camera.resolution
+    if clip.size == stated:
         return
     turned = (
         "; the camera was held the other way, or its file says that it is to be turned: swap the two, and "
         "give sensor_width_mm and the pose of the camera as it was held"
     )
     raise InputError(
-        f"{take.file}: camera.resolution is {list(given)}; the clip {take.clip.name} is {list(clip.size)}, "
-        f"and they must be equal{turned if clip.size == given[::-1] else ''}"
+        f"{take.file}: camera.resolution is {list(stated)}; the clip {take.clip.name} is {list(clip.size)}, "
+        f"and they must be equal{turned if clip.size == stated[::-1] else ''}"
     )
 
 

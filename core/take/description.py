@@ -184,8 +184,8 @@ def keypoints_beside(clip: Path) -> Path | None:
     plain = clip.with_name(KEYPOINT_FILE)
     if not os.path.lexists(plain):
         return None
-    others = (file for file in clip.parent.iterdir() if file.suffix.lower() == clip.suffix.lower())
-    return plain if all(file.name == clip.name for file in others) else None
+    alike = (file for file in clip.parent.iterdir() if file.suffix.lower() == clip.suffix.lower())
+    return plain if all(file.name == clip.name for file in alike) else None
 
 
 def effective_settings(

@@ -88,8 +88,8 @@ def is_empty(album: Album, tracks: RegionTracks, keypoints: Keypoints, run: tupl
     seen = np.flatnonzero(np.isfinite(places[..., 0]).any(axis=1))
     nearest = seen[np.argsort(np.minimum(abs(seen - run[0]), abs(seen - run[1])), kind="stable")]
     some = [int(frame) for frame in _spread(nearest, LOOKS) if int(frame) in album]
-    asked = [int(frame) for frame in _spread(np.arange(*run), LOOKS) if int(frame) in album]
-    outside = [_changed_elsewhere(album, places[there], there, empty) for there in some for empty in asked]
+    doubtful = [int(frame) for frame in _spread(np.arange(*run), LOOKS) if int(frame) in album]
+    outside = [_changed_elsewhere(album, places[there], there, empty) for there in some for empty in doubtful]
     return bool(outside) and float(np.median(outside)) < ELSEWHERE
 
 

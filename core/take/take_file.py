@@ -105,10 +105,9 @@ class ActorFields(Record):
 
     def mistake(self) -> str:
         """See `Record`."""
-        given = self.height_m is not None or self.segments_m is not None
-        return (
-            "" if given else "segments_m is missing; it must be an object of lengths in meters, or height_m"
-        )
+        if self.height_m is not None or self.segments_m is not None:
+            return ""
+        return "segments_m is missing; it must be an object of lengths in meters, or height_m"
 
     @property
     def body(self) -> Body:
@@ -179,14 +178,14 @@ def read_described(
     objects = [name for name, value in islice(fields.values.items(), 100) if isinstance(value, Mapping)]
     if not fields.has("markers") and get_close_matches("markers", objects, n=1, cutoff=0.85):
         fields.required("markers", "an object of markers by name, each with color_srgb")
-    said = read_record(TakeFields, fields)
-    fps, frame_start, frame_count, camera = said.fps, said.frame_start, said.frame_count, said.camera
+    record = read_record(TakeFields, fields)
+    fps, frame_start, frame_count, camera = record.fps, record.frame_start, record.frame_count, record.camera
     if camera.is_moving and frame_count is not None and len(camera.matrix_world) < frame_count:
         raise InputError(
             f"{child_location(fields.source_of('camera'), 'camera')}: matrix_world_frames has "
             f"{len(camera.matrix_world)} poses; it must have one for each of the {frame_count} frames"
         )
-    body = said.actor.body
+    body = record.actor.body
     posed = keyframes or description.keyframes
     referred = settings.reference is not None  # it has keyframes of its own
     optional = keyframes is None and (referred or not keyframes_required)
@@ -205,14 +204,14 @@ def read_described(
         frame_count=frame_count,
         camera=camera,
         body=body,
-        markers=_markers(said.markers or {}, child_location(fields.source_of("markers"), "markers")),
+        markers=_markers(record.markers or {}, child_location(fields.source_of("markers"), "markers")),
         keyframes=() if missing else read_keyframes(posed, body, frame_start, frame_count, fewest_keyframes),
         described_in=description.file,
         title=description.name,
         keypoints=_keypoints(description, settings, camera, fps, frame_start, frame_count),
         reference=reference_of_take(settings.reference, read_armature),
         ignored_regions=ignored_regions(
-            said.ignored_regions or (), camera.resolution, frame_start, fields.source_of(IGNORED_REGIONS)
+            record.ignored_regions or (), camera.resolution, frame_start, fields.source_of(IGNORED_REGIONS)
         ),
     )
     if whole:
@@ -281,13 +280,13 @@ def write_take(
     write_json(folder / "take.json", fields, indent=1)
 
 
-def _copied(given: Path, folder: Path) -> str:
+def _copied(original: Path, folder: Path) -> str:
     """Copy a clip or a motion into `folder` unless it lies there; returns its path within."""
-    source = given.resolve()
+    source = original.resolve()
     if source.is_relative_to(folder.resolve()):
         return source.relative_to(folder.resolve()).as_posix()
     if not source.exists():
-        raise InputError(f"{given}: no such file or folder; only what is there can be copied")
+        raise InputError(f"{original}: no such file or folder; only what is there can be copied")
     copy = shutil.copytree if source.is_dir() else shutil.copyfile
     write_atomically(folder / source.name, lambda beside: copy(source, beside))
     return source.name
@@ -335,10 +334,10 @@ def _with_clip_fields(fields: Fields, path: Path) -> Fields:
     return Fields(merged, fields.where)
 
 
-def _markers(given: Mapping[str, MarkerFields], where: str) -> tuple[MarkerStyle, ...]:
+def _markers(markers: Mapping[str, MarkerFields], where: str) -> tuple[MarkerStyle, ...]:
     styles: list[MarkerStyle] = []
     seen: dict[tuple[int, int, int], str] = {}
-    for name, marker in given.items():
+    for name, marker in markers.items():
         segment = marker.segment or name
         if segment not in MARKER_SEGMENTS:
             raise InputError(

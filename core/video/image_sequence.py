@@ -192,10 +192,10 @@ def left_out(path: Path, images: Sequence[Path]) -> tuple[str, ...]:
     if not path.is_dir():
         return ()
     used = {image.name for image in images}
-    others = sorted(file.name for file in path.iterdir() if file.name not in used and is_image(file))
-    if not others:
+    unused = sorted(file.name for file in path.iterdir() if file.name not in used and is_image(file))
+    if not unused:
         return ()
-    return ((f"{path}: holds also {listed(others, 3)}, left out: not of the sequence from {images[0].name}"),)
+    return ((f"{path}: holds also {listed(unused, 3)}, left out: not of the sequence from {images[0].name}"),)
 
 
 def _only_sequence(folder: Path, images: list[Path]) -> list[Path]:

@@ -60,7 +60,7 @@ def write_fit(take: bpy.types.PropertyGroup, fit: "CameraFit") -> None:
 def values(fit: "CameraFit") -> str:
     """The camera found, with the deviations of what the picture determines."""
     kept = {name: " (kept)" if name in fit.kept else "" for name in HINTS}
-    said = (fit.said(name) + kept[name] for name in HINTS)
+    said = (fit.in_words(name) + kept[name] for name in HINTS)
     return "   ".join(part[:1].upper() + part[1:] for part in said)
 
 

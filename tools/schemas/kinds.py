@@ -211,7 +211,7 @@ def _(kind: kinds.ByName, defs: dict[str, Schema]) -> Schema:
             while defs.setdefault(name, item) != item:
                 name += "_"
             item = {"$ref": f"#/$defs/{name}"}
-        others = {name: kind_schema(other, defs) for name, other in kind.others.items()}
+        others = {name: kind_schema(other, defs) for name, other in kind.exceptions.items()}
         named: Schema = {name: others.get(name, item) for name in kind.names}
         whole: Schema = {"type": "object", "properties": named}
         whole |= {"additionalProperties": False} if kind.strict else {}

@@ -189,7 +189,7 @@ def _made_from(record: ConversionRecord) -> str:
 
 
 def _evidence(evidence: UsedEvidence) -> str:
-    sources = [isolated(said.source) for said in evidence.keypoints[:3]]
+    sources = [isolated(one.source) for one in evidence.keypoints[:3]]
     more = len(evidence.keypoints) - len(sources)
     named = f" (keypoints: {', '.join(sources)}{f' and {more} more' if more else ''})" if sources else ""
     return f"{evidence.words}{named}"
@@ -225,8 +225,8 @@ def _no_result(outcome: Outcome) -> str:
 def _to_do(record: ConversionRecord) -> str:
     frames = ""
     if record.weak_frames:
-        first, *others = record.weak_frames[:MOST_NAMED]
-        then = f", then {', '.join(str(frame) for frame in others)}" if others else ""
+        first, *rest = record.weak_frames[:MOST_NAMED]
+        then = f", then {', '.join(str(frame) for frame in rest)}" if rest else ""
         more = " and more" if len(record.weak_frames) > MOST_NAMED else ""
         frames = f"<p>Worth a keyframe: frame <b>{first}</b>{then}{more}</p>"
     notes = [f"<li>{isolated(note)}</li>" for note in record.notes[:MOST_NAMED]]

@@ -196,7 +196,7 @@ Roles = Annotated[
         "bones by role",
         names=ROLES,
         empty="a character map has roles, hips first",
-        others={role: Object(OneBone, makes=RoleBones) for role in ROLES if role not in CHAINS},
+        exceptions={role: Object(OneBone, makes=RoleBones) for role in ROLES if role not in CHAINS},
     ),
 ]
 Ik = Annotated[
@@ -204,7 +204,7 @@ Ik = Annotated[
     ByName(
         "controls by limb",
         names=tuple(LIMBS),
-        others={limb: Object(ArmControls, makes=IkControls) for limb in LIMBS if limb.startswith("arm")},
+        exceptions={limb: Object(ArmControls, makes=IkControls) for limb in LIMBS if limb.startswith("arm")},
     ),
 ]
 
