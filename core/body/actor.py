@@ -8,12 +8,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isclose, isfinite
 from types import MappingProxyType
-from typing import Annotated, Any
+from typing import Annotated
 
-from ..errors import InputError, shown
-from ..files.fields import is_number
+from ..errors import InputError
 from ..files.kinds import ByName, Number
-from ..files.records import Record
+from ..files.records import Record, kind_of
 from .skeleton import SIDES
 
 _LIMBS = {"upper_arm": 0.186, "forearm": 0.146, "hand": 0.108, "thigh": 0.245, "shin": 0.246, "foot": 0.110}
@@ -44,16 +43,10 @@ class Actor(Record):
 
     def __post_init__(self) -> None:
         """Check the lengths and add those that follow from stature."""
-        given = {name: _checked_length(name, value) for name, value in dict(self.segments_m).items()}
-        missing = [name for name in REQUIRED if name not in given]
-        if missing:
-            raise InputError(
-                f"actor.segments_m lacks {', '.join(missing)}; it needs {', '.join(REQUIRED)}, each in meters"
-            )
-        stature = self._stature(given)
-        for name, share in SHARES_OF_STATURE.items():
-            given.setdefault(name, share * stature)
-        object.__setattr__(self, "segments_m", MappingProxyType(given))
+        lengths = kind_of(Segments).read(dict(self.segments_m), "actor", "segments_m")
+        stature = self._stature(lengths)
+        whole = {name: lengths.get(name, share * stature) for name, share in SHARES_OF_STATURE.items()}
+        object.__setattr__(self, "segments_m", MappingProxyType(whole))
 
     @staticmethod
     def _stature(lengths: Mapping[str, float]) -> float:
@@ -81,17 +74,3 @@ class Actor(Record):
         if not (isfinite(stature_m) and 0.5 <= stature_m <= 3.0):
             raise InputError(f"actor height is {stature_m} m; a height between 0.5 and 3 m is valid")
         return cls({name: share * stature_m for name, share in SHARES_OF_STATURE.items()})
-
-
-def _checked_length(name: str, value: Any) -> float:
-    if name not in SHARES_OF_STATURE:
-        raise InputError(
-            f"actor.segments_m names the unknown segment {shown(name)}; "
-            f"known are {', '.join(SHARES_OF_STATURE)}"
-        )
-    if not is_number(value) or not SHORTEST_M <= value <= LONGEST_M:
-        raise InputError(
-            f"actor.segments_m.{name} is {shown(value)}; "
-            f"a length between {SHORTEST_M} and {LONGEST_M} m is valid"
-        )
-    return float(value)

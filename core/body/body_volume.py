@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from . import rotations
-from .kinematics import RIGID, Body, Extremities, Pose, segment_turn
+from .kinematics import Body, Pose
 from .posture import Posture, headings_rad, yaw_rotation
 from .skeleton import SIDES, Segment, Skeleton
 
@@ -177,17 +177,11 @@ def sole_offsets(body: Body) -> Array:
     return np.stack([_sole(body, foot) - body.local(foot.start) for foot in feet])
 
 
-def sole_places(body: Body, pose: Pose, extremities: Extremities = RIGID) -> Array:
+def sole_places(body: Body, pose: Pose) -> Array:
     """World positions (..., 2, 2, 3) of heel and tip of the left and the right foot [m]."""
     feet = []
     for foot in (body.skeleton.segment(f"foot.{side}") for side in SIDES):
-        places, start = _sole(body, foot), body.local(foot.start)
-        if foot.name in extremities.turns:
-            turn, ankle = segment_turn(body, pose, extremities, foot.name), pose.place(foot.joint, start)
-            shown = [ankle + turn @ (place - start) for place in places]
-        else:
-            shown = [pose.place(foot.joint, place) for place in places]
-        feet.append(np.stack(shown, axis=-2))
+        feet.append(np.stack([pose.place(foot.joint, place) for place in _sole(body, foot)], axis=-2))
     return np.stack(feet, axis=-3)
 
 

@@ -42,8 +42,8 @@ def joint_limits_deg(joint: str) -> tuple[Range, ...]:
     limits = JOINT_LIMITS_DEG[name]
     if side != "R" or len(limits) == 1:
         return limits
-    about_x, *others = limits
-    return (about_x, *((-upper, -lower) for lower, upper in others))
+    about_x, *sideways = limits
+    return (about_x, *((-upper, -lower) for lower, upper in sideways))
 
 
 # --- The five parts of the body that move about independently

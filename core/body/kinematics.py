@@ -101,12 +101,7 @@ class Body:
         count = len(skeleton.joints)
         rotation = np.empty((*posture.batch, count, 3, 3))
         origin = np.empty((*posture.batch, count, 3))
-        turns: list[Array] = [np.eye(3)] * count
-        for column, ball in enumerate(skeleton.ball_joints):
-            turns[ball] = posture.rotations[..., column, :, :]
-        hinged = rotations.exponential(posture.angles[..., None] * skeleton.hinge_axes)
-        for column, hinge in enumerate(skeleton.hinge_joints):
-            turns[hinge] = hinged[..., column, :, :]
+        turns = posture.joint_turns()
         for i, joint in enumerate(skeleton.joints):
             if joint.parent < 0:
                 rotation[..., i, :, :] = turns[i]

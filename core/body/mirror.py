@@ -22,9 +22,6 @@ def mirrored(posture: Posture) -> Posture:
     """The mirror image of a posture, or of a batch.
 
     Exact: only signs and the order of joints change, so mirroring twice gives the very same numbers.
-
-    Raises:
-        ValueError: The skeleton has a joint whose opposite is missing or bends about another axis.
     """
     balls, hinges, signs = _opposites(posture.skeleton)
     turned = posture.rotations[..., balls, :, :] * np.outer(MIRROR, MIRROR)
@@ -41,18 +38,9 @@ def mirrored_actor(actor: Actor) -> Actor:
 @lru_cache(maxsize=8)
 def _opposites(skeleton: Skeleton) -> tuple[list[int], list[int], Array]:
     """Opposite columns of balls and of hinges, and the signs of these."""
-    index = {joint.name: i for i, joint in enumerate(skeleton.joints)}
-    missing = [joint.name for joint in skeleton.joints if other_side(joint.name) not in index]
-    if missing:
-        raise ValueError(f"the skeleton's joint {missing[0]} has no opposite {other_side(missing[0])}")
-    opposite = [index[other_side(joint.name)] for joint in skeleton.joints]
-    signs = []
-    for joint in skeleton.hinge_joints:
-        # M Exp(q a) M = Exp(-q M a): a rotation's axis is a pseudovector.
-        along = float(-MIRROR * skeleton.joints[opposite[joint]].axis @ np.array(skeleton.joints[joint].axis))
-        if abs(abs(along) - 1.0) > 1e-9:
-            raise ValueError(f"the skeleton's joint {skeleton.joints[joint].name} has no mirrored axis")
-        signs.append(float(np.sign(along)))
+    opposite = [skeleton.joint_index(other_side(joint.name)) for joint in skeleton.joints]
     balls = [skeleton.ball_joints.index(opposite[joint]) for joint in skeleton.ball_joints]
     hinges = [skeleton.hinge_joints.index(opposite[joint]) for joint in skeleton.hinge_joints]
-    return balls, hinges, np.array(signs)
+    # M Exp(q a) M = Exp(-q M a): a rotation's axis is a pseudovector.
+    signs = np.sign(np.sum(-MIRROR * skeleton.hinge_axes[hinges] * skeleton.hinge_axes, axis=1))
+    return balls, hinges, signs

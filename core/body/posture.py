@@ -97,6 +97,17 @@ class Posture:
         """The postures so much lower."""
         return replace(self, translation=self.translation - [0.0, 0.0, by_m])
 
+    def joint_turns(self) -> list[Array]:
+        """(..., 3, 3) rotation of each joint relative to its parent, in the skeleton's order."""
+        skeleton = self.skeleton
+        turns: list[Array] = [np.eye(3)] * len(skeleton.joints)
+        for column, ball in enumerate(skeleton.ball_joints):
+            turns[ball] = self.rotations[..., column, :, :]
+        hinged = rotations.exponential(self.angles[..., None] * skeleton.hinge_axes)
+        for column, hinge in enumerate(skeleton.hinge_joints):
+            turns[hinge] = hinged[..., column, :, :]
+        return turns
+
     def to_vector(self) -> Array:
         """The posture vector (..., D) for `from_vector`; rotation vectors of at most π."""
         return self.minus(Posture.rest(self.skeleton, self.batch))

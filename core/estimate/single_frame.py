@@ -10,7 +10,7 @@ from ..detect.keypoints import mirror_images
 from ..markers.region_tracks import ExpectedRegions
 from ..prior.frame_prior import FramePrior
 from ..progress import run
-from ..terms.depths import depths_jacobian
+from ..terms.depths import DEPTH_STD_M, depths_jacobian
 from ..terms.keypoints import ObservedKeypoints
 from ..terms.region_model import RegionModel
 from ..terms.regions import FEATURES, ObservedRegions, limb_widths
@@ -174,6 +174,6 @@ def _factor(model: RegionModel, belief: FramePrior, frame: int) -> Array:
     The image tells little of depth, so the believed depths of the points count as observed (paper, eq. 9).
     """
     pose = model.body.pose(Posture.stack([belief.posture]))
-    rows = depths_jacobian(model.body, model.camera, pose, np.array([frame]))[0] / belief.depth_std_m
+    rows = depths_jacobian(model.body, model.camera, pose, np.array([frame]))[0] / DEPTH_STD_M
     information = np.diag(belief.std**-2.0) + rows.T @ rows
     return np.linalg.cholesky(np.linalg.inv(information))

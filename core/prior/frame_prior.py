@@ -13,7 +13,6 @@ import numpy as np
 from ..arrays import Array
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
-from ..terms.depths import DEPTH_STD_M
 from .keyframes import Keyframe, interpolate
 
 REFERENCE_STEP_S = 1.0 / 30.0  # accelerations are stated as second differences at this step
@@ -67,7 +66,6 @@ class FramePrior:
     posture: Posture  # a single posture: the mean
     std: Array  # (D,) standard deviation of each degree of freedom, in the mean's tangent space [m, rad]
     starts: Posture  # a batch of postures to start the search from, the first of them `posture`
-    depth_std_m: float = DEPTH_STD_M  # standard deviation of each point's depth [m]
     grounded: Posture | None = None  # at least one of these stands on the ground; None: unknown
 
 
@@ -84,18 +82,18 @@ def prior_from_keyframes(keyframes: Sequence[Keyframe], index: int, fps: float) 
 
     One at the frame itself counts only if there is no other.
     """
-    others = [keyframe for keyframe in keyframes if keyframe.index != index] or list(keyframes)
-    before = [keyframe for keyframe in others if keyframe.index <= index][-1:]
-    after = [keyframe for keyframe in others if keyframe.index > index][:1]
+    elsewhere = [keyframe for keyframe in keyframes if keyframe.index != index] or list(keyframes)
+    before = [keyframe for keyframe in elsewhere if keyframe.index <= index][-1:]
+    after = [keyframe for keyframe in elsewhere if keyframe.index > index][:1]
     near = sorted(before + after, key=lambda keyframe: abs(keyframe.index - index))
     skeleton = near[0].posture.skeleton
     variances = [difference_std(skeleton, (keyframe.index - index) / fps) ** 2 for keyframe in near]
     postures = [keyframe.posture for keyframe in near]
-    everyone = Posture.stack([keyframe.posture for keyframe in others])
+    everyone = Posture.stack([keyframe.posture for keyframe in elsewhere])
     if len(near) == 1:
-        postures = [_extrapolated(others, index)]
+        postures = [_extrapolated(elsewhere, index)]
         return FramePrior(postures[0], np.sqrt(variances[0]), Posture.stack(postures), grounded=everyone)
-    between = interpolate(tuple(others), index + 1)[index]
+    between = interpolate(tuple(elsewhere), index + 1)[index]
     # Both neighbors count as independent, the nearer one more.
     std = (1.0 / variances[0] + 1.0 / variances[1]) ** -0.5
     return FramePrior(between, std, Posture.stack([between, *postures]), grounded=everyone)

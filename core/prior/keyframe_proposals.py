@@ -19,7 +19,7 @@ from ..video.album import Album, picture_motion
 SMOOTHING_FRAMES = 1.0
 
 
-def marker_speed(tracks: RegionTracks, smoothing_frames: float = SMOOTHING_FRAMES) -> Array:
+def marker_speed(tracks: RegionTracks) -> Array:
     """V_sum(t), the sum of the speeds of the markers' centroids in the image (paper, eq. 8).
 
     The text calls it a square sum, the equation is a sum of speeds; the equation is followed. A hidden
@@ -27,14 +27,13 @@ def marker_speed(tracks: RegionTracks, smoothing_frames: float = SMOOTHING_FRAME
     its nearest known speed, so that occlusion alone makes no minimum. A marker detected in fewer than two
     frames adds nothing.
 
-    (F,) [px per frame of the clip's median duration]; uneven time stamps are respected; `smoothing_frames`:
-    deviation of a Gaussian filter over the sum.
+    (F,) [px per frame of the clip's median duration]; uneven time stamps are respected.
     """
     time = frame_times(tracks.time_s)
     total = np.zeros(tracks.frame_count)
     for marker in range(len(tracks.names)):
         total += point_speed(tracks.centroid[:, marker], time)
-    return gaussian(total, smoothing_frames)
+    return gaussian(total, SMOOTHING_FRAMES)
 
 
 def frame_times(time_s: Array) -> Array:

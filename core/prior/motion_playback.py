@@ -199,9 +199,9 @@ def _interpolated(library: Library, posed: Posture, knots: Array, at: Array) -> 
     spline = cubic_spline(posed, knots, at)
     body = Body(library.actor, posed.skeleton)
     interval, _ = find_intervals(knots, at)
-    given = lower_sole_m(body, posed)
+    posed_m = lower_sole_m(body, posed)
     height = lower_sole_m(body, spline)
-    low = np.minimum(given[:-1], given[1:])[interval]
-    high = np.maximum(given[:-1], given[1:])[interval]
+    low = np.minimum(posed_m[:-1], posed_m[1:])[interval]
+    high = np.maximum(posed_m[:-1], posed_m[1:])[interval]
     lift = np.clip(height, low, high) - height
     return Posture(spline.skeleton, spline.translation + lift[:, None] * UP, spline.rotations, spline.angles)

@@ -48,7 +48,12 @@ _OPPOSITE = {"left": "right", "right": "left", "l": "r", "r": "l"}
 
 def mirrored_name(name: str) -> str:
     """A name with the words left and right exchanged, or the letters L and R after a dot or space."""
-    return _SIDE.sub(lambda found: _as_written(_OPPOSITE[found[0].lower()], found[0]), name)
+
+    def opposite(found: re.Match[str]) -> str:
+        word = _OPPOSITE[found[0].lower()]
+        return word.upper() if found[0].isupper() else word.capitalize() if found[0][0].isupper() else word
+
+    return _SIDE.sub(opposite, name)
 
 
 def mirrored_library(library: Library) -> Library:
@@ -70,12 +75,6 @@ def mirrored_library(library: Library) -> Library:
         ),
         motions=tuple(_mirrored_motion(motion, names) for motion in library.motions),
     )
-
-
-def _as_written(word: str, example: str) -> str:
-    if example.isupper():
-        return word.upper()
-    return word.capitalize() if example[0].isupper() else word
 
 
 def _marked(text: str, mark: str, longest: int) -> str:

@@ -48,17 +48,17 @@ class KEYMARK_OT_build_actor(Stature, BaseOperator, bpy.types.Operator):
             self.report({"INFO"}, f"The actor is {self.stature:.4g} m tall now; its keyframes are kept")
             return
         stance = performers_stance(context.scene, take, body) if self.place else None
-        said = "The actor stands at the world's origin"
+        sentence = "The actor stands at the world's origin"
         if stance is not None:
             posture, is_seen = stance
             write_posture(take.armature, posture)
-            said = "The actor stands where the performer is seen in this frame"
+            sentence = "The actor stands where the performer is seen in this frame"
             if not is_seen:
-                said = "The actor stands in the middle of the picture"
-                said += "; with markers or keypoints it would stand at the performer"
+                sentence = "The actor stands in the middle of the picture"
+                sentence += "; with markers or keypoints it would stand at the performer"
         elif had_actor:
-            said = f"The actor is {self.stature:.4g} m tall now"
-        self.report({"INFO"}, said)
+            sentence = f"The actor is {self.stature:.4g} m tall now"
+        self.report({"INFO"}, sentence)
 
 
 def any_actor(context: bpy.types.Context) -> str | None:

@@ -30,8 +30,7 @@ def missing_bones(armature_object: bpy.types.Object) -> list[str]:
 
 def hips_at_rest(armature_object: bpy.types.Object) -> tuple[float, float, float]:
     """Where an actor's hips are at rest, in its own space; keys move them from there."""
-    x, y, z = armature_object.data.bones[ROOT].head_local
-    return (x, y, z)
+    return tuple(armature_object.data.bones[ROOT].head_local)
 
 
 def moves_an_actor(action: bpy.types.Action) -> bool:

@@ -29,7 +29,7 @@ from ...core.body.skeleton import JointKind, Segment, Skeleton
 from .actor_bones import color_bones
 from .object_space import ObjectSpace
 
-HINGE_ORDER = "YZX"
+HINGE_ORDER = "YZX"  # Euler angles of bones that hinges turn; all others have quaternions
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,23 +54,29 @@ class BoneModel:
 def bone_models(body: Body) -> tuple[BoneModel, ...]:
     """The body's bones, parents first."""
     skeleton = body.skeleton
+    along = {s.name: body.local(s.end) - body.local(s.start) for s in skeleton.segments}
+    along = {name: np.asarray(way / np.linalg.norm(way)) for name, way in along.items()}
+    chains = {segment.name: _chain(skeleton, segment) for segment in skeleton.segments}
+    hinges = {  # the axis of the first hinge of those that have any
+        name: np.asarray(skeleton.joints[joint].axis)
+        for name, chain in chains.items()
+        for joint in reversed(chain)
+        if skeleton.joints[joint].kind is JointKind.HINGE
+    }
     axes: dict[str, Array] = {}
     models = []
     for segment in skeleton.segments:
-        along = _direction(body, segment)
-        x = _bending_axis(body, segment, axes)
-        axes[segment.name] = np.column_stack([x, along, np.cross(x, along)])
-        models.append(
-            BoneModel(
-                segment.name,
-                segment.parent,
-                segment.joint,
-                _chain(skeleton, segment),
-                axes[segment.name],
-                body.local(segment.start),
-                body.local(segment.end),
-            )
-        )
+        name, parent = segment.name, segment.parent
+        straight_on = [
+            s.name for s in skeleton.segments if s.parent == name and along[s.name] @ along[name] > 1.0 - 1e-6
+        ]
+        bending = [hinges[each] for each in (name, *straight_on) if each in hinges]
+        if not bending:
+            is_leaf = parent is not None and not chains[name]
+            bending = [axes[str(parent)][:, 0] if is_leaf else np.array([1.0, 0.0, 0.0])]
+        axes[name] = np.column_stack([bending[0], along[name], np.cross(bending[0], along[name])])
+        start, end = body.local(segment.start), body.local(segment.end)
+        models.append(BoneModel(name, parent, segment.joint, chains[name], axes[name], start, end))
     return tuple(models)
 
 
@@ -95,19 +101,9 @@ def bones_at_rest(body: Body) -> ActorBones:
         rest[model.name] = matrix = np.eye(4)
         matrix[:3, :3] = model.axes
         matrix[:3, 3] = origins[model.joint] + model.start - [0.0, 0.0, floor]
-    modes = {model.name: _usual_mode(body.skeleton, model) for model in models}
+    hinges = set(body.skeleton.hinge_joints)
+    modes = {model.name: HINGE_ORDER if hinges & {*model.chain} else "QUATERNION" for model in models}
     return ActorBones(models, rest, modes, ObjectSpace(np.eye(3), np.zeros(3), 1.0))
-
-
-def _usual_mode(skeleton: Skeleton, model: BoneModel) -> str:
-    """The rotation mode that a bone is built with: Euler angles for hinges, quaternions for balls."""
-    hinged = any(skeleton.joints[index].kind is JointKind.HINGE for index in model.chain)
-    return HINGE_ORDER if hinged else "QUATERNION"
-
-
-def _direction(body: Body, segment: Segment) -> Array:
-    along = body.local(segment.end) - body.local(segment.start)
-    return np.asarray(along / np.linalg.norm(along))
 
 
 def _chain(skeleton: Skeleton, segment: Segment) -> tuple[int, ...]:
@@ -118,28 +114,6 @@ def _chain(skeleton: Skeleton, segment: Segment) -> tuple[int, ...]:
         chain.insert(0, joint)
         joint = skeleton.joints[joint].parent
     return tuple(chain)
-
-
-def _first_hinge(skeleton: Skeleton, segment: Segment) -> Array | None:
-    for joint in _chain(skeleton, segment):
-        if skeleton.joints[joint].kind is JointKind.HINGE:
-            return np.asarray(skeleton.joints[joint].axis)
-    return None
-
-
-def _bending_axis(body: Body, segment: Segment, known: dict[str, Array]) -> Array:
-    axis = _first_hinge(body.skeleton, segment)
-    if axis is not None:
-        return axis
-    along = _direction(body, segment)
-    for other in body.skeleton.segments:
-        if other.parent == segment.name and _direction(body, other) @ along > 1.0 - 1e-6:
-            follower = _first_hinge(body.skeleton, other)
-            if follower is not None:
-                return follower
-    if segment.parent and not _chain(body.skeleton, segment):
-        return np.asarray(known[segment.parent][:, 0])
-    return np.array([1.0, 0.0, 0.0])
 
 
 COLLECTIONS = {"L": "Left", "R": "Right", "": "Middle"}  # bone collection of each side

@@ -1,13 +1,14 @@
 """.blend files, written and looked at, and scenes for the time being: what is open is not touched."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import bpy
 
 from ...core.errors import ConversionError, InputError
-from ...core.files.paths import regular_file_size
+from ...core.files.paths import real_path, regular_file_size
 
 
 @contextmanager
@@ -63,6 +64,22 @@ def check_blend(path: Path, what: str, largest_bytes: int | None = None) -> None
         )
     if not magic.startswith(BLEND_MAGIC):
         raise InputError(f"{path}: is no .blend; it must be a file that Blender saved")
+
+
+def load_blocks(
+    path: Path, kind: str, advice: str, choose: Callable[[list[str]], list[str]], **options: object
+) -> list[Any]:
+    """Append datablocks of a kind out of a .blend: those whose names are chosen of all.
+
+    Raises:
+        InputError: Blender cannot read the file; `advice` ends the sentence.
+    """
+    try:
+        with bpy.data.libraries.load(str(real_path(path)), link=False, **options) as (inside, wanted):
+            setattr(wanted, kind, choose(list(getattr(inside, kind))))
+    except (OSError, RuntimeError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: Blender cannot read it ({one_line(error)}); {advice}") from error
+    return [block for block in getattr(wanted, kind) if block is not None]
 
 
 def write_blend(

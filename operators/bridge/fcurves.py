@@ -4,15 +4,14 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.body import rotations
 from ...core.body.kinematics import RIGID, Extremities
 from ...core.body.posture import Posture
-from ...core.body.skeleton import JointKind, Skeleton
+from ...core.body.skeleton import Skeleton
 from ...core.feet.natural_extremities import natural_extremities
 from ...core.take.motion import Motion
 from .actions import assign_action, channelbag_for
 from .actor_lengths import read_bones, skeleton_bones
-from .armature import ActorBones, BoneModel
+from .armature import ActorBones
 from .extremity_curves import copy_posed_extremities, extremity_paths, posed_extremities
 from .keys import MOTION, Column, remove_generated_keys, write_keys
 from .rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
@@ -26,8 +25,12 @@ def posture_columns(bones: ActorBones, postures: Posture, extremities: Extremiti
     frames: dict[str, Array] = {}
     axes: dict[str, Array] = {}  # the bones' in the object's space
     columns: list[Column] = []
+    turns, still = postures.joint_turns(), np.broadcast_to(np.eye(3), (*postures.batch, 3, 3))
     for model in bones.models:
-        frames[model.name] = _joint_frame(postures, model, frames)
+        frame = still if model.parent is None else frames[model.parent]
+        for joint in model.chain:
+            frame = frame @ turns[joint]
+        frames[model.name] = frame
         if model.name in extremities.turns:
             frames[model.name] = frames[model.name] @ extremities.turns[model.name]
         elif not model.chain:
@@ -46,21 +49,6 @@ def posture_columns(bones: ActorBones, postures: Posture, extremities: Extremiti
             path = bone_path(model.name, channel)
             columns += [(path, index, model.name, column) for index, column in enumerate(values.T)]
     return columns
-
-
-def _joint_frame(postures: Posture, model: BoneModel, frames: dict[str, Array]) -> Array:
-    """(F, 3, 3) world orientation of the bone's joint."""
-    skeleton: Skeleton = postures.skeleton
-    frame = np.broadcast_to(np.eye(3), (*postures.batch, 3, 3))
-    if model.parent is not None:
-        frame = frames[model.parent]
-    for joint in model.chain:
-        if skeleton.joints[joint].kind is JointKind.HINGE:
-            angle = postures.angles[..., skeleton.hinge_joints.index(joint)]
-            frame = frame @ rotations.hinge(np.asarray(skeleton.joints[joint].axis), angle)
-        else:
-            frame = frame @ postures.rotations[..., skeleton.ball_joints.index(joint), :, :]
-    return frame
 
 
 def moved_paths(armature_object: bpy.types.Object, skeleton: Skeleton) -> tuple[str, ...]:

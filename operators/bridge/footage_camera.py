@@ -152,5 +152,5 @@ def set_still_pose(camera_object: bpy.types.Object, camera: Camera) -> None:
     camera_object.matrix_world = Matrix(camera.matrix_world.tolist())
 
 
-def _same(values: tuple[float, ...], others: tuple[float, ...]) -> bool:
-    return bool(np.abs(np.subtract(values, others)).max() < 1e-3)
+def _same(values: tuple[float, ...], untouched: tuple[float, ...]) -> bool:
+    return bool(np.abs(np.subtract(values, untouched)).max() < 1e-3)

@@ -85,10 +85,9 @@ def set_pose(camera_object: bpy.types.Object, camera: Camera, frames: Array) -> 
         return
     camera_object.rotation_mode = "QUATERNION"
     action = bpy.data.actions.new(f"{camera_object.name} Motion")
-    channelbag = channelbag_for(action, camera_object)
     poses = camera.matrix_world[: len(frames)]
     turns = continuous_quaternions(to_quaternions(poses[:, :3, :3]))
     channels = (("location", poses[:, :3, 3]), ("rotation_quaternion", turns))
-    columns = [(path, i, "Camera", values[:, i]) for path, values in channels for i in range(values.shape[1])]
-    write_keys(channelbag, columns, frames[: len(poses)], MOTION)
+    columns = [(path, i, "Camera", column) for path, rows in channels for i, column in enumerate(rows.T)]
+    write_keys(channelbag_for(action, camera_object), columns, frames[: len(poses)], MOTION)
     assign_action(camera_object, action)

@@ -116,7 +116,9 @@ def nearest_hinges(axes: list[Array], rotation: Array) -> list[Array]:
     """
     angles = [np.zeros(rotation.shape[:-2]) for _ in axes]
     if len(axes) == 2:  # start where the chain is exact, so that no other local optimum is found
-        angles[0] = _first_angle(axes[0], axes[1], rotation)
+        first, second = axes
+        target, across = rotation @ second, second - (second @ first) * first
+        angles[0] = np.asarray(np.arctan2(target @ np.cross(first, across), target @ across))
     for _ in range(50):
         before = list(angles)
         for i, axis in enumerate(axes):
@@ -147,10 +149,3 @@ def _nearest_angle(axis: Array, rotation: Array) -> Array:
     )
     along = (rotation @ axis) @ axis
     return np.asarray(np.arctan2(skew @ axis, np.trace(rotation, axis1=-2, axis2=-1) - along))
-
-
-def _first_angle(first: Array, second: Array, rotation: Array) -> Array:
-    """(...,) the first of two hinges' angle that brings the second's axis nearest to where it is turned."""
-    target = rotation @ second
-    across = second - (second @ first) * first
-    return np.asarray(np.arctan2(target @ np.cross(first, across), target @ across))

@@ -33,9 +33,9 @@ def scene_frames(time_s: Array, first: float, rate: float) -> Array:
 
 def shown_index(frames: Array, at: ArrayLike) -> IndexArray:
     """Index of the clip's frame, of (F,), shown at scene frames (...); -1 before the clip and after it."""
-    asked = np.asarray(at, dtype=np.float64)
-    index = np.searchsorted(frames, asked + 1e-3, side="right") - 1
-    return np.asarray(np.where(asked < frames[-1] + 1.0, index, -1), dtype=np.intp)
+    frame = np.asarray(at, dtype=np.float64)
+    index = np.searchsorted(frames, frame + 1e-3, side="right") - 1
+    return np.asarray(np.where(frame < frames[-1] + 1.0, index, -1), dtype=np.intp)
 
 
 def show_frame(scene: bpy.types.Scene, frame: float) -> None:

@@ -1,5 +1,6 @@
 """A take's footage in its scene: the camera it is put behind, and the state of its file."""
 
+from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 
@@ -71,17 +72,18 @@ def update_clip_state(take: bpy.types.PropertyGroup) -> None:
     update_clip_digest(take)
     state.rate = footage_of(take.id_data, take).rate
     if take.clip.source == "MOVIE":
-        state.variable_rate = _has_variable_rate(take)
+        with suppress(InputError, ModuleNotFoundError):  # reported when the clip is read
+            stamps = footage_of(take.id_data, take).open().source.time_stamps()
+            # A phone's rate varies from the start.
+            state.variable_rate = is_variable_frame_rate(list(islice(stamps, 90)))
 
 
 def update_clip_digest(take: bpy.types.PropertyGroup) -> None:
     """Store the digest of a take's clip as it is on disk now; if it is missing, the stored one stays."""
-    try:
+    with suppress(InputError, ModuleNotFoundError):  # reported when the clip is read
         from ...core.markers.reading import footage_digest
 
         take.clip_state.contents = footage_digest(footage_of(take.id_data, take).path)
-    except (InputError, ModuleNotFoundError):  # reported when the clip is read
-        return
 
 
 def is_missing(clip: bpy.types.MovieClip | None) -> bool:
@@ -147,12 +149,3 @@ def _camera_for(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> bpy
         if camera == take.camera or not is_startup_camera(camera):
             return camera
     return None
-
-
-def _has_variable_rate(take: bpy.types.PropertyGroup) -> bool:
-    try:
-        stamps = footage_of(take.id_data, take).open().source.time_stamps()
-        # A phone's rate varies from the start.
-        return is_variable_frame_rate(list(islice(stamps, 90)))
-    except (InputError, ModuleNotFoundError):  # reported when the clip is read
-        return False

@@ -12,7 +12,7 @@ from ..shell.takes import refresh_asset_browsers
 from .registry import chosen_identifier, refresh
 
 if TYPE_CHECKING:
-    from ...core.prior.library import Library
+    pass
 
 
 class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
@@ -50,7 +50,11 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
             if there is None or library_digest(there) != library_digest(library):
                 new.append(library)
                 if there is not None and not self.replace:
-                    raise InputError(_conflict(library, there))
+                    raise InputError(
+                        f"'{there.title}' ({there.identifier}) is there in version {there.version} by "
+                        f"{there.author}, and this is version {library.version} by {library.author}; load it "
+                        "with Replace, or give it another identifier"
+                    )
         write_to_registry(new)
         refresh(libraries[0].identifier)  # the list points to it
         titles = ", ".join(f"'{library.title}'" for library in new)
@@ -58,14 +62,6 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
             self.report({"INFO"}, f"Loaded {titles}")
         else:
             self.report({"INFO"}, "Nothing to load: the library is at hand already")
-
-
-def _conflict(new: "Library", there: "Library") -> str:
-    return (
-        f"'{there.title}' ({there.identifier}) is there in version {there.version} by {there.author}, "
-        f"and this is version {new.version} by {new.author}; load it with Replace, or give it another "
-        "identifier"
-    )
 
 
 def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

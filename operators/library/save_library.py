@@ -198,5 +198,5 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
         warn_if_outdated(self, take)
         (learned,) = library.motions
         count, seconds = len(library.postures), learned.duration_s
-        said = A_CYCLE if learned.cyclic else ONCE
-        self.report({"INFO"}, said.format(title=title, count=count, seconds=seconds))
+        sentence = A_CYCLE if learned.cyclic else ONCE
+        self.report({"INFO"}, sentence.format(title=title, count=count, seconds=seconds))

@@ -59,7 +59,11 @@ def catalog_identifier(catalog: str) -> str:
 def ensure_catalog(file: Path, catalog: str) -> str:
     """The UUID of a catalog path such as `Keymark/Walking`; it is added to the file if missing."""
     content = read_catalogs(file)
-    known = _catalogs(content)
+    known: dict[str, str] = {}  # UUIDs by path; of a repeated path the first
+    for line in content.splitlines():
+        parts = line.strip().split(":", 2)
+        if not line.startswith("#") and len(parts) > 1:
+            known.setdefault(parts[1], parts[0])
     names = _clean(catalog).split("/")
     paths = ["/".join(names[: depth + 1]) for depth in range(len(names))]
     if paths[-1] not in known:
@@ -71,16 +75,6 @@ def ensure_catalog(file: Path, catalog: str) -> str:
         text = start + "".join(lines)
         write_atomically(file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
     return known[paths[-1]]
-
-
-def _catalogs(content: str) -> dict[str, str]:
-    """UUIDs of the catalogs in a file's text, by path; of a repeated path the first."""
-    found: dict[str, str] = {}
-    for line in content.splitlines():
-        parts = line.strip().split(":", 2)
-        if not line.startswith("#") and len(parts) > 1:
-            found.setdefault(parts[1], parts[0])
-    return found
 
 
 def _clean(catalog: str) -> str:

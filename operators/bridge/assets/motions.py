@@ -8,12 +8,11 @@ import bpy
 
 from ....core.errors import InputError
 from ....core.feet.natural_extremities import natural_extremities
-from ....core.files.paths import real_path
 from ....core.report.stick_figure import thumbnail
 from ....core.take.motion import Motion
 from ..actions import action_digest, assign_action, channelbag_for
 from ..armature import bones_at_rest, build_armature
-from ..blend_files import check_blend, one_line, own_scene
+from ..blend_files import check_blend, load_blocks, own_scene
 from ..fcurves import posture_columns
 from ..keys import MOTION, write_keys
 from ..scene_frames import scene_frames
@@ -41,16 +40,11 @@ def load_character_action(blend: Path, name: str, curves: str) -> bpy.types.Acti
             `curves`.
     """
     check_blend(blend, "a character")
-    try:
-        with bpy.data.libraries.load(str(real_path(blend)), link=False) as (inside, wanted):
-            wanted.actions = [one for one in inside.actions if one == name]
-    except (OSError, RuntimeError, UnicodeDecodeError) as error:
-        raise InputError(
-            f"{blend}: Blender cannot read it ({one_line(error)}); convert the take again"
-        ) from error
-    action = next((one for one in wanted.actions if one is not None), None)
-    if action is None:
-        raise InputError(f"{blend}: lacks its Action; convert the take again")
+    advice = "convert the take again"
+    found = load_blocks(blend, "actions", advice, lambda names: [one for one in names if one == name])
+    if not found:
+        raise InputError(f"{blend}: lacks its Action; {advice}")
+    (action,) = found
     if action_digest(action) != curves:
         raise InputError(f"{blend}: is not the file that the conversion wrote; convert the take again")
     return action

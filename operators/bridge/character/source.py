@@ -8,14 +8,12 @@ import numpy as np
 from ....core.arrays import Array
 from ....core.body.human import HUMAN
 from ....core.body.kinematics import Extremities, SegmentMotion, extremity_names, segment_motion
-from ....core.errors import InputError
 from ....core.feet.natural_extremities import natural_extremities
-from ....core.files.paths import real_path
 from ....core.progress import Job, Progress, within
 from ....core.take.motion import Motion
 from ..actions import existing_channelbag
 from ..actor_lengths import read_body
-from ..blend_files import check_blend, one_line
+from ..blend_files import check_blend, load_blocks
 from ..footage import set_scene_range
 from ..result_files import set_look
 from ..rig import present_frames, read_rig, read_values, shown_postures
@@ -89,15 +87,9 @@ def show_result(scene: bpy.types.Scene, blend: Path | None, motion: Motion) -> A
 
 def _copy_footage(scene: bpy.types.Scene, blend: Path) -> None:
     check_blend(blend, "a result")
-    try:
-        with bpy.data.libraries.load(str(real_path(blend)), link=False) as (inside, wanted):
-            wanted.scenes = list(inside.scenes)
-    except (OSError, RuntimeError, UnicodeDecodeError) as error:
-        raise InputError(
-            f"{blend}: Blender cannot read it ({one_line(error)}); convert the take again, or name its "
-            "motion.json instead"
-        ) from error
-    shown = next((one for one in wanted.scenes if one is not None and one.camera and one.active_clip), None)
+    advice = "convert the take again, or name its motion.json instead"
+    scenes = load_blocks(blend, "scenes", advice, list)
+    shown = next((one for one in scenes if one.camera and one.active_clip), None)
     if shown is None:
         return
     for name in RENDER:

@@ -1,7 +1,5 @@
 """Keyframe libraries in files: .json, or .blend files of pose assets, written and read with suspicion."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
@@ -9,8 +7,8 @@ import bpy
 from ....core.errors import InputError
 from ....core.prior.library import MOST_POSTURES, Library, read_library, write_library
 from ..assets.catalogs import write_asset_blend
-from ..blend_files import check_blend, one_line
-from .pose_assets import add_assets, catalog_of, is_posture, library_from_assets
+from ..blend_files import check_blend, load_blocks
+from .pose_assets import add_assets, catalog_of, library_from_assets
 
 LARGEST_BYTES = 256 * 2**20
 """Enough for a library of a thousand postures with pictures; refuses a film's scene named by mistake."""
@@ -38,36 +36,26 @@ def read_library_blend(path: Path) -> tuple[Library, ...]:
         InputError: The file is not a .blend, damaged or too large, or has no library.
     """
     check_blend(path, "a library", LARGEST_BYTES)
-    with _loaded_actions(path) as actions:
+    before, names = set(bpy.data.user_map()), []
+
+    def few(there: list[str]) -> list[str]:
+        names.extend(there)
+        return there if len(there) <= MOST_POSTURES else []
+
+    try:
+        actions = load_blocks(path, "actions", "it may be damaged or cut off", few, assets_only=True)
+        if len(names) > MOST_POSTURES:
+            raise InputError(
+                f"{path}: holds {len(names)} Actions marked as assets; at most {MOST_POSTURES} are read"
+            )
         libraries = library_from_assets(actions)
+    finally:
+        bpy.data.batch_remove(set(bpy.data.user_map()) - before)
     if not libraries:
         raise InputError(
             f"{path}: holds no pose assets of a keyframe library; export one with Keymark, as .blend or .json"
         )
     return libraries
-
-
-@contextmanager
-def _loaded_actions(path: Path) -> Iterator[Sequence[bpy.types.Action]]:
-    """The Actions of a .blend that are marked as assets; all that was loaded is removed afterwards."""
-    before = set(bpy.data.user_map())
-    try:
-        try:
-            with bpy.data.libraries.load(str(path), link=False, assets_only=True) as (found, wanted):
-                names = list(found.actions)
-                if len(names) <= MOST_POSTURES:
-                    wanted.actions = names
-        except (OSError, RuntimeError, UnicodeDecodeError) as error:
-            raise InputError(
-                f"{path}: Blender cannot read it ({one_line(error)}); it may be damaged or cut off"
-            ) from error
-        if len(names) > MOST_POSTURES:
-            raise InputError(
-                f"{path}: holds {len(names)} Actions marked as assets; at most {MOST_POSTURES} are read"
-            )
-        yield [action for action in wanted.actions if action is not None and is_posture(action)]
-    finally:
-        bpy.data.batch_remove(set(bpy.data.user_map()) - before)
 
 
 # --- Keyframe libraries in files, by their suffix

@@ -171,7 +171,12 @@ def _present_motions(motions: Any, now: Mapping[str, str]) -> Any:
     kept = []
     for motion in motions:
         steps = motion.get("steps") if isinstance(motion, Mapping) else None
-        if not isinstance(steps, list) or not all(_is_step(step) for step in steps):
+        if not isinstance(steps, list) or not all(
+            isinstance(step, Mapping)
+            and isinstance(step.get("posture"), str)
+            and isinstance(step.get("time_s"), int | float)
+            for step in steps
+        ):
             kept.append(motion)
             continue
         left = [{**step, "posture": now[step["posture"]]} for step in steps if step["posture"] in now]
@@ -180,11 +185,6 @@ def _present_motions(motions: Any, now: Mapping[str, str]) -> Any:
             steps = [{**step, "time_s": step["time_s"] - begin} for step in left]
             kept.append({**motion, "steps": steps})
     return kept
-
-
-def _is_step(step: Any) -> bool:
-    usable = isinstance(step, Mapping) and isinstance(step.get("posture"), str)
-    return usable and isinstance(step.get("time_s"), int | float)
 
 
 def _fields(action: bpy.types.Action, name: str) -> dict[str, Any]:

@@ -79,8 +79,8 @@ def library_of_assets(
         library = _empty(body, about)
     entries = list(library.postures)
     for name, actor, posture in loose:
-        given = transferred(posture, actor, Body(library.actor))
-        entries.append(LibraryPosture(unique_name(name, [entry.name for entry in entries]), given))
+        fitted = transferred(posture, actor, Body(library.actor))
+        entries.append(LibraryPosture(unique_name(name, [entry.name for entry in entries]), fitted))
     return _checked(replace(library, postures=tuple(entries)))
 
 

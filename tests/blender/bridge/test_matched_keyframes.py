@@ -125,11 +125,27 @@ def test_a_changed_key_makes_the_keyframe_posed(take: bpy.types.PropertyGroup) -
     assert matched_in(take) == [None, MATCHED, None]
 
 
-def test_keying_the_same_frame_by_blender_makes_it_posed(take: bpy.types.PropertyGroup) -> None:
-    bpy.context.scene.frame_set(7)
+def keyed_by_blender(take: bpy.types.PropertyGroup) -> None:
     bone = take.armature.pose.bones["chest"]
     bone.rotation_quaternion = (0.9, 0.3, 0.2, 0.1)
     bone.keyframe_insert("rotation_quaternion", frame=7)
+
+
+def turned_another_way(take: bpy.types.PropertyGroup) -> None:
+    take.armature.pose.bones["chest"].rotation_mode = "XYZ"
+
+
+def stored(take: bpy.types.PropertyGroup) -> None:
+    bpy.ops.keymark.store_keyframe()
+    assert key_at(take, 'pose.bones["chest"].rotation_quaternion', 0, 7.0).type == "KEYFRAME"
+
+
+@pytest.mark.parametrize("change", [keyed_by_blender, turned_another_way, stored])
+def test_what_an_animator_does_at_the_frame_makes_it_posed(
+    take: bpy.types.PropertyGroup, change: Callable[[bpy.types.PropertyGroup], None]
+) -> None:
+    bpy.context.scene.frame_set(7)
+    change(take)
     assert matched_in(take) == [None, None, None]
 
 
@@ -141,18 +157,6 @@ def test_a_keyframe_moved_to_another_frame_is_posed_there(take: bpy.types.Proper
         curve.update()
     found = keyframes_in(take)
     assert [(keyframe.index, keyframe.matched) for keyframe in found] == [(0, None), (8, None), (12, None)]
-
-
-def test_a_bone_in_another_rotation_mode_shows_something_else(take: bpy.types.PropertyGroup) -> None:
-    take.armature.pose.bones["chest"].rotation_mode = "XYZ"
-    assert matched_in(take) == [None, None, None]
-
-
-def test_storing_the_pose_makes_it_posed_and_says_so(take: bpy.types.PropertyGroup) -> None:
-    bpy.context.scene.frame_set(7)
-    bpy.ops.keymark.store_keyframe()
-    assert matched_in(take) == [None, None, None]
-    assert key_at(take, 'pose.bones["chest"].rotation_quaternion', 0, 7.0).type == "KEYFRAME"
 
 
 def test_other_lengths_leave_matches_as_they_are(take: bpy.types.PropertyGroup) -> None:

@@ -12,6 +12,22 @@ from keymark.core.take.take import Take
 from keymark.operators.bridge import result_files
 from keymark.operators.bridge.result_files import write_scene
 
+KINDS = (
+    "scenes",
+    "objects",
+    "meshes",
+    "armatures",
+    "cameras",
+    "materials",
+    "actions",
+    "movieclips",
+    "worlds",
+)
+
+
+def blocks() -> dict[str, list[str]]:
+    return {kind: [block.name for block in getattr(bpy.data, kind)] for kind in KINDS}
+
 
 @pytest.fixture
 def written(tmp_path: Path, tiny_take: Take, wave_motion: Motion) -> Path:
@@ -21,45 +37,25 @@ def written(tmp_path: Path, tiny_take: Take, wave_motion: Motion) -> Path:
     return folder
 
 
-def test_the_file_reopens_with_the_motion_on_the_actor(
+def test_the_file_reopens_with_motion_footage_and_body(
     written: Path, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
+    assert (written / "motion.blend").read_bytes()[:4] == b"\x28\xb5\x2f\xfd"  # compressed
     bpy.ops.wm.open_mainfile(filepath=str(written / "motion.blend"))
-    actor = next(o for o in bpy.data.objects if o.type == "ARMATURE")
-    assert actor.animation_data.action_slot is not None
+    scene, by_type = bpy.context.scene, {thing.type: thing for thing in bpy.data.objects}
+    assert by_type["ARMATURE"].animation_data.action_slot is not None
     for frame, points in zip(wave_motion.scene_frames, wave_motion.points, strict=True):
-        bpy.context.scene.frame_set(int(frame))
-        assert shown_points(actor) == pytest.approx(points, abs=1e-5)
-
-
-def test_the_file_has_footage_behind_its_camera(written: Path) -> None:
-    bpy.ops.wm.open_mainfile(filepath=str(written / "motion.blend"))
-    scene = bpy.context.scene
+        scene.frame_set(int(frame))
+        assert shown_points(by_type["ARMATURE"]) == pytest.approx(points, abs=1e-5)
     (clip,) = bpy.data.movieclips
-    assert clip.filepath == "//../tiny/clip.mp4"
-    assert tuple(clip.size) == (160, 120)
-    assert (scene.frame_start, scene.frame_end) == (1, 13)
+    assert clip.filepath == "//../tiny/clip.mp4" and tuple(clip.size) == (160, 120)
+    assert (scene.frame_start, scene.frame_end, scene.active_clip) == (1, 13, clip)
     assert scene.camera.data.background_images[0].clip == clip
-    assert scene.active_clip == clip
-
-
-def test_the_body_wears_the_markers_colors(written: Path) -> None:
-    bpy.ops.wm.open_mainfile(filepath=str(written / "motion.blend"))
-    mesh = next(o for o in bpy.data.objects if o.type == "MESH")
-    assert [m.name for m in mesh.data.materials][1:] == [
-        "trunk",
-        "forearm.L",
-        "forearm.R",
-        "shin.L",
-        "shin.R",
-    ]
+    mesh = by_type["MESH"]
+    worn = ["trunk", "forearm.L", "forearm.R", "shin.L", "shin.R"]
+    assert [material.name for material in mesh.data.materials][1:] == worn
     assert mesh.modifiers[0].object.type == "ARMATURE"
-    used = {polygon.material_index for polygon in mesh.data.polygons}
-    assert used == set(range(6))
-
-
-def test_the_file_is_compressed(written: Path) -> None:
-    assert (written / "motion.blend").read_bytes()[:4] == b"\x28\xb5\x2f\xfd"
+    assert {polygon.material_index for polygon in mesh.data.polygons} == set(range(6))
 
 
 def test_the_bvh_holds_every_frame_and_comes_back_right(
@@ -79,24 +75,11 @@ def test_the_open_file_is_not_touched(tmp_path: Path, tiny_take: Take, wave_moti
     mine = bpy.data.objects.new("Actor", bpy.data.meshes.new("Actor"))
     bpy.context.collection.objects.link(mine)
     scene = bpy.context.scene
-    before = {kind: [block.name for block in getattr(bpy.data, kind)] for kind in KINDS}
+    before = blocks()
     write_scene(tiny_take, wave_motion, tmp_path / "motion.blend", tmp_path / "motion.bvh")
-    assert {kind: [block.name for block in getattr(bpy.data, kind)] for kind in KINDS} == before
+    assert blocks() == before
     assert bpy.context.scene == scene
     assert bpy.context.view_layer.objects.get("Actor") == mine
-
-
-KINDS = [
-    "scenes",
-    "objects",
-    "meshes",
-    "armatures",
-    "cameras",
-    "materials",
-    "actions",
-    "movieclips",
-    "worlds",
-]
 
 
 def test_a_failure_leaves_no_scene_behind(
@@ -106,11 +89,11 @@ def test_a_failure_leaves_no_scene_behind(
     def fail(_path: Path, _blocks: set[bpy.types.ID], **_options: object) -> None:
         raise ConversionError("the disk is full")
 
-    before = {kind: [block.name for block in getattr(bpy.data, kind)] for kind in KINDS}
+    before = blocks()
     monkeypatch.setattr(result_files, "write_blend", fail)
     with pytest.raises(ConversionError, match="disk is full"):
         write_scene(tiny_take, wave_motion, tmp_path / "motion.blend", None)
-    assert {kind: [block.name for block in getattr(bpy.data, kind)] for kind in KINDS} == before
+    assert blocks() == before
 
 
 def test_a_folder_that_is_not_there_is_one_sentence(

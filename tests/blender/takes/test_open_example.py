@@ -92,28 +92,22 @@ def test_a_copy_that_somebody_works_in_is_left_alone(tmp_path: Path, changed: st
     assert files(tmp_path) == before and not differences(scene, scene_state())
 
 
-def test_where_nothing_can_be_written_nothing_changes(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("", encoding="utf-8")
+@pytest.mark.parametrize("folder", ["file", "new"])
+def test_a_copy_that_fails_leaves_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, folder: str
+) -> None:
+    if folder == "file":
+        (tmp_path / "file").write_text("", encoding="utf-8")
+    monkeypatch.setattr(examples, "COPIED", {**COPIED, "missing.json": "missing.json"})
     before, scene = files(tmp_path), scene_state()
-    with pytest.raises(RuntimeError, match="cannot be written"):
-        bpy.ops.keymark.open_example(copy=True, directory=str(tmp_path / "file"))
+    with pytest.raises(RuntimeError, match=r"missing\.json|cannot be written"):
+        bpy.ops.keymark.open_example(copy=True, directory=str(tmp_path / folder))
     assert files(tmp_path) == before and not differences(scene, scene_state())
 
 
-def test_a_copy_that_fails_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(examples, "COPIED", {**COPIED, "missing.json": "missing.json"})
-    scene = scene_state()
-    with pytest.raises(RuntimeError, match=r"missing\.json|cannot be written"):
-        bpy.ops.keymark.open_example(copy=True, directory=str(tmp_path / "new"))
-    assert list(tmp_path.iterdir()) == [] and not differences(scene, scene_state())
-
-
-def test_a_copy_needs_a_folder() -> None:
+def test_what_is_missing_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(RuntimeError, match="name the folder to copy the example to"):
         bpy.ops.keymark.open_example(copy=True)
-
-
-def test_an_installation_without_the_example_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(examples, "SHIPPED", tmp_path)
     with pytest.raises(RuntimeError, match="missing from the installation; install Keymark anew"):
         bpy.ops.keymark.open_example()

@@ -38,6 +38,14 @@ def rig_file(registered: None, tiny_take: Take, tmp_path: Path) -> Path:
     return path
 
 
+def rig_of(file: Path, clip: Path, link: bool = False) -> bpy.types.Object:
+    """The rig of another file, appended or linked, in a scene with the footage."""
+    with bpy.data.libraries.load(str(file), link=link) as (_source, target):
+        target.objects = [RIG]
+    bpy.ops.keymark.load_footage(filepath=str(clip))
+    return target.objects[0]
+
+
 @pytest.mark.usefixtures("registered")
 def test_a_file_says_its_version_and_keeps_its_takes(tiny_take: Take, tmp_path: Path) -> None:
     identifier = open_take(tiny_take).identifier
@@ -71,12 +79,8 @@ def test_switching_the_extension_off_and_on_keeps_everything(tiny_take: Take) ->
 
 
 def test_an_appended_rig_is_an_actor(rig_file: Path, tiny_take: Take) -> None:
-    with bpy.data.libraries.load(str(rig_file)) as (_source, target):
-        target.objects = [RIG]
-    scene = bpy.context.scene
-    rig = target.objects[0]
+    rig, scene = rig_of(rig_file, tiny_take.clip), bpy.context.scene
     scene.collection.objects.link(rig)
-    bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     take = active_take(scene)
     take.armature, take.keyframe_action = rig, rig.animation_data.action
     keys = len(take.keyframe_action.layers[0].strips[0].channelbags[0].fcurves[0].keyframe_points)
@@ -90,25 +94,18 @@ def test_an_appended_rig_is_an_actor(rig_file: Path, tiny_take: Take) -> None:
 
 
 def test_a_linked_rig_asks_for_an_override(rig_file: Path, tiny_take: Take) -> None:
-    with bpy.data.libraries.load(str(rig_file), link=True) as (_source, target):
-        target.objects = [RIG]
-    scene = bpy.context.scene
-    scene.collection.objects.link(target.objects[0])
-    bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
-    active_take(scene).armature = target.objects[0]
+    rig, scene = rig_of(rig_file, tiny_take.clip, link=True), bpy.context.scene
+    scene.collection.objects.link(rig)
+    active_take(scene).armature = rig
     for operator in (bpy.ops.keymark.store_keyframe, bpy.ops.keymark.show_action):
         with pytest.raises(RuntimeError, match="make a library override of it first"):
             operator()
 
 
 def test_a_library_override_is_an_actor(rig_file: Path, tiny_take: Take, tmp_path: Path) -> None:
-    with bpy.data.libraries.load(str(rig_file), link=True) as (_source, target):
-        target.objects = [RIG]
-    before = rig_file.read_bytes()
-    scene = bpy.context.scene
-    rig = target.objects[0].override_create(remap_local_usages=True)
+    before, scene = rig_file.read_bytes(), bpy.context.scene
+    rig = rig_of(rig_file, tiny_take.clip, link=True).override_create(remap_local_usages=True)
     scene.collection.objects.link(rig)
-    bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     take = active_take(scene)
     take.armature = rig
     for frame in (1, 13):

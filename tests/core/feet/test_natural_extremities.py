@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from _scene import BODY
-from keymark.core.body.body_volume import sole_places, standing_posture
-from keymark.core.body.kinematics import RIGID, Extremities, segment_ends
+from keymark.core.body.body_volume import sole_offsets, standing_posture
+from keymark.core.body.kinematics import RIGID, Extremities, segment_ends, segment_turn
 from keymark.core.body.mirror import mirrored, mirrored_actor
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import logarithm
@@ -65,7 +65,12 @@ def times(posture: Posture) -> np.ndarray:
 def soles(posture: Posture, extremities: Extremities | None = None) -> np.ndarray:
     """(F, 2, 2, 3) heel and tip of both feet."""
     natural = natural_extremities(BODY, posture, times(posture)) if extremities is None else extremities
-    return sole_places(BODY, BODY.pose(posture), natural)
+    pose, feet = BODY.pose(posture), []
+    for name, offsets in zip(("foot.L", "foot.R"), sole_offsets(BODY), strict=True):
+        turn = segment_turn(BODY, pose, natural, name)
+        ankle = BODY.segment_ends(pose, name)[0]
+        feet.append(ankle[:, None] + offsets @ np.swapaxes(turn, -1, -2))
+    return np.stack(feet, axis=1)
 
 
 def flexion(posture: Posture, side: str = "L") -> np.ndarray:

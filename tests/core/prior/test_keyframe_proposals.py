@@ -93,12 +93,12 @@ def test_speed_is_the_sum_of_the_lengths_of_the_velocities() -> None:
 def test_uneven_time_stamps_are_respected() -> None:
     time = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 6.0, 7.0])
     tracks = tracks_of(straight([(6.0, 8.0)], time), time / 25.0)
-    np.testing.assert_allclose(marker_speed(tracks, 0.0), 10.0, rtol=1e-12)
+    np.testing.assert_allclose(marker_speed(tracks), 10.0, rtol=1e-12)
 
 
 def test_a_stamp_that_does_not_advance_leaves_the_speed_finite() -> None:
     centroid = straight([(3.0, 4.0)], np.arange(6.0))
-    speed = marker_speed(tracks_of(centroid, np.array([0.0, 0.04, 0.04, 0.08, 0.12, 0.16])), 0.0)
+    speed = marker_speed(tracks_of(centroid, np.array([0.0, 0.04, 0.04, 0.08, 0.12, 0.16])))
     np.testing.assert_allclose(speed, 5.0, rtol=1e-12)
 
 
