@@ -27,8 +27,8 @@ from keymark.core.camera.camera_fields import CameraPlacement  # noqa: E402
 from keymark.core.camera.camera_fit import HEIGHT, LENS, PARAMETERS, ROLL, TILT, fit_camera  # noqa: E402
 from keymark.core.detect.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.detect.standing_moments import standing_keypoints  # noqa: E402
-from keymark.core.posing.found_poses import with_found  # noqa: E402
-from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
+from keymark.core.poses.clip import pose_clip  # noqa: E402
+from keymark.core.poses.found_poses import with_found  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.prior.registry import find_libraries  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402

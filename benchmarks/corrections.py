@@ -23,9 +23,9 @@ from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.body.actor import Actor  # noqa: E402
 from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.body.posture_fit import fit_posture  # noqa: E402
-from keymark.core.posing.found_poses import FoundPoses, with_found  # noqa: E402
-from keymark.core.posing.picture_depth import put_right  # noqa: E402
-from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
+from keymark.core.poses.clip import pose_clip  # noqa: E402
+from keymark.core.poses.found_poses import FoundPoses, with_found  # noqa: E402
+from keymark.core.poses.picture_depth import put_right  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
 from keymark.core.prior.registry import SHIPPED, find_libraries  # noqa: E402

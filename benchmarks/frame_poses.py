@@ -24,8 +24,8 @@ from keymark.core.errors import InputError  # noqa: E402
 from keymark.core.estimate.clip_problem import uncalibrated  # noqa: E402
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence  # noqa: E402
 from keymark.core.markers.region_tracks import RegionTracks  # noqa: E402
-from keymark.core.posing.frame_poses import find_frame_poses  # noqa: E402
-from keymark.core.posing.frame_search import FrameShown, knowledge  # noqa: E402
+from keymark.core.poses.frame import find_frame_poses  # noqa: E402
+from keymark.core.poses.frame_search import FrameShown, knowledge  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
 from keymark.core.prior.registry import SHIPPED, find_libraries  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402

@@ -24,8 +24,8 @@ from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.body.rotations import exponential  # noqa: E402
 from keymark.core.detect.keypoints import People  # noqa: E402
 from keymark.core.errors import InputError  # noqa: E402
-from keymark.core.posing.found_poses import FoundPoses, with_found  # noqa: E402
-from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
+from keymark.core.poses.clip import pose_clip  # noqa: E402
+from keymark.core.poses.found_poses import FoundPoses, with_found  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
 from keymark.core.prior.registry import SHIPPED, find_libraries  # noqa: E402
@@ -134,7 +134,7 @@ def wrong_sides(trial: Trial, points: Array) -> BoolArray:
 # --- Whether the confidence of a motion can be believed
 
 
-USABLE_ROOTED_MM, USABLE_MM = 100.0, 500.0  # what `core/posing/agreement.py` means by usable
+USABLE_ROOTED_MM, USABLE_MM = 100.0, 500.0  # what `core/poses/agreement.py` means by usable
 COVERED_LEGS = ("hip", "knee", "ankle", "heel", "toe")
 
 

@@ -11,7 +11,7 @@ from keymark.core.camera.camera import Camera
 from keymark.core.detect.keypoints import People, SeenPeople, mirrored_point
 from keymark.core.markers.reading import Reading
 from keymark.core.markers.region_tracks import MarkerStyle, RegionTracks
-from keymark.core.posing.found_poses import FoundPoses
+from keymark.core.poses.found_poses import FoundPoses
 from keymark.core.prior.library import Library
 from keymark.core.prior.motion_playback import sample_motion
 from keymark.core.take.take import Take

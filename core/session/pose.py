@@ -9,8 +9,8 @@ from ..estimate.reference_evidence import (
     reference_evidence,
     with_reference,
 )
-from ..posing.found_poses import FoundPoses, referred_poses, with_found
-from ..posing.pose_clip import pose_clip
+from ..poses.clip import pose_clip
+from ..poses.found_poses import FoundPoses, referred_poses, with_found
 from ..prior.library import library_digest
 from ..progress import Job
 from ..take.seen_take import SeenTake

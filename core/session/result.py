@@ -13,7 +13,7 @@ from ..estimate.reconstruct import Reconstruction
 from ..files.commit import backup_name
 from ..files.digest import content_digest
 from ..files.json_file import read_json, write_json
-from ..posing.found_poses import FoundPoses, contradiction_notes
+from ..poses.found_poses import FoundPoses, contradiction_notes
 from ..prior.library import library_digest
 from ..progress import run
 from ..retarget.retarget_record import RECORD_FILE as RETARGET

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from ...core.body.kinematics import Body
     from ...core.body.posture import Posture
     from ...core.camera.camera import Camera
-    from ...core.posing.turned import Turned
+    from ...core.poses.turned import Turned
 
 
 DRAGGING = "keymark.drag_joints"
@@ -99,7 +99,7 @@ def put_right(
     frame = scene.frame_current_final
     if not is_keyed(take, frame) or not depth_is_found(take, frame):
         return shown
-    from ...core.posing import picture_depth
+    from ...core.poses import picture_depth
     from ..library.registry_files import named_libraries
 
     match = known_matches(take).get(round(frame, 3))
@@ -187,7 +187,7 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
         return f"{facing}, at the same place; the pose is fitted to the footage again"
 
     def run(self, context: Context) -> None:
-        from ...core.posing.turned import Facing, Sides, facing_of, turned
+        from ...core.poses.turned import Facing, Sides, facing_of, turned
 
         take, scene = active_take(context.scene), context.scene
         seen = camera_now(scene, take)
@@ -304,7 +304,7 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
 
     def run(self, context: Context) -> set[str] | None:
         """Show of each part the way after the one that is shown, from the last back to the first."""
-        from ...core.posing.depth_flip import flipped
+        from ...core.poses.depth_flip import flipped
 
         take, scene = active_take(context.scene), context.scene
         limbs = selected_limbs(take) if self.limb == "SELECTED" else [self.limb]

@@ -71,7 +71,7 @@ class JointDrag:
 
     def show(self, take: PropertyGroup) -> None:
         """Show the posture that the drag has come to; nothing is keyed."""
-        from ...core.posing.dragged import dragged
+        from ...core.poses.dragged import dragged
         from ..bridge.pose import write_posture
 
         pushed, floor_m = self.depth_m != 0.0, take.matching.known_floor_m
@@ -109,7 +109,7 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
     pushed: Switch("In Depth", "Whether the place along the line of sight counts as much as across it")
 
     def run(self, context: Context) -> None:
-        from ...core.posing.dragged import dragged
+        from ...core.poses.dragged import dragged
 
         take = active_take(context.scene)
         body, posture = shown_pose(take)
@@ -320,7 +320,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         drag = self._drag or (self._done[-1] if self._done else None)
         self._handles.path = None
         if drag is not None and drag.shown is not None and self._keyframes:
-            from ...core.posing.dragged import paths_through
+            from ...core.poses.dragged import paths_through
 
             shown = window(self._index, 1 + max(self._index, self._keyframes[-1].index))
             where = self._keyframes, self._index

@@ -19,7 +19,7 @@ from .found_keyframes import known_matches
 from .store_keyframe import note_corrected
 
 if TYPE_CHECKING:
-    from ...core.posing.candidates import Candidate
+    from ...core.poses.candidates import Candidate
 
 
 def offer_poses(take: PropertyGroup, frame: float, candidates: Sequence["Candidate"]) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.markers.reading import Reading
-from ...core.posing.found_poses import FoundPoses
+from ...core.poses.found_poses import FoundPoses
 from ...core.prior.keyframes import Keyframe
 from ...core.session.place import Placed
 from ...core.session.pose import Posed

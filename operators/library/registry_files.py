@@ -44,7 +44,7 @@ def named_libraries(name: str) -> Sequence[Library]:
 def all_libraries() -> Sequence[Library]:
     """All registered libraries; the same objects for as long as no file changes.
 
-    What is made of them (`core/posing/part_pools`) is kept by the objects: asked again, it is at hand.
+    What is made of them (`core/poses/part_pools`) is kept by the objects: asked again, it is at hand.
 
     Raises:
         InputError: There is none.

@@ -27,7 +27,7 @@ ROOMS = (
     ("core.prior",),
     ("core.take",),
     ("core.estimate",),
-    ("core.posing",),
+    ("core.poses",),
     ("core.feet",),
     ("core.keys",),
     ("core.mend", "core.review"),

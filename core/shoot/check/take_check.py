@@ -9,7 +9,7 @@ from ...detect.pose_network import PoseNetwork
 from ...estimate.reconstruct import check_method
 from ...files.fields import PLACED, Fields, child_location
 from ...markers.marker_check import MarkerReadout
-from ...posing.posing_input import check_followed
+from ...poses.clip_input import check_followed
 from ...session.described import described, is_detected
 from ...take.character_settings import CharacterSettings
 from ...take.clip_check import open_footage

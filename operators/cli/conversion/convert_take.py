@@ -8,7 +8,7 @@ from ....core.api import convert
 from ....core.estimate.reconstruct import Reconstruction
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
-from ....core.posing.found_poses import FoundPoses
+from ....core.poses.found_poses import FoundPoses
 from ....core.prior.library import library_digest
 from ....core.progress import run
 from ....core.report.overlay_sheet import performer_contours

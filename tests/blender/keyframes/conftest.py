@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import bpy
 import pytest
 from _scene_state import made_up_frames, wave_library
-from keymark.core.posing import pose_clip as posing
-from keymark.core.posing.found_poses import FoundPoses
+from keymark.core.poses import clip as posing
+from keymark.core.poses.found_poses import FoundPoses
 from keymark.core.progress import Progress
 from keymark.core.session import pose as pose_stage
 from keymark.core.take.motion import Motion

@@ -9,7 +9,7 @@ from _scene_state import posture_of
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.posing.turned import Facing, facing_of
+from keymark.core.poses.turned import Facing, facing_of
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.keyframes import keyed_frames, unchanged_keyframes
 from keymark.operators.bridge.keys import PICTURED

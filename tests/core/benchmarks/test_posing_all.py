@@ -14,8 +14,8 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 
 import posing_all as bench  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
-from keymark.core.posing.candidates import Candidate, MatchedFrame  # noqa: E402
-from keymark.core.posing.found_poses import FoundPoses  # noqa: E402
+from keymark.core.poses.candidates import Candidate, MatchedFrame  # noqa: E402
+from keymark.core.poses.found_poses import FoundPoses  # noqa: E402
 from keymark.core.take.seen_take import SeenTake  # noqa: E402
 from trials import Trial, read_unposed  # noqa: E402
 

@@ -20,6 +20,7 @@ from ..camera.camera import Camera
 from ..estimate.performer_placement import SAME_FLOOR_M, place_standing, standing_ankle_m
 from ..estimate.sigma import SIZE_STD, place_depth_std_m
 from ..progress import Part, scaled
+from .clip_input import PosingInput, tempering
 from .composed_path import ComposedPath, best_path
 from .composed_states import LEGS, FrameCosts, FrameStates, PosedCosts
 from .frame_likelihood import frame_likelihoods
@@ -27,7 +28,6 @@ from .library_motion import PartBelief, part_beliefs
 from .match_evidence import MatchEvidence
 from .part_features import StanceFeatures, composed_postures
 from .part_pools import TORSO, PartPools, part_dofs
-from .posing_input import PosingInput, tempering
 
 
 def mean_postures(

@@ -11,8 +11,8 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.core.posing.found_poses import FoundPoses, with_found
-from keymark.core.posing.pose_clip import pose_clip
+from keymark.core.poses.clip import pose_clip
+from keymark.core.poses.found_poses import FoundPoses, with_found
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library, read_library
 from keymark.core.progress import run

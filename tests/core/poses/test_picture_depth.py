@@ -10,8 +10,8 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.body_volume import lower_sole_m
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture, yawed_at
-from keymark.core.posing.dragged import dragged
-from keymark.core.posing.picture_depth import put_right
+from keymark.core.poses.dragged import dragged
+from keymark.core.poses.picture_depth import put_right
 from keymark.core.prior.library import Library
 from keymark.core.prior.registry import SHIPPED, find_libraries
 from keymark.core.prior.texts import EVERY_LIBRARY

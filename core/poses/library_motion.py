@@ -19,6 +19,7 @@ from ..estimate.single_frame import EXCHANGED_COST
 from ..numerics.markov_chain import Steps, path_posteriors
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..progress import Part
+from .clip_input import PosingInput, tempering
 from .frame_likelihood import (
     ENTRIES,
     FrameLikelihood,
@@ -31,7 +32,6 @@ from .known_motions import KnownMotions, limb_places
 from .match_evidence import MatchEvidence, marker_moments
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures
 from .part_pools import PartPools
-from .posing_input import PosingInput, tempering
 
 MOST_STATES, MARGIN = 500, 15.0  # states kept of a frame, and how much more than the likeliest they may cost
 DEPTH_STD = 0.07  # error of the distance that a first composition has, as a share

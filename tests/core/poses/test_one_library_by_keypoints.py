@@ -8,7 +8,7 @@ from _performed import FRAMES, NAMES, camera, detected, errors_m, exchanged, fil
 from keymark.core.detect.keypoints import SeenPeople
 from keymark.core.errors import InputError
 from keymark.core.markers.reading import Reading
-from keymark.core.posing.pose_clip import pose_clip
+from keymark.core.poses.clip import pose_clip
 from keymark.core.prior.library import Library
 from keymark.core.progress import run
 from keymark.core.session.stages import seen_in

@@ -19,7 +19,7 @@ from keymark.core.body.human import HUMAN, TRUNK, limb_of
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import hinge
 from keymark.core.estimate.performer_placement import SHOE_M, standing_ankle_m
-from keymark.core.posing.dragged import dragged, paths_through
+from keymark.core.poses.dragged import dragged, paths_through
 from keymark.core.prior.keyframes import Keyframe
 
 SEEDS = st.integers(0, 2**32 - 1)

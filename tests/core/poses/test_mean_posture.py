@@ -7,12 +7,12 @@ import pytest
 from _performed import BODY, camera, filmed, performed
 from keymark.core.body.human import HUMAN, LIMBS
 from keymark.core.body.posture import Posture
-from keymark.core.posing.compose_clip import mean_postures
-from keymark.core.posing.composed_path import ComposedPath
-from keymark.core.posing.composed_states import FrameStates
-from keymark.core.posing.part_features import HEADINGS, StanceFeatures, composed_postures, stance_features
-from keymark.core.posing.part_pools import PartPools, part_pools
-from keymark.core.posing.posing_input import posing_input
+from keymark.core.poses.clip_input import posing_input
+from keymark.core.poses.compose_clip import mean_postures
+from keymark.core.poses.composed_path import ComposedPath
+from keymark.core.poses.composed_states import FrameStates
+from keymark.core.poses.part_features import HEADINGS, StanceFeatures, composed_postures, stance_features
+from keymark.core.poses.part_pools import PartPools, part_pools
 from keymark.core.prior.library import Library
 from keymark.core.session.stages import seen_in
 

@@ -8,17 +8,17 @@ from _performed import BODY, camera, filmed, performed
 from keymark.core.body.human import LIMBS
 from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import headings_rad, yawed_at
-from keymark.core.posing.library_motion import nearest_libraries, part_beliefs
-from keymark.core.posing.part_features import (
+from keymark.core.poses.clip_input import posing_input
+from keymark.core.poses.library_motion import nearest_libraries, part_beliefs
+from keymark.core.poses.part_features import (
     HEADINGS,
     TRUNK_POINTS,
     StanceFeatures,
     limb_points,
     stance_features,
 )
-from keymark.core.posing.part_pools import part_pools
-from keymark.core.posing.plausibility import known_postures
-from keymark.core.posing.posing_input import posing_input
+from keymark.core.poses.part_pools import part_pools
+from keymark.core.poses.plausibility import known_postures
 from keymark.core.prior.library import Library, read_library
 from keymark.core.progress import run
 from keymark.core.session.stages import seen_in

@@ -21,8 +21,8 @@ from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.human import HUMAN, LIMBS, TRUNK
 from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera
-from keymark.core.posing.depth_flip import FLIPPABLE, FlippedPart, flipped
-from keymark.core.posing.limb_chain import DISTINCT_M, LimbChain
+from keymark.core.poses.depth_flip import FLIPPABLE, FlippedPart, flipped
+from keymark.core.poses.limb_chain import DISTINCT_M, LimbChain
 
 FRONT = camera_at(np.array([0.0, -4.0, 1.2]))
 SEEDS = st.integers(0, 2**32 - 1)

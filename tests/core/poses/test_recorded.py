@@ -6,10 +6,10 @@ from _performances import BODY as CORRECTED
 from _performances import camera_around, natural_posture, points
 from _performed import BODY
 from _recorded import assert_recorded
-from keymark.core.posing.depth_flip import FLIPPABLE, flipped
-from keymark.core.posing.dragged import dragged
-from keymark.core.posing.plausibility import known_postures, part_shapes
-from keymark.core.posing.turned import Facing, Sides, turned
+from keymark.core.poses.depth_flip import FLIPPABLE, flipped
+from keymark.core.poses.dragged import dragged
+from keymark.core.poses.plausibility import known_postures, part_shapes
+from keymark.core.poses.turned import Facing, Sides, turned
 from keymark.core.prior.library import Library
 
 

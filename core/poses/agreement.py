@@ -18,7 +18,7 @@ from ..estimate.sigma import GROUND_STD_M
 from ..files.fields import listed
 from ..take.presence import named_limbs
 from .candidates import PROBABILITY_BOUNDS, MatchedFrame
-from .posing_input import PosingInput
+from .clip_input import PosingInput
 
 WRONG_SHARE = 0.1  # of all takes whose height, camera or floor are wrong: a round guess
 SIZE_STD, SIZE_RANGE = 0.12, 0.7  # of a logarithm: networks' sizes of a known person, and a wrong height's

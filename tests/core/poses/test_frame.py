@@ -15,8 +15,8 @@ from keymark.core.errors import InputError
 from keymark.core.estimate.clip_problem import uncalibrated
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence
 from keymark.core.markers.region_tracks import RegionTracks
-from keymark.core.posing.frame_poses import FramePoses, find_frame_poses
-from keymark.core.posing.frame_search import FrameShown, knowledge
+from keymark.core.poses.frame import FramePoses, find_frame_poses
+from keymark.core.poses.frame_search import FrameShown, knowledge
 from keymark.core.prior.frame_prior import prior_from_keyframes
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library

@@ -16,7 +16,7 @@ from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.human import HUMAN
 from keymark.core.body.mirror import other_side
 from keymark.core.body.posture import Posture
-from keymark.core.posing.turned import Facing, Sides, facing_of, turned
+from keymark.core.poses.turned import Facing, Sides, facing_of, turned
 
 FRONT = camera_at(np.array([0.0, -4.0, 1.2]))
 LIMB_JOINTS = [POINT[f"{stem}.{side}"] for stem in ("elbow", "wrist", "knee", "ankle") for side in ("L", "R")]

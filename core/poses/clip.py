@@ -26,13 +26,13 @@ from ..take.seen_take import SeenTake
 from ..take.take import Take
 from .agreement import agreement
 from .candidates import MatchedFrame, composed_candidates
+from .clip_input import PosingInput, posing_input, stretch_of, tempering
 from .compose_clip import Composition, compose_frames
 from .found_poses import FoundPoses
 from .frame_likelihood import frame_likelihoods
 from .match_evidence import marker_moments
 from .part_features import HEADINGS, StanceFeatures, stance_features
 from .part_pools import PartPools, part_pools
-from .posing_input import PosingInput, posing_input, stretch_of, tempering
 
 LEARNED_SHARE, COMPOSED_SHARE = 0.05, 0.8  # of the work, after which parts are learned and composed
 

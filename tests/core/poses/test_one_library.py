@@ -10,8 +10,8 @@ from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
 from keymark.core.markers.reading import Reading
-from keymark.core.posing.found_poses import with_found
-from keymark.core.posing.pose_clip import pose_clip
+from keymark.core.poses.clip import pose_clip
+from keymark.core.poses.found_poses import with_found
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library
 from keymark.core.progress import run
