@@ -1,9 +1,9 @@
 """Keymark in Blender's user interface and on its command line: one folder for each step of the work.
 
-A folder has one operator a file, named after it, its properties, and its panels in `panel.py`. Its `__init__`
-lists the modules to register: `PROPERTIES` and `MODULES`. Of each its classes are registered in their order,
-unless it has a `register` of its own. Modules that need SciPy or OpenCV are imported in functions, so that
-registering does not wait for them and works without them.
+A folder has its operators, its properties, and its panels in `panel.py`. Its `__init__` lists the modules to
+register: `PROPERTIES` and `MODULES`. Of each its classes are registered in their order, unless it has a
+`register` of its own. Modules that need SciPy or OpenCV are imported in functions, so that registering does
+not wait for them and works without them.
 
 Nothing is imported before `register()`: the command line of an ordinary Python shares this folder.
 """

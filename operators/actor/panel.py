@@ -4,8 +4,7 @@ import bpy
 
 from ..bridge.actor_bones import is_actor
 from ..follow.panel import draw_evidence, followed
-from ..shell.panel import Popover, draw_sentence
-from ..shell.step_panel import StepPanel
+from ..shell.panel import Popover, StepPanel, draw_sentence
 from ..shell.takes import active_take, has_lost_actor, kept_actions
 from .properties import MIDDLE, SIDED, length_property
 

@@ -5,8 +5,7 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from ...core.retarget.character import CHAINS
 from ..bridge.character.read_character import needs_override
-from ..shell.panel import Popover, RowList, TakePanel, draw_progress, draw_sentence
-from ..shell.step_panel import StepPanel
+from ..shell.panel import Popover, RowList, StepPanel, TakePanel, draw_progress, draw_sentence
 from .characters import (
     active_character,
     find_character,

@@ -4,8 +4,7 @@ import bpy
 
 from ..bridge.export_formats import FORMATS
 from ..reconstruct.panel import draw_shown_action
-from ..shell.panel import Popover, draw_progress, draw_sentence
-from ..shell.step_panel import StepPanel
+from ..shell.panel import Popover, StepPanel, draw_progress, draw_sentence
 from ..shell.takes import active_take
 
 

@@ -4,8 +4,7 @@ import bpy
 
 from ..bridge.camera_placement import fixed_reason
 from ..bridge.footage_camera import may_move, solver_constraint
-from ..shell.panel import Popover, draw_sentence
-from ..shell.step_panel import StepPanel
+from ..shell.panel import Popover, StepPanel, draw_sentence
 from ..shell.takes import active_take, find_take, placement_is_guess
 from .drawn_lines import HEIGHT, VERTICAL
 from .take_footage import lens_is_guess

@@ -22,13 +22,13 @@ from ..shell.keyed_frames import (
 from ..shell.panel import (
     Popover,
     RowList,
+    StepPanel,
     draw_contradictions,
     draw_progress,
     draw_sentence,
     right_end,
     side_by_side,
 )
-from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 from .change_match import candidate_title
 from .corrections import DRAGGING, LIMBS, selected_limbs

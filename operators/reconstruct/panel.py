@@ -3,8 +3,7 @@
 import bpy
 
 from ..review.weak_frames import draw_review
-from ..shell.panel import Popover, draw_progress, draw_sentence
-from ..shell.step_panel import StepPanel
+from ..shell.panel import Popover, StepPanel, draw_progress, draw_sentence
 from ..shell.takes import active_take
 
 

@@ -1,18 +1,20 @@
-"""Bases of Keymark's panels, and their rows: a job's progress, a wrapped sentence.
+"""Bases of Keymark's panels, a step's among them, and their rows: a job's progress, a wrapped sentence.
 
 Each step of the work has its panels in its own folder's `panel.py`.
 """
 
 from abc import abstractmethod
 from textwrap import wrap
+from typing import ClassVar
 
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
 from .contradictions import contradictions_at
 from .job_progress import job_is_running, steady_frame
-from .steps import is_open
-from .takes import find_take
+from .notices import notices_of
+from .steps import is_behind, is_open
+from .takes import active_take, find_take
 
 ROOMY_PX = 270.0
 """Width of a sidebar, at a UI scale of 1, in which names and values, or two buttons, fit side by side."""
@@ -165,3 +167,70 @@ def draw_readout(layout: UILayout, text: str) -> None:
         row = right_end(layout)
         row.active = False
         row.label(text=text, translate=False)
+
+
+class StepPanel(TakePanel):
+    """The panel of a step: a subclass names the step and gives `draw_step`.
+
+    Panels inside it, which name it as their parent, are hidden while it is folded.
+    """
+
+    bl_options = {"HIDE_HEADER"}
+    bl_label: str
+    step: ClassVar[str]  # a name of `steps.STEPS`
+    options: ClassVar[str] = ""  # the popover of what is rarely changed
+
+    def draw(self, context: Context) -> None:
+        """Draw the header; where it is open, the notices and the step."""
+        take = active_take(context.scene)
+        header, body = self.layout.panel_prop(context.window_manager.keymark_steps, self.step)
+        header.label(text=self.bl_label)
+        self._draw_state(header, context, take)
+        if body is None:
+            self._draw_action(header, context, take)
+            return
+        if self.options:
+            header.popover(self.options, text="", icon="PREFERENCES")
+        for sentence in notices_of(take, self.step):
+            draw_sentence(body, context, sentence, "ERROR")
+        property_column(body)
+        self.draw_step(context, body, take)
+
+    def _draw_state(self, header: UILayout, context: Context, take: PropertyGroup) -> None:
+        """Draw at the header's end what the step has come to, if it fits, or that something is wrong."""
+        state = header.row()
+        state.alignment = "RIGHT"
+        state.active = False
+        wrong = bool(notices_of(take, self.step)) or self.is_wrong(take)
+        icon = "ERROR" if wrong else "CHECKMARK" if is_behind(take, self.step) else "NONE"
+        state.label(text=self.summary(take) if is_roomy(context) else "", icon=icon, translate=False)
+
+    def _draw_action(self, header: UILayout, context: Context, take: PropertyGroup) -> None:
+        """Draw what is next in a step that is folded, where it can be pressed; or that it runs."""
+        action, text = self.action(take)
+        if not action or draw_progress(header, context, action):
+            return
+        group, _, name = action.partition(".")
+        if getattr(getattr(bpy.ops, group), name).poll():
+            button = header.row()
+            button.alignment = "RIGHT"  # else it is cut before the rest of the line
+            button.operator(action, text=text if is_roomy(context) else "", icon="PLAY", translate=False)
+
+    @abstractmethod
+    def draw_step(self, context: Context, body: UILayout, take: PropertyGroup) -> None:
+        """Draw the step below its header, with properties in Blender's two columns."""
+
+    @classmethod
+    def summary(cls, take: PropertyGroup) -> str:
+        """What the step has come to, in few letters; nothing by default."""
+        return ""
+
+    @classmethod
+    def is_wrong(cls, take: PropertyGroup) -> bool:
+        """Whether something is wrong with the step that its body tells of."""
+        return False
+
+    @classmethod
+    def action(cls, take: PropertyGroup) -> tuple[str, str]:
+        """The operator that is next while the step is folded, and a short label; none by default."""
+        return "", ""

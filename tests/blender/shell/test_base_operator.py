@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 from keymark.core.errors import InputError
-from keymark.operators.shell.base_operator import BaseOperator
+from keymark.operators.shell.base_operator import BaseOperator, Unchanged, remove_active
 from keymark.operators.shell.job_operator import cancel_click, cancel_job
 
 CONTEXT = SimpleNamespace()
@@ -62,8 +62,28 @@ def test_an_expected_failure_is_a_report_and_any_other_passes_through() -> None:
     missing = Operator(ModuleNotFoundError("No module named 'scipy.linalg'", name="scipy.linalg"))
     assert missing.execute(CONTEXT) == {"CANCELLED"}
     assert "needs the Python library scipy, " in missing.reports[0][1]
+    idle = Operator(Unchanged("all is posed"))
+    assert idle.execute(CONTEXT) == {"CANCELLED"} and idle.reports == [({"INFO"}, "All is posed")]
     with pytest.raises(ZeroDivisionError):
         Operator(ZeroDivisionError()).execute(CONTEXT)
+
+
+def test_an_operator_is_named_after_its_class() -> None:
+
+    class KEYMARK_OT_load_it(Operator):  # noqa: N801
+        pass
+
+    assert KEYMARK_OT_load_it.bl_idname == "keymark.load_it"
+    assert KEYMARK_OT_load_it.bl_options == {"REGISTER", "UNDO"}
+
+
+@pytest.mark.parametrize(("active", "left", "then"), [(0, "bc", 0), (2, "ab", 1), (7, "ab", 1)])
+def test_the_entry_before_a_removed_one_is_active(active: int, left: str, then: int) -> None:
+    entries = list("abc")
+    kind = type("Names", (), {"__len__": lambda _: len(entries), "remove": lambda _, i: entries.pop(i)})
+    owner = SimpleNamespace(names=kind(), active=active)
+    remove_active(owner, "names", "active")
+    assert ("".join(entries), owner.active) == (left, then)
 
 
 @pytest.mark.parametrize(
