@@ -1,6 +1,6 @@
-"""Keymark from Python: a clip or a take in, its motion out; the command line and Blender go the same way.
+"""Keymark from Python: a clip or a take in, its motion out; the command line goes the same way.
 
-`docs/api.md` shows a whole clip in ten lines. Every function returns a job, which `run` runs to its end.
+`docs/api.md` shows a whole clip in ten lines. What takes long is a job, which `run` runs to its end.
 """
 
 from collections.abc import Sequence
@@ -9,26 +9,31 @@ from pathlib import Path
 from .estimate.reconstruct import Reconstruction
 from .markers.reading import Reading
 from .prior.library import Library
+from .prior.registry import SHIPPED, find_libraries
+from .prior.texts import EVERY_LIBRARY
 from .progress import Job, run
 from .session.described import ReadArmature, described
 from .session.session import Inputs, Session
 from .session.stages import reach
 from .take.conversion_settings import NO_SETTINGS, ConversionSettings
-from .take.description import ASSUMED, Description, describe
+from .take.description import Description, describe
+from .take.motion import write_motion
 from .take.take import Take
 
-__all__ = ["animate", "convert", "reconstruct", "run"]
+__all__ = ["Reconstruction", "animate", "convert", "reconstruct", "run", "write_motion"]
 
 
-def animate(clip: Path, height_m: float, libraries: Sequence[Library]) -> Job[Session]:
-    """From a clip and the performer's height to a motion; its poses are found in the libraries.
+def animate(clip: Path, height_m: float, libraries: Sequence[Library] | None = None) -> Job[Session]:
+    """From a clip and the performer's height to a motion; poses are found in libraries, by default all.
 
     Raises:
         InputError: The clip cannot be used, nobody is seen in it, or there is no library with a posture.
         ConversionError: No motion could be computed.
     """
-    fields = {"actor": {"height_m": height_m}, "keyframes": "auto"}
-    description = describe(clip, fields, ASSUMED)
+    fields = {"actor": {"height_m": height_m}, "keyframes": EVERY_LIBRARY}
+    description = describe(clip, fields, "height_m")
+    if libraries is None:
+        libraries = find_libraries(EVERY_LIBRARY, [SHIPPED])
     return convert(description, description.settings, libraries)
 
 

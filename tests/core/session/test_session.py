@@ -7,12 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 from _synthetic_take import BODY, gliding, true_postures, write_shaken, write_synthetic_take
-from keymark.core.api import animate, run
+from keymark.core import api
+from keymark.core.api import run
+from keymark.core.body.posture import Posture
 from keymark.core.estimate.reconstruct import Reconstruction
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.session.place import Placed
-from keymark.core.session.session import Inputs, Session
+from keymark.core.session.session import Inputs, Session, Stage, advance
 from keymark.core.session.stages import STAGES, reach
+from keymark.core.take.motion import read_motion
 from keymark.core.take.take_file import read_take
 
 
@@ -56,16 +59,33 @@ def test_stages_of_blender_are_done_by_its_bridge_and_told_as_they_are_complete(
     assert session.made["finish"] == "interpolation" and session.made["retarget"] is None
 
 
-def test_a_clip_is_animated_alike_whether_hands_shake_the_camera_or_not(tmp_path: Path) -> None:
-    library = learn_library(
-        BODY, true_postures(24), np.arange(24) / 30.0, LibraryMetadata("Swaying", "Nobody")
+def test_a_further_stage_is_a_line_in_the_list(inputs: Inputs) -> None:
+    def loop(session: Session) -> Any:
+        yield from ()
+        return session[Reconstruction].motion.posture[::-1]
+
+    stages = (*STAGES, Stage("loop", loop, lambda _inputs: (), lambda _inputs: 0.1))
+    session = run(advance(Session(inputs), stages))
+    first, last = session[Posture][0], session[Reconstruction].motion.posture[-1]
+    np.testing.assert_array_equal(first.minus(last), 0.0)
+
+
+def test_a_clip_is_animated_by_the_lines_of_the_docs_and_alike_where_hands_shake_the_camera(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, repository: Path
+) -> None:
+    said = LibraryMetadata("Swaying", "Nobody")
+    library = learn_library(BODY, true_postures(24), np.arange(24) / 30.0, said)
+    monkeypatch.setattr(api, "find_libraries", lambda *_: (library,))
+    monkeypatch.chdir(tmp_path)
+    lines = (
+        (repository / "docs" / "api.md").read_text(encoding="utf-8").split("```")[1].removeprefix("python")
     )
     points = []
     for turn_rad in (0.0, 0.02):
-        clip = tmp_path / f"{turn_rad}.mp4"
-        write_shaken(clip, gliding(), turn_rad)
-        session = run(animate(clip, 1.75, [library]))
-        assert (session[Placed].seen.reading.steady is not None) == (turn_rad > 0.0)
-        points.append(session[Reconstruction].motion.points)
+        write_shaken(tmp_path / "kick.mp4", gliding(), turn_rad)
+        names: dict[str, Any] = {}
+        exec(lines, names)
+        assert (names["session"][Placed].seen.reading.steady is not None) == (turn_rad > 0.0)
+        points.append(read_motion(tmp_path / "kick.json").points)
     still, shaken = (each - each[:, [7, 8]].mean(axis=1, keepdims=True) for each in points)
     assert np.linalg.norm(still - shaken, axis=-1).mean() < 0.03
