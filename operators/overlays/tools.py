@@ -113,7 +113,8 @@ COLORS: dict[str, Color] = {
 
 def draw_camera_lines(context: Context) -> list[Item]:
     """The lines and the camera found, while the tool runs."""
-    tool, view = running(), _view(context)
+    tool = running()
+    view = None if tool is None else _view(context)
     if view is None or tool is None:
         return []
     items: list[Item] = []
@@ -205,9 +206,10 @@ TITLE_SIZE, DETAIL_SIZE, NEAR_SIZE = 22.0, 14.0, 13.0
 
 def draw_request(context: Context) -> list[Item]:
     """What is asked for, at the region's top, below its headers, and beside the mouse."""
-    take, request, view = find_take(context.scene), shown_request(), _view(context)
-    if request is None or take is None:
+    request = shown_request()
+    if request is None or find_take(context.scene) is None:
         return []
+    view = _view(context)
     if view is None and (request.of_footage or context.area.type != "VIEW_3D"):
         return []
     scale, region = ui_scale(), context.region

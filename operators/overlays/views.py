@@ -87,12 +87,12 @@ MotionView = WorldView | ClipView
 
 def motion_view(context: Context, take: PropertyGroup) -> MotionView | None:
     """The region that is drawn as a view of a take's motion; None where overlays are off or show nothing."""
-    space = context.space_data
+    in_space = context.space_data.type == "VIEW_3D"
+    if in_space and not context.space_data.overlay.show_overlays:
+        return None
     footage = footage_view(context.scene, take, context.area, context.region)
-    if space.type == "VIEW_3D":
-        return (
-            world_view(context.region, context.region_data, footage) if space.overlay.show_overlays else None
-        )
+    if in_space:
+        return world_view(context.region, context.region_data, footage)
     if footage is None or take.camera is None:
         return None
     source = footage_of(context.scene, take)

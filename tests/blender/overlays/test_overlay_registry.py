@@ -6,11 +6,7 @@ import bpy
 import pytest
 from keymark.core.errors import InputError
 from keymark.operators.overlays import registry
-from keymark.operators.overlays.registry import DrawFunction, Overlay, guarded
-
-
-def overlay(draw: DrawFunction) -> Overlay:
-    return Overlay("Broken", draw, "SpaceView3D")
+from keymark.operators.overlays.registry import Overlay, guarded
 
 
 @pytest.fixture(autouse=True)
@@ -21,38 +17,33 @@ def blending(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return modes
 
 
-def test_a_failure_is_logged_once_and_switches_the_overlay_off(
-    caplog: pytest.LogCaptureFixture, blending: list[str]
+@pytest.mark.parametrize(
+    ("error", "calls", "said"),
+    [
+        (ValueError("no such marker"), 1, "no such marker"),
+        (ValueError(), 1, "ValueError"),
+        (InputError("camera 'Camera' is of type ORTHO; footage needs a perspective one"), 2, None),
+    ],
+)
+def test_an_unexpected_failure_alone_is_logged_and_switches_that_overlay_off(
+    caplog: pytest.LogCaptureFixture, blending: list[str], error: Exception, calls: int, said: str | None
 ) -> None:
-    calls = []
+    drawn: list[bpy.types.Context] = []
 
-    def draw(context: bpy.types.Context) -> None:
-        calls.append(context)
-        raise ValueError("no such marker")
+    def draw(context: bpy.types.Context) -> tuple[()]:
+        drawn.append(context)
+        raise error
 
-    handler = guarded(overlay(draw))
+    handler = guarded(Overlay("Broken", draw, "SpaceView3D"))
     handler()
     handler()
-    assert len(calls) == len(caplog.records) == 1
-    assert "'Broken' failed" in caplog.text
-    assert registry.failures() == {"Broken": "no such marker"}
-    assert blending == ["ALPHA", "NONE"]
+    assert len(drawn) == calls and blending == ["ALPHA", "NONE"] * calls
+    assert registry.failures() == ({"Broken": said} if said else {})
+    assert len(caplog.records) == bool(said) == ("'Broken' failed" in caplog.text)
     registry.try_again()
     handler()
-    assert len(calls) == 2
-
-
-def test_another_overlay_goes_on(blending: list[str]) -> None:
-    calls = []
-
-    def draw(context: bpy.types.Context) -> None:
-        raise ValueError
-
-    guarded(overlay(draw))()
-    guarded(Overlay("Sound", lambda context: calls.append(context) or (), "SpaceView3D"))()
-    assert calls == [bpy.context]
-    assert registry.failures() == {"Broken": "ValueError"}
-    assert blending == ["ALPHA", "NONE"] * 2
+    guarded(Overlay("Sound", lambda context: drawn.append(context) or (), "SpaceView3D"))()
+    assert len(drawn) == calls + 2
 
 
 def test_what_is_not_dragged_is_hidden_meanwhile(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -84,17 +75,3 @@ def test_without_a_screen_no_handler_is_added() -> None:
     registry.register()
     assert registry._handlers == []
     registry.unregister()
-
-
-def test_what_cannot_be_drawn_now_is_drawn_when_it_can(blending: list[str]) -> None:
-    calls = []
-
-    def draw(context: bpy.types.Context) -> None:
-        calls.append(context)
-        raise InputError("camera 'Camera' is of type ORTHO; footage needs a perspective one")
-
-    handler = guarded(overlay(draw))
-    handler()
-    handler()
-    assert len(calls) == 2 and not registry.failures()
-    assert blending == ["ALPHA", "NONE"] * 2

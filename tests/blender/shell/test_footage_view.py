@@ -1,4 +1,4 @@
-"""Footage pixels in the Movie Clip editor and in the camera view."""
+"""Footage pixels in the Movie Clip editor and in the camera view; operators that wait for clicks on them."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -6,6 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from keymark.core.camera.camera import Camera
+from keymark.operators.shell import footage_clicks
+from keymark.operators.shell.footage_clicks import ClickSequence
 from keymark.operators.shell.footage_view import FootageView, footage_view
 
 PIXELS = np.array([[0.0, 0.0], [160.0, 0.0], [80.5, 31.25]])
@@ -45,3 +47,50 @@ def test_no_editor_shows_footage_whose_file_is_missing() -> None:
     area = SimpleNamespace(type="CLIP_EDITOR", spaces=SimpleNamespace(active=space))
     take = SimpleNamespace(clip=clip, clip_state=SimpleNamespace(missing=True))
     assert footage_view(SimpleNamespace(), take, area, SimpleNamespace(type="WINDOW")) is None
+
+
+class Clicks(ClickSequence):
+    """A tool that notes what it is told."""
+
+    def __init__(self) -> None:
+        self.noted: list[object] = []
+        for name in ("ask", "cancel", "go_on", "go_back"):
+            setattr(self, name, lambda _context, name=name: self.noted.append(name))
+
+    def clicked(self, context: SimpleNamespace, pixel: tuple[float, float]) -> set[str]:
+        self.noted.append(pixel)
+        return super().clicked(context, pixel)
+
+
+RUNS, PASSES, ENDS = {"RUNNING_MODAL"}, {"PASS_THROUGH"}, {"CANCELLED"}
+
+
+@pytest.mark.parametrize(
+    ("kind", "place", "noted", "result"),
+    [
+        ("LEFTMOUSE", (20, 30), [(20, 30)], RUNS),
+        ("LEFTMOUSE", (300, 30), [], PASSES),  # the time line
+        ("LEFTMOUSE", (500, 30), ["cancel"], ENDS | PASSES),
+        ("TAB", (20, 30), ["go_on", "ask"], RUNS),
+        ("BACK_SPACE", (20, 30), ["go_back", "ask"], RUNS),
+        ("RET", (20, 30), ["cancel"], ENDS),
+        ("ESC", (20, 30), ["cancel"], ENDS),
+        ("RIGHTMOUSE", (20, 30), ["cancel"], ENDS),
+        ("RIGHT_ARROW", (20, 30), [], PASSES),
+        ("A", (20, 30), [], RUNS),
+    ],
+)
+def test_clicks_are_taken_until_enter_or_one_beside_the_footage(
+    monkeypatch: pytest.MonkeyPatch, kind: str, place: tuple[int, int], noted: list[object], result: set[str]
+) -> None:
+    monkeypatch.setattr(footage_clicks, "active_take", lambda _scene: None)
+    monkeypatch.setattr(
+        footage_clicks, "pixel_under", lambda _context, _take, x, y: (x, y) if x < 200 else None
+    )
+    editor = SimpleNamespace(type="DOPESHEET_EDITOR", x=200, y=0, width=200, height=100)
+    context = SimpleNamespace(scene=None, screen=SimpleNamespace(areas=[editor]))
+    tool = Clicks()
+    event = SimpleNamespace(type=kind, value="PRESS", mouse_x=place[0], mouse_y=place[1])
+    assert tool.modal(context, event) == result and tool.noted == noted
+    event.value = "RELEASE"
+    assert tool.modal(context, event) == (PASSES if kind == "RIGHT_ARROW" else RUNS) and tool.noted == noted
