@@ -210,11 +210,7 @@ def _points(index: dict[str, int]) -> tuple[PrincipalPoint, ...]:
     return tuple(points)
 
 
-def human_skeleton() -> Skeleton:
-    """The default skeleton of 34 degrees of freedom (paper, section 2; our reading of its Figure 2)."""
-    joints = _joints()
-    index = {joint.name: i for i, joint in enumerate(joints)}
-    return Skeleton(joints, _segments(index), _points(index))
-
-
-HUMAN = human_skeleton()  # the default skeleton; immutable, hence shared
+_JOINTS = _joints()
+_INDEX = {joint.name: index for index, joint in enumerate(_JOINTS)}
+HUMAN = Skeleton(_JOINTS, _segments(_INDEX), _points(_INDEX))
+"""The default skeleton of 34 degrees of freedom (paper, section 2; our reading of its Figure 2)."""

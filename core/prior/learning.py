@@ -56,7 +56,10 @@ def learn_library(
     else:
         cycle = average_cycle(body, posture, time_s, period_s)
         posture, time_s, duration_s, travel = cycle.posture, cycle.time_s, cycle.duration_s, cycle.travel
-    turn = -_straight_ahead(posture)
+    # The mean heading counts as straight ahead, or the first where headings go all round.
+    heading = headings_rad(posture)
+    x, y = np.sin(heading).mean(), np.cos(heading).mean()
+    turn = -float(np.arctan2(x, y)) if np.hypot(x, y) > 0.5 else -float(heading[0])
     shift = turned_and_shifted(posture[:1], turn, np.zeros(3)).translation[0] * [-1.0, -1.0, 0.0]
     posture = turned_and_shifted(posture, turn, shift)
     chosen = spread_frames(
@@ -133,13 +136,6 @@ def spread_frames(
             break  # every frame is this near [m] to a chosen one in shape
         choose(int(nearest.argmax()))
     return np.array(sorted(chosen), dtype=np.intp)
-
-
-def _straight_ahead(posture: Posture) -> float:
-    """The heading that counts as straight ahead [rad]: the mean, or the first where headings go all round."""
-    heading = headings_rad(posture)
-    x, y = np.sin(heading).mean(), np.cos(heading).mean()
-    return float(np.arctan2(x, y)) if np.hypot(x, y) > 0.5 else float(heading[0])
 
 
 def _turned_travel(

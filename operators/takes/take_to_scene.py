@@ -10,7 +10,7 @@ from ...core.markers.reading import clip_times
 from ...core.progress import run
 from ...core.take.clip_check import check_frame_count, open_clip, rate_note
 from ...core.take.description import KEYFRAME_FILE, describe
-from ...core.take.evidence import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
+from ...core.take.evidence import EVIDENCE
 from ...core.take.take import Take
 from ...core.take.take_file import read_described
 from ..actor.take_actor import add_actor
@@ -27,7 +27,7 @@ from ..keyframes.match_edits import add_candidate, add_match
 from ..shell.base_operator import warn
 from ..shell.keyed_frames import new_keyframe_action
 from ..shell.notices import give_notices
-from ..shell.takes import active_take, add_take
+from ..shell.takes import add_take
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,20 +62,7 @@ def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTa
 
 
 def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, opened: OpenedTake) -> None:
-    """Add a take to the scene, show its footage and its range, and report what a person should know of it."""
-    add_take_to_scene(context, opened)
-    hide_startup_cube(context)
-    take = active_take(context.scene)
-    look_through_camera(context, take)
-    show_range(context)
-    notes = [warn(operator, note) for note in opened.notes]
-    give_notices(take, "footage", "files", notes)
-    count = len(opened.take.keyframes)
-    operator.report({"INFO"}, f"Opened {opened.take.name} with {count} keyframes")
-
-
-def add_take_to_scene(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Object:
-    """Add a take to the scene: footage, camera, actor, what is followed, keyframes; returns the armature.
+    """Add a take to the scene, show its footage and its range, and report what a person should know of it.
 
     Raises:
         InputError: Blender cannot read the clip; the scene is unchanged.
@@ -99,7 +86,11 @@ def add_take_to_scene(context: bpy.types.Context, opened: OpenedTake) -> bpy.typ
             match = add_match(settings, float(frames[keyframe.index]), matched.library)
             add_candidate(match, keyframe.posture, matched.posture, matched.mirrored, matched.confidence)
     scene.frame_set(scene.frame_start)
-    return armature_object
+    hide_startup_cube(context)
+    look_through_camera(context, settings)
+    show_range(context)
+    give_notices(settings, "footage", "files", [warn(operator, note) for note in opened.notes])
+    operator.report({"INFO"}, f"Opened {take.name} with {len(take.keyframes)} keyframes")
 
 
 def _add_evidence(settings: bpy.types.PropertyGroup, opened: OpenedTake) -> None:
@@ -115,5 +106,5 @@ def _add_evidence(settings: bpy.types.PropertyGroup, opened: OpenedTake) -> None
     follow, kinds = settings.follow, opened.kinds
     if opened.take.reference is not None:
         follow.reference = stored_path(Path(opened.take.reference.file))
-    follow.use_markers, follow.use_keypoints = MARKERS in kinds, KEYPOINTS in kinds
-    follow.use_depth_hints, follow.use_contours = DEPTH_HINTS in kinds, CONTOURS in kinds
+    for kind in EVIDENCE:
+        setattr(follow, f"use_{kind}", kind in kinds)

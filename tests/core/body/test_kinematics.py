@@ -107,23 +107,15 @@ def place(posture: Posture, name: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize("side", ["L", "R"])
-def test_a_flexed_elbow_brings_the_hand_forward(side: str) -> None:
-    bent = posture_with(**{f"elbow__{side}__flexion": 90.0})
+def test_a_flexed_joint_moves_what_hangs_on_it_as_joints_do(side: str) -> None:
+    length = BODY.actor.segments_m
+    bent = posture_with(**{f"elbow__{side}__flexion": 90.0, f"knee__{side}__flexion": 90.0})
     forearm = place(bent, f"wrist.{side}") - place(bent, f"elbow.{side}")
-    np.testing.assert_allclose(forearm, [0.0, -BODY.actor.segments_m[f"forearm.{side}"], 0.0], atol=1e-12)
-
-
-@pytest.mark.parametrize("side", ["L", "R"])
-def test_a_flexed_knee_brings_the_foot_back(side: str) -> None:
-    bent = posture_with(**{f"knee__{side}__flexion": 90.0})
+    np.testing.assert_allclose(forearm, [0.0, -length[f"forearm.{side}"], 0.0], atol=1e-12)
     shin = place(bent, f"ankle.{side}") - place(bent, f"knee.{side}")
-    np.testing.assert_allclose(shin, [0.0, BODY.actor.segments_m[f"shin.{side}"], 0.0], atol=1e-12)
-
-
-@pytest.mark.parametrize("side", ["L", "R"])
-def test_a_raised_girdle_lifts_the_shoulder(side: str) -> None:
+    np.testing.assert_allclose(shin, [0.0, length[f"shin.{side}"], 0.0], atol=1e-12)
     lifted = place(posture_with(**{f"girdle__{side}__elevation": 20.0}), f"shoulder.{side}")
-    rise = 0.5 * BODY.actor.segments_m["shoulder_width"] * np.sin(np.radians(20.0))
+    rise = 0.5 * length["shoulder_width"] * np.sin(np.radians(20.0))
     assert lifted[2] - place(Posture.rest(HUMAN), f"shoulder.{side}")[2] == pytest.approx(rise)
 
 

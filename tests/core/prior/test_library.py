@@ -1,7 +1,6 @@
 """Library files: nothing lost, nothing trusted."""
 
 import json
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,7 @@ from _fuzz import changed, libraries
 from _libraries import small_library
 from hypothesis import HealthCheck, given, settings
 from keymark.core.errors import InputError
-from keymark.core.prior.library import LARGEST_BYTES, Library, read_library, write_library
+from keymark.core.prior.library import Library, read_library, write_library
 
 
 @pytest.fixture
@@ -98,44 +97,7 @@ def test_a_changed_library_is_one_or_says_why_not(value: Any) -> None:
     judged(value)
 
 
-def bomb(**fields: Any) -> bytes:
-    """The valid library with some of its fields replaced, as bytes."""
-    return json.dumps(VALID | fields).encode()
-
-
-STEP = {"time_s": 0.0, "posture": "Stand on one leg"}
-BOMBS: dict[str, Callable[[], bytes]] = {
-    "deep lists": lambda: TEXT[:-1] + b', "x": ' + b"[" * 100_000,
-    "deep and closed": lambda: TEXT[:-1] + b', "x": ' + b"[" * 900 + b"]" * 900 + b"}",
-    "deep in a field": lambda: b'{"schema": ' + b"[" * 900 + b"]" * 900 + b"}",
-    "many fields": lambda: bomb(**{f"f{n}": 0 for n in range(200_000)}),
-    "many fields, one missing": lambda: json.dumps(
-        {"schema": VALID["schema"]} | {f"schema_versio{n}": 0 for n in range(100_000)}
-    ).encode(),
-    "a long name": lambda: bomb(**{"t" * 3_000_000: 0}),
-    "a long title": lambda: bomb(title="t" * 3_000_000),
-    "a long identifier": lambda: bomb(identifier="a" * 3_000_000),
-    "a long license": lambda: bomb(license="A" * 3_000_000),
-    "many postures": lambda: bomb(postures=VALID["postures"][:1] * 2000),
-    "many steps": lambda: bomb(motions=[VALID["motions"][0] | {"steps": [STEP] * 50_000}]),
-    "many motions": lambda: bomb(motions=[VALID["motions"][0]] * 101),
-    "many numbers": lambda: b'{"schema": [' + b"0," * 1_900_000 + b"0]}",
-    "large numbers": lambda: bomb(version=0).replace(b'"version": 0', b'"version": ' + b"9" * 100_000),
-    "too large": lambda: b" " * (LARGEST_BYTES + 1),
-    "nothing": lambda: b"",
-    "a list": lambda: b"[]",
-    "another file": lambda: b'{"keyframes": []}',
-}
-
-
-@pytest.mark.parametrize("kind", BOMBS)
-def test_what_is_meant_to_hurt_is_refused(tmp_path: Path, kind: str) -> None:
-    path = tmp_path / "bomb.json"
-    path.write_bytes(BOMBS[kind]())
-    with pytest.raises(InputError) as caught:
-        read_library(path)
-    sentence = str(caught.value)
-    assert len(sentence.splitlines()) == 1 and len(sentence) < 1500 and "bomb.json" in sentence
+STEPS = [{"time_s": 0.01 * number, "posture": "Stand on one leg"} for number in range(10_001)]
 
 
 @pytest.mark.parametrize(
@@ -176,6 +138,10 @@ def test_what_is_meant_to_hurt_is_refused(tmp_path: Path, kind: str) -> None:
         (("motions", 0, "cyclic"), 1, "true or false"),
         (("motions", 1, "travel"), {"x_m": 1.0, "y_m": 0.0, "heading_rad": 0.0}, "not cyclic has none"),
         (("motions", 1, "name"), "steps", "cannot be told apart"),
+        (("identifier",), "a" * 3_000_000, "identifier is"),
+        (("postures",), VALID["postures"][:1] * 2000, "1 to 1000 postures"),
+        (("motions",), [VALID["motions"][0]] * 101, "motions"),
+        (("motions", 0, "steps"), STEPS, "10000 in all"),
     ],
 )
 def test_every_mistake_is_named(way: tuple[Any, ...], value: Any, said: str) -> None:
@@ -193,9 +159,3 @@ def test_what_could_not_be_read_is_not_written(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="identifier"):
         write_library(tmp_path / "x.json", replace(small_library(), identifier="../x"))
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="this system has no endless file")
-def test_a_file_without_end_is_not_read_to_its_end() -> None:
-    with pytest.raises(InputError, match="is a device, a pipe or a socket"):
-        read_library(Path("/dev/zero"))
