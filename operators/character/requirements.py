@@ -4,7 +4,8 @@ import bpy
 
 from ...core.files.fields import listed
 from ..bridge.character.read_character import needs_override
-from ..shell.takes import active_take, find_take
+from ..shell.requirements import of_take
+from ..shell.takes import active_take
 from .characters import (
     MOST_NAMED,
     active_character,
@@ -15,10 +16,7 @@ from .characters import (
     missing_source,
 )
 
-
-def take(context: bpy.types.Context) -> str | None:
-    """The scene has a take."""
-    return None if find_take(context.scene) is not None else "Load the footage or open a take first"
+take = of_take(lambda take: True, "Load the footage or open a take first")
 
 
 def character(context: bpy.types.Context) -> str | None:

@@ -9,6 +9,7 @@ from bpy.types import Context, PropertyGroup
 
 from ..bridge.footage_camera import may_move
 from ..bridge.scene_evidence import ClickedPoint, SceneEvidence, file_state
+from ..shell.requirements import of_take
 from ..shell.takes import find_take, footage_of
 from .marker_properties import ignored_regions
 from .marker_styles import marker_styles
@@ -84,10 +85,7 @@ def anything_to_follow(context: Context) -> str | None:
     return "Switch on the contours, load keypoints, assign tracks or add markers first (step Performer)"
 
 
-def keypoint_files(context: Context) -> str | None:
-    """The take has a file of keypoints."""
-    take = find_take(context.scene)
-    return None if take and len(take.follow.files) else "Load keypoints first"
+keypoint_files = of_take(lambda take: len(take.follow.files), "Load keypoints first")
 
 
 def points_to_follow(context: Context) -> str | None:

@@ -13,8 +13,8 @@ from ..bridge.footage import Footage
 from ..footage.take_footage import update_clip_digest
 from ..shell.base_operator import BaseOperator, Unchanged, capitalized, remove_active, warn
 from ..shell.job_operator import JobOperator
-from ..shell.requirements import footage, idle, markers, picked_color
-from ..shell.takes import active_take, ensure_take, find_take, footage_of, redraw_footage, take_by_identifier
+from ..shell.requirements import footage, idle, markers, of_take, picked_color
+from ..shell.takes import active_take, ensure_take, footage_of, redraw_footage, take_by_identifier
 from .marker_properties import SEGMENTS, add_ignored_regions, clear_readouts, ignored_regions
 from .marker_styles import (
     USUAL_SEGMENTS,
@@ -149,17 +149,12 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
             self.report({"INFO"}, f"All {len(result.styles)} markers with a color are found well")
 
 
-def still_areas(context: Context) -> str | None:
-    """Some still area of a marker's color is known that is surely no marker."""
-    take = find_take(context.scene)
-    if take is not None and has_still_areas(take):
-        return None
-    return "Check the markers first; no still area of a marker's color is known"
-
-
 def has_still_areas(take: PropertyGroup) -> bool:
     """Whether the markers' readouts name any still area."""
     return any(marker.has_readout(take) and len(marker.still_areas) for marker in take.markers)
+
+
+still_areas = of_take(has_still_areas, "Check the markers first; no still area of a marker's color is known")
 
 
 class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
@@ -220,10 +215,7 @@ class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
         remove_active(take, "markers", "active_marker")
 
 
-def some_ignored(context: Context) -> str | None:
-    """Some region of the picture is ignored."""
-    take = find_take(context.scene)
-    return None if take and len(take.ignored_regions) else "No region of the picture is left out"
+some_ignored = of_take(lambda take: len(take.ignored_regions), "No region of the picture is left out")
 
 
 class KEYMARK_OT_remove_ignored_region(BaseOperator, bpy.types.Operator):

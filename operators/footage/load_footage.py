@@ -8,7 +8,7 @@ from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator, browse, chosen_file, warn
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.notices import give_notices
-from ..shell.requirements import footage, idle
+from ..shell.requirements import footage, idle, of_take
 from ..shell.takes import active_take, add_take, find_take, placement_is_guess
 from .properties import confirm_placement
 from .take_footage import (
@@ -56,10 +56,7 @@ class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
         return None
 
 
-def guessed_lens(context: bpy.types.Context) -> str | None:
-    """The take's lens is a guess."""
-    take = find_take(context.scene)
-    return None if take is not None and take.guessed_lens_mm > 0.0 else "The lens is not a guess"
+guessed_lens = of_take(lambda take: take.guessed_lens_mm > 0.0, "The lens is not a guess")
 
 
 class KEYMARK_OT_keep_lens(BaseOperator, bpy.types.Operator):
@@ -75,10 +72,7 @@ class KEYMARK_OT_keep_lens(BaseOperator, bpy.types.Operator):
                 take.guessed_lens_mm = 0.0
 
 
-def guessed_placement(context: bpy.types.Context) -> str | None:
-    """The camera's placement is a guess."""
-    take = find_take(context.scene)
-    return None if take is not None and placement_is_guess(take) else "The camera's place is not a guess"
+guessed_placement = of_take(placement_is_guess, "The camera's place is not a guess")
 
 
 class KEYMARK_OT_keep_camera(BaseOperator, bpy.types.Operator):

@@ -14,7 +14,7 @@ from ..shell.fields import Choice, Switch
 from ..shell.job_operator import JobOperator
 from ..shell.keyed_frames import proposed_frames, unposed_proposals
 from ..shell.notices import give_notices
-from ..shell.requirements import all_colors, footage, idle
+from ..shell.requirements import all_colors, footage, idle, of_take
 from ..shell.results import keep_reading, keep_speed, reading_of
 from ..shell.takes import active_take, find_take, footage_of, take_by_identifier
 
@@ -82,9 +82,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         give_notices(take, "keyframes", "proposals", notes)
 
 
-def proposals(context: Context) -> str | None:
-    """The take has proposed keyframes."""
-    return None if proposed_frames(find_take(context.scene)) else "Propose keyframes first"
+proposals = of_take(proposed_frames, "Propose keyframes first")
 
 
 class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):

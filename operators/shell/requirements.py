@@ -13,7 +13,7 @@ from .takes import find_take, has_lost_actor, present_actor
 Requirement = Callable[[bpy.types.Context], str | None]
 
 
-def _of_take(has: Callable[[bpy.types.PropertyGroup], object], otherwise: str) -> Requirement:
+def of_take(has: Callable[[bpy.types.PropertyGroup], object], otherwise: str) -> Requirement:
     """Something that there must be a take with."""
 
     def requirement(context: bpy.types.Context) -> str | None:
@@ -23,15 +23,15 @@ def _of_take(has: Callable[[bpy.types.PropertyGroup], object], otherwise: str) -
     return requirement
 
 
-footage = _of_take(lambda take: take.clip, "Load the footage or open a take first")
-camera = _of_take(lambda take: take.camera, "Choose the camera that the footage was taken with first")
-markers = _of_take(lambda take: len(take.markers), "Add the markers that the performer wears first")
-picked_color = _of_take(
+footage = of_take(lambda take: take.clip, "Load the footage or open a take first")
+camera = of_take(lambda take: take.camera, "Choose the camera that the footage was taken with first")
+markers = of_take(lambda take: len(take.markers), "Add the markers that the performer wears first")
+picked_color = of_take(
     lambda take: any(marker.is_picked for marker in take.markers), "Pick the color of a marker first"
 )
-keyframes = _of_take(lambda take: take.keyframe_action, "Pose the actor and store a keyframe first")
-matches = _of_take(lambda take: len(take.matching.matches), "Find keyframes first (Pose All)")
-motion = _of_take(lambda take: take.motion_action, "Reconstruct the motion first")
+keyframes = of_take(lambda take: take.keyframe_action, "Pose the actor and store a keyframe first")
+matches = of_take(lambda take: len(take.matching.matches), "Find keyframes first (Pose All)")
+motion = of_take(lambda take: take.motion_action, "Reconstruct the motion first")
 
 
 def actor(context: bpy.types.Context) -> str | None:

@@ -11,8 +11,8 @@ from ..follow.evidence import add_keypoint_file, keypoint_path, scene_evidence
 from ..keyframes.found_keyframes import known_matches
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
-from ..shell.requirements import actor, footage, idle
-from ..shell.takes import active_take, add_take, find_take, footage_of
+from ..shell.requirements import actor, footage, idle, of_take
+from ..shell.takes import active_take, add_take, footage_of
 
 
 class KEYMARK_OT_add_performer(BaseOperator, bpy.types.Operator):
@@ -37,9 +37,7 @@ class KEYMARK_OT_add_performer(BaseOperator, bpy.types.Operator):
             add_keypoint_file(take, path)
 
 
-def take(context: bpy.types.Context) -> str | None:
-    """The scene has a take."""
-    return "There is no take to remove" if find_take(context.scene) is None else None
+take = of_take(lambda take: True, "There is no take to remove")
 
 
 class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
