@@ -79,7 +79,10 @@ class Belief:
     def depth_std_m(self) -> Array:
         """(F,) noise of the prior's depths [m], between that of posed and of found keyframes."""
         found = np.interp(np.arange(self.prior.batch[0]), self.frame, 1.0 * ~self.posed)
-        return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** found)
+        # 2.0: Noise of the points' depths as observations of their own (paper, eq. 9) near a found posture
+        # [m]: so large that they count for nothing, since place and joints have errors of their own that
+        # determine them.
+        return np.asarray(DEPTH_STD_M * (2.0 / DEPTH_STD_M) ** found)
 
     def covariance(self, body: Body, camera: Camera) -> Array:
         """(K, D, D) of the keyframes' tangents, without what was put right in the picture."""
@@ -92,18 +95,18 @@ class Belief:
 
 
 POINT_STD_M = 0.014  # error of each point along each axis [m]
-POSED_PLACE_STD_M = 0.009  # error that all points share along each axis [m]
-FREE_STD_RAD = 0.5  # error of rotations that no point determines, about a limb's own axis [rad]
 
 
 def posing_covariance(body: Body, pose: Pose) -> Array:
     """A person's usual posing error at given poses, as covariance (K, D, D) of the posture's tangent."""
     count = body.skeleton.dof_count
     jacobian = body.points_jacobian(pose).reshape(*pose.posture.batch, -1, count) / POINT_STD_M
-    information = np.swapaxes(jacobian, -1, -2) @ jacobian + np.eye(count) * FREE_STD_RAD**-2
+    # 0.5: error of rotations that no point determines, about a limb's own axis [rad]
+    information = np.swapaxes(jacobian, -1, -2) @ jacobian + np.eye(count) * 0.5**-2
     covariance = np.linalg.solve(information, np.broadcast_to(np.eye(count), information.shape))
     place = np.arange(3)
-    covariance[..., place, place] += POSED_PLACE_STD_M**2
+    # 0.009: error that all points share along each axis [m]
+    covariance[..., place, place] += 0.009**2
     return np.asarray(0.5 * (covariance + np.swapaxes(covariance, -1, -2)))
 
 
@@ -145,9 +148,6 @@ JOINT_STD_DEG = {
     "shin": 10.0,
 }  # usual difference of a joint, about each of its axes, between performers at the same moment of a motion
 PLACE_STD_M, PLACE_DEPTH_STD_M = 0.06, 0.20  # usual error of the place across and along the line of sight [m]
-POINT_DEPTH_STD_M = 2.0
-"""Noise of the points' depths as observations of their own (paper, eq. 9) near a found posture [m]: so
-large that they count for nothing, since place and joints have errors of their own that determine them."""
 
 
 def joint_std_rad(skeleton: Skeleton) -> Array:

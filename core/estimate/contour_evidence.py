@@ -40,24 +40,6 @@ CHUNK_FRAMES = 50
 SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])  # of a performer's parts: thickness at both ends, place
 
 
-@dataclass(frozen=True)
-class ContourOptions:
-    """Errors of edges and of colors along limbs."""
-
-    edge_std_m: float = 0.012
-    # Error of an edge beyond the part's shape, which is fitted to the keyframes along with their own errors.
-    keyframe_edge_std_m: float = 0.003
-    fewest_edges: int = 20
-    axial_std_px: float = 2.0
-    axial_std_m: float = 0.03  # standard deviation of a part's colors along its axis: cuffs slip by 2 to 3 cm
-    # Time in which such an error fades to a third. Believed as if each frame erred anew, it would turn limbs
-    # toward or away from the camera.
-    axial_memory_s: float = 0.3
-
-
-CONTOURS = ContourOptions()
-
-
 @dataclass(frozen=True, eq=False)
 class ContourEvidence:
     """Appearance and shapes by which contours are measured in any of a clip's frames."""
@@ -113,7 +95,9 @@ class ContourEvidence:
         `step_s`: times between all of the clip's frames [s].
         """
         model, album = self.model, self.album
-        kept = np.exp(-step_s[frame[:-1]] / CONTOURS.axial_memory_s)[:, None]
+        # 0.3: Time in which such an error fades to a third. Believed as if each frame erred anew, it would
+        # turn limbs toward or away from the camera.
+        kept = np.exp(-step_s[frame[:-1]] / 0.3)[:, None]
         axes = LimbAxes(model.parts, model.camera)
         assert self.along is not None
         shape = len(frame), len(model.parts.segments)
@@ -130,7 +114,8 @@ class ContourEvidence:
             at = np.sum(pixel * found.direction, axis=-1) + found.distance
             share[chunk], direction[chunk] = found.share, found.direction
             place[chunk] = np.where(usable, at, np.nan)
-            spread = (CONTOURS.axial_std_px * album.factor) ** 2 + (CONTOURS.axial_std_m * found.scale) ** 2
+            # A part's colors lie 2 pixels off along its axis, and 3 cm: cuffs slip by 2 to 3.
+            spread = (2.0 * album.factor) ** 2 + (0.03 * found.scale) ** 2
             variance[chunk] = np.where(usable, found.variance, 1.0) + spread
             yield (chunk[-1] + 1) / len(frame)
         return AxialTerm(axes, share, place, direction, variance, kept)
@@ -216,12 +201,14 @@ def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edge
     shape = np.zeros_like(model.shape)
     for part in np.unique(model.part_of):
         own = (model.part_of == part) & np.isfinite(variance)
-        if np.count_nonzero(own) < CONTOURS.fewest_edges:
+        # Fewer edges tell no shape.
+        if np.count_nonzero(own) < 20:
             continue
         rows, noise = rate[own], variance[own]
         wanted = distance[own] + rows @ model.shape[part]
         scale = np.linalg.norm(rows[:, :2], axis=-1)  # about the pixels of a meter
-        spread = noise + (CONTOURS.edge_std_m * scale) ** 2
+        # An edge lies 1.2 cm off the average part in the mean.
+        spread = noise + (0.012 * scale) ** 2
         weight = student_weight(distance[own] ** 2 / spread, DEGREES, 1) / noise
         normal = rows.T @ (weight[:, None] * rows) + np.diag(SHAPE_STD_M**-2)
         shape[part] = np.linalg.solve(normal, rows.T @ (weight * wanted))
@@ -248,7 +235,9 @@ def contour_rows(contours: ContourEvidence, posture: Posture, frame: IndexArray)
     own_shape = np.sum(predicted.shape_rate * model.shape[model.part_of], axis=-1)
     residual = -edges.distance - own_shape
     scale = np.linalg.norm(predicted.shape_rate[..., :2], axis=-1)
-    variance = edges.variance + (PIXEL_STD * factor) ** 2 + (CONTOURS.keyframe_edge_std_m * scale) ** 2
+    # 0.003: Error of an edge beyond the part's shape, which is fitted to the keyframes along with their own
+    # errors.
+    variance = edges.variance + (PIXEL_STD * factor) ** 2 + (0.003 * scale) ** 2
     weight = np.where(found, 1.0 / np.where(found, variance, 1.0), 0.0)
     groups = _groups(model)
     total = weight @ groups  # (J, G)

@@ -145,8 +145,6 @@ def _occlusion(
 WIDEST_M = (0.25, 0.13, 0.20)
 """Reach, deviation and farthest edge of the first look: interpolation of keyframes errs by 5 to 20 cm."""
 LOOKS = 9  # looks of the schedule; each is about a seventh narrower than the one before
-LARGEST_REACH_PX = 36  # bound of the first look's reach, for the sake of time
-BY_KEYPOINTS = 0.5  # width of the first look where keypoints locate the limbs, to 2 to 6 cm
 ENDS = (
     ("wrist.L",),
     ("wrist.R",),
@@ -195,9 +193,11 @@ def contour_schedule(
     depth = np.median(camera.depth(prior.translation, np.arange(prior.batch[0])))
     scale = camera.focal_px / max(float(depth), 0.1) / factor
     last = np.array([NARROW.reach, NARROW.prior_std, NARROW.farthest])
-    first = np.array(WIDEST_M) * min(scale, LARGEST_REACH_PX / WIDEST_M[0])
+    # 36: bound of the first look's reach, for the sake of time
+    first = np.array(WIDEST_M) * min(scale, 36 / WIDEST_M[0])
     if keypoints is not None and points_locate(keypoints):
-        first *= BY_KEYPOINTS
+        # 0.5: width of the first look where keypoints locate the limbs, to 2 to 6 cm
+        first *= 0.5
     looks = np.geomspace(np.maximum(first, last), last, LOOKS)
     return Schedule(
         tuple(SearchRange(round(reach), std, farthest) for reach, std, farthest in looks.tolist())

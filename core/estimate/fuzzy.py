@@ -26,22 +26,11 @@ class Memberships:
 
     *near* falls in a straight line from 1 at the keyframe to 0 at `near_ends`; *far* rises from 0 at
     `far_starts` to 1 at `far_full`.
-
-    Raises:
-        ValueError: The sets leave a distance that is in neither of them.
     """
 
     near_ends: float = 1.0
     far_starts: float = 0.0
     far_full: float = 1.0
-
-    def __post_init__(self) -> None:
-        """Check that every distance belongs somewhere."""
-        if not 0.0 <= self.far_starts < min(self.near_ends, self.far_full):
-            raise ValueError(
-                f"far_starts {self.far_starts} must be at least 0 and below near_ends {self.near_ends} "
-                f"and far_full {self.far_full}"
-            )
 
     def near(self, distance: ArrayLike) -> Array:
         """Degree (...) to which a distance (...) [half gaps] is near."""

@@ -1,7 +1,7 @@
 """The paper's filter, method `ekf`, with what the paper leaves open as options: noise and fuzzy sets."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -28,9 +28,6 @@ class FilterOptions:
 
     A *natural deviation* is how far a degree of freedom usually lies from a prior interpolated between
     keyframes (`Skeleton.deviations`).
-
-    Raises:
-        ValueError: A standard deviation or width is not positive, or the gate's probability not below 1.
     """
 
     centroid_std_px: float = 1.0  # extraction noise of a centroid [px]
@@ -43,17 +40,6 @@ class FilterOptions:
     far_width: float = 0.3  # half-width of the far rule's output set, a frame's step [natural deviations]
     gate_probability: float = 0.999  # share of right observations that pass; others count for less
     memberships: Memberships = field(default_factory=Memberships)  # the rules' input sets
-
-    def __post_init__(self) -> None:
-        """Check the numbers."""
-        for option in fields(self):
-            value = getattr(self, option.name)
-            if option.name != "memberships" and not 0.0 < value < float("inf"):
-                raise ValueError(f"{option.name} is {value}; a finite number above 0 is valid")
-        if self.gate_probability >= 1.0:
-            raise ValueError(
-                f"gate_probability is {self.gate_probability}; a number between 0 and 1 is valid"
-            )
 
 
 class Update(NamedTuple):
@@ -94,8 +80,6 @@ def normalized_innovation_squared(covariance: Array, measurement_matrix: Array, 
 # --- The paper's filter, method `ekf`
 
 
-LEAST_QUALITY = 0.05  # below this a region's noise grows no further; its gate still holds
-LEAST_ANGLE_WEIGHT = 1e-3
 PREVIEW_FRAMES = 12  # frames in one preview
 
 
@@ -223,9 +207,11 @@ class FuzzyKalmanFilter:
         ]
         # Both regions need a direction: a round one, observed or predicted, has none.
         weight = angle_weight(np.minimum(predicted[..., LOG_RATIO], observed[..., LOG_RATIO]))
-        std[..., ANGLE] = options.angle_std_rad / np.maximum(weight, LEAST_ANGLE_WEIGHT)
+        # 1e-3: a round region has no direction, and an infinite deviation is none.
+        std[..., ANGLE] = options.angle_std_rad / np.maximum(weight, 1e-3)
         std[..., LOG_RATIO] = options.log_ratio_std
-        return np.asarray(std / np.sqrt(np.maximum(quality, LEAST_QUALITY))[..., None])
+        # 0.05: below this a region's noise grows no further; its gate still holds
+        return np.asarray(std / np.sqrt(np.maximum(quality, 0.05))[..., None])
 
     def _marker_rows(
         self, state: State, pose: Pose, frame: int, observed: Array, quality: Array

@@ -78,22 +78,8 @@ def placement_jacobian(body: Body, camera: Camera, known: KnownFrames, model: Re
 # --- Calibration
 
 
-@dataclass(frozen=True)
-class CalibrationOptions:
-    """Which regions judge keyframes, and priors of what these are judged by."""
-
-    least_trusted: float = 0.3  # least visibility and quality of a region that judges a keyframe
-    # Largest number of keyframes that are judged, evenly spread in time: enough for a few parameters.
-    most_judged: int = 60
-    scale_median: float = 0.7  # log-normal prior of the size
-    scale_spread: float = 1.2
-    # Factor of the posing error by contours alone: the colors that edges are found by are learned at the same
-    # keyframes, with their errors, which hides about a quarter of these.
-    learned_share: float = 1.3
-    most_distrust: float = 10.0
-
-
-CALIBRATION = CalibrationOptions()
+LEAST_TRUSTED = 0.3  # least visibility and quality of a region that judges a keyframe
+USUAL_SIZE = 0.7  # log-normal prior of the size
 SCALES = np.geomspace(0.1, 2.5, 17)  # sizes of the posing error tried, relative to a person's usual one
 LENS_DIFFERENCE = 1e-3
 
@@ -158,14 +144,15 @@ def read_keyframes(
     keypoints = at.keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
     believed = points is not None and points.only(keypoints.trust > 0.0).seen.any()
     if not model.placements and not believed and contours is None:
-        information = np.linalg.inv(posing) / CALIBRATION.scale_median**2
+        information = np.linalg.inv(posing) / USUAL_SIZE**2
         return replace(
             uncalibrated(model),
-            posing_scale=CALIBRATION.scale_median,
+            posing_scale=USUAL_SIZE,
             information=information,
             keypoints=keypoints,
         )
-    judged = evenly_spread(frame, CALIBRATION.most_judged)
+    # 60: Largest number of keyframes that are judged, evenly spread in time: enough for a few parameters.
+    judged = evenly_spread(frame, 60)
     pose = model.body.pose(posture[judged])
     known = KnownFrames(pose, frame[judged], at.observed[judged])
     # (J, M, 5); without the slow bias, which at the keyframes is mostly the placements'.
@@ -184,7 +171,7 @@ def read_keyframes(
     weight = np.ones((len(judged), int(size.sum())))
     markers = len(model.placements)
     distrust = np.ones(markers)
-    scale = CALIBRATION.scale_median
+    scale = USUAL_SIZE
     for iteration in range(4):
         yield
         parts, area_ratio = [], np.ones(0)
@@ -217,7 +204,9 @@ def read_keyframes(
             spread = seen.noise(weight, scale)[:, own, own]
             std_m = learned_std(placed, seen_points, keypoints.std_m, std_m, left[:, own], spread)
     if outlines is not None and not markers and seen_points is None:
-        scale *= CALIBRATION.learned_share
+        # 1.3: Factor of the posing error by contours alone: the colors that edges are found by are learned at
+        # the same keyframes, with their errors, which hides about a quarter of these.
+        scale *= 1.3
     information = np.linalg.inv(posing) / scale**2
     placed = replace(placed, camera=calibrated.camera)
     found_points = replace(keypoints, model=placed, std_m=std_m)
@@ -253,27 +242,14 @@ def _region_rows(
     residual = residual + (parameter_jacobian @ change[..., None])[..., 0] + by_lens * lens_change
     usable = (
         np.isfinite(residual).all(-1)
-        & (predicted.visible > CALIBRATION.least_trusted)
-        & (known.observed.quality > CALIBRATION.least_trusted)
+        & (predicted.visible > LEAST_TRUSTED)
+        & (known.observed.quality > LEAST_TRUSTED)
     )
     area_ratio = _area_ratios(np.where(usable, known.observed.area / np.maximum(predicted.area, 1.0), np.nan))
     variance = variance + missing_variance(known.observed.area, area_ratio, predicted)
-    judged, markers = usable.shape
-    rows = (judged, markers * FEATURES)
-    own = np.zeros((judged, markers, FEATURES, markers, parameter_jacobian.shape[-1]))
-    index = np.arange(markers)
-    own[:, index, :, index] = np.moveaxis(np.where(usable[..., None, None], parameter_jacobian, 0.0), 1, 0)
-    return (
-        EvidenceRows(
-            np.where(usable[..., None], residual, 0.0).reshape(rows),
-            own.reshape(*rows, markers * len(PRIOR_STD)),
-            np.where(usable[..., None], by_lens, 0.0).reshape(rows),
-            np.where(usable[..., None, None], jacobian, 0.0).reshape(*rows, jacobian.shape[-1]),
-            np.where(usable[..., None], variance, UNUSED).reshape(rows),
-            np.diag(np.tile(PRIOR_STD, markers) ** -2),
-        ),
-        area_ratio,
-    )
+    prior = np.diag(np.tile(PRIOR_STD, usable.shape[1]) ** -2)
+    rows = EvidenceRows.apart(usable, residual, parameter_jacobian, by_lens, jacobian, variance, prior)
+    return rows, area_ratio
 
 
 def _area_ratios(ratio: Array) -> Array:
@@ -306,7 +282,8 @@ def _most_likely_size(seen: KeyframeRows, weight: Array) -> Generator[None, None
 
     Woodbury's identity spares the dense matrix of all rows.
     """
-    logarithm = -0.5 * (np.log(SCALES / CALIBRATION.scale_median) / CALIBRATION.scale_spread) ** 2
+    # The belief in the size is log-normal, its logarithm spread by 1.2.
+    logarithm = -0.5 * (np.log(SCALES / USUAL_SIZE) / 1.2) ** 2
     for row, scale in enumerate(SCALES):
         noise = seen.noise(weight, scale)
         inverse, information, right = seen.gathered(noise)
@@ -327,4 +304,5 @@ def _distrust(squared: Array, usable: BoolArray) -> Array:
     for marker, (values, used) in enumerate(zip(squared.T, usable.T, strict=True)):
         if used.any():
             ratio[marker] = np.sqrt(np.median(values[used]) / usual)
-    return np.asarray(np.clip(ratio / max(1.0, float(np.median(ratio))), 1.0, CALIBRATION.most_distrust))
+    # However far off, a marker keeps a hundredth of its weight.
+    return np.asarray(np.clip(ratio / max(1.0, float(np.median(ratio))), 1.0, 10.0))

@@ -9,7 +9,6 @@ from scipy.linalg import block_diag
 from ..arrays import Array, BoolArray, IndexArray
 
 UNUSED = 1e6  # variance of a row that does not count [px²]
-LENS_STD = 0.03  # standard deviation of a stated focal length, as a share
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +21,35 @@ class EvidenceRows:
     by_posture: Array  # (J, R, D) by the posture's tangent
     variance: Array  # (J, R) at a perfectly posed keyframe [px²]; `UNUSED` for rows that do not count
     prior: Array  # (X, X) information of the parameters' prior
+
+    @classmethod
+    def apart(
+        cls,
+        usable: BoolArray,
+        residual: Array,
+        by_own: Array,
+        by_lens: Array,
+        by_posture: Array,
+        variance: Array,
+        prior: Array,
+    ) -> "EvidenceRows":
+        """The rows of N things of which each has parameters of its own.
+
+        `usable` (J, N); `residual`, `by_lens` and `variance` (J, N, G); `by_own` (J, N, G, P) and
+        `by_posture` (J, N, G, D).
+        """
+        judged, things, size = residual.shape
+        rows, used = (judged, things * size), usable[..., None]
+        own, index = np.zeros((judged, things, size, things, by_own.shape[-1])), np.arange(things)
+        own[:, index, :, index] = np.moveaxis(np.where(used[..., None], by_own, 0.0), 1, 0)
+        return cls(
+            np.where(used, residual, 0.0).reshape(rows),
+            own.reshape(*rows, things * by_own.shape[-1]),
+            np.where(used, by_lens, 0.0).reshape(rows),
+            np.where(used[..., None], by_posture, 0.0).reshape(*rows, by_posture.shape[-1]),
+            np.where(used, variance, UNUSED).reshape(rows),
+            prior,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,12 +78,13 @@ class KeyframeRows:
             parameters[:, row : row + height, -1] = part.by_lens
             row, column = row + height, column + width
         jacobian = np.concatenate([part.by_posture for part in parts], axis=1)
+        # 0.03: standard deviation of a stated focal length, as a share
         return cls(
             np.concatenate([part.residual for part in parts], axis=1),
             parameters,
             np.concatenate([part.variance for part in parts], axis=1),
             jacobian @ posing @ np.swapaxes(jacobian, -1, -2),
-            block_diag(*(part.prior for part in parts), LENS_STD**-2),
+            block_diag(*(part.prior for part in parts), 0.03**-2),
         )
 
     def part(self, rows: BoolArray, parameters: BoolArray) -> "KeyframeRows":

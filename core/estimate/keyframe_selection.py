@@ -1,7 +1,5 @@
 """Which found keyframes are worth having between posed ones."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..arrays import Array, chunks
@@ -14,26 +12,6 @@ from ..prior.keyframes import Keyframe, interpolate, leave_one_out_residuals
 from ..terms.region_model import RegionModel
 from .belief import FEWEST_POSED
 
-
-@dataclass(frozen=True)
-class SelectionOptions:
-    """When a found keyframe is better than interpolation between posed ones."""
-
-    # a library with a larger error along the line of sight holds another motion
-    largest_library_error_m: float = 0.12
-    # Largest ratio of the library's error to the interpolation's: it knows how the motion goes on.
-    largest_ratio: float = 1.3
-    # Least weight, in posed keyframes, that the library's error is divided by: too little evidence excludes
-    # none.
-    least_weight: float = 0.5
-    least_trusted: float = 0.3  # least visibility and quality of a region that counts
-    # Weight of the median keypoint of a frame, in coordinates of a marker: as much as five markers.
-    keypoint_columns: int = 10
-    # Error of a usual keypoint along each axis of the image, beside one that is the same at all times [m].
-    keypoint_error_m: float = 0.02
-
-
-SELECTION = SelectionOptions()
 CHUNK_FRAMES = 500
 
 
@@ -55,7 +33,8 @@ def select_keyframes(
     interpolation_error = _interpolation_error_squared_m(posed, model, tracks)
     if keypoints is not None and keypoints.seen.any():
         by_points = _keypoint_error_squared_m(posed, model, keypoints)
-        columns = [by_points[:, None]] * SELECTION.keypoint_columns
+        # 10: Weight of the median keypoint of a frame, in coordinates of a marker: as much as five markers.
+        columns = [by_points[:, None]] * 10
         interpolation_error = np.hstack([interpolation_error, *columns])
     kept = []
     for keyframe in keyframes:
@@ -67,7 +46,9 @@ def select_keyframes(
         between = interpolation_error[before[-1] : after[0] + 1]
         seen = between[np.isfinite(between)]
         posed_m = float(np.sqrt(seen.mean())) if len(seen) else np.inf
-        if library_m <= min(SELECTION.largest_library_error_m, SELECTION.largest_ratio * posed_m):
+        # 0.12: a library with a larger error along the line of sight holds another motion
+        # 1.3: Largest ratio of the library's error to the interpolation's: it knows how the motion goes on.
+        if library_m <= min(0.12, 1.3 * posed_m):
             kept.append(keyframe)
     return tuple(kept)
 
@@ -83,7 +64,9 @@ def _library_error_m(
     foretold = body.points(body.pose(posture.plus(-difference)))
     sight = model.camera.sight(points, np.array([[keyframe.index] for keyframe in posed]))
     squared = np.mean(np.sum((foretold - points) * sight, axis=-1) ** 2, axis=-1)  # (P,)
-    return float(np.sqrt(np.sum(weight * squared) / max(float(weight.sum()), SELECTION.least_weight)))
+    # 0.5: Least weight, in posed keyframes, that the library's error is divided by: too little evidence
+    # excludes none.
+    return float(np.sqrt(np.sum(weight * squared) / max(float(weight.sum()), 0.5)))
 
 
 def _interpolation_error_squared_m(
@@ -100,7 +83,8 @@ def _interpolation_error_squared_m(
     offset = np.empty((frames, len(model.placements), 2))
     for frame in chunks(np.arange(frames), CHUNK_FRAMES):
         predicted = model.evaluate(model.body.pose(prior[frame]), frame)
-        trusted = np.minimum(predicted.visible, tracks.quality[frame]) > SELECTION.least_trusted
+        # 0.3: least visibility and quality of a region that counts
+        trusted = np.minimum(predicted.visible, tracks.quality[frame]) > 0.3
         meters = camera.depth(prior[frame].translation, frame) / camera.focal_px
         apart = (predicted.centroid - tracks.centroid[frame]) * meters[:, None, None]
         offset[frame] = np.where(trusted[..., None], apart, np.nan)
@@ -134,4 +118,6 @@ def _keypoint_error_squared_m(posed: tuple[Keyframe, ...], model: RegionModel, k
         median = np.full(frames, np.nan)
         median[some] = np.nanmedian(squared[some], axis=1)
         errors.append(median)
-    return np.maximum(np.fmin(*errors) - SELECTION.keypoint_error_m**2, 0.0)
+    # 0.02: Error of a usual keypoint along each axis of the image, beside one that is the same at all times
+    # [m].
+    return np.maximum(np.fmin(*errors) - 0.02**2, 0.0)

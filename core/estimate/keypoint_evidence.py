@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
@@ -15,25 +16,9 @@ from ..camera.camera import Camera
 from ..detect.keypoints import mirrored_point
 from ..terms.depths import DepthLinks
 from ..terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, USUAL_PLACES, KeypointModel, ObservedKeypoints
-from .keyframe_rows import UNUSED, EvidenceRows
+from .keyframe_rows import EvidenceRows
 
-
-@dataclass(frozen=True)
-class HintOptions:
-    """Usual errors of guessed depths."""
-
-    usual_error: float = 0.2  # error of a guess over the link's length: the sine of some twelve degrees
-    gain_std: float = 0.5  # standard deviation of the gain from 1, and of the offset over the link's length
-    offset_std: float = 0.2
-    # Numbers of errors that the usual error, and that of a link's name, weigh as much as.
-    name_count: float = 12.0
-    link_count: float = 6.0
-    # Between keyframes errors count as this many times as large: those of neighboring links are alike.
-    clip_factor: float = 1.4
-    memory_s: float = 0.25  # time in which an error fades to a third
-
-
-HINTS = HintOptions()
+HINT_ERROR = 0.2  # error of a guess over the link's length: the sine of some twelve degrees
 LARGEST_ERROR = 4.0  # a larger error, in standard deviations, counts as one this large
 
 
@@ -45,13 +30,13 @@ class DepthEvidence:
     gain: Array  # (L,) expected depth by a guess: gain times guess plus offset
     offset_m: Array  # (L,)
     std_m: Array  # (L,) error of what is expected [m]
-    memory_s: float = HINTS.memory_s  # time in which an error fades to a third [s]
+    memory_s: float = 0.25  # time in which an error fades to a third [s]
 
     @classmethod
     def usual(cls, links: DepthLinks, model: KeypointModel) -> "DepthEvidence":
         """Guesses taken as they are, before any keyframe is posed."""
         length = links.lengths_m(model)
-        return cls(links, np.ones_like(length), np.zeros_like(length), HINTS.usual_error * length)
+        return cls(links, np.ones_like(length), np.zeros_like(length), HINT_ERROR * length)
 
     def unposed(self) -> "DepthEvidence":
         """The same where no keyframe is posed, which would take away what is wrong alike in all frames."""
@@ -61,7 +46,9 @@ class DepthEvidence:
     @property
     def error_m(self) -> Array:
         """(L,) error that the estimate of a clip reckons with [m]."""
-        return HINTS.clip_factor * self.std_m
+        # 1.4: Between keyframes errors count as this many times as large: those of neighboring links are
+        # alike.
+        return 1.4 * self.std_m
 
     def expected(self, depth: Array) -> Array:
         """(F, L) expected depths of the links by the points' guessed depths (F, N) [m]."""
@@ -85,7 +72,7 @@ def read_depths(
     known = np.isfinite(guessed)
     guess = np.where(known, guessed, 0.0)
     length = links.lengths_m(model)
-    usual = (HINTS.usual_error * length) ** 2
+    usual = (HINT_ERROR * length) ** 2
     posing = 2.0 * posing_std_m**2
     variance, gain, offset = usual.copy(), evidence.gain.copy(), evidence.offset_m.copy()
     names = np.array(links.names)
@@ -94,7 +81,9 @@ def read_depths(
         for i in range(len(names)):
             rows = np.stack([guess[:, i], np.ones(len(guess))], axis=-1) * known[:, i, None]
             noise = variance[i] + posing
-            prior = np.array([HINTS.gain_std, HINTS.offset_std * length[i]]) ** -2.0
+            # 0.5: standard deviation of the gain from 1, and of the offset over the link's length
+            # 0.2: of the offset, over the link's length
+            prior = np.array([0.5, 0.2 * length[i]]) ** -2.0
             information = rows.T @ rows / noise + np.diag(prior)
             wanted = rows.T @ np.where(known[:, i], true[:, i], 0.0) / noise + prior * [1.0, 0.0]
             gain[i], offset[i] = np.linalg.solve(information, wanted)
@@ -102,35 +91,20 @@ def read_depths(
             doubt = np.sum(rows * np.linalg.solve(information, rows.T).T, axis=-1)
             share = variance[i] / noise  # of what is left that is the guess's, not the keyframe's
             squared[:, i] = share**2 * np.minimum(left**2, LARGEST_ERROR**2 * noise) + share * posing + doubt
-        for name in np.unique(names):
-            same = names == name
-            total, count = np.where(known, squared, 0.0)[:, same].sum(axis=0), known[:, same].sum(axis=0)
-            pooled = (HINTS.name_count * usual[same].mean() + total.sum()) / (HINTS.name_count + count.sum())
-            variance[same] = (HINTS.link_count * pooled + total) / (HINTS.link_count + count)
+        count = known.sum(axis=0)
+        total = np.where(known, squared, 0.0).sum(axis=0)
+        # 12.0: Numbers of errors that the usual error, and that of a link's name, weigh as much as.
+        # 6: a link's own errors
+        variance = _pooled(names, usual, total, count, 12.0, 6.0)
     return replace(evidence, gain=gain, offset_m=offset, std_m=np.sqrt(variance))
 
 
 # --- Keypoints
 
 
-@dataclass(frozen=True)
-class PointOptions:
-    """Usual errors of keypoints."""
-
-    # Correlation of the places of a point and its mirror image: what one detector calls a hip it does on both
-    # sides.
-    mirrored: float = 0.7
-    # Numbers of errors that the usual error, and that of a point's name, weigh as much as.
-    name_count: float = 40.0
-    point_count: float = 12.0
-    memory_s: float = 0.15  # time in which an error fades to a third
-    # Between keyframes errors count as this many times as large. Those of neighboring points are alike, so
-    # that a dozen say as much as half a dozen; and where a limb lies across the view, an error that makes it
-    # too short turns it a long way toward or away from the camera, of which a linearised row knows nothing.
-    clip_factor: float = 3.0
-
-
-POINTS = PointOptions()
+# Correlation of the places of a point and its mirror image: what one detector calls a hip it does on both
+# sides.
+MIRRORED = 0.7
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +117,8 @@ class KeypointEvidence:
     trust: Array  # (N,) 1 for points that are believed, 0 for those left out
     lag: Mapping[str, int]  # by source left out for it: frames late, or early where negative
     depths: DepthEvidence  # what the hints of depth are worth
-    memory_s: float = POINTS.memory_s  # time in which an error fades to a third [s]
+
+    memory_s: float = 0.15  # time in which an error fades to a third [s]
 
     @classmethod
     def usual(
@@ -157,7 +132,11 @@ class KeypointEvidence:
     @property
     def error_m(self) -> Array:
         """(N,) error along each axis of the image that the estimate of a clip reckons with [m]."""
-        return np.where(self.trust > 0.0, POINTS.clip_factor * self.std_m, np.inf)
+        # 3.0: Between keyframes errors count as this many times as large. Those of neighboring points are
+        # alike, so that a dozen say as much as half a dozen; and where a limb lies across the view, an error
+        # that makes it too short turns it a long way toward or away from the camera, of which a linearised
+        # row knows nothing.
+        return np.where(self.trust > 0.0, 3.0 * self.std_m, np.inf)
 
     def with_camera(self, camera: Camera) -> "KeypointEvidence":
         """The same before another camera."""
@@ -206,19 +185,9 @@ def keypoint_rows(
     std_px = _scale(model, known) * std_m / np.maximum(known.observed.confidence, LEAST_CONFIDENCE)
     variance = std_px**2 + PIXEL_STD**2
     usable = np.isfinite(residual).all(axis=-1) & np.isfinite(variance)
-    judged, points = usable.shape
-    shape = (judged, points * 2)
-    own = np.zeros((judged, points, 2, points, 3))
-    index = np.arange(points)
-    own[:, index, :, index] = np.moveaxis(np.where(usable[..., None, None], by_place, 0.0), 1, 0)
-    return EvidenceRows(
-        np.where(usable[..., None], residual, 0.0).reshape(shape),
-        own.reshape(*shape, -1),
-        np.where(usable[..., None], by_lens, 0.0).reshape(shape),
-        np.where(usable[..., None, None], by_posture, 0.0).reshape(*shape, -1),
-        np.repeat(np.where(usable, variance, UNUSED), 2, axis=1),
-        np.linalg.inv(place_covariance(model.names)),
-    )
+    variance = np.broadcast_to(variance[..., None], residual.shape)
+    prior = np.linalg.inv(place_covariance(model.names))
+    return EvidenceRows.apart(usable, residual, by_place, by_lens, by_posture, variance, prior)
 
 
 def place_covariance(names: tuple[str, ...]) -> Array:
@@ -229,7 +198,7 @@ def place_covariance(names: tuple[str, ...]) -> Array:
     for first, name in enumerate(names):
         for second, other in enumerate(names):
             if first != second and other == mirrored_point(name):
-                shared[first, second] = POINTS.mirrored
+                shared[first, second] = MIRRORED
     shared *= std[:, None] * std
     covariance = np.zeros((count, 3, count, 3))
     for axis, sign in enumerate((-1.0, 1.0, 1.0)):  # a mirror image is one along x
@@ -257,16 +226,25 @@ def learned_std(
     used = known.observed.seen
     bounded = np.minimum(squared, LARGEST_ERROR**2 * 2.0 * std_m**2)
     total, count = np.where(used, bounded, 0.0).sum(axis=0), 2.0 * used.sum(axis=0)
-    usual = usual_m**2
     stems = np.array([name.partition(".")[0] for name in model.names])
-    variance = np.empty(points)
-    for stem in np.unique(stems):
-        same = stems == stem
-        pooled = (POINTS.name_count * usual[same].mean() + total[same].sum()) / (
-            POINTS.name_count + count[same].sum()
-        )
-        variance[same] = (POINTS.point_count * pooled + total[same]) / (POINTS.point_count + count[same])
-    return np.sqrt(variance)
+    # 40.0: Numbers of errors that the usual error, and that of a point's name, weigh as much as.
+    # 12: a point's own errors
+    return np.sqrt(_pooled(stems, usual_m**2, total, count, 40.0, 12.0))
+
+
+def _pooled(
+    names: NDArray[np.str_], usual: Array, total: Array, count: Array, name_count: float, own_count: float
+) -> Array:
+    """(N,) variances, of which the usual ones weigh as much as so many errors, and those of a name do.
+
+    `total` and `count` (N,): sum of the squared errors, and their number.
+    """
+    variance = np.empty_like(usual)
+    for name in np.unique(names):
+        same = names == name
+        pooled = (name_count * usual[same].mean() + total[same].sum()) / (name_count + count[same].sum())
+        variance[same] = (own_count * pooled + total[same]) / (own_count + count[same])
+    return variance
 
 
 def _scale(model: KeypointModel, known: KnownKeypoints) -> Array:

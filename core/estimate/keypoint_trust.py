@@ -23,24 +23,7 @@ from ..numerics.robust import DEGREES, multivariate_cost
 from ..numerics.vectors import runs
 from ..terms.keypoints import HUMAN_LENGTHS_M, USUAL_PLACES, KeypointModel, ObservedKeypoints
 
-
-@dataclass(frozen=True)
-class TrustOptions:
-    """When keypoints are believed."""
-
-    limb_width_m: float = 0.07  # about the half-width of a thigh and the width of an arm [m]
-    turned: float = 2.0  # how many of a point's usual errors are added to it: hands and feet turn
-    # Of the distances at the keyframes: a few that are far off are outliers, of a point that is believed.
-    usual_quantile: float = 0.4
-    fewest_believed: float = 0.5  # a source of whose principal points a smaller share is believed is left out
-    longest_lag: int = 15  # largest number of frames by which a source is thought to be early or late
-    least_lag: int = 2
-    # A source is early or late if its points' usual distance becomes this share of what it is, or less.
-    lagged_share: float = 0.6
-    least_misfit_m: float = 0.03  # nearer points are right as they stand [m]
-
-
-TRUST = TrustOptions()
+LONGEST_LAG = 15  # largest number of frames by which a source is thought to be early or late
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +47,9 @@ def keypoint_trust(
     scale = np.maximum(depth, 0.1) / model.camera.focal_px
     at_keyframes = _distances(points, predicted, scale, frame)
     usual = np.array([USUAL_PLACES[name].error_std_m for name in model.names])
-    trust = np.where(at_keyframes > TRUST.limb_width_m + TRUST.turned * usual, 0.0, 1.0)
+    # 0.07: about the half-width of a thigh and the width of an arm [m]
+    # 2.0: how many of a point's usual errors are added to it: hands and feet turn
+    trust = np.where(at_keyframes > 0.07 + 2.0 * usual, 0.0, 1.0)
     lags = {}
     for source in dict.fromkeys(sources):
         own = np.array([name == source for name in sources])
@@ -73,7 +58,8 @@ def keypoint_trust(
         if not counted.any():
             continue
         lags[source] = _lag(points, predicted, scale, frame, counted)
-        if lags[source] or trust[counted].mean() < TRUST.fewest_believed:
+        # 0.5: a source of whose principal points a smaller share is believed is left out
+        if lags[source] or trust[counted].mean() < 0.5:
             trust[own] = 0.0
     return KeypointTrust(trust, at_keyframes, lags)
 
@@ -83,22 +69,27 @@ def _distances(points: ObservedKeypoints, predicted: Array, scale: Array, frame:
     distance = np.linalg.norm(points.pixel[frame] * scale[..., None] - predicted, axis=-1)
     usual = np.full(distance.shape[1], np.nan)
     known = np.isfinite(distance).any(axis=0)
-    usual[known] = np.nanquantile(distance[:, known], TRUST.usual_quantile, axis=0)
+    # 0.4: Of the distances at the keyframes: a few that are far off are outliers, of a point that is
+    # believed.
+    usual[known] = np.nanquantile(distance[:, known], 0.4, axis=0)
     return usual
 
 
 def _lag(points: ObservedKeypoints, predicted: Array, scale: Array, frame: IndexArray, own: BoolArray) -> int:
     frames, misfit = len(points.pixel), {}
-    for lag in range(-TRUST.longest_lag, TRUST.longest_lag + 1):
+    for lag in range(-LONGEST_LAG, LONGEST_LAG + 1):
         inside = (frame + lag >= 0) & (frame + lag < frames)
         if 2 * inside.sum() >= len(frame):
             found = _distances(points, predicted[inside], scale[inside], frame[inside] + lag)[own]
             if np.isfinite(found).any():
                 misfit[lag] = float(np.nanmean(found))
-    if misfit.get(0, 0.0) < TRUST.least_misfit_m:
+    # 0.03: nearer points are right as they stand [m]
+    if misfit.get(0, 0.0) < 0.03:
         return 0
     best = min(misfit, key=lambda lag: misfit[lag])
-    return best if abs(best) >= TRUST.least_lag and misfit[best] < TRUST.lagged_share * misfit[0] else 0
+    # A frame early or late is none.
+    # 0.6: A source is early or late if its points' usual distance becomes this share of what it is, or less.
+    return best if abs(best) >= 2 and misfit[best] < 0.6 * misfit[0] else 0
 
 
 # --- Left and right exchanged by a detector
@@ -110,26 +101,7 @@ FACE = ("eye", "ear")  # too near each other to tell: exchanged where arms and l
 FEWEST_LOOKS = 2  # of the pose network, by which left and right are exchanged
 
 
-@dataclass(frozen=True)
-class SwapOptions:
-    """How keypoints of swapped limbs are told."""
-
-    # Error of a point where a keyframe is: the detector's, the posing error, and what places differ by.
-    place_std_m: float = 0.04
-    # Away from a keyframe it grows with this quantile of the speeds at which points depart from what is
-    # interpolated, and at least so fast: a running leg is anywhere a few frames later.
-    least_speed_m_per_s: float = 0.3
-    speed_quantile: float = 0.8
-    # How far a point is from where its velocity takes it: a detector's jitter, and fast limbs.
-    jitter_std_m: float = 0.04
-    acceleration_m_per_s2: float = 40.0
-    alike: float = 0.5  # the points of a limb err alike: each counts as half
-    change: float = 1.0 / 60.0  # probability that limbs begin or cease to be exchanged, a frame
-    # Before and after a change: a detector that follows limbs slides from one to the other for a while.
-    sliding_s: float = 0.07
-
-
-SWAPS = SwapOptions()
+CHANGE = 1.0 / 60.0  # probability that limbs begin or cease to be exchanged, a frame
 
 
 def find_swaps(
@@ -142,7 +114,9 @@ def find_swaps(
     swapped = np.zeros(keypoints.seen.shape, dtype=bool)
     away_s = np.abs(time_s[:, None] - time_s[keyframes]).min(axis=1)
     step_s = np.maximum(np.diff(time_s), 1e-3)
-    move_std = np.hypot(SWAPS.jitter_std_m, SWAPS.acceleration_m_per_s2 * step_s**2)[:, None, None]
+    # 0.04: How far a point is from where its velocity takes it: a detector's jitter, and fast limbs.
+    # 40: acceleration of fast limbs [m/s²]
+    move_std = np.hypot(0.04, 40.0 * step_s**2)[:, None, None]
     for source in dict.fromkeys(keypoints.sources):
         pairs = [_pairs(keypoints, source, limbs) for limbs in (ARMS, LEGS)]
         if not any(len(own) for own in pairs):
@@ -155,12 +129,14 @@ def find_swaps(
                 array[:, own] / scale[:, None, None, None] for array in (keypoints.pixel, predicted)
             )
             speed = _departure_speed(seen - guessed, step_s)
-            place_std = SWAPS.place_std_m + speed[:, None] * away_s[:, None, None]
+            # 0.04: Error of a point where a keyframe is: the detector's, the posing error, and what places
+            # differ by.
+            place_std = 0.04 + speed[:, None] * away_s[:, None, None]
             kept = _cost(seen - guessed, place_std)
             other = _cost(seen[:, :, ::-1] - guessed, place_std)
             onward = _extrapolated(seen, step_s)
             stays = _cost(seen[1:] - onward, move_std)
-            turns = _cost(seen[1:, :, ::-1] - onward, move_std) - np.log(SWAPS.change)
+            turns = _cost(seen[1:, :, ::-1] - onward, move_std) - np.log(CHANGE)
             exchanged[row] = exchanged_path(np.stack([kept, other], axis=-1), stays, turns)
         pairs.append(_pairs(keypoints, source, FACE))
         for own, state in zip(pairs, [*exchanged, exchanged.all(axis=0)], strict=True):
@@ -216,7 +192,9 @@ def doubted_at_changes(keypoints: Keypoints, swapped: BoolArray, time_s: Array) 
     for frame in np.flatnonzero((swapped[1:] != swapped[:-1]).any(axis=1)):
         changed = (swapped[frame + 1] != swapped[frame]) & keypoints.seen[[frame, frame + 1]].all(axis=0)
         middle_s = 0.5 * (time_s[frame] + time_s[frame + 1])
-        doubted |= (np.abs(time_s - middle_s) <= SWAPS.sliding_s)[:, None] & changed
+        # 0.07: Before and after a change: a detector that follows limbs slides from one to the other for a
+        # while.
+        doubted |= (np.abs(time_s - middle_s) <= 0.07)[:, None] & changed
     if not doubted.any():
         return keypoints
     return replace(
@@ -242,11 +220,14 @@ def _pairs(keypoints: Keypoints, source: str, limbs: tuple[str, ...]) -> IndexAr
 def _departure_speed(departure: Array, step_s: Array) -> Array:
     """(P,) usual speed [m/s] at which pairs of points (F, P, 2, 2) depart from what is expected."""
     speed = np.linalg.norm(np.diff(departure, axis=0), axis=-1) / step_s[:, None, None]
+    # 0.8: quantile of the speeds that is usual
     usual = [
-        np.quantile(one[np.isfinite(one)], SWAPS.speed_quantile) if np.isfinite(one).any() else 0.0
+        np.quantile(one[np.isfinite(one)], 0.8) if np.isfinite(one).any() else 0.0
         for one in np.moveaxis(speed, 1, 0)
     ]
-    return np.maximum(np.array(usual), SWAPS.least_speed_m_per_s)
+    # 0.3: Away from a keyframe it grows with this quantile of the speeds at which points depart from what is
+    # interpolated, and at least so fast: a running leg is anywhere a few frames later.
+    return np.maximum(np.array(usual), 0.3)
 
 
 def _extrapolated(seen: Array, step_s: Array) -> Array:
@@ -261,7 +242,8 @@ def _cost(error: Array, std: Array) -> Array:
     """(F,) negative logarithm of Student's t of errors (F, P, 2, 2) [m]; what is not seen costs nothing."""
     squared = (error**2).sum(axis=-1) / std**2
     cost = multivariate_cost(squared, DEGREES, 2)
-    return np.asarray(SWAPS.alike * np.nan_to_num(cost).sum(axis=(1, 2)))
+    # 0.5: the points of a limb err alike: each counts as half
+    return np.asarray(0.5 * np.nan_to_num(cost).sum(axis=(1, 2)))
 
 
 # --- Depths that lean
@@ -270,8 +252,6 @@ def _cost(error: Array, std: Array) -> Array:
 # Share of the balance's lean that is the hints' own: networks take the camera to look down by 4 or 5 degrees
 # more or less than it does, and performers are themselves off balance by as much, in the mean of a clip.
 HINTS_SHARE = 0.5
-SUPPORTED_RAD = 0.26  # lean of someone who sits or holds on to something, and is not over the feet
-SURE_SCORE = 0.5  # of ankles that are seen rather than guessed
 
 
 def upright(keypoints: Keypoints, camera: Camera) -> Keypoints:
@@ -281,7 +261,8 @@ def upright(keypoints: Keypoints, camera: Camera) -> Keypoints:
     before or behind them, it takes the camera to look down more or less than it does.
     """
     main = principal_keypoints(keypoints)
-    feet_seen = main.score[:, [main.names.index(f"ankle.{side}") for side in SIDES]] > SURE_SCORE
+    # 0.5: of ankles that are seen rather than guessed
+    feet_seen = main.score[:, [main.names.index(f"ankle.{side}") for side in SIDES]] > 0.5
     known = np.isfinite(main.hint_m).all(axis=(1, 2)) & main.seen.all(axis=1)
     frame = np.flatnonzero(known & feet_seen.all(axis=1))
     if not len(frame):
@@ -300,7 +281,8 @@ def upright(keypoints: Keypoints, camera: Camera) -> Keypoints:
     center = np.einsum("p,fpi->fi", mass_weights(HUMAN), main.hint_m[frame])
     leans = np.arctan2(((center - feet) * away).sum(axis=-1), ((center - feet) * up).sum(axis=-1))
     lean = float(np.median(leans))
-    tilt = HINTS_SHARE * lean if abs(lean) < SUPPORTED_RAD else 0.0
+    # 0.26: lean of someone who sits or holds on to something, and is not over the feet
+    tilt = HINTS_SHARE * lean if abs(lean) < 0.26 else 0.0
     hint = np.array(keypoints.hint_m)
     down, behind = keypoints.hint_m[..., 1], keypoints.hint_m[..., 2]
     hint[..., 1] = np.cos(tilt) * down - np.sin(tilt) * behind

@@ -5,7 +5,6 @@ and not from the library's own ankles, which are raised by feet that cannot bend
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,7 +25,6 @@ from ..terms.region_model import MarkerPlacement, RegionModel
 TOUCHING_PERCENT = 30.0  # of the lowest soles, the floor: more than half touch it, but for runners
 SHOE_M = 0.012  # thickness of a shoe's sole, and of a heel that hardly ever lies wholly on the floor
 ANKLE_HEIGHT_STD_M = 0.03
-LOWEST_PERCENT = 5.0  # of the feet's heights, their lowest but for outliers
 SAME_FLOOR_M = 0.12  # ankles that stand within this of a given floor stand on it
 
 
@@ -51,7 +49,8 @@ def standing_ankle_m(body: Body) -> float:
 def feet_over_floor_m(body: Body, points: Array, floor_m: float) -> float:
     """How high the lower foot is over a floor at its lowest, of points (F, P, 3) [m]; steps lead up."""
     ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
-    lowest = np.nanpercentile(points[:, ankles, 2].min(axis=1), LOWEST_PERCENT)
+    # 5.0: of the feet's heights, their lowest but for outliers
+    lowest = np.nanpercentile(points[:, ankles, 2].min(axis=1), 5.0)
     return float(lowest - floor_m - standing_ankle_m(body))
 
 
@@ -77,24 +76,8 @@ def found_ankle_m(
 # --- A standing performer, before any keyframe is posed
 
 
-@dataclass(frozen=True)
-class SizeOptions:
-    """How exactly sizes in the picture tell a distance, as shares of it."""
-
-    filled_share: float = 0.7  # share of the picture's height that a body fills where no region is seen
-    size_std: float = 0.08  # standard deviation of a distance by size in the picture, as a share
-    # The same by a region's area (bodies turn, sleeves differ), by the trunk's height over the shins (knees
-    # bend).
-    trunk_area_std: float = 0.12
-    limb_area_std: float = 0.2
-    legs_std: float = 0.08
-    agreeing: float = 1.5  # largest difference, in standard deviations, of sizes that agree on a distance
-    floor_std_m: float = 0.05  # standard deviation of the soles' height above the floor [m]
-    floor_doubted: float = 3.0  # standard deviations beyond which the ground is not at z = 0
-    least_height_px: float = 20.0
-
-
-SIZES = SizeOptions()
+FILLED_SHARE = 0.7  # share of the picture's height that a body fills where no region is seen
+LEAST_HEIGHT_PX = 20.0
 TRUNK = ("trunk", "chest", "pelvis")
 PAIR_SPANS = {("shoulder", "hip"): 0.12, ("hip", "ankle"): 0.1, ("shoulder", "ankle"): 0.08}
 """Standard deviation of a distance by that of two pairs of keypoints in the picture, as a share: trunks lean,
@@ -201,9 +184,12 @@ def _points(part: str) -> list[int]:
 def _on_floor(hips: Array, direction: Array, distance: float, body: Body) -> Array:
     """Hips where sizes have them, moved along the line of sight toward the floor."""
     above_m, down = float(hips[2]) - hip_height_m(body), float(direction[2])
-    variance = (SIZES.size_std * distance) ** 2
-    spread = SIZES.floor_std_m**2 + variance * down**2
-    if above_m**2 > SIZES.floor_doubted**2 * spread:
+    # 0.08: standard deviation of a distance by size in the picture, as a share
+    variance = (0.08 * distance) ** 2
+    # 0.05: standard deviation of the soles' height above the floor [m]
+    spread = 0.05**2 + variance * down**2
+    # 3.0: standard deviations beyond which the ground is not at z = 0
+    if above_m**2 > 3.0**2 * spread:
         return hips
     return hips - above_m * down * variance / spread * direction
 
@@ -219,10 +205,10 @@ def ground_place(
         InputError: The two points in the picture cannot be a person's.
     """
     crown, ground = np.asarray(crown_px, dtype=np.float64), np.asarray(ground_px, dtype=np.float64)
-    if np.linalg.norm(crown - ground) < SIZES.least_height_px:
+    if np.linalg.norm(crown - ground) < LEAST_HEIGHT_PX:
         raise InputError(
             f"top of the head and ground are {np.linalg.norm(crown - ground):.0f} pixels apart in the "
-            f"picture; at least {SIZES.least_height_px:.0f} are needed to measure by"
+            f"picture; at least {LEAST_HEIGHT_PX:.0f} are needed to measure by"
         )
     location, up = camera.rays(crown, frame)
     _, down = camera.rays(ground, frame)
@@ -263,25 +249,29 @@ def _relative_size(
     shins = np.isfinite(seen_area) & _bound(segments, "shin")
     measured = known | shins
     logarithms = 0.5 * np.log(shown_area[measured] / seen_area[measured])
-    errors = np.where(_bound(segments, *TRUNK), SIZES.trunk_area_std, SIZES.limb_area_std)[measured]
+    # 0.12: The same by a region's area (bodies turn, sleeves differ), by the trunk's height over the shins
+    # (knees bend).
+    errors = np.where(_bound(segments, *TRUNK), 0.12, 0.2)[measured]
     trunk = known & _bound(segments, *TRUNK)
     if trunk.any() and shins.sum() == 2:
         apart = [float(np.linalg.norm(_center(p, trunk) - _center(p, shins))) for p in (shown, seen)]
         logarithms = np.append(logarithms, np.log(max(apart[0], 1.0)) - np.log(max(apart[1], 1.0)))
-        errors = np.append(errors, SIZES.legs_std)
+        # 0.08: by the trunk's height over the shins
+        errors = np.append(errors, 0.08)
     return _largest_size(logarithms, errors)
 
 
 def _largest_size(logarithms: Array, errors: Array) -> float:
     """Ratio by all sizes that agree with the largest, given the logarithms of each one's ratio."""
     nearest = int(np.argmin(logarithms))
-    fits = logarithms - logarithms[nearest] <= SIZES.agreeing * np.hypot(errors, errors[nearest])
+    # 1.5: largest difference, in standard deviations, of sizes that agree on a distance
+    fits = logarithms - logarithms[nearest] <= 1.5 * np.hypot(errors, errors[nearest])
     return float(np.exp(np.average(logarithms[fits], weights=errors[fits] ** -2)))
 
 
 def _usual_distance(body: Body, camera: Camera) -> float:
     """Distance at which the body fills the usual share of the picture's height [m]."""
-    return body.actor.stature_m * camera.focal_px / (SIZES.filled_share * camera.resolution[1])
+    return body.actor.stature_m * camera.focal_px / (FILLED_SHARE * camera.resolution[1])
 
 
 def _in_the_middle(body: Body, camera: Camera, frame: int, standing: Posture) -> Posture:
@@ -292,7 +282,7 @@ def _in_the_middle(body: Body, camera: Camera, frame: int, standing: Posture) ->
     stature = body.actor.stature_m
     hips = middle + np.array([0.0, 0.0, hip_height_m(body) - 0.5 * stature])
     soles = float(hips[2]) - hip_height_m(body)
-    off_the_picture = 0.5 * (1.0 / SIZES.filled_share - 1.0) * stature
+    off_the_picture = 0.5 * (1.0 / FILLED_SHARE - 1.0) * stature
     if abs(soles) <= off_the_picture:
         hips[2] -= soles
     return _at(standing, hips)

@@ -20,28 +20,10 @@ MIRRORED = np.array([POINTS.index(mirrored_point(name)) for name in POINTS])
 HEAD = POINTS.index("head")
 
 
-@dataclass(frozen=True)
-class AlignmentOptions:
-    """How a reference motion is brought into a take."""
-
-    headings: int = 12
-    leans_deg: tuple[float, ...] = (-30.0, 0.0, 30.0)
-    refined: int = 4  # of the best of these turns, so many are refined
-    most_frames: int = 48  # that are asked for the turn
-    longest_lag: int = 8  # frames
-    lag_gain: float = 0.97  # the cost in time must be this share of that without a lag, or less
-    distance_s: float = 0.25  # a distance is smoothed over this time
-    change: float = 1.0 / 60.0  # probability that a network begins or ceases to exchange sides, a frame
-    jump_std_m: float = 0.08  # of a point from where it was a frame before
-    # What the picture says of sides errs for seconds where a detector has them wrong, so it counts little; a
-    # network that exchanges them jumps. A frame is thought exchanged at this cost.
-    sides_weight: float = 0.02
-    exchanged_cost: float = 0.3
-    # A network that has its motion in the camera's axes knows the vertical better than the picture does.
-    same_axes_deg: float = 8.0
-
-
-ALIGNMENT = AlignmentOptions()
+HEADINGS = 12
+LEANS_DEG = (-30.0, 0.0, 30.0)
+LONGEST_LAG = 8  # frames
+CHANGE = 1.0 / 60.0  # probability that a network begins or ceases to exchange sides, a frame
 
 
 # --- Size and sides
@@ -94,18 +76,22 @@ def _without_repeats(points: Array) -> Array:
 def _sides(points: Array, seen: SeenPoints) -> BoolArray:
     """(F,) whether a motion in camera axes has left for right, by its own steps and by the picture."""
     both = np.stack([points, points[:, MIRRORED]])
-    own = np.nan_to_num(place(both, seen).cost) * (seen.confidence > 0.0).sum(axis=1) * ALIGNMENT.sides_weight
-    own[1] += ALIGNMENT.exchanged_cost
+    # 0.02: What the picture says of sides errs for seconds where a detector has them wrong, so it counts
+    # little; a network that exchanges them jumps. A frame is thought exchanged at this cost.
+    own = np.nan_to_num(place(both, seen).cost) * (seen.confidence > 0.0).sum(axis=1) * 0.02
+    # 0.3: cost at which a frame is thought exchanged
+    own[1] += 0.3
     known = np.flatnonzero(np.isfinite(points).all(axis=(1, 2)))
     if len(known) < 2:
         return np.zeros(len(points), dtype=bool)
+    # 0.08: of a point from where it was a frame before
     stays, turns = (
-        (multivariate_cost(((two - both[0, known[:-1]]) / ALIGNMENT.jump_std_m) ** 2, DEGREES, 1.0))
+        (multivariate_cost(((two - both[0, known[:-1]]) / 0.08) ** 2, DEGREES, 1.0))
         .sum(axis=(1, 2)) / 3.0
         for two in (both[0, known[1:]], both[1, known[1:]])
     )  # fmt: skip
     result = np.zeros(len(points), dtype=bool)
-    result[known] = exchanged_path(own[:, known].T, stays, turns - np.log(ALIGNMENT.change))
+    result[known] = exchanged_path(own[:, known].T, stays, turns - np.log(CHANGE))
     return result
 
 
@@ -146,10 +132,11 @@ def align(
     assert best is not None
     _, at, turn, fixed = best
     lag, cost = 0, np.inf
-    for step in sorted(range(-ALIGNMENT.longest_lag, ALIGNMENT.longest_lag + 1), key=abs):
+    for step in sorted(range(-LONGEST_LAG, LONGEST_LAG + 1), key=abs):
         shifted = place(_in_camera(_sampled(points, at + step), turn, seen, fixed), seen).cost
         found = float(np.nanmean(shifted)) if np.isfinite(shifted).any() else np.inf
-        if found < cost * (ALIGNMENT.lag_gain if step else 1.0):
+        # 0.97: the cost in time must be this share of that without a lag, or less
+        if found < cost * (0.97 if step else 1.0):
             lag, cost = step, found
     own = _sampled(points, at + lag)
     exchanged = _sides(_in_camera(own, turn, seen, fixed), seen)
@@ -157,7 +144,8 @@ def align(
     _, turn = _refined(own, seen, fixed, turn)
     turn = _as_stated(turn, fixed)
     inside = _in_camera(own, turn, seen, fixed)
-    placed = place(inside, seen, ALIGNMENT.distance_s * fps)
+    # 0.25: a distance is smoothed over this time
+    placed = place(inside, seen, 0.25 * fps)
     _, location = seen.camera.pose(np.arange(len(own)))
     hips = np.einsum("fij,fj->fi", seen.rotation, placed.place) + location
     told = np.isfinite(placed.cost)
@@ -204,7 +192,8 @@ def _turn(points: Array, seen: SeenPoints, fixed: bool) -> tuple[float, Rotation
     told = np.flatnonzero(both)
     if len(told) < 2:
         return np.inf, Rotation.identity()
-    told = told[np.unique(np.linspace(0, len(told) - 1, ALIGNMENT.most_frames).round().astype(int))]
+    # 48: that are asked for the turn
+    told = told[np.unique(np.linspace(0, len(told) - 1, 48).round().astype(int))]
     some, part = points[told], seen[told]
     # Z up is Y up in camera axes, where a camera that looks level has a heading alone.
     upright = Rotation.identity() if fixed else Rotation.from_euler("x", -90.0, degrees=True)
@@ -212,11 +201,12 @@ def _turn(points: Array, seen: SeenPoints, fixed: bool) -> tuple[float, Rotation
         Rotation.from_euler("x", lean, degrees=True)
         * upright
         * Rotation.from_euler("z", heading, degrees=True)
-        for lean in ALIGNMENT.leans_deg
-        for heading in np.arange(ALIGNMENT.headings) * 360.0 / ALIGNMENT.headings
+        for lean in LEANS_DEG
+        for heading in np.arange(HEADINGS) * 360.0 / HEADINGS
     ]
     costs = np.array([_cost(some, part, fixed, turn) for turn in starts])
-    refined = [_refined(some, part, fixed, starts[one]) for one in np.argsort(costs)[: ALIGNMENT.refined]]
+    # 4: of the best of these turns, so many are refined
+    refined = [_refined(some, part, fixed, starts[one]) for one in np.argsort(costs)[:4]]
     return min(refined, key=lambda one: one[0])
 
 
@@ -224,7 +214,8 @@ def _as_stated(turn: Rotation, fixed: bool) -> Rotation:
     """The turn, or that of the camera's own axes where it is about the same."""
     stated = Rotation.identity() if fixed else Rotation.from_euler("x", -90.0, degrees=True)
     apart = np.degrees((turn * stated.inv()).magnitude())
-    return stated if apart < ALIGNMENT.same_axes_deg else turn
+    # 8.0: A network that has its motion in the camera's axes knows the vertical better than the picture does.
+    return stated if apart < 8.0 else turn
 
 
 def _cost(points: Array, seen: SeenPoints, fixed: bool, turn: Rotation) -> float:

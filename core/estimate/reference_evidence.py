@@ -48,28 +48,17 @@ class ReferenceOptions:
     """How far a reference motion is believed."""
 
     along: float = 2.2  # error along the line of sight, in those across it
-    memory_s: float = 0.4
     least_factor: float = 0.7
     most_factor: float = 3.0
-    smooth_s: float = 0.09  # of the local quadratic that takes its jitter away
-    keyframe_s: float = 0.4  # time between the keyframes found in it
     keyframe_width: float = 4.0  # of their error, in a usual difference between performers
-    from_posed_s: float = 0.3
     # Its bias over time, as posed keyframes tell it: the share that lasts all along the clip, the time in
     # which the rest fades, and a person's own error beside it. What is left is believed no more for it: with
     # a smaller deviation beside keyframes posed by hand, slow motions came out worse than without it.
     constant_share: float = 0.3
-    correlation_s: float = 0.5
-    posed_variance: float = 0.1
     usual_count: float = 3.0  # posed keyframes that the error in the picture weighs as much as
     # Right motions cost .1 to .3 of what the same motion costs at other times, others more than .7.
     least_gain: float = 0.29
     other_times: int = 21
-    most_frames: int = 400  # that are asked for the gain
-    left_out_s: float = 0.3  # time over which frames are judged together
-    same_guess_m: float = (
-        0.02  # median distance from the detector's own guess in space within which it is that
-    )
 
 
 OPTIONS = ReferenceOptions()
@@ -126,7 +115,8 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
             )
         )
     left_out = _left_out(aligned, usual, tracks.time_s)
-    points = smoothed(aligned.points, tracks.time_s, OPTIONS.smooth_s)
+    # 0.09: of the local quadratic that takes its jitter away
+    points = smoothed(aligned.points, tracks.time_s, 0.09)
     points[left_out] = np.nan
     factor = error_factor(aligned, seen)
     hips = aligned.hips
@@ -141,10 +131,11 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
             share = _bias(tracks.time_s[index], tracks.time_s)
             points = points + np.einsum("fk,kpi->fpi", share, offset)
             hips = hips + share @ (middle - hips[index])
+    # 0.4 s: time in which its errors fade
     expected = ExpectedPoints(
         np.where(aligned.known[:, None, None], points, np.nan),
         _whitening(take, hips, factor * STD_M),
-        OPTIONS.memory_s,
+        0.4,
     )
     found = _keyframes(
         take,
@@ -200,13 +191,15 @@ def _is_own_guess(reference: ReferenceMotion, keypoints: Keypoints) -> bool:
     turn, _ = Rotation.align_vectors(other, one)
     one = turn.apply(one)
     size = float((one * other).sum() / max((one * one).sum(), 1e-9))
-    return bool(np.median(np.linalg.norm(size * one - other, axis=-1)) < OPTIONS.same_guess_m)
+    # Within 2 cm in the median it is the detector's own guess in space.
+    return bool(np.median(np.linalg.norm(size * one - other, axis=-1)) < 0.02)
 
 
 def _left_out(aligned: AlignedReference, usual: float, time_s: Array) -> BoolArray:
     """(F,) where a motion fits no better than at other times."""
     told = np.isfinite(aligned.placed.cost)
-    width = OPTIONS.left_out_s / usual_step(time_s)
+    # 0.3: time over which frames are judged together
+    width = 0.3 / usual_step(time_s)
     near = gaussian(np.where(told, aligned.placed.cost, 0.0), width) / np.maximum(
         gaussian(1.0 * told, width), 1e-9
     )
@@ -233,11 +226,13 @@ def _keyframes(
     take: Take, points: Array, posed: tuple[Keyframe, ...], time_s: Array, matched: Matched
 ) -> tuple[Keyframe, ...]:
     """Keyframes at even times, where all points are known and no posed keyframe is near."""
-    count = max(1, round((time_s[-1] - time_s[0]) / OPTIONS.keyframe_s)) + 1
+    # 0.4: time between the keyframes found in it
+    count = max(1, round((time_s[-1] - time_s[0]) / 0.4)) + 1
     asked = np.unique(np.linspace(0, len(points) - 1, count).round().astype(np.intp))
     near = np.array([key.index for key in posed], dtype=np.intp)
     apart = np.abs(time_s[asked][:, None] - time_s[near]).min(axis=1, initial=np.inf)
-    asked = asked[(apart > OPTIONS.from_posed_s) & np.isfinite(points[asked]).all(axis=(1, 2))]
+    # None is found within 0.3 s of a posed one.
+    asked = asked[(apart > 0.3) & np.isfinite(points[asked]).all(axis=(1, 2))]
     if not len(asked):
         return ()
     posture = fit_posture(take.body, points[asked]).posture
@@ -248,10 +243,12 @@ def _bias(at_s: Array, time_s: Array) -> Array:
     """(F, K) weights that tell a bias at other times by what it is at K."""
 
     def covariance(one: Array, other: Array) -> Array:
-        alike = np.exp(-np.abs(one[:, None] - other) / OPTIONS.correlation_s)
+        # 0.5 s: time in which the rest of the bias fades
+        alike = np.exp(-np.abs(one[:, None] - other) / 0.5)
         return np.asarray(OPTIONS.constant_share + (1.0 - OPTIONS.constant_share) * alike)
 
-    known = covariance(at_s, at_s) + OPTIONS.posed_variance * np.eye(len(at_s))
+    # 0.1: variance of a person's own error, relative to the bias's
+    known = covariance(at_s, at_s) + 0.1 * np.eye(len(at_s))
     return np.asarray(np.linalg.solve(known, covariance(at_s, time_s)).T)
 
 
@@ -264,7 +261,8 @@ def own_and_usual_cost(aligned: AlignedReference, seen: SeenPoints) -> tuple[flo
     told = np.flatnonzero(np.isfinite(aligned.placed.cost))
     if len(told) < 2:
         return 1.0, 1.0
-    told = told[np.unique(np.linspace(0, len(told) - 1, OPTIONS.most_frames).round().astype(int))]
+    # 400 frames are asked.
+    told = told[np.unique(np.linspace(0, len(told) - 1, 400).round().astype(int))]
     some, part, count = inside[told], seen[told], len(told)
     others = []
     for number in range(OPTIONS.other_times):

@@ -27,19 +27,7 @@ CHAINS = (("shoulder", "elbow", "upper_arm"), ("elbow", "wrist", "forearm")) + (
 """Near and far end of each limb's segments, from the body outwards."""
 
 
-@dataclass(frozen=True)
-class PlacementOptions:
-    """How exactly a motion's points are seen."""
-
-    point_std_m: float = 0.06  # the detector's error, where it has joints, and the network's own
-    marker_std_m: float = 0.09  # of a marker's middle from its segment's
-    nearest_m: float = 0.5  # distance of the hips
-    farthest_m: float = 100.0
-    distance_std: float = 0.05  # usual error of a frame's own distance, as a share
-    rounds: int = 6  # of reweighting; the last two with the distances smoothed
-
-
-PLACEMENT = PlacementOptions()
+ROUNDS = 6  # of reweighting; the last two with the distances smoothed
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,14 +47,16 @@ class SeenPoints:
         """The performer's keypoints, and the middles of the markers' regions."""
         points = principal_keypoints(keypoints) if keypoints.names else None
         frames = tracks.frame_count
-        mean, pixel, score, std = [np.eye(len(POINTS))], [], [], [np.full(len(POINTS), PLACEMENT.point_std_m)]
+        # 0.06: the detector's error, where it has joints, and the network's own
+        mean, pixel, score, std = [np.eye(len(POINTS))], [], [], [np.full(len(POINTS), 0.06)]
         pixel.append(points.pixel if points else np.full((frames, len(POINTS), 2), np.nan))
         score.append(points.score if points else np.zeros((frames, len(POINTS))))
         if len(segments):
             mean.append(np.array([_middle_of(segment) for segment in segments]))
             pixel.append(tracks.centroid)
             score.append(np.where(tracks.visible, tracks.quality, 0.0))
-            std.append(np.full(len(segments), PLACEMENT.marker_std_m))
+            # 0.09: of a marker's middle from its segment's
+            std.append(np.full(len(segments), 0.09))
         pixels, scores = np.concatenate(pixel, axis=1), np.nan_to_num(np.concatenate(score, axis=1))
         frame = np.arange(frames)
         _, ray = camera.rays(pixels, frame[:, None])
@@ -134,8 +124,8 @@ def place(points: Array, seen: SeenPoints, smooth_frames: float = 0.0) -> Placed
     base = seen.confidence / seen.std_m**2 * ~absent[..., None]
     weight, distance = base, None
     found = np.zeros((*points.shape[:-2], 3))
-    for number in range(PLACEMENT.rounds):
-        if number == PLACEMENT.rounds - 2 and smooth_frames > 0.0:
+    for number in range(ROUNDS):
+        if number == ROUNDS - 2 and smooth_frames > 0.0:
             distance = _smoothed(found[..., 2], absent | (base.sum(axis=-1) == 0.0), smooth_frames)
         found = _least_squares(relative, slope, weight, distance)
         depth = relative[..., 2] + found[..., None, 2]
@@ -164,7 +154,9 @@ def _least_squares(relative: Array, slope: Array, weight: Array, distance: Array
     top = (weight[..., None] * off * ahead).sum(axis=(-1, -2))
     under = (weight[..., None] * off**2).sum(axis=(-1, -2))
     # In front of the camera, and no farther than a performer can be told from a dot.
-    depth = np.clip(top / np.maximum(under, 1e-9), -PLACEMENT.farthest_m, -PLACEMENT.nearest_m)
+    # 0.5: distance of the hips
+    # 100: farthest distance of the hips [m]
+    depth = np.clip(top / np.maximum(under, 1e-9), -100.0, -0.5)
     return np.concatenate([goal - mean * depth[..., None], depth[..., None]], axis=-1)
 
 
@@ -177,6 +169,7 @@ def _smoothed(depth: Array, unknown: BoolArray, frames: float) -> Array:
     smooth = logarithm
     for _ in range(3):
         smooth = gaussian(told * logarithm, frames) / np.maximum(gaussian(told, frames), 1e-9)
-        doubt = ((logarithm - smooth) / PLACEMENT.distance_std) ** 2
+        # 0.05: usual error of a frame's own distance, as a share
+        doubt = ((logarithm - smooth) / 0.05) ** 2
         told = np.where(unknown, 1e-6, 1.0 / (1.0 + doubt / DEGREES))
     return np.asarray(-np.exp(smooth))

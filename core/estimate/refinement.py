@@ -10,7 +10,7 @@ models Shumway & Stoffer 1982, *An approach to time series smoothing and forecas
 """
 
 from collections.abc import Generator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -30,31 +30,13 @@ from .turn_choice import choose_turns
 from .window_problem import WindowProblem
 from .windows import Window, spliced
 
-
-@dataclass(frozen=True)
-class SizeOptions:
-    """How sizes of motion follow from a solution."""
-
-    # Root mean square second difference of a limb's unknowns at which the keyframes told the size right: a
-    # solution is smoother than the motion, whose size is one.
-    usual_size: float = 0.15
-    # Power of the size: what a solution shows of a limb's motion is partly what was assumed of it.
-    shrinkage: float = 0.7
-    # Bound of a limb's factor, which is never below 1: 1.5, or more where keyframes lie more than a third of
-    # a second apart and show less of the swings between them. A looser motion has more local optima.
-    largest: float = 1.5
-    largest_per_gap_s: float = 4.5
-    largest_of_all: float = 3.0
-    # Factor on the depths' deviation: a frame's 13 depths and those of about five frames around err together,
-    # but count as rows of their own.
-    dependent_rows: float = 8.0
-    # share of the whole body's in a point's squared miss: depths of one body err together
-    body_share: float = 0.5
-    least_depth_std_m: float = 0.1
-    most_depth_std_m: float = 3.0
-
-
-SIZES = SizeOptions()
+# Root mean square second difference of a limb's unknowns at which the keyframes told the size right: a
+# solution is smoother than the motion, whose size is one.
+USUAL_SIZE = 0.15
+LARGEST_PER_GAP_S = 4.5
+LARGEST_OF_ALL = 3.0
+# share of the whole body's in a point's squared miss: depths of one body err together
+BODY_SHARE = 0.5
 
 
 def adapted(
@@ -89,9 +71,12 @@ def limb_sizes(problem: ClipProblem, spans: list[Window], states: list[ClipState
         return size
     squared = (np.diff(variation, n=2, axis=0) ** 2).mean(axis=0) / pace**3
     gap_s = float(np.median(np.diff(keyframes))) * pace * REFERENCE_STEP_S
-    largest = float(np.clip(SIZES.largest_per_gap_s * gap_s, SIZES.largest, SIZES.largest_of_all))
+    # 1.5: Bound of a limb's factor, which is never below 1: 1.5, or more where keyframes lie more than a
+    # third of a second apart and show less of the swings between them. A looser motion has more local optima.
+    largest = float(np.clip(LARGEST_PER_GAP_S * gap_s, 1.5, LARGEST_OF_ALL))
     for limb in problem.data.body.skeleton.limbs:
-        found = (np.sqrt(squared[limb].mean()) / SIZES.usual_size) ** SIZES.shrinkage
+        # 0.7: Power of the size: what a solution shows of a limb's motion is partly what was assumed of it.
+        found = (np.sqrt(squared[limb].mean()) / USUAL_SIZE) ** 0.7
         size[limb] = np.clip(found, 1.0, largest)
     return size
 
@@ -112,8 +97,10 @@ def _depth_factor(problem: ClipProblem, spans: list[Window], states: list[ClipSt
     count = np.bincount(gap[solved], minlength=gaps)
     total = np.stack([np.bincount(gap[solved], one[solved], minlength=gaps) for one in squared.T], axis=-1)
     mean = total / np.maximum(count, 1)[:, None]
-    mean = (1.0 - SIZES.body_share) * mean + SIZES.body_share * mean.mean(axis=-1, keepdims=True)
-    std = np.clip(SIZES.dependent_rows * np.sqrt(mean), SIZES.least_depth_std_m, SIZES.most_depth_std_m)
+    mean = (1.0 - BODY_SHARE) * mean + BODY_SHARE * mean.mean(axis=-1, keepdims=True)
+    # 8.0: Factor on the depths' deviation: a frame's 13 depths and those of about five frames around err
+    # together, but count as rows of their own.
+    std = np.clip(8.0 * np.sqrt(mean), 0.1, 3.0)
     return np.where((count > 0)[gap][:, None], (std / DEPTH_STD_M)[gap], problem.depth_factor)
 
 

@@ -37,22 +37,8 @@ def seen_tracks(tracks: RegionTracks, observed: ObservedRegions) -> RegionTracks
     )
 
 
-@dataclass(frozen=True)
-class LookOptions:
-    """What is looked for at a second look, and what is believed of it."""
-
-    least_area_px: float = 6.0  # least predicted area, in pixels of the album
-    reach: float = (
-        2.0  # distance from the prediction within which a find's center lies, in a marker's lengths
-    )
-    # Log likelihood ratio of a find: a window has e^8 places for it, and one in e^2 of all may be chance.
-    least_gain: float = 10.0
-    least_rest_gain: float = 3.0  # of what something before it cuts off from a find
-    most_size: float = 2.0  # area of a find relative to the predicted one
-    place_std: float = 0.5  # of a find's features beyond a tracked region's, in pixels of the album
-
-
-LOOK = LookOptions()
+REACH = 2.0  # distance from the prediction within which a find's center lies, in a marker's lengths
+MOST_SIZE = 2.0  # area of a find relative to the predicted one
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +98,8 @@ def find_lost(
     length = np.percentile(np.sqrt(12.0 * np.linalg.eigvalsh(predicted.second_moment)[..., 1]), 80.0, axis=0)
     area = predicted.area * evidence.area_ratio
     wanted = np.isnan(problem.observed.centroid[every, :, 0]) & problem.data.there[every, None]
-    wanted &= (predicted.visible > NOISE.least_visible) & (area >= LOOK.least_area_px * factor**2)
+    # 6.0: least predicted area, in pixels of the album
+    wanted &= (predicted.visible > NOISE.least_visible) & (area >= 6.0 * factor**2)
     wanted &= np.array([palette is not None for palette in search.palettes])
     found: list[tuple[int, int]] = []
     moments, certainty = [], []
@@ -120,7 +107,7 @@ def find_lost(
     for number, (row, marker) in enumerate(rows.tolist()):
         center, frame = predicted.centroid[row, marker], int(every[row])
         # So wide that what has its center within reach lies in it as a whole.
-        reach = (LOOK.reach + 0.6) * length[marker] / factor
+        reach = (REACH + 0.6) * length[marker] / factor
         seen = search.traces(problem, frame, marker, center / factor, reach).scaled(factor)
         own = _own(seen, center, length[marker], area[row, marker])
         if len(own):
@@ -133,7 +120,8 @@ def find_lost(
     if not found:
         return problem, every[:0]
     centroid, second = centroid_and_second_moment(np.array(moments))
-    variance = np.full((len(found), FEATURES), (LOOK.place_std * factor) ** 2)
+    # 0.5: of a find's features beyond a tracked region's, in pixels of the album
+    variance = np.full((len(found), FEATURES), (0.5 * factor) ** 2)
     regions = ObservedRegions.found(
         centroid, second, np.array(moments)[:, 0], np.clip(certainty, 0.0, 1.0), variance
     )
@@ -146,10 +134,13 @@ def _own(found: Traces, center: Array, length: float, area: float) -> IndexArray
     centroid, _ = centroid_and_second_moment(found.moments)
     away = np.linalg.norm(centroid - center, axis=-1)
     size = found.moments[:, 0] / area
-    likely = (found.gain >= LOOK.least_gain) & (away <= LOOK.reach * length) & (size <= LOOK.most_size)
+    # 10.0: Log likelihood ratio of a find: a window has e^8 places for it, and one in e^2 of all may be
+    # chance.
+    likely = (found.gain >= 10.0) & (away <= REACH * length) & (size <= MOST_SIZE)
     if not likely.any():
         return np.zeros(0, dtype=np.intp)
     main = int(np.where(likely, found.gain, -np.inf).argmax())
     near = np.linalg.norm(centroid - centroid[main], axis=-1) <= 0.7 * length
-    own = np.flatnonzero((found.gain >= LOOK.least_rest_gain) & near)
-    return own if size[own].sum() <= LOOK.most_size else np.array([main])
+    # 3.0: of what something before it cuts off from a find
+    own = np.flatnonzero((found.gain >= 3.0) & near)
+    return own if size[own].sum() <= MOST_SIZE else np.array([main])

@@ -94,9 +94,6 @@ class UnobservedOptions:
     """How postures become uncertain where nothing observes them."""
 
     grace_s: float = 0.25  # time for which the estimate's own covariance holds
-    # time constant at which a limb approaches the variance of anywhere in reach
-    time_constant_s: float = 0.35
-    trunk_std_rad: float = 0.15  # standard deviation of joints anywhere in reach [rad]
     limb_std_rad: float = 0.5
     # Growth of the place's standard deviation along each axis: the performer may stand or walk.
     walking_speed_m_per_s: float = 0.5
@@ -126,8 +123,10 @@ def unobserved_variance(
         # Anything visible also locates the trunk.
         observed = posed | (visible if part is trunk else visible[:, own]).any(axis=1)
         unknown = _unobserved_time_s(observed, time_s)
-        reach = UNOBSERVED.trunk_std_rad if part is trunk else UNOBSERVED.limb_std_rad
-        std[:, part] = (-np.expm1(-unknown / UNOBSERVED.time_constant_s) * reach)[:, None]
+        # 0.15: standard deviation of joints anywhere in reach [rad]
+        reach = 0.15 if part is trunk else UNOBSERVED.limb_std_rad
+        # 0.35: time constant at which a limb approaches the variance of anywhere in reach
+        std[:, part] = (-np.expm1(-unknown / 0.35) * reach)[:, None]
         if part is trunk:
             walked = UNOBSERVED.walking_speed_m_per_s * unknown
             std[:, :3] = np.minimum(walked, UNOBSERVED.farthest_m)[:, None]

@@ -74,7 +74,6 @@ def frame_residuals(
     return FrameResiduals(off, point_off, tuple(map(int, markers)), names)
 
 
-EXPECTED_RADIUS_M = 0.9  # largest distance of a marker from where it is believed to be
 EXCHANGED_COST = 3.0  # cost of taking a detector's left for right: it is wrong in one frame of twenty
 
 
@@ -142,7 +141,8 @@ def expected_in_frame(model: RegionModel, belief: FramePrior, frame: int) -> Exp
     """Each marker's place in the picture by a belief, (1, M), with a generous radius."""
     predicted = model.evaluate(model.body.pose(Posture.stack([belief.posture])), np.array([frame]))
     depth = max(float(model.camera.depth(belief.posture.translation, frame)), 0.1)
-    radius = EXPECTED_RADIUS_M * model.camera.focal_px / depth
+    # 0.9: largest distance of a marker from where it is believed to be
+    radius = 0.9 * model.camera.focal_px / depth
     return ExpectedRegions(predicted.centroid, np.full(predicted.visible.shape, radius))
 
 

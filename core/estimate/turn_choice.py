@@ -20,28 +20,10 @@ from .windows import Window
 BEGUN = (8.0, 4.0, 2.0, 1.0, 1.0)  # image variance in an alternative's first steps, which tell a hopeless one
 
 
-@dataclass(frozen=True)
-class TurnOptions:
-    """When another turn between two keyframes is tried, and when it is taken."""
-
-    # An alternative that costs more than the estimate by more than this share of it and this much besides is
-    # given up by then. The other steps save a third of an alternative's cost at most, and mostly a tenth.
-    hopeless_share: float = 0.3
-    hopeless_cost: float = 50.0
-    # a turn between keyframes from which on the other way round is tried
-    large_step_rad: float = np.radians(60.0)
-    # Nobody turns faster between two keyframes: dancers make two to three turns a second.
-    fastest_rad_per_s: float = 3.0 * FULL_TURN
-    long_s: float = 0.3  # gaps of this time and longer ...
-    # ... in which each marker seen costs more than this are tried both ways round. With noise as assumed it
-    # would cost 2; the slow biases take most of that, so that it is 0.1 to 0.2 where all is well.
-    doubted_cost: float = 0.5
-    margin_s: float = 0.2  # how far beyond its keyframes, which hold it, a stretch is solved
-    # another turn is taken where it costs less by so much: it is twenty times as probable
-    cheaper: float = 3.0
-
-
-TURNS = TurnOptions()
+# a turn between keyframes from which on the other way round is tried
+LARGE_STEP_RAD = np.radians(60.0)
+# Nobody turns faster between two keyframes: dancers make two to three turns a second.
+FASTEST_RAD_PER_S = 3.0 * FULL_TURN
 GONE_ON = (
     1.0,
 ) * 10  # its other steps, which are needed where it departs far from the prior, as in long gaps
@@ -70,7 +52,9 @@ def alternative(
     there = WindowProblem(other, window, other.start(window))
     known = yield from here.descend(())
     begun = yield from there.descend(BEGUN)
-    if begun.sum() > (1.0 + TURNS.hopeless_share) * known.sum() + TURNS.hopeless_cost:
+    # An alternative that costs more than the estimate by three tenths of it and 50 besides is given up by
+    # then. The other steps save a third of an alternative's cost at most, and mostly a tenth.
+    if begun.sum() > 1.3 * known.sum() + 50.0:
         return None
     settled = yield from here.descend(SETTLED)
     ended = yield from there.descend(GONE_ON)
@@ -109,11 +93,15 @@ def doubted_turns(problem: ClipProblem, cost: Array) -> list[DoubtedTurn]:
             continue
         time_s = float(problem.data.step_s[first:last].sum())
         misfit = float(cost[first + 1 : last].mean())
-        doubted = time_s >= TURNS.long_s and misfit > TURNS.doubted_cost
-        if abs(step[gap]) < TURNS.large_step_rad and not doubted:
+        # 0.3: gaps of this time and longer ...
+        # 0.5: ... in which each marker seen costs more than this are tried both ways round. With noise as
+        # assumed it would cost 2; the slow biases take most of that, so that it is 0.1 to 0.2 where all is
+        # well.
+        doubted = time_s >= 0.3 and misfit > 0.5
+        if abs(step[gap]) < LARGE_STEP_RAD and not doubted:
             continue
         ways = (-1, 1) if doubted else (-1 if step[gap] > 0.0 else 1,)
-        farthest = TURNS.fastest_rad_per_s * time_s
+        farthest = FASTEST_RAD_PER_S * time_s
         possible = [way for way in ways if abs(step[gap] + FULL_TURN * way) <= farthest]
         if possible:
             found.append(DoubtedTurn(gap, tuple(possible), misfit + abs(float(step[gap])) / np.pi))
@@ -127,7 +115,8 @@ def choose_turns(problem: ClipProblem, states: list[ClipState]) -> Part[tuple[Cl
     """
     states = list(states)
     data = problem.data
-    margin = round(TURNS.margin_s / (data.pace * REFERENCE_STEP_S))
+    # 0.2: how far beyond its keyframes, which hold it, a stretch is solved
+    margin = round(0.2 / (data.pace * REFERENCE_STEP_S))
     seen = bool(problem.observed.quality.any() or data.points.seen.any())  # contours alone decide nothing
     doubts = doubted_turns(problem, image_cost(problem, states)) if seen else []
     for number, doubt in enumerate(doubts):
@@ -137,7 +126,8 @@ def choose_turns(problem: ClipProblem, states: list[ClipState]) -> Part[tuple[Cl
             continue
         trying = _best(problem, state, doubt)
         best = yield from scaled(trying, number / len(doubts), (number + 1) / len(doubts))
-        if best is not None and best.gain > TURNS.cheaper:
+        # 3.0: another turn is taken where it costs less by so much: it is twenty times as probable
+        if best is not None and best.gain > 3.0:
             before, problem = problem, best.problem
             turned = (problem.prior.rotations != before.prior.rotations).any(axis=(1, 2, 3))
             for index, one in enumerate(states):

@@ -41,10 +41,6 @@ from .windows import spliced, windows
 MARKERS_SHARE, REFINED_SHARE = 0.35, 0.6  # of the work: following markers, all before contours
 
 
-WINDOW_S = 20.0  # longer clips are solved in windows of about this length ...
-MARGIN_S = 3.0  # ... that overlap by this, several times as far as any term remembers
-
-
 @dataclass(frozen=True, eq=False)
 class Seen:
     """What was seen in the F frames of a clip."""
@@ -157,7 +153,9 @@ def _solve(
 ) -> Part[WholeClipResult]:
     """Estimate all frames in windows; `contours` None: to be learned once the markers are followed."""
     data = problem.data
-    length, margin = (round(one / (data.pace * REFERENCE_STEP_S)) for one in (WINDOW_S, MARGIN_S))
+    # 20.0: longer clips are solved in windows of about this length ...
+    # 3.0: ... that overlap by this, several times as far as any term remembers
+    length, margin = (round(one / (data.pace * REFERENCE_STEP_S)) for one in (20.0, 3.0))
     spans = [
         window.moved(first)
         for first, last in runs(data.there)

@@ -23,10 +23,6 @@ TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)  # of a first descent, which need 
 FOUND_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
 """From found keyframes the descent is longer and has more local minima."""
 MOST_UNPACKED = 256 << 20  # bytes of pictures unpacked once: half a minute at 320 x 240
-UNMARKED_DOUBT = 9.0
-"""Factor of the contours' variance in the covariance of limbs without markers: what errs in one part does so
-for many frames and in its neighbors too, and rows linearized where a limb leans toward the camera know of no
-other side."""
 
 
 @dataclass(eq=False)
@@ -97,7 +93,10 @@ class WindowProblem:
         dofs = state.variation.shape[1]
         unmarked = any(isinstance(term, AxialTerm) for term in self.terms)
         outlines = [unmarked and isinstance(term, ContourTerm | AxialTerm) for term in self.terms]
-        doubt = np.where(outlines, UNMARKED_DOUBT, 1.0).tolist()
+        # 9.0: Factor of the contours' variance in the covariance of limbs without markers: what errs in one
+        # part does so for many frames and in its neighbors too, and rows linearized where a limb leans toward
+        # the camera know of no other side.
+        doubt = np.where(outlines, 9.0, 1.0).tolist()
         equations = NormalEquations(state.frames, state.unknowns.shape[1])
         for _ in assembling(equations, self.terms, state, 1.0, doubt):
             yield

@@ -43,7 +43,10 @@ class StillnessTerm(Term):
         travel, speed, height = self._moving(state)
         standing = _kernel(speed) * _kernel(height)
         if self.rests is not None:
-            standing = np.maximum(standing, HELD * self.rests**4)
+            # 5.0: Weight of a foot that is known to rest: 3 mm from frame to frame add up over a rest in
+            # which a corrected keyframe has it elsewhere. The fourth power leaves out feet of which that is
+            # not sure.
+            standing = np.maximum(standing, 5.0 * self.rests**4)
         weight = standing[..., None] / WANDER_M
         rows = len(chosen) * 3
         shape = (state.frames - 1, rows, -1)
@@ -77,17 +80,14 @@ class StillnessTerm(Term):
         travel, middle = np.diff(places, axis=0), 0.5 * (places[1:] + places[:-1])
         sight = self.camera.sight(middle, state.frame[1:, None])
         along = np.sum(travel * sight, axis=-1, keepdims=True) * sight
-        counted = travel - (1.0 - DEPTH_SHARE) * along
+        # Motion along the line of sight counts three tenths to a foot's speed.
+        counted = travel - 0.7 * along
         speed = np.linalg.norm(counted, axis=-1) / self.step_s[:, None]
         height = middle[..., 2] - middle[..., 2].min(axis=1, keepdims=True)
         return travel, speed / self.release_speed_m_s, height / self.release_height_m
 
 
 WANDER_M = 0.003  # how far a standing ankle wanders from frame to frame
-DEPTH_SHARE = 0.3  # how much motion along the line of sight counts to a foot's speed
-HELD = 5.0
-"""Weight of a foot that is known to rest: 3 mm from frame to frame add up over a rest in which a corrected
-keyframe has it elsewhere. The fourth power leaves out feet of which that is not sure."""
 
 
 def _kernel(x: Array) -> Array:

@@ -114,8 +114,8 @@ class DepthHintTerm(Term):
 # --- Depths of the principal points, d(θ) of the paper
 
 
-DEPTH_VARIANCE_M2 = 0.1  # variance of each depth's noise v_d [m²]: the paper's 10⁵ mm²
-DEPTH_STD_M = DEPTH_VARIANCE_M2**0.5
+# 0.1: variance of each depth's noise v_d [m²]: the paper's 10⁵ mm²
+DEPTH_STD_M = 0.1**0.5
 
 
 def point_depths(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = None) -> Array:

@@ -18,8 +18,6 @@ from .state import ClipState
 from .term import Rows, Term
 
 FEATURES = 5  # rows of one marker: centroid x, y and three of shape
-SMALLEST_DEVIATION_PX = 0.6
-AREA_TOLERANCE = 0.25  # share of an area that may be missing for other reasons than occlusion
 
 
 @dataclass(frozen=True)
@@ -101,7 +99,8 @@ class ObservedRegions:
 def _axes(second_moment: Array) -> tuple[Array, Array]:
     """Axes of regions and their deviations along these [px], not below what pixels resolve."""
     values, axes = np.linalg.eigh(second_moment)
-    return axes, np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
+    # 0.6 px: what pixels resolve
+    return axes, np.sqrt(np.maximum(values, 0.6**2))
 
 
 def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tuple[Array, Array | None]:
@@ -153,7 +152,8 @@ def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction
     `area` (F, M) is seen [px]; `area_ratio` (M,) is that of an unhidden region relative to the predicted one.
     """
     expected = np.maximum(predicted.area * area_ratio, 1.0)
-    missing = np.clip(np.nan_to_num(1.0 - area / expected) - AREA_TOLERANCE, 0.0, 1.0)
+    # 0.25: share of an area that may be missing for other reasons than occlusion
+    missing = np.clip(np.nan_to_num(1.0 - area / expected) - 0.25, 0.0, 1.0)
     variance = np.stack([predicted.second_moment[..., axis, axis] for axis in (0, 1)], axis=-1)
     shape = np.broadcast_to(variance.sum(-1, keepdims=True), (*variance.shape[:-1], FEATURES - 2))
     return np.asarray(np.concatenate([3.0 * variance, shape], axis=-1) * missing[..., None] ** 2)
@@ -163,7 +163,6 @@ def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction
 
 
 GROUPS = (slice(0, 2), slice(2, FEATURES))  # rows that are outliers together: centroid and shape
-CONTRADICTED = 20.0  # cost of a marker that is seen where it should be hidden
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +187,8 @@ class RegionTerm(Term):
         information = self.information(residual, predicted)
         used, by_bias = information[..., 0] > 0.0, np.sqrt(information)
         seen = np.isfinite(self.observed.centroid[..., 0])
-        contradicted = np.where(seen, CONTRADICTED * self.observed.quality, 0.0)
+        # 20.0: cost of a marker that is seen where it should be hidden
+        contradicted = np.where(seen, 20.0 * self.observed.quality, 0.0)
         column = np.arange(residual[0].size).reshape(residual.shape[1:])
         for group in GROUPS:
             by = None if jacobian is None else jacobian[:, :, group] * by_bias[:, :, group, None]

@@ -27,12 +27,6 @@ def test_input_sets_by_hand() -> None:
     np.testing.assert_allclose(sets.far([0.0, 0.2, 0.4, 0.6, 1.0]), [0.0, 0.0, 0.5, 1.0, 1.0], atol=1e-15)
 
 
-@pytest.mark.parametrize("ends", [(0.3, 0.3, 1.0), (0.5, 0.6, 1.0), (1.0, 0.5, 0.5), (1.0, -0.1, 1.0)])
-def test_input_sets_that_leave_a_distance_out_are_refused(ends: tuple[float, float, float]) -> None:
-    with pytest.raises(ValueError, match="far_starts"):
-        Memberships(*ends)
-
-
 def test_one_rule_alone_is_its_own_triangle() -> None:
     mean, variance = aggregate(output(2.0, 0.6, 1.0), output(9.0, 5.0, 0.0))
     assert mean[0] == pytest.approx(2.0, abs=1e-14)

@@ -250,20 +250,6 @@ def test_arguments_that_disagree_are_refused(line_ends: LineEnds, see: See) -> N
         next(filter_clip(body, camera, tracks, ("wing", *line_ends.segments[1:]), prior, [0]))
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"centroid_std_px": 0.0},
-        {"near_width": -1.0},
-        {"depth_std_m": float("inf")},
-        {"gate_probability": 1.0},
-    ],
-)
-def test_impossible_options_are_refused_by_name(wrong: dict[str, float]) -> None:
-    with pytest.raises(ValueError, match=next(iter(wrong))):
-        FilterOptions(**wrong)
-
-
 def test_the_a_priori_depths_are_those_of_the_prior(line_ends: LineEnds) -> None:
     prior, _ = drifting(line_ends, 5)
     estimator = FuzzyKalmanFilter(line_ends, prior, [0, 4])

@@ -10,7 +10,13 @@ from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.belief import Belief
 from keymark.core.estimate.clip_problem import ClipProblem
-from keymark.core.estimate.refinement import SIZES, adapted, limb_sizes
+from keymark.core.estimate.refinement import (
+    LARGEST_OF_ALL,
+    LARGEST_PER_GAP_S,
+    USUAL_SIZE,
+    adapted,
+    limb_sizes,
+)
 from keymark.core.estimate.whole_clip import Seen, estimate_whole_clip
 from keymark.core.estimate.window_problem import WindowProblem
 from keymark.core.estimate.windows import Window, windows
@@ -104,7 +110,7 @@ def unsettled(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_limb_that_moves_more_than_keyframes_tell_gets_a_larger_size() -> None:
-    size = np.full(len(COLUMN), SIZES.usual_size)
+    size = np.full(len(COLUMN), USUAL_SIZE)
     np.testing.assert_allclose(limb_sizes(problem(), WHOLE, trembling(size)), 1.0)
     size[LIMB] *= 2.0
     found = limb_sizes(problem(), WHOLE, trembling(size))
@@ -113,18 +119,18 @@ def test_a_limb_that_moves_more_than_keyframes_tell_gets_a_larger_size() -> None
 
 
 def test_sizes_have_bounds() -> None:
-    usual = np.full(len(COLUMN), SIZES.usual_size)
+    usual = np.full(len(COLUMN), USUAL_SIZE)
     np.testing.assert_array_equal(limb_sizes(problem(), WHOLE, trembling(0.01 * usual)), 1.0)
     wild = trembling(100.0 * usual)
-    np.testing.assert_allclose(limb_sizes(problem(), WHOLE, wild), SIZES.largest_per_gap_s * EVERY / 30.0)
-    for frames, largest in (([0, FRAMES - 1], SIZES.largest_of_all), ([0], 1.0)):
+    np.testing.assert_allclose(limb_sizes(problem(), WHOLE, wild), LARGEST_PER_GAP_S * EVERY / 30.0)
+    for frames, largest in (([0, FRAMES - 1], LARGEST_OF_ALL), ([0], 1.0)):
         belief = replace(problem().data.belief, frame=np.array(frames))
         sparse = replace(problem(), data=replace(problem().data, belief=belief))
         np.testing.assert_array_equal(limb_sizes(sparse, WHOLE, wild), largest)
 
 
 def test_windows_tell_the_same_as_the_whole_clip() -> None:
-    size = np.full(len(COLUMN), 2.0 * SIZES.usual_size)
+    size = np.full(len(COLUMN), 2.0 * USUAL_SIZE)
     whole = trembling(size)
     spans = list(windows(FRAMES, 20, 6))
     assert len(spans) == 3
