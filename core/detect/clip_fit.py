@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .. import MOST_FRAMES
 from ..arrays import Array, BoolArray
 from ..errors import InputError, pluralize
 from .continuity import repeated_results
-from .detected_frames import MOST_FRAMES, DetectedFrames
+from .detected_frames import DetectedFrames
 from .keypoints import People, SeenPeople, confidences
 
 

@@ -11,7 +11,6 @@ from ..errors import InputError, shown
 from ..files.kinds import number_array
 from .layouts import Layout, layout_of, layout_words, with_hands
 
-MOST_FRAMES = 10**6
 MOST_PEOPLE = 100  # people of one frame; the performer among more is nobody's take
 MOST_POINTS = 8 * 10**6  # points of all people in all frames of a file
 FARTHEST_PX = 1e7  # of a coordinate from the origin; float32 counts single pixels up to there

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import MOST_FRAMES
 from ..arrays import Array
 from ..errors import InputError, shown
 from ..files.json_file import read_json_value
@@ -16,7 +17,6 @@ from .detected_frames import (
     BODY,
     FARTHEST_M,
     FARTHEST_PX,
-    MOST_FRAMES,
     DetectedFrames,
     DetectedPerson,
     Everyone,

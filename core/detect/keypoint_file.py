@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from .. import FRAME_STARTS, MOST_FRAMES
 from ..errors import InputError, shown
 from ..files.fields import Fields
 from ..files.json_file import read_json_value, write_json
@@ -17,7 +18,6 @@ from .clip_fit import held_against_clip
 from .detected_frames import (
     FARTHEST_M,
     FARTHEST_PX,
-    MOST_FRAMES,
     DetectedFrames,
     DetectedPerson,
     Everyone,
@@ -54,7 +54,7 @@ class OwnFile(Record):
     """Body points of the layout own, each once; other layouts ignore it."""
     detector: Detector | None = None
     """What saw the points; shown to people."""
-    frame_start: Annotated[int, Whole(-(10**6), 10**6)] | None = None
+    frame_start: Annotated[int, Whole(*FRAME_STARTS)] | None = None
     """Scene frame of the first entry, which is the clip's first frame."""
     fps: Annotated[float, Number(1.0, 1000.0, "frames per second")] | None = None
     """Frames per second of the clip."""

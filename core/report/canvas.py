@@ -177,8 +177,13 @@ def side_directions(camera: Camera) -> Array:
     return np.stack([ahead, UP, np.cross(UP, ahead)])
 
 
-def draw_grid(tile: Canvas, step: float, floor: float) -> None:
-    """Draw lines every `step` pixels from the middle and from the row `floor`, which is darker."""
+GRID_M = 0.5
+"""Between the lines of a grid that sizes are read off."""
+
+
+def draw_grid(tile: Canvas, scale: float, floor: float) -> None:
+    """Draw a grid of `scale` pixels a meter from the middle and from the row `floor`, which is darker."""
+    step = scale * GRID_M
     reach = int(max(tile.width, tile.height) / step) + 1
     for number in np.arange(-reach, reach + 1):
         x, y = 0.5 * tile.width + step * number, floor - step * number

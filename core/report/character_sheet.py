@@ -6,13 +6,12 @@ import numpy as np
 
 from ..arrays import Array, Image
 from ..camera.camera import Camera
-from .canvas import PAPER, Canvas, ascii_text, draw_grid, side_directions
+from .canvas import GRID_M, PAPER, Canvas, ascii_text, draw_grid, side_directions
 from .mannequin import CharacterFigure, draw_character
 from .overlay_sheet import GAP, frame_label, sheet
 from .stick_figure import square_of, squares_around
 
 SIDE = 220
-GRID_M = 0.5
 ROOM = 1.15
 """Side of the view from the side, in heights or widths of the largest figure."""
 
@@ -70,7 +69,7 @@ def _from_side(figure: CharacterFigure, camera: Camera, side_m: float, floor_m: 
     scale = SIDE / side_m
     low_m = min(float(figure.points[:, 2].min()), floor_m) - 0.5 * (1.0 - 1.0 / ROOM) * side_m
     tile = Canvas(SIDE, SIDE, PAPER)
-    draw_grid(tile, scale * GRID_M, SIDE - scale * (floor_m - low_m))
+    draw_grid(tile, scale, SIDE - scale * (floor_m - low_m))
 
     def project(points: Array) -> tuple[Array, Array]:
         right, _, away = axes @ (points - middle).T

@@ -18,7 +18,7 @@ from ..take.steady_camera import steadied_picture
 from ..take.take import Take
 from ..terms.contours import ContourModel
 from ..video.clip import Clip
-from .canvas import PAPER, SCALE, Canvas, draw_grid, side_directions, write_png
+from .canvas import GRID_M, PAPER, SCALE, Canvas, draw_grid, side_directions, write_png
 from .overlay_sheet import CELL_WIDTH, LABEL, MARGIN, evenly_spaced_frames, frame_label, overlay_sheet, sheet
 from .stick_figure import draw_figure, legend, stick_figure
 
@@ -44,7 +44,6 @@ def _reduced(image: Image) -> Image:
 COLUMNS = 6
 SIDE_WIDTH, SIDE_HEIGHT = 220, 240
 PADDING_M = 0.1
-GRID_M = 0.5
 
 
 def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
@@ -66,7 +65,7 @@ def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
     canvas, cells = sheet(title, footer, frames, COLUMNS, SIDE_WIDTH, SIDE_HEIGHT)
     for cell in cells:
         tile = Canvas(cell.width, cell.height, PAPER)
-        draw_grid(tile, scale * GRID_M, free - scale * (floor - foot))
+        draw_grid(tile, scale, free - scale * (floor - foot))
 
         def project(points: Array, frame: int = cell.frame) -> tuple[Array, Array]:
             right, upward, away = axes @ (points - origin[frame]).T

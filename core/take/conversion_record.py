@@ -10,13 +10,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
+from .. import MOST_FRAMES
 from ..errors import InputError
 from ..files.json_file import read_json, write_json
 from ..files.kinds import ByName, Items, Number, Whole
 from ..files.records import Record
 from .evidence import (
     FARTHEST_FRAME,
-    MOST_FRAMES,
     FileDigests,
     Frame,
     FrameCount,

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
+from .. import MOST_FRAMES
 from ..detect.keypoints import BODY_POINTS
 from ..errors import pluralize
 from ..files.kinds import ByName, Choice, Items, Number, Text, Whole, relative_path
@@ -34,7 +35,7 @@ def in_order(kinds: tuple[str, ...] | list[str]) -> tuple[str, ...]:
 
 LONGEST_LINE, LONGEST_NOTE = 1000, 10_000
 MOST_NOTES, MOST_FILES = 1000, 100
-MOST_FRAMES, FARTHEST_FRAME = 10**6, 10**7
+FARTHEST_FRAME = 10**7
 
 Line = Annotated[str, Text(LONGEST_LINE)]
 Notes = Annotated[tuple[Annotated[str, Text(LONGEST_NOTE)], ...], Items("sentences", 0, MOST_NOTES)]

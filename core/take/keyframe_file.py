@@ -7,6 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
+from .. import MOST_FRAMES
 from ..arrays import chunks
 from ..body.human import HUMAN
 from ..body.kinematics import Body
@@ -112,7 +113,7 @@ def write_keyframes(path: Path, keyframes: Sequence[Keyframe], body: Body, frame
 
 
 def _check_frames(path: Path, frames: Sequence[int], frame_start: int, frame_count: int | None) -> None:
-    last = frame_start + (frame_count or 10**6) - 1
+    last = frame_start + (frame_count or MOST_FRAMES) - 1
     seen: set[int] = set()
     for index, frame in enumerate(frames):
         if not frame_start <= frame <= last:

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from .. import MOST_FRAMES
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.actor import Actor
 from ..body.human import HUMAN, LIMBS
@@ -17,7 +18,7 @@ from ..errors import ConversionError, shown
 from ..files.json_file import read_json, write_json
 from ..files.kinds import ByName, Choice, Items, Kind, NumberArray, Whole, number_array, refuse
 from ..files.records import Record
-from .evidence import MOST_FRAMES, Frame, FrameCount, FrameRate, Line
+from .evidence import Frame, FrameCount, FrameRate, Line
 
 
 @dataclass(frozen=True, eq=False)

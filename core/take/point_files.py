@@ -13,13 +13,13 @@ from pathlib import Path
 
 import numpy as np
 
+from .. import MOST_FRAMES
 from ..arrays import Array
 from ..body.human import HUMAN
 from ..errors import InputError, describe_unexpected, shown
 from ..files.fields import listed
 from ..files.json_file import write_atomically
 from ..files.paths import regular_file_size
-from .evidence import MOST_FRAMES
 
 LARGEST_BYTES = 2**30
 MOST_POINTS = 10_000

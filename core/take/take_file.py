@@ -9,6 +9,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any
 
+from .. import FRAME_STARTS, MOST_FRAMES
 from ..body.actor import Actor, Segments
 from ..body.body_volume import TRUNK
 from ..body.human import HUMAN
@@ -39,7 +40,6 @@ from .take import Take, check_evidence, with_evidence
 
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
 """What a marker may be bound to: a segment of the skeleton, or all between hips and shoulders."""
-MOST_FRAMES = 10**6
 MOST_MARKERS, LONGEST_MARKER_NAME = 64, 200
 MARKER_NAME = Text(
     LONGEST_MARKER_NAME, f"one line of at most {LONGEST_MARKER_NAME} visible characters", one_line=True
@@ -51,7 +51,7 @@ SHORTEST_M, TALLEST_M = 0.5, 3.0
 USUAL_HEIGHT_M = 1.75
 """Of a performer whose height nobody says."""
 FRAME_RATE = Number(1.0, 1000.0, "frames per second")
-FRAME_START = Whole(-(10**6), 10**6)
+FRAME_START = Whole(*FRAME_STARTS)
 
 
 def check_height(height_m: float, name: str) -> None:

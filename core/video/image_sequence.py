@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import MOST_PIXELS
+from .. import MOST_FRAMES, MOST_PIXELS
 from ..arrays import Image
 from ..errors import InputError
 from ..files.fields import listed
@@ -74,7 +74,6 @@ def _is_whole(data: bytes) -> bool:
     return False
 
 
-MOST_IMAGES = 10**6  # images of one folder at most; eleven hours of film
 EXTENSIONS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".jp2", ".ppm", ".pgm"})
 PATTERN = re.compile(r"(#+|%0?\d*d)")
 LAST_NUMBER = re.compile(r"(\d+)(?!.*\d)")
@@ -234,9 +233,9 @@ def _numbered(folder: Path, head: str, tail: str) -> list[Path]:
 
 
 def _limited(folder: Path, images: Iterator[Path]) -> list[Path]:
-    found = list(islice(images, MOST_IMAGES + 1))
-    if len(found) > MOST_IMAGES:
-        raise InputError(f"{folder}: holds more than {MOST_IMAGES} images; name a folder of fewer")
+    found = list(islice(images, MOST_FRAMES + 1))
+    if len(found) > MOST_FRAMES:
+        raise InputError(f"{folder}: holds more than {MOST_FRAMES} images; name a folder of fewer")
     return found
 
 

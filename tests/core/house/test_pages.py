@@ -10,7 +10,7 @@ import pytest
 from _boot import ROOT
 from _house import all_sentences, sentences, without_names
 from _synthetic_take import write_synthetic_take
-from keymark.core import MOST_PIXELS
+from keymark.core import MOST_FRAMES, MOST_PIXELS
 from keymark.core.body import posture
 from keymark.core.camera import camera_fields
 from keymark.core.detect import detected_frames, detector_formats, keypoint_file
@@ -32,7 +32,6 @@ from keymark.core.take import (
     motion,
     take_file,
 )
-from keymark.core.video import image_sequence
 from keymark.operators.cli.commands.character import CHARACTER
 from keymark.operators.cli.commands.retarget import RETARGET
 
@@ -69,7 +68,7 @@ FORMATS = {
     "lists and objects in a file": f"{json_file.MOST_LISTS}, {json_file.DEEPEST} levels deep",
     "a path; a name in it": f"{kinds.LONGEST_PATH} characters; {kinds.LONGEST_NAME_BYTES} bytes",
     "takes of a shoot": f"{discovery.MOST_TAKES}",
-    "frames of a take": f"{take_file.MOST_FRAMES}",
+    "frames of a take": f"{MOST_FRAMES}",
     "keyframes of a take": f"{keyframe_file.MOST_KEYFRAMES}",
     "markers of a take; a marker's name": (
         f"{take_file.MOST_MARKERS}; {take_file.LONGEST_MARKER_NAME} characters"
@@ -79,14 +78,14 @@ FORMATS = {
     ),
     "files of keypoints of a take": f"{conversion_settings.MOST_KEYPOINT_FILES}",
     "width, height of a clip's pictures; pixels of one": f"{camera_fields.LARGEST_SIDE_PX}; {MOST_PIXELS}",
-    "images of a sequence": f"{image_sequence.MOST_IMAGES}",
+    "images of a sequence": f"{MOST_FRAMES}",
     "distance of keyframes from the origin": f"{posture.FARTHEST_M:.0f} m",
     "distance of cameras from the origin": f"{camera_fields.FARTHEST_M:.0f} m",
 }
 KEYPOINTS = {
     "a file": mib(keypoint_file),
     "a file of a detector's folder": f"{detector_formats.LARGEST_FILE_BYTES // 2**20} MiB",
-    "frames; numbered files of a folder": f"{detected_frames.MOST_FRAMES}",
+    "frames; numbered files of a folder": f"{MOST_FRAMES}",
     "people in a frame": f"{detected_frames.MOST_PEOPLE}",
     "points of all people in all frames": f"{detected_frames.MOST_POINTS}",
     "distance of a point from the picture's corner; of a guess from the hips": (

@@ -124,7 +124,7 @@ def test_an_image_that_claims_gigabytes_is_refused(size: tuple[int, int], tmp_pa
 
 
 def test_a_folder_of_too_many_images_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(image_sequence, "MOST_IMAGES", 5)
+    monkeypatch.setattr(image_sequence, "MOST_FRAMES", 5)
     for number in range(6):
         (tmp_path / f"{number}.png").touch()
     with pytest.raises(InputError, match="holds more than 5 images"):
