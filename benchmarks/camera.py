@@ -116,7 +116,7 @@ def walk_of(folder: Path, take: Take) -> Uprights:
     if file is None or take.frame_count is None:
         return Uprights.none()
     people = read_keypoints(file, take.frame_count, take.camera.resolution, take.fps, take.frame_start)
-    seen = performer_keypoints(replace(take, keypoints=(people,), keyframes=()), None)
+    seen = performer_keypoints(replace(take, keypoints=(people,), keyframes=()))
     return standing_keypoints(seen, take.body, take.fps)
 
 

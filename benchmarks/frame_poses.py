@@ -67,7 +67,7 @@ def measure(folder: Path, libraries: tuple[Library, ...], step: int) -> dict[str
     keypoints = nothing
     if file is not None:
         people = read_keypoints(file, tracks.frame_count, take.camera.resolution)
-        keypoints = performer_keypoints(replace(take, keypoints=(people,)), None, tracks)
+        keypoints = performer_keypoints(replace(take, keypoints=(people,)), tracks)
     bare = RegionTracks.unmarked(tracks.time_s, tracks.size)
     kinds = {MARKERS: (tracks, nothing), KEYPOINTS: (bare, keypoints), BOTH: (tracks, keypoints)}
     knowledge(take.body, libraries)

@@ -128,7 +128,7 @@ def faults(points: Array) -> dict[str, Array]:
 def placed(trial: Trial, points: Array) -> tuple[float, float, float]:
     """Error of the hips aligned and in place [mm] of a network alone, and how much it gains ."""
     take, tracks = trial.take, trial.reading.tracks
-    keypoints = performer_keypoints(take, None, tracks)
+    keypoints = performer_keypoints(take, tracks)
     seen = SeenPoints.of(take.camera, keypoints, tracks, take.marker_segments)
     found = align(ReferenceMotion(points), take.body, seen, tracks.time_s, take.fps)
     known = found.known

@@ -52,7 +52,7 @@ def place(session: Session) -> Job[Placed]:
     """Find a camera that nobody has placed, take its turning back, and tell who performs when."""
     inputs, reading = session.inputs, session[Reading]
     take, floor_m, found = replace(inputs.take, keypoints=session[Sight].checked), inputs.floor_m, None
-    anyone = performer_keypoints(replace(take, keyframes=()), None, reading.tracks)
+    anyone = performer_keypoints(replace(take, keyframes=()), reading.tracks)
     if inputs.open_lens is not None:
         yield Progress("Placing the camera", 0.0)
         uprights = standing_keypoints(anyone, take.body, take.fps)

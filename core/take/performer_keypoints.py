@@ -17,12 +17,13 @@ from ..errors import pluralize
 from ..markers.region_tracks import RegionTracks
 from ..numerics.markov_chain import NOBODY
 from ..prior.frame_prior import SPEED_M_PER_S
+from ..prior.keyframes import interpolate
 from .take import Take
 
 MIDDLES = {"neck": ("shoulder.L", "shoulder.R"), "pelvis": ("hip.L", "hip.R")}
 """Points that lie about in the middle of two joints."""
-POSED_STD_M, MATCHED_STD_M = 0.1, 0.25
-"""Of a point at a keyframe that is posed or found, by detector and person together."""
+POSED_STD_M = 0.1
+"""Of a point at a posed keyframe, by detector and person together."""
 FARTHEST_STD_M = 1.5
 """Far from every keyframe, in a stage's width."""
 MARKER_STD, HAND_STD = 0.15, 0.1
@@ -43,19 +44,17 @@ ENDS = {
 """Points whose middle lies about in that of a segment."""
 
 
-def performer_keypoints(take: Take, prior: Posture | None, tracks: RegionTracks | None = None) -> Keypoints:
+def performer_keypoints(take: Take, tracks: RegionTracks | None = None) -> Keypoints:
     """The keypoints of the performer from all sources, side by side; its notes say who was taken, and why.
 
-    Args:
-        take: The take.
-        prior: F postures, roughly where the performer is; None where there are too few keyframes for it, of
-            which posed ones still count in their own frames.
-        tracks: The markers' regions, where the clip has been read.
+    Posed keyframes tell where the performer is: two or more in all frames, a single one in its own. What was
+    found does not, which was found by these very keypoints. `tracks`: the markers' regions, where the clip
+    has been read.
     """
-    frames = _frame_count(take, prior, tracks)
+    frames = _frame_count(take, tracks)
+    take = replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None and k.index < frames))
     hand = [people for people in take.keypoints if people.by_hand]
-    posed = any(keyframe.matched is None for keyframe in take.keyframes)
-    vouched = posed or hand or (tracks is not None and tracks.visible.any())
+    vouched = take.keyframes or hand or (tracks is not None and tracks.visible.any())
     parts = []
     for people in take.keypoints:
         chosen, notes = np.zeros(frames, dtype=np.intp), people.notes
@@ -64,14 +63,14 @@ def performer_keypoints(take: Take, prior: Posture | None, tracks: RegionTracks 
             notes += jumped
         if not people.by_hand:
             points, seen = _with_middles(people, take, tracks, frames)
-            expected = _expected(take, prior, tracks, hand, points, seen, frames)
+            expected = _expected(take, tracks, hand, points, seen, frames)
             if expected is not None or people.most_people > 1:
                 chosen = choose_performer(seen, expected, take.fps)
                 if _is_somebody_else(take, people, chosen):
                     chosen = np.full(frames, NOBODY, dtype=np.intp)
                     notes += (_elsewhere(people.source),)
                 else:
-                    notes += _notes(people, chosen, _said_by(take, prior, tracks, hand))
+                    notes += _notes(people, chosen, _said_by(take, tracks, hand))
             if not vouched and people.most_people > 1:
                 people, jumped = _of_same_person(people, chosen, take.fps)
                 notes += jumped
@@ -79,9 +78,7 @@ def performer_keypoints(take: Take, prior: Posture | None, tracks: RegionTracks 
     return Keypoints.side_by_side(parts, frames)
 
 
-def _frame_count(take: Take, prior: Posture | None, tracks: RegionTracks | None) -> int:
-    if prior is not None:
-        return prior.batch[0]
+def _frame_count(take: Take, tracks: RegionTracks | None) -> int:
     if tracks is not None:
         return tracks.frame_count
     return take.frame_count or max((len(people.frames) for people in take.keypoints), default=0)
@@ -92,7 +89,7 @@ def _is_somebody_else(take: Take, people: People, chosen: IndexArray) -> bool:
     fits = [
         chosen[keyframe.index] != NOBODY
         for keyframe in take.keyframes
-        if keyframe.matched is None and keyframe.index < min(len(people.frames), len(chosen))
+        if keyframe.index < len(people.frames)
         if len(people.frames[keyframe.index].pixel)
     ]
     return len(fits) >= FEWEST_KEYFRAMES and float(np.mean(fits)) < FEWEST_FITTING
@@ -141,7 +138,6 @@ def _middle_of(segment: str, names: tuple[str, ...]) -> list[int]:
 
 def _expected(
     take: Take,
-    prior: Posture | None,
     tracks: RegionTracks | None,
     hand: list[People],
     names: tuple[str, ...],
@@ -156,9 +152,8 @@ def _expected(
     std_px = np.full(pixel.shape[:2], 1.0)
     weight = np.ones(frames)
     if take.keyframes:
-        posed = [keyframe.index for keyframe in take.keyframes if keyframe.matched is None]
-        weight[[index for index in posed if index < frames]] = POSED_WEIGHT
-        place, deviation_px, at = _from_keyframes(take, prior, names, frames)
+        weight[list(take.keyframe_indices)] = POSED_WEIGHT
+        place, deviation_px, at = _from_keyframes(take, names, frames)
         pixel[at, : len(names)], std_px[at, : len(names)] = place, deviation_px
     if tracks is not None and markers:
         pixel[:, len(names) :], std_px[:, len(names) :] = tracks.centroid[:frames], MARKER_STD * size_px
@@ -174,23 +169,15 @@ def _expected(
     return Expected(pixel, std_px, weight) if np.isfinite(pixel).any() else None
 
 
-def _from_keyframes(
-    take: Take, prior: Posture | None, names: tuple[str, ...], frames: int
-) -> tuple[Array, Array, IndexArray]:
+def _from_keyframes(take: Take, names: tuple[str, ...], frames: int) -> tuple[Array, Array, IndexArray]:
     """(G, N, 2) pixels of the body's points, NaN for others, (G, N) their deviations [px], and (G,) frames.
 
-    They are those of the prior's postures in all frames, or else of the posed keyframes' own.
+    They are those of postures between the keyframes in all frames, or of the only keyframe in its own.
     """
-    keyframes = [
-        keyframe
-        for keyframe in take.keyframes
-        if keyframe.index < frames and (prior is not None or keyframe.matched is None)
-    ]
-    keyed = np.array([keyframe.index for keyframe in keyframes], dtype=np.intp)
-    index = keyed if prior is None else np.arange(frames)
-    if not len(index):
-        return np.zeros((0, len(names), 2)), np.zeros((0, len(names))), index
-    posture = Posture.stack([keyframe.posture for keyframe in keyframes]) if prior is None else prior
+    keyed = np.array(take.keyframe_indices, dtype=np.intp)
+    index = keyed if len(keyed) < 2 else np.arange(frames)
+    posture = Posture.stack([key.posture for key in take.keyframes])
+    posture = posture if len(keyed) < 2 else interpolate(take.keyframes, frames)
     body, joints = take.body, take.body.skeleton.point_names
     points = body.points(body.pose(posture))  # (G, 13, 3)
     place = np.full((len(index), len(names), 3), np.nan)
@@ -199,17 +186,15 @@ def _from_keyframes(
         if set(ends) <= set(joints):
             place[:, number] = points[:, [joints.index(end) for end in ends]].mean(axis=1)
     pixel, depth = take.camera.project(place, index[:, None])
-    at_key = np.array([POSED_STD_M if key.matched is None else MATCHED_STD_M for key in keyframes])
     away_s = np.abs(index[:, None] - keyed) / take.fps
-    std_m = np.minimum((at_key + SPEED_M_PER_S * away_s).min(axis=1, initial=FARTHEST_STD_M), FARTHEST_STD_M)
+    std_m = np.minimum(POSED_STD_M + SPEED_M_PER_S * away_s.min(axis=1), FARTHEST_STD_M)
     return pixel, std_m[:, None] * take.camera.focal_px / np.where(depth > 0.0, depth, 1.0), index
 
 
-def _said_by(take: Take, prior: Posture | None, tracks: RegionTracks | None, hand: list[People]) -> str:
+def _said_by(take: Take, tracks: RegionTracks | None, hand: list[People]) -> str:
     """Who says which of several people the performer is."""
     voices = ["the clicked or tracked points"] if hand else []
-    keyed = any(prior is not None or keyframe.matched is None for keyframe in take.keyframes)
-    voices += ["the keyframes"] if keyed else []
+    voices += ["the keyframes"] if take.keyframes else []
     voices += ["the markers"] if not voices and tracks is not None and take.markers else []
     if voices:
         return f"the performer is the one that {' and '.join(voices)} show"

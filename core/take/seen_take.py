@@ -1,11 +1,10 @@
 """A take as its footage shows it: what poses and motions are made of, told once for all of them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from ..arrays import BoolArray
 from ..detect.keypoints import Keypoints
 from ..markers.reading import Reading
-from ..prior.keyframes import interpolate
 from .performer_keypoints import performer_keypoints
 from .presence import presence, unseen_limbs
 from .take import Take
@@ -30,13 +29,8 @@ class SeenTake:
 
 
 def seen_take(take: Take, reading: Reading, camera_notes: tuple[str, ...] = ()) -> SeenTake:
-    """Tell the performer from everybody else, and when which of his limbs are seen.
-
-    Clicks, markers and posed keyframes tell it, and not what was found by these very keypoints.
-    """
-    posed = tuple(key for key in take.keyframes if key.matched is None)
-    prior = interpolate(posed, reading.tracks.frame_count) if len(posed) > 1 else None
-    keypoints = performer_keypoints(replace(take, keyframes=posed), prior, reading.tracks)
+    """Tell the performer from everybody else, and when which of his limbs are seen."""
+    keypoints = performer_keypoints(take, reading.tracks)
     there = presence(take, reading, keypoints)
     unseen = unseen_limbs(take, reading.tracks, keypoints, there)
     return SeenTake(take, reading, keypoints, there, unseen, camera_notes)

@@ -13,7 +13,7 @@ from ...core.camera.camera import Camera
 from ...core.detect.keypoints import Keypoints
 from ...core.markers.reading import Reading, clip_times
 from ...core.markers.region_tracks import RegionTracks
-from ...core.prior.keyframes import Keyframe, interpolate
+from ...core.prior.keyframes import Keyframe
 from ...core.progress import Job, within
 from ...core.take.performer_keypoints import performer_keypoints
 from ...core.take.take import Take
@@ -52,8 +52,7 @@ def performers_keypoints(
     known = tuple(keyframes) if any(people.most_people > 1 for people in take.keypoints) else ()
     if known:  # a moving camera is evaluated in every frame, which takes a while
         take = replace(take, camera=read_camera(footage, frames), keyframes=known)
-    prior = interpolate(known, len(frames)) if known else None
-    return performer_keypoints(take, prior, tracks)
+    return performer_keypoints(take, tracks)
 
 
 # --- Read a take from a scene

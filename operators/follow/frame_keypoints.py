@@ -49,7 +49,7 @@ def keypoint_reading(take: PropertyGroup, entry: PropertyGroup) -> KeypointReadi
             return KeypointReading(None, sentence, is_missing=state is None)
         return KeypointReading(people, has_changed=state != entry.contents)
 
-    return _readings.get(key, read) or KeypointReading(None)
+    return _readings.known(key, read) or KeypointReading(None)
 
 
 def clear_readings() -> None:

@@ -97,7 +97,7 @@ def candidate_points(armature_object: bpy.types.Object, match: PropertyGroup) ->
         body = read_body(armature_object, HUMAN)
         return np.stack([body.points(body.pose(candidate_posture(each))) for each in match.candidates])
 
-    points = _points.get(key, found)
+    points = _points.known(key, found)
     assert points is not None
     return points
 

@@ -172,10 +172,10 @@ def picture(scene: Scene, take: PropertyGroup, timeline: Timeline) -> list[Item]
     speed, review = _speed(scene, take), review_of(take)
     if speed is not None:
         key = f"speed {speed.key} {timeline}"
-        items += _views.get(key, lambda: speed_graph(speed.frames, speed.values, timeline)) or []
+        items += _views.known(key, lambda: speed_graph(speed.frames, speed.values, timeline)) or []
     if review is not None and np.isfinite(review.confidence).any():
         key = f"confidence {take.review_key} {timeline}"
-        items += _views.get(key, lambda: confidence_strip(review.frames, review.confidence, timeline)) or []
+        items += _views.known(key, lambda: confidence_strip(review.frames, review.confidence, timeline)) or []
     weak = np.array([weak.frame for weak in take.review.weak_frames], dtype=np.float64)
     proposed = np.array([proposal.frame for proposal in take.proposals], dtype=np.float64)
     posed = posed_frames(take) if len(weak) or len(proposed) else ()
@@ -286,4 +286,4 @@ def _speed(scene: Scene, take: PropertyGroup) -> FootageSpeed | None:
         frames = scene_frames(tracks.time_s, footage.first_frame, footage.rate)
         return FootageSpeed(key, frames, marker_speed(tracks))
 
-    return _speeds.get(key, read)
+    return _speeds.known(key, read)

@@ -19,7 +19,7 @@ from ..bridge.pose import write_posture
 from ..bridge.review_curves import write_review_curves
 from ..bridge.scene_frames import at_scene_frame, showing_action
 from ..keyframes.scene_session import SceneSession
-from ..shell.results import clear_review, keep_reading, keep_reconstruction, keep_review, reconstructed_again
+from ..shell.results import clear_review, keep_reading, keep_review, reconstructed_again
 from ..shell.takes import actor_of, take_by_identifier
 
 ENDS = ("save_pre", "undo_pre", "redo_pre", "load_pre")
@@ -99,7 +99,6 @@ def write_result(scene: bpy.types.Scene, made: SceneSession, judged: Review) -> 
     take.motion_action.use_fake_user = True
     reconstructed_again(take)
     keep_reading(take, made.session[Reading])
-    keep_reconstruction(take, result)
     keep_review(take, judged)
     show_review(take, judged)
     return take

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import bpy
 
@@ -14,7 +14,6 @@ from ...core.files.digest import ArrayCache, Arrays, digest
 
 if TYPE_CHECKING:
     from ...core.arrays import Array
-    from ...core.estimate.reconstruct import Reconstruction
     from ...core.markers.reading import Reading
     from ...core.review.review import Review
 
@@ -22,30 +21,24 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 
 
-class LruCache(Generic[Result]):
+class LruCache(OrderedDict[str, Result | None]):
     """Results by key; when it is full, the least recently used one is dropped. None: known to be absent."""
 
     def __init__(self, size: int = 6) -> None:
+        super().__init__()
         self._size = size
-        self._results: OrderedDict[str, Result | None] = OrderedDict()
 
-    def get(self, key: str, load: Callable[[], Result | None]) -> Result | None:
+    def known(self, key: str, load: Callable[[], Result | None]) -> Result | None:
         """The result of a key; the first time, what `load` returns."""
-        if key not in self._results:
-            self.put(key, load())
-        self._results.move_to_end(key)
-        return self._results[key]
+        self[key] = self[key] if key in self else load()
+        return self[key]
 
-    def put(self, key: str, result: Result | None) -> None:
+    def __setitem__(self, key: str, result: Result | None) -> None:
         """Add or replace a result."""
-        self._results[key] = result
-        self._results.move_to_end(key)
-        while len(self._results) > self._size:
-            self._results.popitem(last=False)
-
-    def clear(self) -> None:
-        """Drop all results."""
-        self._results.clear()
+        super().__setitem__(key, result)
+        self.move_to_end(key)
+        while len(self) > self._size:
+            self.popitem(last=False)
 
 
 # --- Cache of a take's results
@@ -68,20 +61,8 @@ _reviews: "LruCache[Review]" = LruCache()
 _speeds: "LruCache[FootageSpeed]" = LruCache()  # by the take's identifier and the key of its reading
 
 
-class Made(OrderedDict[str, object]):
-    """Results of sessions' stages by the digest of all that they depend on; the latest ones."""
-
-    def __setitem__(self, key: str, result: object) -> None:
-        """Add a result, and drop the oldest ones."""
-        super().__setitem__(key, result)
-        while len(self) > MOST_MADE:
-            self.popitem(last=False)
-
-
-MOST_MADE = 12
-MADE = Made()
-_reconstructions: "LruCache[Reconstruction]" = LruCache(2)
-"""The last one of each take, by the take's identifier."""
+MADE: LruCache[object] = LruCache(12)
+"""Results of sessions' stages by the digest of all that they depend on."""
 
 
 def reading_of(take: bpy.types.PropertyGroup) -> "Reading | None":
@@ -99,7 +80,7 @@ def keep_reading(take: bpy.types.PropertyGroup, reading: "Reading") -> None:
     from ...core.markers.reading import reading_arrays
 
     known = take.reading_key == reading.key and reading_of(take) is not None
-    _readings.put(reading.key, reading)
+    _readings[reading.key] = reading
     take.reading_key = reading.key
     if not known:
         _save(reading.key, reading_arrays(reading))
@@ -118,7 +99,7 @@ def keep_review(take: bpy.types.PropertyGroup, review: "Review") -> None:
     """Keep the review of a take's motion, in memory and on disk."""
     arrays = review.to_arrays()
     key = f"review-{digest(*(part for name in sorted(arrays) for part in (name, arrays[name])))}"
-    _reviews.put(key, review)
+    _reviews[key] = review
     take.review_key = key
     _save(key, arrays)
 
@@ -130,30 +111,20 @@ def clear_review(take: bpy.types.PropertyGroup) -> None:
         shown.property_unset(name)
 
 
-def last_reconstruction(take: bpy.types.PropertyGroup) -> "Reconstruction | None":
-    """The take's last reconstruction in this session, from which the next one starts."""
-    return _reconstructions.get(take.identifier, lambda: None)
-
-
-def keep_reconstruction(take: bpy.types.PropertyGroup, reconstruction: "Reconstruction") -> None:
-    """Keep a take's reconstruction in memory."""
-    _reconstructions.put(take.identifier, reconstruction)
-
-
 def speed_of(take: bpy.types.PropertyGroup) -> "FootageSpeed | None":
     """The speed by which keyframes were last proposed in this session, of the take's reading."""
-    return _speeds.get(f"{take.identifier} {take.reading_key}", lambda: None)
+    return _speeds.get(f"{take.identifier} {take.reading_key}")
 
 
 def keep_speed(take: bpy.types.PropertyGroup, frames: "Array", values: "Array") -> None:
     """Keep in memory the speed in a take's footage, (F,) [px per frame] at scene frames (F,)."""
     speed = FootageSpeed(f"speed-{digest(frames, values)}", frames, values)
-    _speeds.put(f"{take.identifier} {take.reading_key}", speed)
+    _speeds[f"{take.identifier} {take.reading_key}"] = speed
 
 
 def clear_cache() -> None:
     """Drop all results from memory; those on disk stay."""
-    for cache in (_readings, _reviews, _reconstructions, _speeds, MADE):
+    for cache in (_readings, _reviews, _speeds, MADE):
         cache.clear()
 
 
@@ -168,7 +139,7 @@ def _load(cache: LruCache[Result], key: str, from_arrays: Callable[[Arrays], Res
             return None if arrays is None else from_arrays(arrays)
         return None
 
-    return cache.get(key, stored)
+    return cache.known(key, stored)
 
 
 def _save(key: str, arrays: Arrays) -> None:

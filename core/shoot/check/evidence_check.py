@@ -11,7 +11,6 @@ from ...arrays import Array
 from ...detect.keypoints import Keypoints, People, mirrored_point
 from ...errors import KeymarkError
 from ...files.fields import listed
-from ...prior.keyframes import interpolate
 from ...take.clip_check import check_frame_count, check_in_front
 from ...take.performer_keypoints import performer_keypoints
 from ...take.take import Take
@@ -137,10 +136,9 @@ def check_keypoints(take: Take, frames: int, findings: Findings) -> tuple[Keypoi
 
 def _readout(take: Take, people: People, findings: Findings) -> KeypointReadout:
     name = Path(people.file).name or people.source
-    prior = interpolate(take.keyframes, take.frame_count or 0) if len(take.keyframes) > 1 else None
-    performer = performer_keypoints(take, prior)
+    performer = performer_keypoints(take)
     # One person all along is compared even where the keyframes have somebody else perform.
-    compared = performer if people.most_people > 1 else performer_keypoints(replace(take, keyframes=()), None)
+    compared = performer if people.most_people > 1 else performer_keypoints(replace(take, keyframes=()))
     error = _check_agreement(take, compared, name, findings)
     found = performer.seen.any(axis=1)
     share = float(found.mean())

@@ -46,7 +46,7 @@ def propose_command(arguments: argparse.Namespace, console: Console) -> None:
 def _speed_job(take: Take) -> Job[EvidenceSpeed]:
     """V_sum of the take's evidence."""
     reading = yield from stretch(read_footage(take), 0.0, READING_SHARE)
-    keypoints = performer_keypoints(take, None, reading.tracks)
+    keypoints = performer_keypoints(take, reading.tracks)
     moved = evidence_speed(reading.tracks, take.marker_segments, keypoints, reading.album)
     return (yield from within("Measuring the speed", moved, READING_SHARE, 1.0))
 

@@ -194,9 +194,7 @@ def test_a_jump_to_a_passer_by_is_left_out(failing: Callable[[str], Path], plain
     needs_network()
     take = unposed(plain_walk, failing("10-another-person-in-between/passer_by.json"))
     reading = run(read_footage(replace(take, contours=False)))
-    found: Keypoints = performer_keypoints(
-        replace(take, keypoints=run(check(take, reading))), None, reading.tracks
-    )
+    found: Keypoints = performer_keypoints(replace(take, keypoints=run(check(take, reading))), reading.tracks)
     np.testing.assert_array_equal(np.flatnonzero(~found.seen.any(axis=1)), JUMPED)
     assert any("the 20 frames that show him are left out" in note for note in found.notes)
 

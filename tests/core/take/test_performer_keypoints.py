@@ -52,7 +52,7 @@ def assert_shows(found: Keypoints, people: People, truth: list[int]) -> None:
 
 def test_keyframes_say_who_the_performer_is(take: Take) -> None:
     people, truth = two_people(take)
-    found = performer_keypoints(replace(take, keypoints=(people,)), interpolate(take.keyframes, FRAMES))
+    found = performer_keypoints(replace(take, keypoints=(people,)))
     assert_shows(found, people, truth)
     (note,) = found.notes
     assert note == (
@@ -63,11 +63,11 @@ def test_keyframes_say_who_the_performer_is(take: Take) -> None:
 def test_keyframes_count_in_their_own_frames_before_there_is_a_prior(take: Take) -> None:
     people, truth = two_people(take)
     one = replace(take, keyframes=take.keyframes[1:2], keypoints=(people,))
-    found = performer_keypoints(one, None)
+    found = performer_keypoints(one)
     assert_shows(found, people, truth)
     assert "the keyframes show" in found.notes[0]
     matched = replace(one.keyframes[0], matched=Matched("walking", "Left foot lands", False, 0.9))
-    assert "click on another" in performer_keypoints(replace(one, keyframes=(matched,)), None).notes[0]
+    assert "click on another" in performer_keypoints(replace(one, keyframes=(matched,))).notes[0]
 
 
 @pytest.mark.parametrize("twin", [False, True])
@@ -78,7 +78,7 @@ def test_a_click_says_it_before_there_are_keyframes(take: Take, twin: bool) -> N
     click = SeenPeople(place[None, None], np.ones((1, 1)), np.full((1, 1, 3), np.nan))
     frames = tuple(click if index == 7 else nobody for index in range(FRAMES))
     clicks = People(("hip.L",), "clicks", people.size, frames, by_hand=True)
-    found = performer_keypoints(replace(take, keyframes=(), keypoints=(people, clicks)), None)
+    found = performer_keypoints(replace(take, keyframes=(), keypoints=(people, clicks)))
     assert found.names == (*people.names, "hip.L") and found.sources[-1] == "clicks"
     wanted = [1 - row for row in truth] if twin else truth
     for index, (frame, row) in enumerate(zip(people.frames, wanted, strict=True)):
@@ -108,14 +108,14 @@ def test_markers_say_it_without_keyframes(take: Take, twin: bool) -> None:
         quality=np.ones((FRAMES, markers)),
         clipped=np.zeros((FRAMES, markers), dtype=bool),
     )
-    found = performer_keypoints(replace(take, keyframes=(), keypoints=(people,)), None, tracks)
+    found = performer_keypoints(replace(take, keyframes=(), keypoints=(people,)), tracks)
     assert_shows(found, people, [1 - row for row in truth] if twin else truth)
     assert "the markers show" in found.notes[0]
 
 
 def test_nothing_says_it(take: Take) -> None:
     people, truth = two_people(take)
-    found = performer_keypoints(replace(take, keyframes=(), keypoints=(people,)), None)
+    found = performer_keypoints(replace(take, keyframes=(), keypoints=(people,)))
     same = [
         bool((found.pixel[index] == people.frames[index].pixel[row]).all()) for index, row in enumerate(truth)
     ]
@@ -131,7 +131,7 @@ def test_somebody_else_is_left_out_and_noted(take: Take) -> None:
     people = People(
         take.body.skeleton.point_names, "detector", take.camera.resolution, frames, notes=("Read.",)
     )
-    found = performer_keypoints(replace(take, keypoints=(people,)), interpolate(take.keyframes, FRAMES))
+    found = performer_keypoints(replace(take, keypoints=(people,)))
     np.testing.assert_array_equal(np.flatnonzero(~found.seen.any(axis=1)), np.arange(10, 16))
     assert found.notes[0] == "Read." and "6 of 30 frames" in found.notes[1]
 
@@ -143,7 +143,7 @@ def test_a_detector_of_another_clip_is_left_out(take: Take) -> None:
     none = np.full((1, 13, 3), np.nan)
     frames = tuple(SeenPeople(pixel[index][None], np.ones((1, 13)), none) for index in range(FRAMES))
     people = People(take.body.skeleton.point_names, "detector", take.camera.resolution, frames)
-    found = performer_keypoints(replace(take, keypoints=(people,)), interpolate(take.keyframes, FRAMES))
+    found = performer_keypoints(replace(take, keypoints=(people,)))
     assert not found.seen.any()
     (note,) = found.notes
     assert "most of the posed keyframes" in note and "left out" in note
@@ -153,11 +153,11 @@ def test_what_a_person_placed_is_taken_as_it_is(take: Take) -> None:
     far = np.full((1, 1, 2), 3.0)
     frame = SeenPeople(far, np.ones((1, 1)), np.full((1, 1, 3), np.nan))
     people = People(("head",), "tracks", take.camera.resolution, (frame,) * (FRAMES - 4), by_hand=True)
-    found = performer_keypoints(replace(take, keypoints=(people,)), interpolate(take.keyframes, FRAMES))
+    found = performer_keypoints(replace(take, keypoints=(people,)))
     assert found.frame_count == FRAMES and found.notes == ()
     np.testing.assert_array_equal(found.seen[:, 0], np.arange(FRAMES) < FRAMES - 4)
 
 
 def test_a_take_without_keypoints(take: Take, tmp_path: Path) -> None:
-    found = performer_keypoints(take, interpolate(take.keyframes, FRAMES))
+    found = performer_keypoints(take)
     assert found.names == () and found.frame_count == FRAMES

@@ -76,7 +76,8 @@ def error_mm(person: Person) -> tuple[float, float]:
     """Errors of the motion with hips aligned, and in place."""
     bpy.ops.keymark.reconstruct()
     person.step_done("Reconstruct")
-    motion = keymark("operators.shell.results").last_reconstruction(person.take).motion
+    made = reversed(keymark("operators.shell.results").MADE.values())
+    motion = next(result.motion for result in made if hasattr(result, "motion"))
     score = keymark("core.review.score")
     known = person.known
     truth = score.read_truth(known.folder / "truth.json", known.frame_start, len(motion.points))
