@@ -76,6 +76,11 @@ class Spline:
         )
 
 
+def values_of(held: Array | Spline) -> Array:
+    """(K, C) values of keys, or of every frame."""
+    return held.values if isinstance(held, Spline) else held
+
+
 def fit_keys(times: Array, data: Array, keys: IndexArray, exact: IndexArray) -> Spline:
     """The spline with given keys that is nearest to data (F, C) in the sense of least squares.
 

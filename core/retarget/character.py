@@ -42,12 +42,6 @@ LONG_BONES = {limb: tuple(pairwise(joint_roles(limb))) for limb in LIMBS}
 """By limb the roles at both ends of its two long bones."""
 
 
-def other_side(role: str) -> str:
-    """The same role or limb of the other side; the role itself in the middle."""
-    part, dot, side = role.partition(".")
-    return part + dot + {"L": "R", "R": "L"}.get(side, "")
-
-
 # --- A character's bones at rest, as arrays
 
 

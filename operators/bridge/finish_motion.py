@@ -16,7 +16,7 @@ from ...core.feet.ground import floor_notes
 from ...core.feet.natural_extremities import natural_extremities
 from ...core.feet.planted_feet import PlantedFeet, plant_feet
 from ...core.feet.soles import ground_of
-from ...core.keys.hermite import Spline
+from ...core.keys.hermite import Spline, values_of
 from ...core.keys.key_reduction import reduce_keys
 from ...core.keys.rig import Rig, RigPose
 from ...core.keys.tolerances import NEAR_FLOOR_M, foot_rows, point_tolerances
@@ -26,7 +26,7 @@ from .actor_lengths import read_body, read_bones
 from .extremity_curves import turned_extremities
 from .fcurves import moved_paths, posture_columns
 from .keyframes import keyed_frames, unchanged_keyframes
-from .keys import FOUND, copy_keys, ensure_fcurve, write_linear_keys, write_smooth_keys
+from .keys import FOUND, copy_keys, ensure_fcurve, write_column
 from .review_curves import is_review_curve
 from .rig import (
     absence_note,
@@ -72,8 +72,7 @@ class Finished:
     @property
     def keys_before(self) -> int:
         """Number of keys before the reduction."""
-        channels = sum((held.values if isinstance(held, Spline) else held).shape[1] for held in self.motion)
-        return int(channels * len(self.frames))
+        return sum(values_of(held).shape[1] for held in self.motion) * len(self.frames)
 
     def write(
         self, armature_object: bpy.types.Object, source: bpy.types.Action, action: bpy.types.Action
@@ -89,12 +88,7 @@ class Finished:
         count = 0
         for bone, column, path, index in rig_channels(self.rig):
             fcurve = ensure_fcurve(channelbag, path, index, self.rig.bones[bone].name)
-            held = self.motion[bone]
-            if isinstance(held, Spline):
-                at = self.frames[held.keys]
-                write_smooth_keys(fcurve, at, held.values[:, column], held.slopes[:, column])
-            else:
-                write_linear_keys(fcurve, self.frames, held[:, column])
+            write_column(fcurve, self.frames, self.motion[bone], column)
             count += len(fcurve.keyframe_points)
         written = set(moved_paths(armature_object, self.body.skeleton))
         written |= {bone_path(bone.name, channel) for bone in self.rig.bones for channel in ALL_PATHS}

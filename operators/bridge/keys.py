@@ -9,12 +9,16 @@ animator put right in the picture alone.
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.arrays import Array, BoolArray, SingleArray
+
+if TYPE_CHECKING:
+    from ...core.keys.hermite import Spline
 
 Keys = dict[str, NDArray[np.generic]]  # properties of N keys by name: (N,), or (N, 2) for coordinates
 Column = tuple[str, int, str, Array]  # data path, array index, group and values (F,) of an F-curve
@@ -260,19 +264,23 @@ def mark_generated(channelbag: bpy.types.ActionChannelbag) -> None:
         _write_keys(fcurve, _as_generated(_read_keys(fcurve)))
 
 
-def write_smooth_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array, slopes: Array) -> None:
-    """Replace a curve's keys by the animator's own at rising frames (K,), with slopes (K,) per frame.
+def write_column(fcurve: bpy.types.FCurve, frames: Array, held: "Array | Spline", column: int) -> None:
+    """Replace a curve's keys by the animator's own: few of them, or values on each of the frames (F,).
 
-    The handles lie at a third of the way to the next key and are aligned: between two keys the curve is the
-    cubic that has the keys' values and slopes.
+    The handles of few keys lie at a third of the way to the next one and are aligned: between two keys the
+    curve is the cubic that has the keys' values and slopes.
     """
-    keys = _new_keys(frames, values, POSED)
-    third = np.diff(frames) / 3.0
+    if isinstance(held, np.ndarray):
+        write_linear_keys(fcurve, frames, held[:, column])
+        return
+    at, values, slopes = frames[held.keys], held.values[:, column], held.slopes[:, column]
+    keys = _new_keys(at, values, POSED)
+    third = np.diff(at) / 3.0
     before, after = np.concatenate([third[:1], third]), np.concatenate([third, third[-1:]])
-    keys["handle_left"] = np.column_stack([frames - before, values - slopes * before]).astype(np.float32)
-    keys["handle_right"] = np.column_stack([frames + after, values + slopes * after]).astype(np.float32)
+    keys["handle_left"] = np.column_stack([at - before, values - slopes * before]).astype(np.float32)
+    keys["handle_right"] = np.column_stack([at + after, values + slopes * after]).astype(np.float32)
     for name in ("handle_left_type", "handle_right_type"):
-        keys[name] = np.full(len(frames), _enum_value(name, "ALIGNED"), np.int32)
+        keys[name] = np.full(len(at), _enum_value(name, "ALIGNED"), np.int32)
     _write_keys(fcurve, keys)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from ...arrays import Array
-from ...keys.hermite import Spline
+from ...keys.hermite import Spline, values_of
 from .control_channels import Control, ControlChannels
 from .control_plan import IN_FK, ControlKind
 from .point_tolerances import HeldPoint
@@ -31,11 +31,6 @@ class KeyedControl:
     def key_count(self) -> int:
         """Number of keys on all its channels."""
         return sum(values_of(held).size for held in (self.rotation, self.location) if held is not None)
-
-
-def values_of(held: Array | Spline) -> Array:
-    """(K, C) values of keys, or of every frame."""
-    return held.values if isinstance(held, Spline) else held
 
 
 @dataclass(frozen=True, eq=False)

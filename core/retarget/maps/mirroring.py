@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..character import LIMBS, ROLES, Character, other_side
+from ...body.mirror import other_side
+from ..character import LIMBS, ROLES, Character
 from ..recognition.bones import anatomy
 from ..recognition.symmetry import find_planes, mirrored
 from .character_map import CharacterMap, RoleBones

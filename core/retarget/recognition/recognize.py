@@ -7,8 +7,9 @@ import numpy as np
 
 from ...arrays import Array
 from ...body.human import HUMAN
+from ...body.mirror import other_side
 from ...errors import InputError, shown
-from ..character import ARM, CHAINS, LEG, REQUIRED, ROLES, Character, other_side
+from ..character import ARM, CHAINS, LEG, REQUIRED, ROLES, Character
 from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap, RoleBones
 from ..maps.presets import Preset, find_preset

@@ -6,7 +6,7 @@ direction, as if the character's arm were raised first and then stretched. So hi
 places on the limb. Trunk, head, clavicles and feet are upright in both, and are not turned.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,6 @@ from ...body.skeleton import SIDES
 from ...feet.fading import ease
 from ...numerics.vectors import unit
 from .rest_body import RestBody
-from .stage import Stage
 
 CLEAR_BEND_RAD = (np.radians(12.0), np.radians(30.0))
 """Bend of a resting elbow or knee from which its plane begins to count, and counts in full."""
@@ -130,15 +129,28 @@ class PartShape:
     bone: int  # index of the character's bone that it is fixed to
     origin: Array  # (3,) its origin from that bone's joint at rest, canonical [m]
     scale: Array  # (3,) the character's width, depth and length over the performer's, in the segment's axes
+    to_rest: Array  # (3, 3) from those axes to the bone's rest, canonical
+
+    def place(self, source: SegmentMotion, points: Array, joint: Array, turn: Array) -> Array:
+        """(F, 3) where world points (F, 3) near the performer belong on the character, by this part [m].
+
+        Canonical are the joint (F, 3) of its bone and the bone's turn from rest (F, 3, 3).
+        """
+        inside = self.scale * in_segment(source, self.segment, points)
+        return np.asarray(joint + (turn @ (self.origin + inside @ self.to_rest.T)[..., None])[..., 0])
 
 
-def part_shapes(body: RestBody, source: SegmentMotion, size: float) -> tuple[PartShape, ...]:
+def part_shapes(
+    body: RestBody, source: SegmentMotion, size: float, alignment: Mapping[str, Array]
+) -> tuple[PartShape, ...]:
     """The parts of a character that hands may be near: head, chest, pelvis and legs."""
     lengths = source.body.actor.segments_m
     parts: list[PartShape] = []
 
     def add(segment: str, bone: int, origin: Array, *scale: float) -> None:
-        parts.append(PartShape(segment, bone, origin - body.bones[bone].head, np.array(scale)))
+        own = body.bones[bone]
+        to_rest = alignment[own.role].T if body.is_moved(own.role) else np.eye(3)
+        parts.append(PartShape(segment, bone, origin - own.head, np.array(scale), to_rest))
 
     def width(part: str, own_m: float) -> float:
         ratio = np.linalg.norm(body.joint(f"{part}.L") - body.joint(f"{part}.R")) / own_m
@@ -169,29 +181,6 @@ def in_segment(source: SegmentMotion, segment: str, points: Array) -> Array:
     """(F, 3) points of the world in the axes of a performer's segment, from its origin [m]."""
     origin = source.end[segment] if segment in ("head", "chest") else source.start[segment]
     return np.asarray((np.swapaxes(source.turn[segment], -1, -2) @ (points - origin)[..., None])[..., 0])
-
-
-def places_by_part(
-    parts: Sequence[PartShape],
-    source: SegmentMotion,
-    stage: Stage,
-    places: Sequence[Array],
-    turns: Sequence[Array],
-    alignment: Mapping[int, Array],
-    points: Array,
-) -> Array:
-    """(K, F, 3) where world points (F, 3) near the performer belong on the character, by each of K parts [m].
-
-    Canonical are joints (F, 3) and turns from rest (F, 3, 3) of the character's bones; the alignment (3, 3)
-    by bone turns its rest to the performer's.
-    """
-    found = []
-    for part in parts:
-        inside = in_segment(source, part.segment, points)
-        turn = turns[part.bone] @ alignment[part.bone].T
-        origin = places[part.bone] + turns[part.bone] @ part.origin
-        found.append(origin + (turn @ (part.scale * inside)[..., None])[..., 0])
-    return np.stack(found)
 
 
 def distances_m(source: SegmentMotion, segment: str, points: Array) -> Array:

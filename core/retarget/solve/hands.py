@@ -20,7 +20,7 @@ from ...feet.ground import Ground
 from ...numerics.vectors import unit
 from ..character import LONG_BONES
 from ..character_motion import HandGoal
-from .body_frames import distances_m, in_segment, part_shapes, places_by_part
+from .body_frames import distances_m, in_segment, part_shapes
 from .rest_body import RestBody
 from .stage import Stage
 from .two_bone import LimbPose, reach_for, stretched_m
@@ -75,15 +75,11 @@ def hand_goals(
     Places (F, 3) [m] and turns from rest (F, 3, 3) are of the character's bones, trunk and legs solved, arms
     by directions; the alignment (3, 3) is by role.
     """
-    shapes = part_shapes(body, source, stage.size)
-    aligned = {
-        index: alignment[bone.role] if body.is_moved(bone.role) else np.eye(3)
-        for index, bone in enumerate(body.bones)
-    }
+    shapes = part_shapes(body, source, stage.size, alignment)
     goals, shares, floors = {}, {}, {}
     for side in arms:
         wrist, own = source.start[f"hand.{side}"], arms[side].end
-        by_part = places_by_part(shapes, source, stage, places, turns, aligned, wrist)
+        by_part = np.stack([one.place(source, wrist, places[one.bone], turns[one.bone]) for one in shapes])
         end, floors[side] = source.end[f"hand.{side}"], near_floor(source, ground, side)
         along = [wrist, 0.5 * (wrist + end), end]
         weight = np.stack([_near_part(source, shape.segment, along) for shape in shapes])

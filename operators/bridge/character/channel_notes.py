@@ -8,9 +8,9 @@ import numpy as np
 from ....core.arrays import Array
 from ....core.errors import InputError
 from ....core.files.fields import listed
-from ....core.keys.hermite import Spline
+from ....core.keys.hermite import Spline, values_of
 from ....core.retarget.controls.control_channels import Control
-from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, values_of
+from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl
 from ....core.retarget.controls.control_plan import ControlKind
 from ..rotation_modes import bone_path, rotation_path
 from .controls import active_constraints, drivers

@@ -10,11 +10,11 @@ from mathutils import Quaternion
 
 from ....core.arrays import Array
 from ....core.errors import InputError
-from ....core.keys.hermite import Spline
+from ....core.keys.hermite import values_of
 from ....core.retarget.character_motion import Similarity
-from ....core.retarget.controls.control_motion import KeyedControl, values_of
+from ....core.retarget.controls.control_motion import KeyedControl
 from ..actions import channelbag_for
-from ..keys import ensure_fcurve, write_linear_keys, write_smooth_keys
+from ..keys import ensure_fcurve, write_column, write_linear_keys
 from ..object_space import evaluated
 from ..rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
 from .channel_notes import driven_channels, keyed_paths
@@ -122,15 +122,11 @@ def write_keys(keys: RetargetedKeys, armature_object: bpy.types.Object, action: 
     made: list[tuple[str, int]] = []
     for keyed in keys.controls:
         for path, held in keyed_paths(keyed):
-            values = values_of(held)
-            for index in range(values.shape[1]):
+            for index in range(values_of(held).shape[1]):
                 if (path, index) in driven:
                     continue
                 fcurve = ensure_fcurve(channelbag, path, index, keyed.control.name)
-                if isinstance(held, Spline):
-                    write_smooth_keys(fcurve, frames[held.keys], values[:, index], held.slopes[:, index])
-                else:
-                    write_linear_keys(fcurve, frames, values[:, index])
+                write_column(fcurve, frames, held, index)
                 made.append((path, index))
     for (bone, name), value in keys.properties.items():
         path = property_path(bone, name)
