@@ -56,8 +56,8 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
 
 def _and_what_is_seen(take: Take) -> str:
     """The end of a list of what to check: which of its evidence a take may have wrong."""
-    given = [("the markers' segments", take.markers), ("whom the keypoints show", take.keypoints)]
-    *first, last = [what for what, one in given if one] or ["the poses"]
+    checked = [("the markers' segments", take.markers), ("whom the keypoints show", take.keypoints)]
+    *first, last = [what for what, one in checked if one] or ["the poses"]
     return "".join(f", {what}" for what in first) + f" and {last}"
 
 
@@ -90,8 +90,8 @@ def found_notes(take: Take) -> tuple[str, ...]:
     found = [(keyframe, keyframe.matched) for keyframe in take.keyframes if keyframe.matched is not None]
     if not found:
         return ()
-    posed, origin = len(take.keyframes) - len(found), _origin([said for _, said in found])
-    if posed == 0 and all(said.is_referred for _, said in found):
+    posed, origin = len(take.keyframes) - len(found), _origin([match for _, match in found])
+    if posed == 0 and all(match.is_referred for _, match in found):
         notes = [f"no keyframe was posed: the motion rests on {len(found)} {origin}"]
     elif posed == 0:
         notes = [
@@ -101,10 +101,10 @@ def found_notes(take: Take) -> tuple[str, ...]:
             )
         ]
     else:
-        matched = any(not said.is_composed for _, said in found)
+        matched = any(not match.is_composed for _, match in found)
         moved = ", changed the way the posed ones differ from them" if matched else ""
         notes = [f"{posed} of {len(take.keyframes)} keyframes are posed; the others are {origin}{moved}"]
-    doubtful = [(keyframe, said) for keyframe, said in found if said.is_doubtful]
+    doubtful = [(keyframe, match) for keyframe, match in found if match.is_doubtful]
     if doubtful:
         worst = sorted(doubtful, key=lambda one: one[1].confidence)[:MOST_NAMED]
         frames = sorted(keyframe.index + take.frame_start for keyframe, _ in worst)
@@ -117,9 +117,9 @@ def found_notes(take: Take) -> tuple[str, ...]:
 
 
 def _origin(found: Sequence[Matched]) -> str:
-    libraries = sorted({said.library for said in found if not said.is_composed})
-    parts = ["postures of a motion from elsewhere"] if any(said.is_referred for said in found) else []
-    if any(said.is_composed and not said.is_referred for said in found):
+    libraries = sorted({match.library for match in found if not match.is_composed})
+    parts = ["postures of a motion from elsewhere"] if any(match.is_referred for match in found) else []
+    if any(match.is_composed and not match.is_referred for match in found):
         parts.append("postures composed of all libraries")
     parts += [f"postures of the library {' and '.join(libraries)}"] if libraries else []
     return " and ".join(parts)

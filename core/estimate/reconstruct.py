@@ -119,20 +119,20 @@ def check_method(take: Take, method: str) -> None:
 
 
 def _reconstruct(
-    given: SeenTake,
+    shown: SeenTake,
     method: str,
-    said: ReferenceEvidence | NoReference | None,
+    reference: ReferenceEvidence | NoReference | None,
     floor_m: float | None,
 ) -> Job[Reconstruction]:
-    take, reading, keypoints, there = given.take, given.reading, given.keypoints, given.there
-    notes, tracks, referred, shaken = take.notes, reading.tracks, None, given.camera_notes
+    take, reading, keypoints, there = shown.take, shown.reading, shown.keypoints, shown.there
+    notes, tracks, referred, shaken = take.notes, reading.tracks, None, shown.camera_notes
     _check_tracks(take, tracks)
-    if said is not None:
-        notes += said.notes
-        if isinstance(said, ReferenceEvidence):
-            referred, take = said, with_reference(take, said)
+    if reference is not None:
+        notes += reference.notes
+        if isinstance(reference, ReferenceEvidence):
+            referred, take = reference, with_reference(take, reference)
         elif len(take.keyframes) < 2:
-            raise InputError(f"{said.notes[0]}; without it at least 2 keyframes are needed")
+            raise InputError(f"{reference.notes[0]}; without it at least 2 keyframes are needed")
     absent = absence_notes(take, there)
     take = _present(take, there)
     worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps, keypoints)
@@ -148,7 +148,7 @@ def _reconstruct(
     if method == "map":
         ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
         footage = Seen(tracks, take.marker_segments, keypoints, reading.album, ignored, there)
-        unseen = given.unseen
+        unseen = shown.unseen
         belief = _belief(take, prior, doubt, unseen, referred)
         estimate = estimate_whole_clip(take.body, take.camera, footage, belief)
         solution = yield from within("Estimating the motion", estimate, 0.0, 1.0)
@@ -289,7 +289,7 @@ def _motion(
 ) -> Motion:
     points = take.body.points(take.body.pose(posture))
     distance = keyframe_distance(tracks.frame_count, take.keyframe_indices)
-    said = {"nearness": Memberships().near(distance), **(diagnostics or {})}
+    measures = {"nearness": Memberships().near(distance), **(diagnostics or {})}
     spread = np.full((*points.shape, 3), np.nan)
     if covariance is not None:
         spread = point_covariance(take.body, posture, covariance, unseen)
@@ -303,7 +303,7 @@ def _motion(
         spread,
         take.keyframe_indices,
         method,
-        MappingProxyType(said),
+        MappingProxyType(measures),
     )
 
 

@@ -148,10 +148,10 @@ def align(
     placed = place(inside, seen, 0.25 * fps)
     _, location = seen.camera.pose(np.arange(len(own)))
     hips = np.einsum("fij,fj->fi", seen.rotation, placed.place) + location
-    told = np.isfinite(placed.cost)
-    if told.any():
+    known = np.isfinite(placed.cost)
+    if known.any():
         frame = np.arange(len(hips))
-        hips = np.stack([np.interp(frame, frame[told], hips[told, axis]) for axis in range(3)], axis=-1)
+        hips = np.stack([np.interp(frame, frame[known], hips[known, axis]) for axis in range(3)], axis=-1)
     world = np.einsum("fij,fpj->fpi", seen.rotation, inside)
     return AlignedReference(world, hips, placed, lag, exchanged)
 
@@ -189,12 +189,12 @@ def _in_camera(points: Array, turn: Rotation, seen: SeenPoints, fixed: bool) -> 
 def _turn(points: Array, seen: SeenPoints, fixed: bool) -> tuple[float, Rotation]:
     """The turn that the picture prefers, among starts in all headings, and its cost."""
     both = np.isfinite(points).all(axis=(1, 2)) & (seen.confidence > 0.0).any(axis=1)
-    told = np.flatnonzero(both)
-    if len(told) < 2:
+    known = np.flatnonzero(both)
+    if len(known) < 2:
         return np.inf, Rotation.identity()
     # 48: that are asked for the turn
-    told = told[np.unique(np.linspace(0, len(told) - 1, 48).round().astype(int))]
-    some, part = points[told], seen[told]
+    known = known[np.unique(np.linspace(0, len(known) - 1, 48).round().astype(int))]
+    some, part = points[known], seen[known]
     # Z up is Y up in camera axes, where a camera that looks level has a heading alone.
     upright = Rotation.identity() if fixed else Rotation.from_euler("x", -90.0, degrees=True)
     starts = [
@@ -225,7 +225,7 @@ def _cost(points: Array, seen: SeenPoints, fixed: bool, turn: Rotation) -> float
 
 def _refined(points: Array, seen: SeenPoints, fixed: bool, turn: Rotation) -> tuple[float, Rotation]:
     """Gauss-Newton on the turn, of rows weighed by Student's t; and the cost."""
-    told = np.isfinite(points).all(axis=(1, 2))
+    known = np.isfinite(points).all(axis=(1, 2))
     step_rad = 0.01
     cost = _cost(points, seen, fixed, turn)
     for _ in range(6):
@@ -239,7 +239,7 @@ def _refined(points: Array, seen: SeenPoints, fixed: bool, turn: Rotation) -> tu
         )
         squared = (here**2).sum(axis=-1, keepdims=True) / seen.std_m[:, None] ** 2
         weight = np.sqrt((DEGREES + 2.0) / (DEGREES + squared)) / seen.std_m[:, None]
-        row = np.isfinite(here) & told[:, None, None]
+        row = np.isfinite(here) & known[:, None, None]
         if not row.any():
             break
         slope = (((moved - here[..., None]) / step_rad) * weight[..., None])[row]

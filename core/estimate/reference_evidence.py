@@ -124,9 +124,13 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
         index = np.array([key.index for key in posed])
         true = take.body.points(take.body.pose(Posture.stack([key.posture for key in posed])))
         offset = about_hips(true) - points[index]
-        told = np.isfinite(offset).all(axis=(1, 2))
-        if told.any():
-            index, offset, middle = index[told], offset[told], (true - about_hips(true))[told, 0]
+        known = np.isfinite(offset).all(axis=(1, 2))
+        if known.any():
+            index, offset, middle = (
+                index[known],
+                offset[known],
+                (true - about_hips(true))[known, 0],
+            )
             factor = _with_posed(factor, offset, _whitening(take, hips, STD_M)[index])
             share = _bias(tracks.time_s[index], tracks.time_s)
             points = points + np.einsum("fk,kpi->fpi", share, offset)
@@ -161,14 +165,14 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
     return ReferenceEvidence(expected, found, left_out, factor, gain, name, tuple(notes))
 
 
-def with_reference(take: Take, said: ReferenceEvidence) -> Take:
+def with_reference(take: Take, reference: ReferenceEvidence) -> Take:
     """The take with the keyframes found in its reference motion; others found stay where it is silent."""
-    kept = [key for key in take.keyframes if key.matched is None or _stays(key, said)]
-    return replace(take, keyframes=tuple(sorted((*kept, *said.keyframes), key=lambda key: key.index)))
+    kept = [key for key in take.keyframes if key.matched is None or _stays(key, reference)]
+    return replace(take, keyframes=tuple(sorted((*kept, *reference.keyframes), key=lambda key: key.index)))
 
 
-def _stays(key: Keyframe, said: ReferenceEvidence) -> bool:
-    return key.matched is not None and not key.matched.is_referred and bool(said.left_out[key.index])
+def _stays(key: Keyframe, reference: ReferenceEvidence) -> bool:
+    return key.matched is not None and not key.matched.is_referred and bool(reference.left_out[key.index])
 
 
 def _confidence(factor: float) -> float:
@@ -184,10 +188,10 @@ def _is_own_guess(reference: ReferenceMotion, keypoints: Keypoints) -> bool:
     hint = principal_keypoints(keypoints).hint_m if keypoints.names else np.zeros((0, len(STD_M), 3))
     frames = min(len(hint), len(reference.points_m))
     one, other = about_hips(reference.points_m[:frames]), about_hips(hint[:frames])
-    told = np.isfinite(one).all(axis=(1, 2)) & np.isfinite(other).all(axis=(1, 2))
-    if told.sum() < 2:
+    known = np.isfinite(one).all(axis=(1, 2)) & np.isfinite(other).all(axis=(1, 2))
+    if known.sum() < 2:
         return False
-    one, other = one[told].reshape(-1, 3), other[told].reshape(-1, 3)
+    one, other = one[known].reshape(-1, 3), other[known].reshape(-1, 3)
     turn, _ = Rotation.align_vectors(other, one)
     one = turn.apply(one)
     size = float((one * other).sum() / max((one * one).sum(), 1e-9))
@@ -197,11 +201,11 @@ def _is_own_guess(reference: ReferenceMotion, keypoints: Keypoints) -> bool:
 
 def _left_out(aligned: AlignedReference, usual: float, time_s: Array) -> BoolArray:
     """(F,) where a motion fits no better than at other times."""
-    told = np.isfinite(aligned.placed.cost)
+    known = np.isfinite(aligned.placed.cost)
     # 0.3: time over which frames are judged together
     width = 0.3 / usual_step(time_s)
-    near = gaussian(np.where(told, aligned.placed.cost, 0.0), width) / np.maximum(
-        gaussian(1.0 * told, width), 1e-9
+    near = gaussian(np.where(known, aligned.placed.cost, 0.0), width) / np.maximum(
+        gaussian(1.0 * known, width), 1e-9
     )
     return np.asarray(near > (1.0 - OPTIONS.least_gain) * usual)
 
@@ -228,15 +232,15 @@ def _keyframes(
     """Keyframes at even times, where all points are known and no posed keyframe is near."""
     # 0.4: time between the keyframes found in it
     count = max(1, round((time_s[-1] - time_s[0]) / 0.4)) + 1
-    asked = np.unique(np.linspace(0, len(points) - 1, count).round().astype(np.intp))
+    frames = np.unique(np.linspace(0, len(points) - 1, count).round().astype(np.intp))
     near = np.array([key.index for key in posed], dtype=np.intp)
-    apart = np.abs(time_s[asked][:, None] - time_s[near]).min(axis=1, initial=np.inf)
+    apart = np.abs(time_s[frames][:, None] - time_s[near]).min(axis=1, initial=np.inf)
     # None is found within 0.3 s of a posed one.
-    asked = asked[(apart > 0.3) & np.isfinite(points[asked]).all(axis=(1, 2))]
-    if not len(asked):
+    frames = frames[(apart > 0.3) & np.isfinite(points[frames]).all(axis=(1, 2))]
+    if not len(frames):
         return ()
-    posture = fit_posture(take.body, points[asked]).posture
-    return tuple(Keyframe(int(frame), posture[row], matched=matched) for row, frame in enumerate(asked))
+    posture = fit_posture(take.body, points[frames]).posture
+    return tuple(Keyframe(int(frame), posture[row], matched=matched) for row, frame in enumerate(frames))
 
 
 def _bias(at_s: Array, time_s: Array) -> Array:
@@ -258,12 +262,12 @@ def _bias(at_s: Array, time_s: Array) -> Array:
 def own_and_usual_cost(aligned: AlignedReference, seen: SeenPoints) -> tuple[float, float]:
     """What the footage costs given the motion, and given it at other times, forward and backward."""
     inside = np.einsum("fji,fpj->fpi", seen.rotation, aligned.points)
-    told = np.flatnonzero(np.isfinite(aligned.placed.cost))
-    if len(told) < 2:
+    known = np.flatnonzero(np.isfinite(aligned.placed.cost))
+    if len(known) < 2:
         return 1.0, 1.0
     # 400 frames are asked.
-    told = told[np.unique(np.linspace(0, len(told) - 1, 400).round().astype(int))]
-    some, part, count = inside[told], seen[told], len(told)
+    known = known[np.unique(np.linspace(0, len(known) - 1, 400).round().astype(int))]
+    some, part, count = inside[known], seen[known], len(known)
     others = []
     for number in range(OPTIONS.other_times):
         order = np.arange(count)[:: 1 - 2 * (number % 2)]
@@ -275,9 +279,9 @@ def own_and_usual_cost(aligned: AlignedReference, seen: SeenPoints) -> tuple[flo
 def error_factor(aligned: AlignedReference, seen: SeenPoints) -> float:
     """The motion's error in usual ones, by how far limbs' points are off in the picture."""
     squared = (aligned.placed.residual_m**2).sum(axis=-1)  # (F, A) of two axes
-    told = np.isfinite(squared).any(axis=0)
+    known = np.isfinite(squared).any(axis=0)
     usual = seen.mean @ STD_M
-    limb = told & (seen.mean @ LIMBS > 0.99)
+    limb = known & (seen.mean @ LIMBS > 0.99)
     if not limb.any():
         return 1.0
     # The median of two axes' square is 2 log 2 variances.

@@ -163,13 +163,13 @@ def _least_squares(relative: Array, slope: Array, weight: Array, distance: Array
 def _smoothed(depth: Array, unknown: BoolArray, frames: float) -> Array:
     """Distances (F,) smoothed in their logarithm over frames that tell one."""
     logarithm = np.where(unknown, 0.0, np.log(-np.minimum(depth, -1e-3)))
-    told = np.where(unknown, 1e-6, 1.0)
+    weight = np.where(unknown, 1e-6, 1.0)
     middle = np.median(logarithm[~unknown]) if (~unknown).any() else 0.0
     logarithm = np.where(unknown, middle, logarithm)
     smooth = logarithm
     for _ in range(3):
-        smooth = gaussian(told * logarithm, frames) / np.maximum(gaussian(told, frames), 1e-9)
+        smooth = gaussian(weight * logarithm, frames) / np.maximum(gaussian(weight, frames), 1e-9)
         # 0.05: usual error of a frame's own distance, as a share
         doubt = ((logarithm - smooth) / 0.05) ** 2
-        told = np.where(unknown, 1e-6, 1.0 / (1.0 + doubt / DEGREES))
+        weight = np.where(unknown, 1e-6, 1.0 / (1.0 + doubt / DEGREES))
     return np.asarray(-np.exp(smooth))

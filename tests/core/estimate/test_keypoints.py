@@ -310,14 +310,6 @@ def test_before_a_moving_camera() -> None:
     assert error_mm(found) == pytest.approx(error_mm(with_good()), rel=0.3)
 
 
-def test_matched_keyframes_calibrate_nothing() -> None:
-    result = estimate(GOOD, doubt=np.ones(len(POSED)))
-    usual = KeypointModel.usual(BODY, CAMERA, LAYOUT)
-    np.testing.assert_array_equal(result.evidence.keypoints.model.place, usual.place)
-    assert result.keypoints.trust.min() == 1.0
-    assert np.nanmedian(result.keypoints.residual_px) < 3.0
-
-
 def test_errors_are_within_their_interval() -> None:
     inside = []
     for seed in range(3):

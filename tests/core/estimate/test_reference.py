@@ -27,15 +27,11 @@ from keymark.core.estimate.reference_evidence import (
 from keymark.core.estimate.reference_placement import SeenPoints, place
 from keymark.core.markers.reading import Reading
 from keymark.core.markers.region_tracks import RegionTracks
-from keymark.core.prior.frame_prior import process_noise_factor
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import run
 from keymark.core.take.reference import ReferenceMotion
 from keymark.core.take.seen_take import seen_take
 from keymark.core.take.take import Take
-from keymark.core.terms.reference import ExpectedPoints, ReferenceTerm
-from keymark.core.terms.state import ClipState
-from keymark.core.terms.term import NormalEquations
 from scipy.spatial.transform import Rotation
 
 FRAMES = 70
@@ -246,26 +242,3 @@ def test_a_take_with_nothing_posed_follows_it_and_one_set_aside_changes_nothing(
         run(reconstruct(take_of(shuffled), "map", reading))
     with pytest.raises(InputError, match="has 0 keyframes"):
         check_reconstructible(take_of(network()), "interpolation")
-
-
-def test_the_term_descends_its_cost_and_forgives_a_point_far_off() -> None:
-    frames = 6
-    prior = exercise(frames)
-    rng = np.random.default_rng(1)
-    factor = process_noise_factor(prior, np.arange(frames) / 4.0)
-    deviation = 0.3 * rng.normal(size=(frames, HUMAN.dof_count))
-    state = ClipState(BODY, prior, np.arange(frames), factor, deviation, np.zeros((frames, 0)))
-    points = about_hips(BODY.points(BODY.pose(prior)))
-    points[2] = np.nan
-    whitening = np.broadcast_to(np.diag([30.0, 15.0, 30.0]), (*points.shape, 3))
-    term = ReferenceTerm(ExpectedPoints(points, whitening, 0.4), np.full((frames - 1, 1), 0.9))
-    equations = NormalEquations(frames, HUMAN.dof_count)
-    term.add_to(equations, state, 8.0)
-    moved = state.stepped(-1e-4 * equations.gradient, np.inf)[0]
-    assert term.cost(moved).sum() < term.cost(state).sum()
-    assert not equations.gradient[2].any()
-    points[4, 5] += 3.0
-    far = ReferenceTerm(ExpectedPoints(points, whitening, 0.4), term.lasting)
-    pull = NormalEquations(frames, HUMAN.dof_count)
-    far.add_to(pull, state, 1.0)
-    assert np.abs(pull.gradient[4]).max() < 3.0 * np.abs(equations.gradient).max()

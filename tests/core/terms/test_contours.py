@@ -1,7 +1,6 @@
 """Contours and axes of limbs in the image."""
 
 import numpy as np
-import pytest
 from _scene import BODY, CAMERA, exercise
 from keymark.core.body.human import HUMAN
 from keymark.core.terms.contours import FREE, SHAPE, SHARES, SIDES, UNKNOWN, ContourModel, LimbAxes, part_map
@@ -12,25 +11,6 @@ AXES = LimbAxes(MODEL.parts, CAMERA)
 NAMES = MODEL.parts.segments
 FRAME = np.arange(1)
 STEP = 1e-5
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_the_jacobian_agrees_with_central_differences(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    posture = exercise(1).plus(0.1 * rng.normal(size=(1, HUMAN.dof_count)))
-    pose = BODY.pose(posture)
-    predicted = MODEL.evaluate(pose, FRAME)
-    ours = MODEL.normal_jacobian(predicted, predicted.normal, pose)[0]
-
-    def along(step: np.ndarray) -> np.ndarray:
-        moved = MODEL.evaluate(BODY.pose(posture.plus(step)), FRAME).pixel
-        return np.sum(predicted.normal * moved, axis=-1)[0]
-
-    steps = STEP * np.eye(HUMAN.dof_count)
-    theirs = np.stack([(along(step) - along(-step)) / (2 * STEP) for step in steps], axis=-1)
-    error = np.linalg.norm(ours - theirs, axis=-1) / np.linalg.norm(theirs, axis=-1)
-    assert np.median(error) < 0.02
-    assert np.mean(error < 0.1) > 0.75
 
 
 def test_correcting_a_shape_moves_its_contours_as_predicted() -> None:
@@ -72,24 +52,6 @@ def test_the_map_shows_the_nearest_part() -> None:
         assert depth.argmin() == NAMES.index(name)
     assert labels[5, 5] == -1
     assert 0.02 < np.mean(labels >= 0) < 0.2
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_the_axes_jacobian_agrees_with_central_differences(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    posture = exercise(1).plus(0.1 * rng.normal(size=(1, HUMAN.dof_count)))
-    share = rng.uniform(size=(1, len(NAMES)))
-    direction = rng.normal(size=(1, len(NAMES), 2))
-    pose = BODY.pose(posture)
-    world, _ = AXES.points(pose, FRAME, share)
-    ours = AXES.jacobian(pose, FRAME, world, direction)[0]
-
-    def along(step: np.ndarray) -> np.ndarray:
-        moved = BODY.pose(posture.plus(step[None]))
-        return np.sum(direction * AXES.points(moved, FRAME, share)[1], axis=-1)[0]
-
-    theirs = np.stack([(along(s) - along(-s)) / (2 * STEP) for s in STEP * np.eye(HUMAN.dof_count)], axis=-1)
-    np.testing.assert_allclose(ours, theirs, atol=1e-3 * np.abs(theirs).max())
 
 
 def test_what_lies_beyond_a_part_is_its_own_side_s() -> None:

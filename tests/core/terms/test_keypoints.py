@@ -1,7 +1,6 @@
 """Keypoints and depths against differences."""
 
 import numpy as np
-import pytest
 from _scene import BODY, CAMERA, exercise
 from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
@@ -9,7 +8,7 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera
 from keymark.core.detect.keypoints import BODY_POINTS, mirrored_point
-from keymark.core.terms.depths import DepthLinks, depths_jacobian, point_depths
+from keymark.core.terms.depths import DepthLinks, point_depths
 from keymark.core.terms.keypoints import USUAL_PLACES, KeypointModel
 
 FRAMES = 4
@@ -42,17 +41,6 @@ def test_places_at_rest_are_where_people_have_them() -> None:
 def numeric(values, step: float = 1e-6) -> np.ndarray:  # noqa: ANN001
     """Central difference of a function of one number."""
     return (values(step) - values(-step)) / (2.0 * step)
-
-
-@pytest.mark.parametrize("dof", [0, 2, 4, 7, 11, 14, 18, 25, 31])
-def test_jacobians_by_the_posture_are_differences(dof: int) -> None:
-    unit = np.zeros((FRAMES, HUMAN.dof_count))
-    unit[:, dof] = 1.0
-    pixels = numeric(lambda x: MODEL.pixels(BODY.pose(POSTURE.plus(x * unit)), FRAME))
-    depths = numeric(lambda x: LINKS.depths(MODEL, BODY.pose(POSTURE.plus(x * unit)), FRAME))
-    pose = BODY.pose(POSTURE)
-    np.testing.assert_allclose(MODEL.pixels_jacobian(pose, FRAME)[..., dof], pixels, atol=1e-4)
-    np.testing.assert_allclose(LINKS.jacobian(MODEL, pose, FRAME)[..., dof], depths, atol=1e-7)
 
 
 def test_jacobians_by_place_and_lens_are_differences() -> None:
@@ -110,18 +98,3 @@ def camera_in_front(poses: int | None = None) -> Camera:
 def test_the_rest_posture_stands_at_the_cameras_distance() -> None:
     pose = BODY.pose(Posture.rest(HUMAN))
     np.testing.assert_allclose(point_depths(BODY, camera_in_front(), pose), 4.0, atol=1e-12)
-
-
-@pytest.mark.parametrize("seed", range(10))
-def test_the_jacobian_agrees_with_central_differences_on_the_manifold(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    posture = Posture.rest(HUMAN).plus(rng.normal(0.0, 0.6, HUMAN.dof_count))
-    camera, frame, step = camera_in_front(2), 1, 1e-6
-    shifted = [
-        point_depths(
-            BODY, camera, BODY.pose(posture.plus(sign * step * np.eye(HUMAN.dof_count))), np.full(34, 1)
-        )
-        for sign in (1.0, -1.0)
-    ]
-    numeric = (shifted[0] - shifted[1]).T / (2.0 * step)
-    np.testing.assert_allclose(depths_jacobian(BODY, camera, BODY.pose(posture), frame), numeric, atol=1e-8)
