@@ -121,11 +121,6 @@ class Outcome:
     seconds: float | None = None
 
 
-def read_outcomes(shoot: Shoot, output: Path) -> list[Outcome]:
-    """The outcome of every take as the folder of the results shows it, in the order of their names."""
-    return [read_outcome(take, output) for take in shoot.takes]
-
-
 def read_outcome(take: ShootTake, output: Path) -> Outcome:
     """The outcome of one take as the folder of the results shows it; its input is not looked at."""
     folder = output / take.name

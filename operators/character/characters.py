@@ -11,7 +11,6 @@ from ...core.retarget.character import REQUIRED
 from ..bridge.actor_bones import is_actor
 from ..shell.base_operator import capitalized
 from ..shell.takes import find_take
-from .map_conversion import map_of
 from .map_properties import role_title
 
 MOST_NAMED = 3  # roles or bones that a sentence names
@@ -102,14 +101,6 @@ def missing_roles(character: bpy.types.PropertyGroup) -> list[str]:
     roles = character.character_map.roles
     chosen = {role.name for role in roles if any(entry.bone for entry in role.bones)}
     return [role for role in REQUIRED if role not in chosen]
-
-
-def lost_bones(character: bpy.types.PropertyGroup) -> list[str]:
-    """Bones and controls that the map names and the armature does not have, renamed ones for instance."""
-    if character.armature is None:
-        return []
-    there = character.armature.data.bones
-    return [name for name in map_of(character.character_map).named_bones if name not in there]
 
 
 def full_title(role: str) -> str:
@@ -231,13 +222,6 @@ def drop_results_of_others(character: bpy.types.PropertyGroup) -> None:
     for index in reversed(others):
         character.results.remove(index)
     character.active_result = max(0, len(character.results) - 1)
-
-
-def show_lines(result: bpy.types.PropertyGroup, figures: Iterable[str], notes: Iterable[str]) -> None:
-    """Show what was measured of a result, and what a person should look at."""
-    result.lines.clear()
-    add_lines(result.lines, figures, "INFO")
-    add_lines(result.lines, notes, "ERROR")
 
 
 def add_lines(lines: "bpy.types.bpy_prop_collection_idprop", sentences: Iterable[str], level: str) -> None:

@@ -11,10 +11,10 @@ from .characters import (
     active_character,
     find_character,
     full_title,
-    lost_bones,
     missing_roles,
     missing_source,
 )
+from .map_conversion import map_of
 
 take = of_take(lambda take: True, "Load the footage or open a take first")
 
@@ -60,7 +60,8 @@ def recognized(context: bpy.types.Context) -> str | None:
     missing = [full_title(role) for role in missing_roles(chosen)]
     if missing:
         return f"Choose the bones of {listed(missing, MOST_NAMED)} first"
-    lost = lost_bones(chosen)
+    there = chosen.armature.data.bones
+    lost = [name for name in map_of(chosen.character_map).named_bones if name not in there]
     if lost:
         bones = listed((f"'{bone}'" for bone in lost), MOST_NAMED)
         said = f"'{chosen.armature.name}' has no bone {bones} any more"

@@ -19,9 +19,9 @@ from ..shell.takes import active_take, take_by_identifier
 from .characters import (
     SourceMotion,
     active_character,
+    add_lines,
     add_result,
     result_to_replace,
-    show_lines,
     shown_result,
     source_of,
 )
@@ -68,7 +68,9 @@ def keep_retargeted(operator: bpy.types.Operator, scene: bpy.types.Scene, result
     into = earlier.action if earlier is not None else f"{title} {character.armature.name}"
     action = retargeted.write(scene, into)
     listed = add_result(character, SourceMotion(kind, source_action, actor, title), action)
-    show_lines(listed, figures(retargeted.quality), retargeted.notes)
+    listed.lines.clear()
+    add_lines(listed.lines, figures(retargeted.quality), "INFO")
+    add_lines(listed.lines, retargeted.notes, "ERROR")
     for note in retargeted.notes:
         warn(operator, note)
     return f"'{character.armature.name}' performs '{action.name}'"

@@ -9,7 +9,7 @@ from typing import Any
 from ...core.files.kinds import Choice, Flag, Nullable, Number, Whole, relative_path
 from ...core.files.records import Record, declared, descriptions
 from ...core.prior.texts import EVERY_LIBRARY
-from ...core.take.character_settings import CharacterFile, CharacterSettings, RetargetOptions
+from ...core.take.character_settings import CharacterFile, CharacterSettings, LimbKeys, RetargetOptions
 from ...core.take.conversion_settings import ConversionSettings, EvidenceKinds
 from ...core.take.evidence import EVIDENCE
 from .command import Argument, UsageError, argument
@@ -119,16 +119,18 @@ SHOOT_OPTIONS = setting_options(
 RETARGET_OPTIONS = (
     argument(
         "--limbs",
-        choices=declared(RetargetOptions)["arms"].kind.names,  # type: ignore[attr-defined]
+        choices=tuple(map(str, LimbKeys)),
         help="controls of arms and legs that are keyed; both, the default, shows IK. A limb without IK "
         "controls is keyed in FK",
     ),
     *(
-        field_option(RetargetOptions, name, f"--{name.removesuffix('_mm').replace('_', '-')}", **settings)
-        for name, settings in (
-            *((name, {}) for name in ("arms", "legs", "root_motion", "place", "plant_feet", "reach_hands")),
-            ("tolerance_mm", {"metavar": "MM|none"}),
+        field_option(
+            RetargetOptions,
+            name,
+            f"--{name.removesuffix('_mm').replace('_', '-')}",
+            **({"metavar": "MM|none"} if name == "tolerance_mm" else {}),
         )
+        for name in declared(RetargetOptions)
     ),
 )
 """How a motion is put onto a character."""

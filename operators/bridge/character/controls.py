@@ -1,18 +1,15 @@
 """Data paths of custom properties of pose bones."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import bpy
 import numpy as np
-from mathutils import Matrix
 
 from ....core.arrays import Array
-from ....core.retarget.controls.control_plan import limb_keys
 from ....core.retarget.maps.character_map import CharacterMap, Switch
-from ....core.take.character_settings import LimbKeys, RetargetOptions
 from ..object_space import evaluated
 from ..scene_frames import showing_action
 
@@ -66,12 +63,6 @@ def set_properties(armature_object: bpy.types.Object, values: Mapping[Property, 
     armature_object.update_tag()  # what only drivers read is not evaluated again otherwise
 
 
-def set_channels(armature_object: bpy.types.Object, channels: Mapping[str, Array]) -> None:
-    """Pose bones by their own rotation and location (4, 4), in the rotation modes they have; scale is one."""
-    for name, matrix in channels.items():
-        armature_object.pose.bones[name].matrix_basis = Matrix(matrix)
-
-
 def read_poses(armature_object: bpy.types.Object, names: Sequence[str]) -> tuple[Array, Array]:
     """The bones' own channels and their poses in the armature's space, as evaluated now: (N, 4, 4) each."""
     bones = evaluated(armature_object).pose.bones
@@ -83,38 +74,18 @@ def read_poses(armature_object: bpy.types.Object, names: Sequence[str]) -> tuple
 # --- Custom properties that a motion keys on a character
 
 
-def shown_properties(character_map: CharacterMap, options: RetargetOptions) -> dict[Property, Value]:
-    """The settings, and the switches as the options want the limbs to be shown."""
-    values = _settings(character_map)
-    for limb, switch in _switches(character_map):
-        in_fk = limb_keys(character_map, options, limb) is LimbKeys.FK
-        values[switch.bone, switch.property] = switch.fk if in_fk else switch.ik
-    return values
-
-
-def fk_shown(character_map: CharacterMap) -> dict[Property, Value]:
-    """The settings, and all switches to FK."""
-    values = _settings(character_map)
-    return values | {(switch.bone, switch.property): switch.fk for _, switch in _switches(character_map)}
-
-
-def fk_properties(character_map: CharacterMap, options: RetargetOptions) -> dict[Property, Value]:
-    """The switches that show FK of the limbs that are keyed in both."""
-    return {
-        (switch.bone, switch.property): switch.fk
-        for limb, switch in _switches(character_map)
-        if limb_keys(character_map, options, limb) is LimbKeys.BOTH
-    }
-
-
-def _settings(character_map: CharacterMap) -> dict[Property, Value]:
+def setting_values(character_map: CharacterMap) -> dict[Property, Value]:
+    """The settings."""
     return {(setting.bone, setting.property): setting.value for setting in character_map.settings}
 
 
-def _switches(character_map: CharacterMap) -> Iterator[tuple[str, Switch]]:
-    for limb, controls in character_map.ik.items():
-        if controls.switch is not None:
-            yield limb, controls.switch
+def switch_values(
+    character_map: CharacterMap, value: Callable[[str, Switch], Value | None]
+) -> dict[Property, Value]:
+    """The switches' values by limb and switch; those without one are left out."""
+    switches = {limb: own.switch for limb, own in character_map.ik.items() if own.switch is not None}
+    values = {(one.bone, one.property): value(limb, one) for limb, one in switches.items()}
+    return {key: found for key, found in values.items() if found is not None}
 
 
 # --- What moves bones beside their keys
@@ -149,9 +120,3 @@ def drivers(armature_object: bpy.types.Object) -> list[bpy.types.FCurve]:
     """The drivers of an armature object that work."""
     data = armature_object.animation_data
     return [] if data is None else [curve for curve in data.drivers if not curve.mute]
-
-
-def driven_bone(path: str) -> str | None:
-    """The bone whose property a data path names."""
-    found = BONE_PATH.match(path)
-    return bpy.utils.unescape_identifier(found[1]) if found else None

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 from scipy.spatial.transform import Rotation
 
 from ....core.arrays import Array
@@ -21,14 +22,14 @@ from ....core.retarget.controls.control_spaces import (
 from ....core.retarget.controls.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
 from ....core.retarget.maps.character_map import CharacterMap
 from .controls import (
+    BONE_PATH,
     active_constraints,
-    driven_bone,
     drivers,
-    fk_shown,
     posing,
     read_poses,
-    set_channels,
     set_properties,
+    setting_values,
+    switch_values,
 )
 from .write_retargeted import ONE, scaled_bones
 
@@ -56,9 +57,10 @@ def probe_controls(
     armature_object: bpy.types.Object, character_map: CharacterMap, planned: Sequence[PlannedControl]
 ) -> ProbedControls:
     """How the planned controls act, settings and switches as the motion has them; nothing stays changed."""
-    size = character_size(armature_object, character_map)
+    roles = [name for role in character_map.roles for name in character_map.bones(role)]
+    size = float(np.ptp(_rests(armature_object, roles)[:, :3, 3], axis=0).max())
     notes: list[str] = []
-    in_fk = fk_shown(character_map)
+    in_fk = setting_values(character_map) | switch_values(character_map, lambda _, switch: switch.fk)
     bones = armature_object.pose.bones
     # Location of a control that counts as one, in sizes of the character.
     displaced = {plan.name for plan in planned if bones[plan.name].location.length > 1e-5 * size}
@@ -92,14 +94,6 @@ def probe_controls(
     return ProbedControls(placed, offsets, poles, size, tuple(notes))
 
 
-def character_size(armature_object: bpy.types.Object, character_map: CharacterMap) -> float:
-    """Largest extent of the bones with roles at rest, in the armature's units."""
-    bones = armature_object.data.bones
-    names = [name for role in character_map.roles for name in character_map.bones(role)]
-    heads = np.array([bones[name].head_local for name in names], dtype=np.float64)
-    return float(np.ptp(heads, axis=0).max())
-
-
 def _posed_at_random(
     armature_object: bpy.types.Object, planned: Sequence[PlannedControl], size: float
 ) -> tuple[PosedControls, Array]:
@@ -116,7 +110,8 @@ def _posed_at_random(
         if sample >= STILL:
             # Standard deviation of random locations, in sizes of the character.
             matrices[:, :3, 3] = rng.normal(0.0, 0.1 * size, (count, 3))
-        set_channels(armature_object, dict(zip(names, matrices, strict=True)))
+        for name, matrix in zip(names, matrices, strict=True):  # in the rotation modes that they have
+            armature_object.pose.bones[name].matrix_basis = Matrix(matrix)
         own, poses = read_poses(armature_object, [*names, *(plan.bone for plan in planned)])
         channels.append(own[:count])
         shown.append(poses)
@@ -179,7 +174,8 @@ def _steady(
     The others are carried by something that moves and is not keyed, so that no key would show as it should;
     sentences on them are added.
     """
-    driven = {driven_bone(driver.data_path) for driver in drivers(armature_object)}
+    paths = (BONE_PATH.match(driver.data_path) for driver in drivers(armature_object))
+    driven = {bpy.utils.unescape_identifier(path[1]) for path in paths if path}
     kept = []
     for index, (plan, space) in enumerate(zip(planned, spaces, strict=True)):
         own = plan.name in driven or active_constraints(armature_object.pose.bones[plan.name])

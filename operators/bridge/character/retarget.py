@@ -13,7 +13,7 @@ from ....core.progress import Job, Progress, run, stretch, within
 from ....core.retarget.character import Character
 from ....core.retarget.character_motion import CharacterMotion, Similarity, find_stance
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
-from ....core.retarget.controls.control_plan import ControlKind, planned_controls
+from ....core.retarget.controls.control_plan import ControlKind, limb_keys, planned_controls
 from ....core.retarget.controls.control_targets import on_controls
 from ....core.retarget.controls.point_tolerances import ToleranceRules
 from ....core.retarget.controls.reduction import reduce_controls
@@ -23,12 +23,12 @@ from ....core.retarget.quality import Measured, Quality
 from ....core.retarget.recognition.facing import find_root
 from ....core.retarget.solve.feet import floor_lifts
 from ....core.retarget.solve.solve_motion import solve_motion
-from ....core.take.character_settings import Placement, RetargetOptions
+from ....core.take.character_settings import LimbKeys, Placement, RetargetOptions
 from ..actions import assign_action
 from ..object_space import object_space
 from ..rotation_modes import rotation_values
 from .channel_notes import channel_notes, require_placed_hips
-from .controls import fk_properties, shown_properties
+from .controls import Value, setting_values, switch_values
 from .measure import measure
 from .mesh_soles import mesh_soles
 from .probe_controls import ProbedControls, probe_controls
@@ -216,7 +216,7 @@ class _Performance:
         keys = RetargetedKeys(
             self.scene_frames,
             keyed,
-            shown_properties(self.character_map, options),
+            setting_values(self.character_map) | switch_values(self.character_map, self._shown),
             placement_keys(armature_object, motion.to_world) if placed else (),
             scaled_bones(armature_object, (one.control.name for one in keyed)),
         )
@@ -232,12 +232,23 @@ class _Performance:
                 motion,
                 self.character,
                 self.character_map,
-                fk_properties(self.character_map, options),
+                switch_values(self.character_map, self._in_fk),
             )
             measured = yield from within("Measuring the character", measuring, REDUCED, 1.0)
         finally:
             bpy.data.actions.remove(action)
         return keys, controls, measured
+
+    def _shown(self, limb: str, switch: Switch) -> Value:
+        """A switch's value as the options want its limb to be shown."""
+        return switch.fk if self._keys(limb) is LimbKeys.FK else switch.ik
+
+    def _in_fk(self, limb: str, switch: Switch) -> Value | None:
+        """The value with which a limb that is keyed in both ways shows FK; None for others."""
+        return switch.fk if self._keys(limb) is LimbKeys.BOTH else None
+
+    def _keys(self, limb: str) -> LimbKeys:
+        return limb_keys(self.character_map, self.options, limb)
 
     def lifts(self, motion: CharacterMotion, depth_m: Mapping[str, Array]) -> dict[str, Array]:
         """(F,) by leg how much higher a foot in the floor must be [m]; none where all feet are out of it."""

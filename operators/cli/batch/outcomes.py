@@ -21,7 +21,6 @@ from ....core.shoot.outcomes import (
     Outcome,
     Status,
     read_outcome,
-    read_outcomes,
     remove_failure,
     remove_failures_of_deleted_takes,
     write_failure,
@@ -105,7 +104,7 @@ class BatchOutcomes:
         """Begin with the outcomes that the folder has of all takes."""
         self.shoot, self.output, self.console = shoot, output, console
         self._names = [job.take.name for job in jobs]
-        self._outcomes = {outcome.take: outcome for outcome in read_outcomes(shoot, output)}
+        self._outcomes = {take.name: read_outcome(take, output) for take in shoot.takes}
         for name in self._names:
             self._outcomes[name] = replace(self._outcomes[name], status=Status.WAITING, error=None)
         self._counts = Counter({Status.WAITING: len(jobs)})

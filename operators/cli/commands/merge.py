@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import re
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -90,7 +91,9 @@ class MotionGathering:
             name = asset_name(result.name, names)
             names.add(name)
             self.count += 1
-            catalog = "/".join(catalog_part(part) for part in (self._shoot, *result.name.split("/")[:-1]))
+            # Slashes and colons have a meaning in a catalog's path.
+            parts = (re.sub(r"[:/\\]", "-", part) for part in (self._shoot, *result.name.split("/")[:-1]))
+            catalog = "/".join("".join(one if one.isprintable() else "-" for one in part) for part in parts)
             marks = _short_tags("keymark", result.record.method, result.record.library)
             yield MotionAsset(name, catalog, description(result), marks, motion)
             yield from self._character(result, catalog, marks, motion, names)
@@ -141,11 +144,6 @@ def asset_name(take: str, taken: Collection[str]) -> str:
         if f"{name}{number_suffix}" not in taken:
             break
     return f"{name}{number_suffix}"
-
-
-def catalog_part(name: str) -> str:
-    """A folder's name as a part of a catalog's path, in which slashes and colons have a meaning."""
-    return "".join("-" if letter in ":/\\" or not letter.isprintable() else letter for letter in name)
 
 
 def description(result: Result) -> str:
