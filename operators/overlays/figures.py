@@ -78,6 +78,11 @@ def triangles(polygons: ArrayLike) -> Array:
     return fans[np.isfinite(fans).all(axis=(-2, -1))]
 
 
+def polygons(*corners: tuple[Array, Array | float]) -> Array:
+    """(N, K, 2) from K corners: their horizontal places (N,), and the vertical ones, (N,) or one for all."""
+    return np.stack([np.stack(np.broadcast_arrays(*corner), axis=-1) for corner in corners], axis=1)
+
+
 def squares(centers: Array, size: float) -> Array:
     """(N, 4, 2) upright squares about centers (N, 2), as large as a diamond of this size."""
     half = 0.8 * size

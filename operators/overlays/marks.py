@@ -188,10 +188,10 @@ def not_yet_compared(
 
 
 @lru_cache(maxsize=16)
-def _same_points(names: tuple[str, ...], others: tuple[str, ...]) -> tuple[list[int], ...]:
-    """For each name the indices of the others that are of its body point, on either side."""
+def _same_points(names: tuple[str, ...], known: tuple[str, ...]) -> tuple[list[int], ...]:
+    """For each name the indices of the known ones that are of its body point, on either side."""
     return tuple(
-        [i for i, other in enumerate(others) if other in (name, mirrored_point(name))] for name in names
+        [i for i, other in enumerate(known) if other in (name, mirrored_point(name))] for name in names
     )
 
 

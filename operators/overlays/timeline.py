@@ -12,7 +12,7 @@ from ..shell.keyed_frames import doubtful_matches, have_frames, matched_frames, 
 from ..shell.results import FootageSpeed, LruCache, reading_of, review_of, speed_of
 from ..shell.takes import find_take, footage_of
 from .drawing import Color, Fill, Item, Label, Stroke, faded, ui_scale
-from .figures import diamonds, segments, squares
+from .figures import diamonds, polygons, segments, squares
 
 CONFIDENCE_COLORS = np.array([[0.90, 0.42, 0.10], [0.93, 0.83, 0.35], [0.22, 0.55, 0.90]])
 """Of low, middle and high confidence, also for color-blind eyes."""
@@ -45,10 +45,9 @@ def graph(x: Array, values: Array, floor: float, height: float) -> tuple[Array, 
 
     NaN leaves a gap; `floor` is the height of 0, `height` the distance from 0 to 1.
     """
-    line = np.stack([x, floor + height * values], axis=-1)
-    foot = np.stack([x, np.full_like(x, floor)], axis=-1)
-    area = np.stack([foot[:-1], foot[1:], line[1:], line[:-1]], axis=1)
-    return line, area
+    top = floor + height * values
+    area = polygons((x[:-1], floor), (x[1:], floor), (x[1:], top[1:]), (x[:-1], top[:-1]))
+    return np.stack([x, top], axis=-1), area
 
 
 def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Array, Array]:
@@ -62,8 +61,7 @@ def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Arr
     right = np.concatenate([middles, [x[-1] + reach]])
     top = floor + height * confidence
     bottom = np.where(np.isfinite(top), floor, np.nan)
-    corners = ((left, bottom), (right, bottom), (right, top), (left, top))
-    bars = np.stack([np.stack(corner, axis=-1) for corner in corners], axis=1)
+    bars = polygons((left, bottom), (right, bottom), (right, top), (left, top))
     return bars, np.column_stack([confidence_color(confidence), np.ones(len(x))])
 
 
@@ -75,9 +73,8 @@ def confidence_color(confidence: Array) -> Array:
 
 def pointers(x: Array, tip: float, size: float) -> Array:
     """(N, 3, 2) triangles that point down to a height at positions (N,)."""
-    half, top = 0.6 * size, np.full_like(x, tip + size)
-    corners = ((x, np.full_like(x, tip)), (x + half, top), (x - half, top))
-    return np.stack([np.stack(corner, axis=-1) for corner in corners], axis=1)
+    half, top = 0.6 * size, tip + size
+    return polygons((x, tip), (x + half, top), (x - half, top))
 
 
 MODES = ("TIMELINE", "DOPESHEET", "ACTION")
@@ -236,10 +233,8 @@ def weak_pointers(frames: Array, timeline: Timeline) -> list[Item]:
     x = timeline.frame_x(frames)
     tip = timeline.top + timeline.pixel
     marks = pointers(x, tip, timeline.fitting(x, timeline.sizes.pointer))
-    foot = np.stack([x, np.full_like(x, timeline.strip_floor)], axis=-1)
-    lines = np.stack([foot, np.stack([x, np.full_like(x, tip)], axis=-1)], axis=1)
     return [
-        Stroke(lines, faded(WEAK, 0.45), 1.0),
+        Stroke(polygons((x, timeline.strip_floor), (x, tip)), faded(WEAK, 0.45), 1.0),
         Stroke(segments(marks, closed=True), WEAK, 1.0, 0.8),
         Fill(marks, WEAK),
     ]
