@@ -15,11 +15,9 @@ from scipy.linalg import cho_solve_banded, cholesky_banded
 from ..arrays import Array, BoolArray, IndexArray
 from .robust import DEGREES, student_weight
 
-WANDER_S = 0.4  # time in which a network's error forgets itself; .3 to .6 give the same within 1 %
 CONSTANT_SHARE = 0.3  # of the wander's variance that never changes, which only exact values can tell
 BENDS = tuple(10.0 ** (0.25 * step) for step in range(-6, 4))
 """Sizes of the path's second differences at `USUAL_RATE` that are tried, in sizes of the wander."""
-GRAINS = (0.2, 0.4, 0.8)  # sizes of the grain that are tried, likewise
 USUAL_RATE = 30.0
 MOST_LEARNED = 2000  # frames that the sizes are learned from
 EXACT = 1e-3  # standard deviation of an exact value, in sizes of the wander
@@ -39,7 +37,8 @@ class _System:
 
     def __init__(self, sizes: Sizes, weight: Array, exact: IndexArray) -> None:
         frames = len(weight)
-        keep = np.exp(-1.0 / (sizes.rate * WANDER_S))
+        # A network's error forgets itself in 0.4 s; 0.3 to 0.6 give the same within 1 %.
+        keep = np.exp(-1.0 / (sizes.rate * 0.4))
         fresh = 1.0 - keep**2
         self.precision = weight / sizes.grain**2  # (F,) of what was seen
         band = np.zeros((5, 2 * frames))
@@ -75,7 +74,7 @@ def learn_sizes(values: Array, rate: float) -> Sizes:
     seen = np.isfinite(middle).all(axis=(1, 2))
     filled = np.where(seen[:, None, None], middle, 0.0).reshape(len(middle), -1)
     usual = (USUAL_RATE / rate) ** 1.5  # of the second difference of a path bent by independent pushes
-    tried = [Sizes(bend * usual, grain, rate) for grain in GRAINS for bend in BENDS]
+    tried = [Sizes(bend * usual, grain, rate) for grain in (0.2, 0.4, 0.8) for bend in BENDS]
     return min(tried, key=lambda sizes: _misfit(sizes, filled, seen))
 
 

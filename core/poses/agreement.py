@@ -21,9 +21,6 @@ from .candidates import PROBABILITY_BOUNDS, MatchedFrame
 from .clip_input import PosingInput
 
 WRONG_SHARE = 0.1  # of all takes whose height, camera or floor are wrong: a round guess
-SIZE_STD, SIZE_RANGE = 0.12, 0.7  # of a logarithm: networks' sizes of a known person, and a wrong height's
-FLOOR_RANGE_M = 1.0  # feet are anywhere within it where camera, height or floor are wrong
-UNSEEN_ODDS = 0.5  # probability that a limb which is never seen is about right
 USABLE = 0.5  # least confidence
 BONES = tuple(
     (f"{root}.{side}", f"{end}.{side}")
@@ -52,19 +49,20 @@ def agreement(
     points = given.body.points(given.body.pose(postures[given.sampled]))
     size = _relative_size(given, points)
     if size is not None:
-        own = _right(float(np.log(size)), SIZE_STD, SIZE_RANGE)
+        # Of a logarithm: networks' sizes of a known person, and the range of wrong heights.
+        own = _right(float(np.log(size)), 0.12, 0.7)
         probability *= own
         what = f"by the detector's guess in space the performer is {abs(size - 1.0):.0%} "
         said = what + ("taller" if size > 1.0 else "shorter") + " than stated"
         (agree if own >= USABLE else against).append("the detector's sizes" if own >= USABLE else said)
     if floor_m is not None and not {"leg.L", "leg.R"} <= set(given.unseen):
         off_m = feet_over_floor_m(given.body, points, floor_m)
-        own = _right(off_m, GROUND_STD_M, FLOOR_RANGE_M)
+        own = _right(off_m, GROUND_STD_M, 1.0)  # anywhere in it where camera, height or floor are wrong [m]
         probability *= own
         said = f"the feet are {abs(off_m) * 100.0:.0f} cm {'above' if off_m > 0.0 else 'below'} the floor"
         (agree if own >= USABLE else against).append("the floor" if own >= USABLE else said)
     if given.unseen:
-        probability *= UNSEEN_ODDS ** len(given.unseen)
+        probability *= 0.5 ** len(given.unseen)  # that a limb which is never seen is about right
         against.append(f"{named_limbs(given.unseen)} never seen")
     if not against and probability < USABLE:
         against.append("other postures look alike")

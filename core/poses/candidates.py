@@ -9,8 +9,7 @@ from scipy.special import expit, logit
 from ..arrays import Array, IndexArray, SingleArray
 from ..body.posture import Posture
 from .composed_states import FrameStates
-from .part_features import HEADINGS, StanceFeatures, composed_postures
-from .part_pools import PartPools
+from .part_features import HEADINGS, StanceFeatures
 
 DISTINCT_M = 0.08  # postures whose points differ by less on average, the hips aligned, look the same
 ABOUT_RIGHT_M = 0.10  # mean distance of the points, the hips aligned, within which a match is about right
@@ -42,31 +41,27 @@ class MatchedFrame:
 
 
 def composed_candidates(
-    pools: PartPools,
     stances: StanceFeatures,
     states: FrameStates,
     posterior: SingleArray,
-    index: int,
     chosen: Posture,
     torso: int,
     explained: float,
-) -> MatchedFrame:
+) -> tuple[Candidate, ...]:
     """The chosen posture of a frame and distinct ones beside it, the likelier first.
 
     Args:
-        pools: All parts.
-        stances: Their stances.
+        stances: All stances.
         states: The frame's states.
         posterior: (K,) their probabilities given the whole clip.
-        index: The frame's index in the clip.
         chosen: The posture as fitted to the footage.
         torso: Its torso in the pool.
         explained: Share of the frame that it explains, 0 to 1.
     """
     likely = np.argsort(-posterior, kind="stable")[:60]
-    some = states.chosen(likely)
-    postures = composed_postures(pools, stances, some.stance, some.limbs, some.hips)
-    everyone = Posture.concatenate([Posture.stack([chosen]), postures])
+    some, pools = states.chosen(likely), stances.pools
+    composed = stances.composed(some.stance, some.limbs, some.hips)
+    everyone = Posture.concatenate([Posture.stack([chosen]), composed])
     shape = pools.body.points(pools.body.pose(everyone)) - everyone.translation[:, None]
     weight = np.concatenate([[0.0], posterior[likely] / max(float(posterior[likely].sum()), 1e-12)])
     kept = distinct_rows(shape, np.arange(len(shape)), DISTINCT_M, most=6)
@@ -77,7 +72,7 @@ def composed_candidates(
         name, flipped = pools.motions.names[pools.torsos.source[own]]
         shares = log_odds(float(weight[near].sum())), log_odds(explained)
         found.append(Candidate(everyone[rank], name, flipped, confidence(OTHER if rank else CHOSEN, *shares)))
-    return MatchedFrame(index, by_confidence(found))
+    return by_confidence(found)
 
 
 def by_confidence(found: Sequence[Candidate]) -> tuple[Candidate, ...]:

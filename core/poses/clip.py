@@ -31,10 +31,7 @@ from .compose_clip import Composition, compose_frames
 from .found_poses import FoundPoses
 from .frame_likelihood import frame_likelihoods
 from .match_evidence import marker_moments
-from .part_features import HEADINGS, StanceFeatures, stance_features
-from .part_pools import PartPools, part_pools
-
-LEARNED_SHARE, COMPOSED_SHARE = 0.05, 0.8  # of the work, after which parts are learned and composed
+from .part_features import HEADINGS
 
 
 def pose_clip(
@@ -74,15 +71,13 @@ def pose_clip(
         if between is not None:
             given = stretch_of(given, *between)
         yield Progress("Learning the parts of postures", 0.0)
-        pools = part_pools(usable, take.body)
-        stances = stance_features(pools, given.evidence)
-        composing = compose_frames(given, pools, stances, floor_m)
-        composed = yield from within("Composing postures", composing, LEARNED_SHARE, COMPOSED_SHARE)
+        composing = compose_frames(given, floor_m, usable)
+        composed = yield from within("Composing postures", composing, 0.05, 0.8)
         fitting = within("Fitting the postures", _fitting(take, given, composed), 0.0, 1.0)
-        result = yield from stretch(fitting, COMPOSED_SHARE, 1.0)
+        result = yield from stretch(fitting, 0.8, 1.0)
         postures = rested(given.body, result.posture, given.unseen)
         explained, off = _explained(given, postures[given.sampled])
-        candidates = _candidates(pools, stances, given, composed, postures, explained)
+        candidates = _candidates(given, composed, postures, explained)
         ground_m = 0.0 if floor_m is None and not floor_open else floor_m
         fit, reason = agreement(given, postures, candidates, ground_m)
         if between is not None:
@@ -152,26 +147,21 @@ def _explained(given: PosingInput, posture: Posture) -> tuple[Array, Array]:
 
 
 def _candidates(
-    pools: PartPools,
-    stances: StanceFeatures,
-    given: PosingInput,
-    composed: Composition,
-    fitted: Posture,
-    explained: Array,
+    given: PosingInput, composed: Composition, fitted: Posture, explained: Array
 ) -> tuple[MatchedFrame, ...]:
-    return tuple(
-        composed_candidates(
-            pools,
-            stances,
+    found = []
+    for frame in given.keyframes:
+        row = int(np.searchsorted(given.sampled, frame))
+        own = composed_candidates(
+            composed.stances,
             composed.states[row],
             composed.path.posterior[row],
-            int(given.sampled[row]) + given.first,
-            fitted[int(given.sampled[row])],
+            fitted[int(frame)],
             int(composed.path.stance[row]) // HEADINGS,
             float(explained[row]),
         )
-        for row in map(int, np.searchsorted(given.sampled, given.keyframes))
-    )
+        found.append(MatchedFrame(int(frame) + given.first, own))
+    return tuple(found)
 
 
 def _contradictions(take: Take, given: PosingInput, off: Array) -> Mapping[int, tuple[str, ...]]:

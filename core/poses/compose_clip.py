@@ -19,6 +19,7 @@ from ..body.skeleton import SIDES
 from ..camera.camera import Camera
 from ..estimate.performer_placement import SAME_FLOOR_M, place_standing, standing_ankle_m
 from ..estimate.sigma import SIZE_STD, place_depth_std_m
+from ..prior.library import Library
 from ..progress import Part, scaled
 from .clip_input import PosingInput, tempering
 from .composed_path import ComposedPath, best_path
@@ -26,15 +27,13 @@ from .composed_states import LEGS, FrameCosts, FrameStates, PosedCosts
 from .frame_likelihood import frame_likelihoods
 from .library_motion import PartBelief, part_beliefs
 from .match_evidence import MatchEvidence
-from .part_features import StanceFeatures, composed_postures
-from .part_pools import TORSO, PartPools, part_dofs
+from .part_features import StanceFeatures, stance_features
+from .part_pools import TORSO, PartPools, part_dofs, part_pools
 
 
-def mean_postures(
-    pools: PartPools, stances: StanceFeatures, states: Sequence[FrameStates], path: ComposedPath
-) -> Posture:
+def mean_postures(stances: StanceFeatures, states: Sequence[FrameStates], path: ComposedPath) -> Posture:
     """(T,) means of the likely postures around a path through T frames' states."""
-    likeliest = composed_postures(pools, stances, path.stance, path.limbs, path.hips)
+    likeliest = stances.composed(path.stance, path.limbs, path.hips)
     skeleton = likeliest.skeleton
     step = np.zeros((len(path.stance), skeleton.dof_count))
     torso = [0, 1, 2, *part_dofs(skeleton, TORSO)]
@@ -43,12 +42,12 @@ def mean_postures(
         apart = np.linalg.norm(points[own.stance] - points[path.stance[row]], axis=-1).mean(axis=-1)
         kept, weight = _weights(chance, apart)
         near = own.chosen(kept)
-        others = composed_postures(pools, stances, near.stance, near.limbs, near.hips)
+        others = stances.composed(near.stance, near.limbs, near.hips)
         step[row, torso] = weight @ others.minus(likeliest[np.full(len(kept), row)])[:, torso]
     for limb, chosen in zip(LIMBS, path.limbs.T, strict=True):
         kind, _, side = limb.partition(".")
         dofs = part_dofs(skeleton, kind, side)
-        every = _alone(pools, limb, len(stances.limbs[limb].points))
+        every = _alone(stances.pools, limb, len(stances.limbs[limb].points))
         shapes = stances.limbs[limb].points
         for row, part in enumerate(chosen):
             apart = np.linalg.norm(shapes - shapes[part], axis=-1).mean(axis=-1)
@@ -74,10 +73,7 @@ def _alone(pools: PartPools, limb: str, count: int) -> Posture:
     return pools.composed(none, limbs, np.zeros(count), np.zeros((count, 3)))
 
 
-PART_SCALE = 0.4  # deviation of a composed body, relative to that of another performer's posture
 WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)  # distances tried, as shares of one good to a tenth
-SMOOTH_S = 0.6  # time over which the rough distance is smoothed
-FARTHER = 1.5  # sizes rule out z = 0 where a performer on it would be so many times farther away or nearer
 MOST_PLACED = 16  # frames in which the performer is placed by size
 
 
@@ -85,6 +81,7 @@ MOST_PLACED = 16  # frames in which the performer is placed by size
 class Composition:
     """Postures of T frames, put together from parts."""
 
+    stances: StanceFeatures
     path: ComposedPath
     states: list[FrameStates]
     posture: Posture  # (T,)
@@ -92,14 +89,17 @@ class Composition:
 
 
 def compose_frames(
-    given: PosingInput, pools: PartPools, stances: StanceFeatures, floor_m: float | None
+    given: PosingInput, floor_m: float | None, libraries: Sequence[Library]
 ) -> Part[Composition]:
     """Compose the postures of the T frames of a clip that are looked at; `floor_m` is None where unknown.
+
+    At least one library has a posture.
 
     Whole motions of the libraries are believed in as far as the clip shows them; they are not asked between
     posed frames that are near each other.
     """
     evidence, camera = given.evidence, given.camera
+    stances = stance_features(part_pools(libraries, given.body), evidence)
     sampled, time_s = given.sampled, given.time_s
     # Distances tried about the first path.
     rounds: tuple[tuple[float, ...], ...] = (WIDE, (1.0, 0.96, 1.04, 0.92, 1.08))
@@ -135,16 +135,16 @@ def compose_frames(
         step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
         leading = best_path(stances, states, costs, others, time_s[rows], weight, step_m)
         path = yield from scaled(leading, searched, led)
-        posture = mean_postures(pools, stances, states, path)
+        posture = mean_postures(stances, states, path)
         if not is_last:
             hips = np.stack([np.interp(time_s, time_s[rows], column) for column in path.hips.T], axis=-1)
             hips = np.stack([_smoothed(column, time_s) for column in hips.T], axis=-1)
             rough = np.array([camera.depth(at, int(frame)) for at, frame in zip(hips, sampled, strict=True)])
-            telling = part_beliefs(given, pools, stances, posture, hips, floor_m)
+            telling = part_beliefs(given, stances, posture, hips, floor_m)
             beliefs = yield from scaled(telling, led, ended)
     if floor_seen_m is not None and not len(given.posed.frames):
         posture = _on_floor(given, posture, floor_seen_m)
-    return Composition(path, states, rested(given.body, posture, given.unseen), floor_m)
+    return Composition(stances, path, states, rested(given.body, posture, given.unseen), floor_m)
 
 
 def _on_floor(given: PosingInput, posture: Posture, floor_m: float) -> Posture:
@@ -194,7 +194,8 @@ def frame_costs(
     beliefs: Sequence[PartBelief | None] = (),
 ) -> list[FrameCosts]:
     """What some frames say of stances and limbs, and what is believed of them in each."""
-    likelihoods = frame_likelihoods(camera, evidence, frames, PART_SCALE)
+    # Deviation of a composed body, relative to that of another performer's posture.
+    likelihoods = frame_likelihoods(camera, evidence, frames, 0.4)
     every = beliefs or [None] * len(likelihoods)
     return [FrameCosts(each, stances, floor_m, own) for each, own in zip(likelihoods, every, strict=True)]
 
@@ -222,8 +223,9 @@ def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array) ->
     if abs(found) < 0.25:  # sizes are no more exact, and scenes are built on z = 0
         return 0.0
     # On a floor the performer is as far away as the camera is above it.
+    # Sizes rule out z = 0 where that would be half as far again, or nearer in proportion.
     eye = float(np.median(eyes))
-    if not (eye - found) / FARTHER < eye < (eye - found) * FARTHER:
+    if not (eye - found) / 1.5 < eye < (eye - found) * 1.5:
         return found
     seen = np.array([row for row, _ in free])
     grounded = frame_costs(given.camera, given.evidence, stances, sampled[seen], 0.0)
@@ -265,7 +267,7 @@ def rough_depths(
 
 
 def _smoothed(values: Array, time_s: Array) -> Array:
-    """Running medians over `SMOOTH_S` and then means."""
-    near = np.abs(time_s[:, None] - time_s) < SMOOTH_S
+    """Running medians over 0.6 s to either side, and then means."""
+    near = np.abs(time_s[:, None] - time_s) < 0.6
     median = np.array([np.median(values[own]) for own in near])
     return np.array([median[own].mean() for own in near])

@@ -19,9 +19,6 @@ from .frame_likelihood import squared_distances
 from .part_features import HEADINGS, StanceFeatures
 
 SQUARE = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]
-TRUNK_SPEED, TRUNK_ROUGH_M = 0.8, 0.06  # of shoulders and hips about the hips [m/s]; of the pool [m]
-PLACE_SPEED, PLACE_ROUGH_M = 1.5, 0.04  # the same of the place
-LIMB_SPEED, LIMB_ROUGH_M = 2.0, 0.09  # the same of elbows, wrists, knees and ankles
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +90,8 @@ def limb_paths(
         {limb: cost.limb_table(limb, stance[[row]], places[row]) for limb in LIMBS}
         for row, cost in enumerate(costs)
     ]
-    variances = single((LIMB_SPEED * duration_s) ** 2 + LIMB_ROUGH_M**2)
+    # Speed of elbows, wrists, knees and ankles [m/s], and how rough the pool is [m].
+    variances = single((2.0 * duration_s) ** 2 + 0.09**2)
 
     def steps(limb: str, kept: Sequence[IndexArray | slice]) -> Steps:
         def points(row: int) -> SingleArray:
@@ -136,8 +134,9 @@ def _step_cost(
     """(J, K) costs of steps between the states of two frames."""
     points = stances.features.points[:, SQUARE]
     apart = squared_distances(points[before.stance], points[after.stance])
-    turned = apart / np.float32((TRUNK_SPEED * duration_s) ** 2 + TRUNK_ROUGH_M**2)
-    across = (PLACE_SPEED * duration_s) ** 2 + PLACE_ROUGH_M**2
+    # Speeds of shoulders and hips about the hips, and of the place [m/s]; how rough the pool is of both [m].
+    turned = apart / np.float32((0.8 * duration_s) ** 2 + 0.06**2)
+    across = (1.5 * duration_s) ** 2 + 0.04**2
     along = across + 0.5 * depth_step_m**2
     sight = cost.likelihood.backward.astype(float)
     covariance = across * np.eye(3) + (along - across) * np.outer(sight, sight)

@@ -22,7 +22,6 @@ from .part_pools import ARM
 
 MOST_STATES = 240  # states kept of a frame
 MARGIN = 14.0  # states whose cost exceeds the frame's least by more are dropped
-DEPTH_STD_M = 0.02  # how firmly a state keeps to its distance
 LEGS = tuple(limb for limb in LIMBS if not limb.startswith(ARM))
 NO_CONTACT_COST = 4.0  # where neither foot stands: jumps, steps, furniture
 
@@ -112,8 +111,9 @@ class FrameCosts:
         Without limbs each counts as the middle of all of its kind, and little.
         """
         backward, torso = self.likelihood.backward, self.stances.features
-        matrix = np.outer(backward, backward) / DEPTH_STD_M**2 + np.eye(3) * 1e-4
-        right = -np.outer(depth_m, backward) / DEPTH_STD_M**2
+        firm = 0.02**-2.0  # how firmly a state keeps to its distance [1/m²]
+        matrix = firm * np.outer(backward, backward) + np.eye(3) * 1e-4
+        right = -firm * np.outer(depth_m, backward)
 
         def rows_of(point: int) -> SingleArray:
             return self.likelihood.rows[point].T @ self.likelihood.rows[point]

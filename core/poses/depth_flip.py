@@ -26,7 +26,6 @@ class FlippedPart(Enum):
 
 FLIPPABLE = (TRUNK, *LIMBS)  # parts of the body whose depth can be flipped, as `body/limbs` names them
 FLAT_M = 0.5 * DISTINCT_M  # a part whose ends differ less in depth has no other side [m]
-SEEN_M, SEEN_DEPTH_M = 0.01, 0.1  # how near a flipped trunk's head stays to its sight, and depth
 _ORDER_OF_TRUNK = (FlippedPart.BOTH, FlippedPart.UPPER, FlippedPart.LOWER)
 """A trunk that leans the wrong way mostly does so from the hips up."""
 
@@ -134,5 +133,5 @@ def _with_the_rest(body: Body, before: Posture, leaning: Posture, camera: Camera
     line = SightLine.to(camera, start["head"])
     shoulders = ("shoulder.L", "shoulder.R")
     moved = np.mean([now[name] - start[name] for name in shoulders], axis=0)
-    pull = Pull("head", line.nearest(start["head"] + moved), SEEN_M, line.direction, SEEN_DEPTH_M)
+    pull = Pull("head", line.nearest(start["head"] + moved), 0.01, line.direction, 0.1)
     return pulled(body, held, [pull], {"neck": 1.0})

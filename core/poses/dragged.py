@@ -1,7 +1,6 @@
 """Dragging a joint: the limb, or what else carries it, follows so that the joint lies where it should."""
 
 from collections.abc import Mapping, Sequence
-from types import MappingProxyType
 
 import numpy as np
 
@@ -16,20 +15,10 @@ from ..prior.keyframes import Keyframe, interpolate
 from .inverse_kinematics import Pull, SightLine, pulled
 from .limb_chain import LimbChain, swing
 
-ON_SIGHT_M = 0.001  # a joint lies under the mouse: less than a pixel of any footage
-DEPTH_M = 0.03  # its depth may give way where the body does not allow both
-PUSHED_M = 0.01  # a joint pushed along the line of sight comes as near as it can, off it or on it
 HELD_M = 0.05  # joints that should stay where they are, but may give way to the dragged one
-PLANTED_M = 0.005  # ankles of a body whose trunk is dragged
-FLAT_M = 0.01  # difference in depth of a limb's middle from its root below which it is on neither side [m]
 HIPS = ("hip.L", "hip.R")
 LEVEL = 0.1  # sine of the angle below the horizon under which a view looks level: depth tells no height
 RAISES = 3  # times that a joint is brought to the floor along its sight, then as often straight up
-
-Freedom = Mapping[str, float]
-
-_TRUNK: Freedom = MappingProxyType({"pelvis": 0.3, "waist": 0.5})  # most of a bend is above the waist
-_HEAD: Freedom = MappingProxyType({"neck": 1.0, "waist": 0.1})
 
 
 def dragged(
@@ -86,11 +75,13 @@ def _dragged(body: Body, posture: Posture, point: str, place: Array, sight: Arra
         return _limb_dragged(posture, LimbChain.of(body, part), point, place, sight, pushed)
     pulls = [_pull(point, place, sight, pushed)]
     if point == "head":
-        return pulled(body, posture, pulls, _HEAD)
+        return pulled(body, posture, pulls, {"neck": 1.0, "waist": 0.1})
     _, _, side = point.partition(".")
     legs = {f"{joint}.{each}": 1.0 for joint in ("hip", "knee") for each in ("L", "R")}
     pulls += [Pull(other_side(point), start[other_side(point)], HELD_M), *planted(start)]
-    return pulled(body, posture, pulls, {**_TRUNK, **legs, f"girdle.{side}": 0.1})
+    # Most of a bend is above the waist.
+    free = {"pelvis": 0.3, "waist": 0.5, **legs, f"girdle.{side}": 0.1}
+    return pulled(body, posture, pulls, free)
 
 
 def paths_through(
@@ -111,16 +102,17 @@ def paths_through(
 
 def planted(start: Mapping[str, Array]) -> list[Pull]:
     """What holds the legs where they are, by the places (3,) of all points."""
-    held = [("ankle", PLANTED_M), ("knee", HELD_M)]
+    held = [("ankle", 0.005), ("knee", HELD_M)]
     return [
         Pull(f"{stem}.{side}", start[f"{stem}.{side}"], std_m) for stem, std_m in held for side in ("L", "R")
     ]
 
 
 def _pull(point: str, place: Array, sight: Array, pushed: bool) -> Pull:
-    if pushed:
-        return Pull(point, place, PUSHED_M)
-    return Pull(point, place, ON_SIGHT_M, sight, DEPTH_M)
+    if pushed:  # along the line of sight it comes as near as it can, off it or on it
+        return Pull(point, place, 0.01)
+    # Under the mouse it is less than a pixel of any footage off; depth gives way where not both is possible.
+    return Pull(point, place, 0.001, sight, 0.03)
 
 
 def _limb_dragged(
@@ -164,7 +156,7 @@ def _swung_about(places: Array, lengths: tuple[float, float], line: SightLine) -
     root, before, end = places
     near, far = line.at_distance(root, lengths[0])
     depth = float((before - root) @ line.direction)
-    if abs(depth) > FLAT_M:
+    if abs(depth) > 0.01:
         return np.asarray(far if depth > 0.0 else near)
     choices = sorted((near, far), key=lambda each: abs(float(np.linalg.norm(end - each)) - lengths[1]))
     return np.asarray(choices[0])

@@ -28,7 +28,7 @@ from .candidates import ABOUT_RIGHT_M, distinct_rows
 from .compose_clip import WIDE, frame_costs
 from .composed_states import NO_CONTACT_COST
 from .match_evidence import MatchEvidence
-from .part_features import StanceFeatures, composed_postures, stance_features
+from .part_features import StanceFeatures, stance_features
 from .part_pools import PartPools, kept, part_pools
 from .plausibility import KnownPostures, known_postures
 
@@ -96,8 +96,6 @@ class FrameShown:
 # --- A search for the postures that one frame may show, from nothing but what is seen in it
 
 
-MOST_STARTS = 80  # postures that descend side by side
-PLACE_STD_M, TURN_STD_RAD = 0.3, 0.3  # of a descent: sizes are good to a tenth, headings to 15 degrees
 FROM_START = (16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(6)))  # factors of the image noise, one a step
 FROM_NEAR = FROM_START[-4:]
 ALIKE = 3.0  # costs count for so many times less: what is seen of one body errs together, and so do its parts
@@ -156,7 +154,7 @@ class FrameSearch:
     shown: FrameShown
     floor_m: float | None  # height of the floor [m]; None where it is not known, when z = 0 may be it
 
-    def hypotheses(self, count: int = MOST_STARTS) -> Hypotheses:
+    def hypotheses(self, count: int = 80) -> Hypotheses:
         """Hypotheses, in no order, at the end of the descents from `count` starts."""
         stances = stance_features(self.known.pools, self.shown.compared)
         floor_m = self.floor_m
@@ -205,7 +203,7 @@ class FrameSearch:
         placed = place_standing(pools.body, shown.camera, 0, shown.tracks, shown.segments, evidence.keypoints)
         states = costs.states(float(shown.camera.depth(placed.translation)) * np.array(WIDE))
         cost = states.cost.astype(np.float64) + (EXCHANGED_COST if is_exchanged else 0.0)
-        posture = composed_postures(pools, stances, states.stance, states.limbs, states.hips)
+        posture = stances.composed(states.stance, states.limbs, states.hips)
         return Hypotheses(posture, cost, np.full(len(cost), is_exchanged))
 
     def _side_by_side(
@@ -214,7 +212,7 @@ class FrameSearch:
         """Descents of the same evidence, and the costs of what is seen, floor, balance and limits."""
         shown, model, count = self.shown, self.shown.evidence.model, starts.batch[0]
         std = ROUGH_POSE_SHARE * unrelated_std(shown.body.skeleton)
-        std[:3], std[5] = PLACE_STD_M, TURN_STD_RAD
+        std[:3], std[5] = 0.3, 0.3  # sizes are good to a tenth, headings to 15 degrees
         frames = np.full(count, shown.frame, dtype=np.intp)
         width = limb_widths(model, np.median(starts.translation, axis=0)[None], frames[:1])
         bias = np.zeros((count, len(model.placements) * FEATURES))

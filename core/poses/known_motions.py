@@ -15,7 +15,7 @@ from ..prior.motion_playback import sample_motion
 from ..prior.transfer import transferred
 
 STEP_M = 0.045  # mean distance of points between postures: well below performers' differences
-LEAST_RATE, MOST_RATE = 8.0, 25.0  # postures per second of a motion
+MOST_RATE = 25.0  # postures per second of a motion; the least are 8
 MOST_POSTURES = 450  # postures of a library, without mirror images; with more the steps are widened
 
 
@@ -102,7 +102,7 @@ def _sampled(library: Library, motion: LibraryMotion, body: Body, spacing: float
     posture = sample_motion(library, motion, body, fine)
     points = body.points(body.pose(posture)) - posture.translation[:, None]
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=-1).mean(axis=1).sum())
-    rate = np.clip(length / STEP_M / max(whole, 1e-6), LEAST_RATE, MOST_RATE) / spacing
+    rate = np.clip(length / STEP_M / max(whole, 1e-6), 8.0, MOST_RATE) / spacing
     count = int(np.clip(np.ceil(whole * rate), 3, MOST_POSTURES))
     step = whole / count if motion.cyclic else whole / (count - 1)
     time = step * np.arange(count)

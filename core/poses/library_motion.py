@@ -34,9 +34,6 @@ from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures
 from .part_pools import PartPools
 
 MOST_STATES, MARGIN = 500, 15.0  # states kept of a frame, and how much more than the likeliest they may cost
-DEPTH_STD = 0.07  # error of the distance that a first composition has, as a share
-HIPS_STD_M = 0.05  # difference of the hips' height between performers at the same moment of a motion
-TURN_STD, TURN_ROUGH_RAD = 0.5, 0.13  # besides the motion's own [rad/s]; headings are as rough [rad]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +66,6 @@ class _States:
 
 def part_beliefs(
     given: PosingInput,
-    pools: PartPools,
     stances: StanceFeatures,
     posture: Posture,
     hips: Array,
@@ -79,13 +75,13 @@ def part_beliefs(
 
     Args:
         given: The take.
-        pools: The parts of the libraries.
-        stances: The stances and limbs of these.
+        stances: The stances and limbs of the libraries.
         posture: (N,) a first composition of some frames of the clip.
         hips: (T, 3) its places, smoothed [m].
         floor_m: Height of the floor.
     """
     evidence, sampled, time_s = given.evidence, given.sampled, given.time_s
+    pools = stances.pools
     likelihoods = [
         frame_likelihoods(given.camera, each, sampled)
         for each in ((evidence, evidence.exchanged()) if evidence.keypoints.names else (evidence,))
@@ -159,13 +155,16 @@ def _whole(motions: KnownMotions, body: Body, evidence: MatchEvidence) -> _Whole
 def _states(seen: FrameLikelihood, whole: _Whole, hips: Array, floor_m: float, velocity: Array) -> _States:
     """The states that explain a frame best, each at its best place."""
     along = (hips - seen.location) @ seen.backward  # negative
-    depth, up = -seen.backward / (DEPTH_STD * along), np.array([0.0, 0.0, 1.0]) / HIPS_STD_M
+    # Error of the distance that a first composition has, as a share; difference of the hips' height between
+    # performers at the same moment of a motion [m].
+    depth_std, hips_std_m = 0.07, 0.05
+    depth, up = -seen.backward / (depth_std * along), np.array([0.0, 0.0, 1.0]) / hips_std_m
     by_hips = np.concatenate([seen.rows.reshape(-1, 3), depth[None], up[None]])
     count = whole.places.shape[-1]
     offset = np.empty((len(by_hips), count), dtype=np.float32)
     offset[:-2] = (seen.rows @ whole.places).reshape(-1, count)
-    offset[-2] = 1.0 / DEPTH_STD
-    offset[-1] = (seen.location[2] - floor_m - whole.height_m) / HIPS_STD_M
+    offset[-2] = 1.0 / depth_std
+    offset[-1] = (seen.location[2] - floor_m - whole.height_m) / hips_std_m
     solve = -np.linalg.solve(by_hips.T @ by_hips + 1e-6 * np.eye(3), by_hips.T)
     place = solve.astype(np.float32) @ offset
     squared = (offset + by_hips.astype(np.float32) @ place) ** 2
@@ -227,7 +226,8 @@ def _step_cost(
     behind = width * (before % HEADINGS) + spin[before // HEADINGS]
     turned: SingleArray = single(ahead) - single(behind)[:, None]
     turned -= np.float32(2.0 * np.pi) * np.round(turned / np.float32(2.0 * np.pi))
-    turned /= np.float32(np.hypot(TURN_STD * duration_s, TURN_ROUGH_RAD))
+    # Turning besides the motion's own [rad/s]; headings are as rough [rad].
+    turned /= np.float32(np.hypot(0.5 * duration_s, 0.13))
     return moved + multivariate_cost(turned * turned, DEGREES, 1)
 
 

@@ -56,7 +56,6 @@ TRUNK_JOINTS = ("pelvis", "waist", "neck")
 LEAST_QUALITY = 0.05
 BRIDGED_S = 1.0
 """Longest time without anything seen over which points are taken to go straight on: about a step."""
-BRIDGED_QUALITY = 0.5  # of the points at its ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +164,7 @@ def _bridged(keypoints: Keypoints, tracks: RegionTracks) -> Keypoints:
         at, before, after = frames[near], before[near], after[near]
         for axis in range(2):
             pixel[at, point, axis] = np.interp(time_s[at], time_s[known], keypoints.pixel[known, point, axis])
-        score[at, point] = BRIDGED_QUALITY * np.minimum(score[before, point], score[after, point])
+        score[at, point] = 0.5 * np.minimum(score[before, point], score[after, point])
     return replace(keypoints, pixel=pixel, score=score)
 
 

@@ -43,6 +43,7 @@ class PartFeatures:
 class StanceFeatures:
     """S stances, T torsos in H headings: torso s // H in heading s % H."""
 
+    pools: PartPools  # the parts
     features: PartFeatures
     pelvis: SingleArray  # (S, 3, 3) turn of the pelvis in the world
     chest: SingleArray  # (S, 3, 3) turn of the chest
@@ -58,6 +59,12 @@ class StanceFeatures:
             return self.chest[stance], self.chest_place[stance]
         turn = self.pelvis[stance]
         return turn, np.zeros((len(turn), 3), dtype=np.float32)
+
+    def composed(self, stance: IndexArray, limbs: IndexArray, hips: Array | SingleArray) -> Posture:
+        """Postures of stances (N,) with limbs (N, 4), in the order of `LIMBS`, the hips at (N, 3) [m]."""
+        parts = {limb: limbs[:, column] for column, limb in enumerate(LIMBS)}
+        heading = self.heading_rad[stance % HEADINGS]
+        return self.pools.composed(stance // HEADINGS, parts, heading, np.asarray(hips, dtype=float))
 
 
 def stance_features(pools: PartPools, evidence: MatchEvidence) -> StanceFeatures:
@@ -91,6 +98,7 @@ def stance_features(pools: PartPools, evidence: MatchEvidence) -> StanceFeatures
     ]
     limbs = {limb: _limb_features(pools, evidence, limb) for limb in LIMBS}
     return StanceFeatures(
+        pools,
         features,
         single(frames[0]),
         single(frames[1]),
@@ -100,19 +108,6 @@ def stance_features(pools: PartPools, evidence: MatchEvidence) -> StanceFeatures
         {limb: single(pools.limb_cost[limb]) for limb in LIMBS},
         standing_ankle_m(body),
     )
-
-
-def composed_postures(
-    pools: PartPools,
-    stances: StanceFeatures,
-    stance: IndexArray,
-    limbs: IndexArray,
-    hips: Array | SingleArray,
-) -> Posture:
-    """Postures of stances (N,) with limbs (N, 4), in the order of `LIMBS`, and hips at places (N, 3) [m]."""
-    parts = {limb: limbs[:, column] for column, limb in enumerate(LIMBS)}
-    heading = stances.heading_rad[stance % HEADINGS]
-    return pools.composed(stance // HEADINGS, parts, heading, np.asarray(hips, dtype=float))
 
 
 def limb_points(limb: str) -> list[int]:

@@ -18,6 +18,7 @@ from ..body.kinematics import Body
 from ..body.mirror import mirrored
 from ..body.posture import Posture, yawed_at
 from ..body.skeleton import Skeleton
+from ..numerics.robust import multivariate_cost
 from ..prior.library import Library
 from .known_motions import KnownMotions, known_motions
 
@@ -35,12 +36,9 @@ POINTS = {
     LEG: ("knee.L", "ankle.L"),
 }
 """Principal points by which parts are compared; of the left side where there are two."""
-KNOWN_M = {TORSO: 0.05, ARM: 0.09, LEG: 0.07}  # libraries' parts nearer than this look the same
-MOST_KNOWN = {TORSO: 30, ARM: 130, LEG: 110}  # parts taken from libraries at most
-SAMPLED_M = {TORSO: 0.10, ARM: 0.20, LEG: 0.16}  # distance of samples from one another and from known parts
-MOST_SAMPLED = {TORSO: 18, ARM: 90, LEG: 70}
-UNUSUAL_DEGREES = 3.0  # of the Student's t by which parts farther off are rarer: a prior must forgive
-TOGETHER_SHARE = 0.5  # weight of which parts libraries show together; the rest is for any other combination
+SPREAD = {TORSO: (0.05, 30, 0.10, 18), ARM: (0.09, 130, 0.20, 90), LEG: (0.07, 110, 0.16, 70)}
+"""Libraries' parts nearer than this look the same [m], and so many are taken at most; distance of samples
+from one another and from known parts [m], and so many at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +139,8 @@ def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
         together = near @ seen[limb].T
         together /= together.sum(axis=1, keepdims=True)
         alone = np.exp(-pool.cost)
-        limb_cost[limb] = -np.log((1.0 - TOGETHER_SHARE) * alone + TOGETHER_SHARE * together)
+        # Half is for the parts that libraries show together, the rest for any other combination.
+        limb_cost[limb] = -np.log(0.5 * alone + 0.5 * together)
     return PartPools(body, torsos, arms, legs, motions, limb_cost)
 
 
@@ -186,14 +185,16 @@ def _samples(random: np.random.Generator) -> Posture:
 
 def _pool(body: Body, kind: str, known: Posture, samples: Posture) -> PartPool:
     known_points, sample_points = (part_points(body, kind, each) for each in (known, samples))
-    chosen = _spread(known_points, None, KNOWN_M[kind], MOST_KNOWN[kind])
-    added = _spread(sample_points, known_points[chosen], SAMPLED_M[kind], MOST_SAMPLED[kind])
+    known_m, most_known, sampled_m, most_sampled = SPREAD[kind]
+    chosen = _spread(known_points, None, known_m, most_known)
+    added = _spread(sample_points, known_points[chosen], sampled_m, most_sampled)
     away = _distance(sample_points[added][:, None], known_points[None])
     nearest = away.argmin(axis=1)
     off = away[np.arange(len(added)), nearest]
     usual = np.sqrt(np.bincount(_nearest(known_points, known_points[chosen]), minlength=len(chosen)))
-    # Distance from the nearest known part that is as usual as the known part.
-    rare = np.median(usual) * (1.0 + (off / 0.15) ** 2 / UNUSUAL_DEGREES) ** (-0.5 * (UNUSUAL_DEGREES + 1.0))
+    # Distance from the nearest known part that is as usual as the known part. Student's t of three degrees:
+    # a prior must forgive.
+    rare = np.median(usual) * np.exp(-multivariate_cost((off / 0.15) ** 2, 3.0, 1))
     weight = np.concatenate([usual, rare])
     return PartPool(
         kind,

@@ -28,9 +28,6 @@ from .frame_search import ALIKE, FrameSearch, FrameShown, Hypotheses, knowledge
 from .inverse_kinematics import Pull, SightLine, pulled
 
 EVIDENT = "person"  # source of points that a person vouches for
-KEPT_M = 0.04  # how near points come to their depth, beside how far they were moved
-HELD_M = 0.002  # how near the point under the mouse comes to it
-PLACE_FREE_M = 1.0  # the hips may come anywhere
 
 
 def put_right(
@@ -66,7 +63,7 @@ def put_right(
     seen = np.array([places.get(name, place) for name, place in zip(names, start, strict=True)])
     across_m, along_m = found_std_m(np.array(confidence))
     std_m = np.where(is_set, picture_std_m(body), across_m)
-    near_m = np.where([name == held for name in names], HELD_M, std_m)
+    near_m = np.where([name == held for name in names], 0.002, std_m)  # the point under the mouse stays there
     own = _pulled(body, camera, frame, found, shown, seen, near_m)
     usable = [library for library in libraries if library.postures]
     pixels, depth = camera.project(seen, frame)
@@ -93,11 +90,11 @@ def _pulled(
     pulls = []
     for name, own, place, std in zip(body.skeleton.point_names, there, seen, std_m, strict=True):
         line = SightLine.to(camera, place, frame)
-        # What is moved far across the sight may have come as far along it.
-        kept_m = float(np.hypot(KEPT_M, line.off_m(own)))
+        # Points come near to their depth; what is moved far across the sight may have come as far along it.
+        kept_m = float(np.hypot(0.04, line.off_m(own)))
         pulls.append(Pull(name, line.nearest(own), float(std), line.direction, kept_m))
     free = {joint.name: np.radians(JOINT_STD_DEG[joint.name.split(".")[0]]) for joint in body.skeleton.joints}
-    return pulled(body, start, pulls, {"place": PLACE_FREE_M, **free})
+    return pulled(body, start, pulls, {"place": 1.0, **free})  # the hips may come anywhere
 
 
 def _leaning(places: Array, sight: Array) -> Array:

@@ -24,8 +24,6 @@ from .known_motions import limb_places
 from .part_pools import TORSO, part_dofs
 
 PARTS = (TRUNK, *LIMBS)
-KERNEL_M = 0.05  # three fifths of what performers differ by; libraries predict each other by 3 to 4 cm
-UNUSUAL = 6.0  # how much more unusual an unknown motion may be: a part 40 cm from all known
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +59,8 @@ class KnownPostures:
 
     def contorted(self, pose: Pose) -> BoolArray:
         """(N, 5) whether each part is where no known posture has anything like it."""
-        most = np.array([self.usual[part][1] - self.usual[part][0] + UNUSUAL for part in PARTS])
+        # An unknown motion may be more unusual than all known ones, by a part 40 cm from them.
+        most = np.array([self.usual[part][1] - self.usual[part][0] + 6.0 for part in PARTS])
         skeleton, vector = pose.posture.skeleton, pose.posture.to_vector()
         # A joint this far beyond its range is contorted, whatever is known.
         beyond = np.abs(vector - np.clip(vector, *skeleton.limits.T)) > 0.25
@@ -135,6 +134,7 @@ def _cost(shape: Array, known: Array, other: BoolArray | None = None) -> Array:
     squared = (shape**2).sum(-1)[:, None] + (known**2).sum(-1) - 2.0 * shape @ known.T
     # A part has four dimensions: two directions of two segments; lean, turn and bend of a trunk. The degrees
     # are the likeliest for one library by the others, too.
-    kernel = -multivariate_cost(np.maximum(squared, 0.0) / KERNEL_M**2, DEGREES, 4)
+    # 5 cm: three fifths of what performers differ by; libraries predict each other by 3 to 4.
+    kernel = -multivariate_cost(np.maximum(squared, 0.0) / 0.05**2, DEGREES, 4)
     counted = np.ones(squared.shape, dtype=bool) if other is None else other
     return np.asarray(np.log(counted.sum(-1)) - logsumexp(kernel, axis=-1, b=counted))

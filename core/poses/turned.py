@@ -5,8 +5,8 @@ Wrong about a pose that faces the wrong way is either the trunk alone, where eac
 which leaves its outline as it is.
 """
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
@@ -17,12 +17,8 @@ from ..body.kinematics import Body
 from ..body.mirror import mirrored, other_side
 from ..body.posture import Posture, facing_rad, headings_rad, yaw_rotation, yawed_in_place
 from ..camera.camera import Camera
-from ..prior.keyframes import Keyframe
-from ..take.take import Take
 from .inverse_kinematics import Pull, SightLine, pulled
 from .limb_chain import LimbChain
-
-HEAD_M, HEAD_DEPTH_M = 0.02, 0.3  # how near the head comes to its sight, and to its turned depth
 
 
 class Facing(Enum):
@@ -100,7 +96,8 @@ def _with_image(
     column = body.skeleton.point_names.index("head")
     head, now = (body.points(body.pose(each))[column] for each in (seen, posture))
     line = SightLine.to(camera, head)
-    pull = Pull("head", line.nearest(now), HEAD_M, line.direction, HEAD_DEPTH_M)
+    # How near the head comes to its sight, and to its turned depth [m].
+    pull = Pull("head", line.nearest(now), 0.02, line.direction, 0.3)
     return Turned(pulled(body, posture, [pull], {"neck": 1.0}), sides, strain)
 
 
@@ -128,61 +125,3 @@ def _exchanged(posture: Posture, camera: Camera, heading_rad: float) -> Posture:
 
 def _apart_rad(first: float, second: float) -> float:
     return abs(float((first - second + np.pi) % (2.0 * np.pi) - np.pi))
-
-
-# --- The part of a clip around a corrected keyframe whose found keyframes are posed anew
-
-
-FARTHEST_S = 0.5
-"""Time on either side of a corrected keyframe beyond which found ones stay: what a body does later
-follows less and less from its posture there, and the animator waits."""
-
-
-@dataclass(frozen=True)
-class Section:
-    """A part of a clip that is posed anew; all are indices of its frames."""
-
-    first: int
-    last: int
-    changed: tuple[int, ...]  # found keyframes that are posed anew, in order
-
-
-def section_around(time_s: Array, corrected: int, keyframes: Collection[Keyframe]) -> Section:
-    """The part of a clip around a corrected keyframe that is posed anew.
-
-    On either side it reaches to the next keyframe that the animator decided on, or else to the first found
-    one beyond `FARTHEST_S`, or else to the clip's end; but always beyond one found keyframe, and nowhere
-    without one.
-
-    Args:
-        time_s: (F,) times of the clip's frames [s].
-        corrected: Index of the corrected keyframe.
-        keyframes: All keyframes, those with `matched` found.
-    """
-    ends, changed = [], []
-    for side, end in ((-1, 0), (1, len(time_s) - 1)):
-        outward = sorted(
-            (each for each in keyframes if side * (each.index - corrected) > 0),
-            key=lambda each: abs(each.index - corrected),
-        )
-        near: list[int] = []
-        for each in outward:
-            far = abs(float(time_s[each.index] - time_s[corrected])) > FARTHEST_S
-            if each.matched is None or (far and near):
-                end = each.index
-                break
-            near.append(each.index)
-        ends.append(end if near else corrected)
-        changed += near
-    return Section(ends[0], ends[1], tuple(sorted(changed)))
-
-
-def take_around(take: Take, section: Section) -> Take:
-    """The take with all keyframes that hold: decided ones, and found ones that bound the section."""
-    kept = []
-    for keyframe in take.keyframes:
-        bounds = keyframe.index in (section.first, section.last) and keyframe.index not in section.changed
-        if keyframe.matched is None or bounds:
-            found = keyframe.matched is not None or keyframe.depth_found
-            kept.append(replace(keyframe, matched=None, depth_found=found))
-    return replace(take, keyframes=tuple(kept))

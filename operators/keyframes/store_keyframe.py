@@ -71,7 +71,7 @@ def _reading(scene: Scene, take: PropertyGroup) -> "Reading | None":
 
 def _pose_anew(scene: Scene, settings: PropertyGroup, reading: "Reading", frame: float) -> int:
     from ...core.poses.clip import pose_clip
-    from ...core.poses.turned import section_around, take_around
+    from ...core.poses.clip_input import section_around, take_around
     from ...core.session.stages import seen_in
     from ..bridge.scene_frames import scene_frames
     from ..library.registry_files import named_libraries

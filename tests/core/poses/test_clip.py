@@ -10,7 +10,6 @@ from _performed import BODY, FRAMES, camera, detected, filmed, performed, unmark
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.errors import InputError
 from keymark.core.poses.clip import pose_clip
 from keymark.core.poses.found_poses import FoundPoses, with_found
 from keymark.core.prior.keyframes import Keyframe
@@ -116,11 +115,3 @@ def test_between_two_posed_frames_only_those_change() -> None:
     outside = [key for key in corrected.keyframes if not 12 <= key.index <= 37]
     assert all(changed[key.index] is key for key in outside)
     assert changed[12].matched is None and changed[20].matched is not None
-
-
-def test_what_is_needed_is_said() -> None:
-    take, reading = filmed(truth(), camera())
-    with pytest.raises(InputError, match="at least one is needed"):
-        run(pose_clip(seen_in(take, reading), ()))
-    with pytest.raises(InputError, match="neither markers nor keypoints"):
-        run(pose_clip(seen_in(replace(take, markers=()), reading), libraries()))

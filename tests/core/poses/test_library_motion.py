@@ -61,7 +61,7 @@ def test_a_known_motion_makes_the_parts_it_shows_likelier(walking: Library, wavi
     given = posing_input(seen_in(take, reading))
     pools = part_pools([waving, walking], BODY)
     stances = stance_features(pools, given.evidence)
-    beliefs = run(part_beliefs(given, pools, stances, truth, truth.translation[given.sampled], 0.0))
+    beliefs = run(part_beliefs(given, stances, truth, truth.translation[given.sampled], 0.0))
     assert len(beliefs) == len(given.sampled)
     for belief, frame in zip(beliefs, given.sampled, strict=True):
         points = BODY.points(BODY.pose(truth[frame])) - truth.translation[frame]
@@ -86,7 +86,7 @@ def test_a_motion_that_fits_badly_is_believed_little(walking: Library, waving: L
     for library in (walking, waving):
         pools = part_pools([library], BODY)
         stances = stance_features(pools, given.evidence)
-        beliefs = run(part_beliefs(given, pools, stances, truth, hips, 0.0))
+        beliefs = run(part_beliefs(given, stances, truth, hips, 0.0))
         most.append(np.mean([belief.limbs["leg.L"].min() for belief in beliefs]))
     assert most[0] < 1.5 * most[1] < 0.0
 

@@ -1,13 +1,28 @@
-"""One library alone, with tracks of a performer of other proportions and another way of moving."""
+"""One library alone, with tracks or keypoints of a performer of other proportions who moves another way."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
-from _performed import BODY, FRAMES, camera, errors_m, filmed, performed
+from _performed import (
+    BODY,
+    FRAMES,
+    NAMES,
+    camera,
+    detected,
+    errors_m,
+    exchanged,
+    filmed,
+    performed,
+    unmarked,
+)
 from _recorded import assert_recorded
 from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture
+from keymark.core.detect.keypoints import SeenPeople
 from keymark.core.errors import InputError
 from keymark.core.markers.reading import Reading
 from keymark.core.poses.clip import pose_clip
@@ -16,8 +31,10 @@ from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library
 from keymark.core.progress import run
 from keymark.core.session.stages import seen_in
+from keymark.core.take.take import Take
 
 pytestmark = pytest.mark.slow
+NOBODY = SeenPeople.nobody(len(NAMES))
 
 
 @pytest.mark.parametrize("heading_deg", [-100.0, 35.0])
@@ -36,22 +53,53 @@ def test_walking_is_found_in_its_phase_heading_and_place(walking: Library, headi
     assert {one.name for frame in found.frames for one in frame.candidates} <= names
 
 
-def test_walking_on_the_spot_is_walking(walking: Library) -> None:
+Scene = tuple[Posture, tuple[Take, Reading]]
+
+
+def on_the_spot(walking: Library) -> Scene:
     there = performed(walking, np.radians(35.0))
     level = np.append(there.translation[:, :2].mean(axis=0), 0.0)
     hips = level + there.translation * np.array([0.0, 0.0, 1.0])
     truth = Posture(there.skeleton, hips, there.rotations, there.angles)
-    rooted, absolute = errors_m(
-        run(pose_clip(seen_in(*filmed(truth, camera())), [walking], floor_m=0.0)), truth
-    )
-    assert rooted < 0.07
-    assert absolute < 0.15
+    return truth, filmed(truth, camera())
 
 
-def test_a_camera_that_moves_and_markers_that_hide_do_no_harm(walking: Library) -> None:
+def moving_camera_and_hidden_markers(walking: Library) -> Scene:
     truth = performed(walking, np.radians(60.0))
-    found = run(pose_clip(seen_in(*filmed(truth, camera(FRAMES), hidden=0.1)), [walking]))
-    assert errors_m(found, truth)[0] < 0.07
+    return truth, filmed(truth, camera(FRAMES), hidden=0.1)
+
+
+def keypoints(walking: Library, heading_deg: float = 35.0, hinted: bool = True, wrong: float = 0.0) -> Scene:
+    truth = performed(walking, np.radians(heading_deg))
+    people = detected(truth, camera(), wrong=wrong)
+    people = exchanged(people, range(10, 35)) if wrong else people
+    return truth, unmarked(truth, camera(), people if hinted else people.without_hints())
+
+
+def exchanged_throughout_beside_markers(walking: Library) -> Scene:
+    truth = performed(walking, np.radians(35.0))
+    take, reading = filmed(truth, camera())
+    return truth, (replace(take, keypoints=(exchanged(detected(truth, camera()), range(FRAMES)),)), reading)
+
+
+@pytest.mark.parametrize(
+    ("scene", "rooted_m", "absolute_m"),
+    [
+        (on_the_spot, 0.07, 0.15),
+        (moving_camera_and_hidden_markers, 0.07, 0.3),
+        *((partial(keypoints, heading_deg=h, hinted=i), 0.075, 0.2) for h in (-100.0, 35.0) for i in (0, 1)),
+        (partial(keypoints, wrong=0.2), 0.075, 0.3),
+        (exchanged_throughout_beside_markers, 0.075, 0.3),
+    ],
+)
+def test_walking_is_found(
+    walking: Library, scene: Callable[[Library], Scene], rooted_m: float, absolute_m: float
+) -> None:
+    truth, (take, reading) = scene(walking)
+    found = run(pose_clip(seen_in(take, reading), [walking], floor_m=0.0))
+    rooted, absolute = errors_m(found, truth)
+    assert rooted < rooted_m and absolute < absolute_m
+    assert found.fit > 0.5
 
 
 def test_an_unknown_floor_is_found_by_the_sizes(walking: Library) -> None:
@@ -130,10 +178,47 @@ def test_posed_keyframes_stay_beside_matched_ones(walking: Library) -> None:
     assert with_found(mixed, match).keyframe_indices == mixed.keyframe_indices
 
 
-def test_what_cannot_be_matched_is_refused(walking: Library) -> None:
-    take, reading = filmed(performed(walking, 0.6), camera())
-    with pytest.raises(InputError, match="no keyframe library with a posture is given"):
-        run(pose_clip(seen_in(take, reading), [replace(walking, postures=(), motions=())]))
+def test_keypoints_find_the_arms_that_few_markers_leave_open(walking: Library) -> None:
+    truth = performed(walking, np.radians(60.0))
+    take, reading = filmed(truth, camera())
+    names = ("centroid", "second_moment", "area", "quality", "clipped")
+    trunk = {name: getattr(reading.tracks, name)[:, :1] for name in names}
+    bare = replace(take, markers=take.markers[:1])
+    seen = Reading(replace(reading.tracks, names=reading.tracks.names[:1], **trunk))
+    alone = errors_m(run(pose_clip(seen_in(bare, seen), [walking], floor_m=0.0)), truth)[0]
+    both = replace(bare, keypoints=(detected(truth, camera()),))
+    assert errors_m(run(pose_clip(seen_in(both, seen), [walking], floor_m=0.0)), truth)[0] < 0.7 * alone
+
+
+def test_keypoints_that_are_never_seen_change_nothing(walking: Library) -> None:
+    truth = performed(walking, 0.6)
+    take, reading = filmed(truth, camera())
+    blind = replace(detected(truth, camera()), frames=(NOBODY,) * FRAMES)
+    first, second = (
+        run(pose_clip(seen_in(each, reading), [walking]))
+        for each in (take, replace(take, keypoints=(blind,)))
+    )
+    np.testing.assert_array_equal(first.postures.to_vector(), second.postures.to_vector())
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"markers": (), "keypoints": ()}, "neither markers nor keypoints"),
+        ({"markers": ()}, "no keypoint is seen"),
+        ({"keypoints": ()}, "no marker is seen"),
+    ],
+)
+def test_what_shows_nobody_is_refused(walking: Library, change: dict[str, Any], words: str) -> None:
+    truth = performed(walking, 0.6)
+    take, reading = filmed(truth, camera())
+    take = replace(take, keypoints=(replace(detected(truth, camera()), frames=(NOBODY,) * FRAMES),))
     nothing = replace(reading.tracks, centroid=np.full_like(reading.tracks.centroid, np.nan))
-    with pytest.raises(InputError, match="no marker is seen"):
-        run(pose_clip(seen_in(take, Reading(nothing)), [walking]))
+    with pytest.raises(InputError, match=words):
+        run(pose_clip(seen_in(replace(take, **change), Reading(nothing)), [walking]))
+
+
+def test_libraries_without_a_posture_are_refused(walking: Library) -> None:
+    seen = seen_in(*filmed(performed(walking, 0.6), camera()))
+    with pytest.raises(InputError, match="no keyframe library with a posture is given; at least one"):
+        run(pose_clip(seen, [replace(walking, postures=(), motions=())]))

@@ -10,8 +10,7 @@ from _synthetic_take import true_postures, write_synthetic_take
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.poses.clip_input import PosedFrames
-from keymark.core.poses.turned import Section, section_around, take_around
+from keymark.core.poses.clip_input import PosedFrames, Section, section_around, take_around
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.prior.library import read_library
 from keymark.core.prior.registry import SHIPPED
