@@ -52,16 +52,14 @@ def test_stored_poses_are_keyframes_and_storing_again_replaces(
     assert keyframe.posture.minus(random_posture(61)) == pytest.approx(0.0, abs=1e-5)
 
 
-def test_keys_that_were_generated_are_not_keyframes(actor: bpy.types.Object, wave_motion: Motion) -> None:
+def test_keys_that_were_generated_or_are_of_hands_alone_are_no_keyframes(
+    actor: bpy.types.Object, wave_motion: Motion
+) -> None:
     action = write_motion(actor, wave_motion)
+    actor.pose.bones["hand.L"].keyframe_insert("rotation_quaternion", frame=9)
     assert keyed_frames(actor, action, HUMAN) == ()
     store_pose(actor, action, HUMAN, 4.0)
     assert keyed_frames(actor, action, HUMAN) == (4.0,)
-
-
-def test_keys_of_hands_alone_are_not_keyframes(actor: bpy.types.Object) -> None:
-    actor.pose.bones["hand.L"].keyframe_insert("rotation_quaternion", frame=9)
-    assert keyed_frames(actor, actor.animation_data.action, HUMAN) == ()
 
 
 def test_keys_outside_the_footage_are_left_out_and_named(

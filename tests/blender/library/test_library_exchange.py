@@ -75,18 +75,16 @@ def test_a_dropped_json_is_looked_into(own: Path, library: Library, tmp_path: Pa
     write_library(tmp_path / "take.json", library)  # the name does not matter
     assert bpy.ops.keymark.open_dropped(filepath=str(tmp_path / "take.json")) == {"FINISHED"}
     assert titles(own) == [("small", "Small", 2, 2)]
-    (tmp_path / "take.json").write_text('{"clip": "no.mp4"}')
-    with pytest.raises(RuntimeError, match="is missing"):
-        bpy.ops.keymark.open_dropped(filepath=str(tmp_path / "take.json"))
-    (tmp_path / "mine.json").write_text('{"clip": "no.mp4"}')  # beside a take.json, which was not meant
-    with pytest.raises(RuntimeError, match=r"mine\.json: a take's file is called take\.json"):
-        bpy.ops.keymark.open_dropped(filepath=str(tmp_path / "mine.json"))
-    (tmp_path / "other.json").write_text("{}")
-    with pytest.raises(RuntimeError, match="neither a take's take.json nor a keyframe library"):
-        bpy.ops.keymark.open_dropped(filepath=str(tmp_path / "other.json"))
-    (tmp_path / "bad.json").write_text('{"schema": "keymark-library", "schema_version": 1}')
-    with pytest.raises(RuntimeError, match="identifier is missing"):
-        bpy.ops.keymark.open_dropped(filepath=str(tmp_path / "bad.json"))
+    for name, text, sentence in (
+        ("take.json", '{"clip": "no.mp4"}', "is missing"),
+        # Beside a take.json, which was not meant.
+        ("mine.json", '{"clip": "no.mp4"}', r"mine\.json: a take's file is called take\.json"),
+        ("other.json", "{}", "neither a take's take.json nor a keyframe library"),
+        ("bad.json", '{"schema": "keymark-library", "schema_version": 1}', "identifier is missing"),
+    ):
+        (tmp_path / name).write_text(text)
+        with pytest.raises(RuntimeError, match=sentence):
+            bpy.ops.keymark.open_dropped(filepath=str(tmp_path / name))
 
 
 def test_a_choice_of_library_outlives_others(own: Path, library: Library, tmp_path: Path) -> None:
@@ -106,16 +104,14 @@ def test_a_damaged_file_in_the_registry_is_listed_as_such(own: Path) -> None:
     assert [entry[0] for entry in registry.library_items(None, bpy.context)] == []
 
 
-@pytest.mark.parametrize("content", ["another", "damaged"])
+@pytest.mark.parametrize("damaged", [False, True])
 def test_a_file_that_only_has_the_name_is_not_lost(
-    own: Path, library: Library, tmp_path: Path, content: str
+    own: Path, library: Library, tmp_path: Path, damaged: bool
 ) -> None:
     there = own / "small.json"
-    if content == "another":
-        write_library(there, replace(library, identifier="anna", title="Anna"))
-    else:
-        there.write_text("{")
-    before = there.read_bytes()
+    write_library(there, replace(library, identifier="anna", title="Anna"))
+    before = b"{" if damaged else there.read_bytes()
+    there.write_bytes(before)
     with pytest.raises(RuntimeError, match=r"small\.json: holds .* would be lost"):
         imported(library, tmp_path, replace=True)
     assert there.read_bytes() == before

@@ -33,24 +33,18 @@ def test_names_are_made_unique(name: str, others: list[str], free: str) -> None:
     assert unique_name(name, others) == free
 
 
-def test_renaming_to_a_name_that_is_taken_numbers_it(tiny_take: Take) -> None:
+def test_a_take_opened_twice_has_everything_twice_but_the_clip(tiny_take: Take) -> None:
     takes = open_take(tiny_take, times=2).keymark.takes
-    assert [take.name for take in takes] == ["tiny", "tiny.001"]
-    assert takes[0].identifier != takes[1].identifier
+    assert takes[0].clip == takes[1].clip
+    for name in ("identifier", "armature", "camera", "keyframe_action"):
+        assert getattr(takes[0], name) != getattr(takes[1], name)
+    for take, name in zip(takes, ("tiny", "tiny.001"), strict=True):
+        assert (take.name, take.armature.name) == (name, f"{name} Actor")
+        assert take.keyframe_action.name == f"{name} Actor Keyframes"
     takes[1].name = "tiny"
     assert takes[1].name == "tiny.001"
     takes[1].name = " "
     assert takes[1].name == "Take"
-
-
-def test_a_take_opened_twice_has_everything_twice_but_the_clip(tiny_take: Take) -> None:
-    takes = open_take(tiny_take, times=2).keymark.takes
-    assert takes[0].clip == takes[1].clip
-    for name in ("armature", "camera", "keyframe_action"):
-        assert getattr(takes[0], name) != getattr(takes[1], name)
-    assert [take.armature.name for take in takes] == ["tiny Actor", "tiny.001 Actor"]
-    names = [take.keyframe_action.name for take in takes]
-    assert names == ["tiny Actor Keyframes", "tiny.001 Actor Keyframes"]
 
 
 def test_switching_brings_clip_camera_rate_and_range(tiny_take: Take, tmp_path: Path) -> None:
