@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from .estimate.reconstruct import Reconstruction
@@ -13,7 +14,7 @@ from .prior.registry import SHIPPED, find_libraries
 from .prior.texts import EVERY_LIBRARY
 from .progress import Job, run
 from .session.described import ReadArmature, described
-from .session.session import Inputs, Session
+from .session.session import NO_BRIDGE, Bridge, Inputs, Session
 from .session.stages import reach
 from .take.conversion_settings import NO_SETTINGS, ConversionSettings
 from .take.description import Description, describe
@@ -42,14 +43,18 @@ def convert(
     settings: ConversionSettings = NO_SETTINGS,
     libraries: Sequence[Library] = (),
     read_armature: ReadArmature | None = None,
+    bridge: Bridge = NO_BRIDGE,
 ) -> Job[Session]:
-    """From a described take to its motion; `read_armature` reads a reference motion that only Blender can.
+    """From a described take to its motion, and on with what only Blender can do, by the names of stages.
+
+    `read_armature` reads a reference motion that only Blender can.
 
     Raises:
         InputError: The take or its clip cannot be used, or there is no library with a posture.
         ConversionError: No motion could be computed.
     """
-    return reach(Session(described(description, settings, libraries, read_armature)), "reconstruct")
+    inputs = described(description, settings, libraries, read_armature)
+    return reach(Session(replace(inputs, bridge=bridge)), "retarget")
 
 
 def reconstruct(

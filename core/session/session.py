@@ -7,6 +7,7 @@ it. The digest of all that a result depends on tells whether it was made before.
 from collections.abc import Callable, Mapping, MutableMapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 import numpy as np
@@ -21,6 +22,10 @@ from ..take.take import Take
 from .lens import Lens
 
 Result = TypeVar("Result")
+
+
+Bridge = Mapping[str, Callable[["Session"], Job[Any]]]
+NO_BRIDGE: Bridge = MappingProxyType({})
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +52,7 @@ class Inputs:
     """How many of these; 10 per 100 frames where None."""
     kept: Reading | None = None
     """A reading of any clip, whose parts are used that still hold."""
-    bridge: Mapping[str, Callable[["Session"], Job[Any]]] = field(default_factory=dict)
+    bridge: Bridge = field(default_factory=dict)
     """Stages that only Blender can do, by name, and how; those left out are not done."""
 
 

@@ -68,17 +68,17 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
 
             write_actor_bvh(motion, staging / BVH)
         if settings is not None:
-            record = write_character_result(
+            job = write_character_result(
                 settings,
                 motion,
                 absolute_path(file.path).stem,
                 lambda scene, shown: show_result(scene, None, shown),
                 (staging, real_path(folder)),
-                console,
                 arguments.debug,
                 formats,
                 picture=False,
             )
+            record = run(job, console.progress)
             notes = (*notes, *record.doubts, *record.notes)
         made = [name for name in FILES if (staging / name).exists()]
         write_made_digests(staging, made)

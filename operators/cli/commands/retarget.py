@@ -8,6 +8,7 @@ from pathlib import Path
 from ....core.errors import InputError
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import absolute_path, real_path
+from ....core.progress import run
 from ....core.retarget.retarget_record import RECORD_FILE, RetargetRecord, read_retarget_record
 from ....core.session.result import AS_MADE, changed_files, kept_note, write_made_digests
 from ....core.take.character_settings import CharacterSettings
@@ -76,16 +77,16 @@ def _retarget(
     check_exporters(formats)
     kept: dict[str, str] = {}
     with output_folder(output, (*RESULT_FILES, AS_MADE), RECORD_FILE, kept) as staging_folder:
-        record = write_character_result(
+        job = write_character_result(
             settings,
             motion,
             absolute_path(motion_file).parent.name,
             lambda scene, shown: show_result(scene, blend, shown),
             (staging_folder, real_path(output)),
-            console,
             debug,
             formats,
         )
+        record = run(job, console.progress)
         made = [name for name in RESULT_FILES[1:] if (staging_folder / name).exists()]
         write_made_digests(staging_folder, made)
         before: Mapping[str, str] = {}

@@ -15,7 +15,7 @@ from ....core.feet.natural_extremities import natural_extremities
 from ....core.files.digest import content_digest
 from ....core.files.fields import listed
 from ....core.files.paths import regular_file_size
-from ....core.progress import Job, run
+from ....core.progress import Job, Progress
 from ....core.report.canvas import write_png
 from ....core.retarget.character import LIMBS, Character
 from ....core.retarget.maps.character_map import CharacterMap
@@ -28,7 +28,6 @@ from ....core.take.motion import Motion
 from ....core.take.presence import named_limbs
 from ..blender_silence import blender_silence
 from ..command import UsageError, argument, version
-from ..console import Console
 from ..library_search_path import library_folders
 from .blender_files import hidden_files
 
@@ -121,11 +120,10 @@ def write_character_result(
     take: str,
     show_footage: ShowFootage,
     folders: tuple[Path, Path],
-    console: Console,
     debug: bool,
     formats: tuple[str, ...] = (),
     picture: bool = True,
-) -> RetargetRecord:
+) -> Job[RetargetRecord]:
     """Put a motion onto a character and write the files.
 
     Args:
@@ -134,13 +132,12 @@ def write_character_result(
         take: Name of the take, after which the Action is named.
         show_footage: Shows what was filmed.
         folders: The staging folder, and the folder of the result as a real path.
-        console: Shows the progress.
         debug: Whether to let Blender's messages through.
         formats: Words of `EXPORTS`.
         picture: Whether to draw the character beside the footage, where the scene shows some.
     """
     staging_folder, output = folders
-    console.stage("Opening the character")
+    yield Progress("Opening the character", 0.0)
     with opened_character(settings.character_file, settings.map, debug) as (scene, opened):
         from ...bridge.character.import_character import write_character_files
         from ...bridge.character.retarget import retarget
@@ -152,10 +149,10 @@ def write_character_result(
         armature = opened.imported.armature
         job = retarget(armature, motion_segments(motion), frames, character_map, options)
         try:
-            retargeted = run(silenced(job, debug), console.progress)
+            retargeted = yield from silenced(job, debug)
         except InputError as error:
             raise InputError(f"{settings.file}: {error}") from error
-        console.stage("Writing the character")
+        yield Progress("Writing the character", 1.0)
         exports = {EXPORTS[word][0]: EXPORTS[word][1] for word in formats}
         names = (CHARACTER_BLEND, *exports.values())
         with blender_silence(debug), hidden_files(names, staging_folder, output) as hidden:

@@ -10,10 +10,11 @@ from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
 from ....core.poses.found_poses import FoundPoses
 from ....core.prior.library import library_digest
-from ....core.progress import run
+from ....core.progress import Job, run
 from ....core.report.overlay_sheet import performer_contours
 from ....core.report.pictures import write_pictures
 from ....core.retarget.maps.map_registry import map_digests
+from ....core.retarget.retarget_record import RetargetRecord
 from ....core.review.frame_evidence import compare_keypoints
 from ....core.session.pose import Posed
 from ....core.session.result import (
@@ -25,6 +26,7 @@ from ....core.session.result import (
     write_motion_files,
     write_take_files,
 )
+from ....core.session.session import Session
 from ....core.take.conversion_digest import conversion_digest
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, RECORD_FILE, REPORT, is_up_to_date
 from ....core.take.conversion_settings import ConversionSettings
@@ -90,7 +92,25 @@ def convert_if_changed(
             console.stage("Opening the character")
             with opened_character(character.character_file, character.map, debug):
                 pass  # what is wrong with it is better known before the work
-        way = convert(description, settings, libraries, lambda file: _reference(file, debug))
+        real_output = real_path(output)
+
+        def retarget(session: Session) -> Job[RetargetRecord]:
+            from ...bridge.result_files import show_take
+
+            assert character is not None
+            return write_character_result(
+                character,
+                session[Reconstruction].motion,
+                session.inputs.take.name,
+                lambda scene, shown: show_take(scene, _filmed(session), shown),
+                (staging_folder, real_output),
+                debug,
+                formats,
+                picture=settings.pictures is not False,
+            )
+
+        bridge = {} if character is None else {"retarget": retarget}
+        way = convert(description, settings, libraries, lambda file: _reference(file, debug), bridge)
         session = run(way, console.progress)
         take, result = session[Posed].seen.take, session[Reconstruction]
         console.stage("Writing the motion")
@@ -98,24 +118,11 @@ def convert_if_changed(
         if session.inputs.open_lens is not None:
             write_take_files(staging_folder, session, description, settings.evidence)
         console.stage("Writing Blender's files")
-        real_output = real_path(output)
         notes: tuple[str, ...] = ()
-        filmed = replace(take, camera=followed_camera(take, result.reading))
+        filmed = _filmed(session)
         curves = {BLEND: write_blender_files(filmed, result.motion, staging_folder, real_output, debug)}
         if character is not None:
-            from ...bridge.result_files import show_take
-
-            record = write_character_result(
-                character,
-                result.motion,
-                take.name,
-                lambda scene, shown: show_take(scene, filmed, shown),
-                (staging_folder, real_output),
-                console,
-                debug,
-                formats,
-                picture=settings.pictures is not False,
-            )
+            record = session[RetargetRecord]
             curves[CHARACTER_BLEND], notes = record.files[CHARACTER_BLEND], (*record.doubts, *record.notes)
         write_made_digests(staging_folder, curves)
         if settings.pictures is not False:
@@ -125,6 +132,12 @@ def convert_if_changed(
             write_pictures(report, take, result.motion, result.tracks, seen, contours, result.reading)
         asked, folders = (description, settings, digest), (staging_folder, output)
         return finish_result(session, notes, asked, version(), folders, curves, kept_names)
+
+
+def _filmed(session: Session) -> Take:
+    """The take as it was filmed: its camera turns where it was seen to."""
+    seen = session[Posed].seen
+    return replace(seen.take, camera=followed_camera(seen.take, seen.reading))
 
 
 def _reference(file: Path, debug: bool) -> ReferenceMotion:
