@@ -103,8 +103,9 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
                 column.prop(self, name)
 
     def run(self, context: bpy.types.Context) -> None:
+        from ...core.prior.library import write_library
         from ..bridge.assets.catalogs import asset_root
-        from ..bridge.library.library_file import write_library_file
+        from ..bridge.library.library_file import write_library_blend
 
         if not self.filepath:
             raise InputError("no file is named to save to; give filepath")
@@ -112,7 +113,10 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
         path = Path(bpy.path.abspath(self.filepath))
         if path.suffix.lower() not in SUFFIXES.values():  # a script's file tells its format itself
             path = path.with_name(path.name + SUFFIXES[self.format])
-        write_library_file(path, library, asset_root(path.parent))
+        if path.suffix.lower() == SUFFIXES["BLEND"]:
+            write_library_blend(path, library, asset_root(path.parent))
+        else:
+            write_library(path, library)
         count = len(library.postures)
         self.report({"INFO"}, f"Wrote {count} postures to {path}")
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 
 from ....core.errors import InputError
-from ....core.prior.library import MOST_POSTURES, Library, read_library, write_library
+from ....core.prior.library import MOST_POSTURES, Library, read_library
 from ..assets.catalogs import write_asset_blend
 from ..blend_files import check_blend, load_blocks
 from .pose_assets import add_assets, catalog_of, library_from_assets
@@ -58,12 +58,6 @@ def read_library_blend(path: Path) -> tuple[Library, ...]:
     return libraries
 
 
-# --- Keyframe libraries in files, by their suffix
-
-
-JSON, BLEND = ".json", ".blend"
-
-
 def read_libraries(path: Path) -> tuple[Library, ...]:
     """The libraries of a file: one in a .json, one or more in a .blend.
 
@@ -71,24 +65,8 @@ def read_libraries(path: Path) -> tuple[Library, ...]:
         InputError: The file is of another kind, or unusable.
     """
     suffix = path.suffix.lower()
-    if suffix == BLEND:
+    if suffix == ".blend":
         return read_library_blend(path)
-    if suffix == JSON:
+    if suffix == ".json":
         return (read_library(path),)
     raise InputError(f"{path}: is neither a .json nor a .blend; libraries are kept in these")
-
-
-def write_library_file(path: Path, library: Library, root: Path) -> None:
-    """Write a library in the format of the file's suffix; `root` as in `write_library_blend`.
-
-    Raises:
-        InputError: The file is of another kind, or the library is incomplete.
-        ConversionError: The file cannot be written.
-    """
-    suffix = path.suffix.lower()
-    if suffix == BLEND:
-        write_library_blend(path, library, root)
-    elif suffix == JSON:
-        write_library(path, library)
-    else:
-        raise InputError(f"{path}: ends in {(suffix or 'nothing')}; libraries are written as .json or .blend")
