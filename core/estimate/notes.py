@@ -101,8 +101,8 @@ def found_notes(take: Take) -> tuple[str, ...]:
             )
         ]
     else:
-        matched = any(not match.is_composed for _, match in found)
-        moved = ", changed the way the posed ones differ from them" if matched else ""
+        from_library = any(not match.is_composed for _, match in found)
+        moved = ", changed the way the posed ones differ from them" if from_library else ""
         notes = [f"{posed} of {len(take.keyframes)} keyframes are posed; the others are {origin}{moved}"]
     doubtful = [(keyframe, match) for keyframe, match in found if match.is_doubtful]
     if doubtful:

@@ -1,4 +1,4 @@
-"""Height of the lower ankle over a clip, from the soles of matched postures.
+"""Height of the lower ankle over a clip, from the soles of found postures.
 
 The lowest sole of a library's posture touches the floor except in flight. Ankles are derived from the floor
 and not from the library's own ankles, which are raised by feet that cannot bend.
@@ -28,12 +28,12 @@ ANKLE_HEIGHT_STD_M = 0.03
 SAME_FLOOR_M = 0.12  # ankles that stand within this of a given floor stand on it
 
 
-def lower_ankle_m(body: Body, matched: Posture, index: IndexArray, frames: int) -> Array:
+def lower_ankle_m(body: Body, found: Posture, index: IndexArray, frames: int) -> Array:
     """(F,) usual height of the lower ankle [m].
 
-    `matched`: K postures as the library has them; `index` (K,): their indices in the clip, in order.
+    `found`: K postures as the library has them; `index` (K,): their indices in the clip, in order.
     """
-    soles = sole_heights_m(body, body.pose(matched)).min(axis=-1)
+    soles = sole_heights_m(body, body.pose(found)).min(axis=-1)
     floor = np.percentile(soles, TOUCHING_PERCENT)
     flight = np.interp(np.arange(frames), index, np.maximum(soles - floor, 0.0))
     return np.asarray(floor + standing_ankle_m(body) + flight)
