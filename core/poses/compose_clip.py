@@ -28,7 +28,7 @@ from .frame_likelihood import frame_likelihoods
 from .library_motion import PartBelief, part_beliefs
 from .match_evidence import MatchEvidence
 from .part_features import StanceFeatures, stance_features
-from .part_pools import TORSO, PartPools, part_dofs, part_pools
+from .part_pools import TORSO, part_dofs, part_pools
 
 
 def mean_postures(stances: StanceFeatures, states: Sequence[FrameStates], path: ComposedPath) -> Posture:
@@ -47,8 +47,11 @@ def mean_postures(stances: StanceFeatures, states: Sequence[FrameStates], path: 
     for limb, chosen in zip(LIMBS, path.limbs.T, strict=True):
         kind, _, side = limb.partition(".")
         dofs = part_dofs(skeleton, kind, side)
-        every = _alone(stances.pools, limb, len(stances.limbs[limb].points))
         shapes = stances.limbs[limb].points
+        none = np.zeros(len(shapes), dtype=np.intp)
+        # Postures with each of the limb's parts, everything else alike.
+        parts = {other: np.arange(len(shapes)) if other == limb else none for other in LIMBS}
+        every = stances.pools.composed(none, parts, np.zeros(len(shapes)), np.zeros((len(shapes), 3)))
         for row, part in enumerate(chosen):
             apart = np.linalg.norm(shapes - shapes[part], axis=-1).mean(axis=-1)
             kept, weight = _weights(path.limb_posterior[limb][row], apart)
@@ -64,13 +67,6 @@ def _weights(chance: Array | SingleArray, apart_m: Array | SingleArray) -> tuple
         weight = near
     kept = np.flatnonzero(weight >= 1e-3 * weight.max())
     return kept, weight[kept] / weight[kept].sum()
-
-
-def _alone(pools: PartPools, limb: str, count: int) -> Posture:
-    """(count,) postures with each of a limb's parts, everything else alike."""
-    none = np.zeros(count, dtype=np.intp)
-    limbs = {other: np.arange(count) if other == limb else none for other in LIMBS}
-    return pools.composed(none, limbs, np.zeros(count), np.zeros((count, 3)))
 
 
 WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)  # distances tried, as shares of one good to a tenth

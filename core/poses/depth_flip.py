@@ -13,7 +13,7 @@ from ..body.posture import Posture
 from ..camera.camera import Camera
 from .dragged import planted
 from .inverse_kinematics import Pull, SightLine, pulled
-from .limb_chain import DISTINCT_M, LimbChain, LimbInSight, swing
+from .limb_chain import DISTINCT_M, LimbChain, swing
 
 
 class FlippedPart(Enum):
@@ -52,12 +52,6 @@ def flipped(
     if part_of_body == TRUNK:
         return tuple(_flipped_trunks(body, posture, camera, part))
     limb = LimbChain.of(body, part_of_body)
-    return tuple(way.posture for way in _flipped_limbs(posture, camera, limb, part))
-
-
-def _flipped_limbs(
-    posture: Posture, camera: Camera, limb: LimbChain, part: FlippedPart | None
-) -> list[LimbInSight]:
     lines = limb.sight_lines(posture, camera)
     before = limb.depths_m(posture, lines)
     found = []
@@ -67,8 +61,8 @@ def _flipped_limbs(
         turned = (before > 0.0) != (limb.depths_m(way.posture, lines) > 0.0)
         wanted = changed.any() if part is None else tuple(changed) == part.value
         if wanted and turned[changed].all():
-            found.append(way)
-    return found
+            found.append(way.posture)
+    return tuple(found)
 
 
 def _flipped_trunks(

@@ -44,15 +44,7 @@ def belief_costs(belief: FramePrior, posture: Posture) -> Array:
 UNWORN_COST = 12.0  # one marker in twenty is worn by nobody, at one of ten thousand places and sizes
 
 
-@dataclass(frozen=True, eq=False)
-class Unworn:
-    """A region that nobody wears."""
-
-    name: str  # Its marker
-    shown: FrameShown  # the frame without it
-
-
-def unworn_marker(search: FrameSearch, found: Hypotheses) -> Unworn | None:
+def unworn_marker(search: FrameSearch, found: Hypotheses) -> int | None:
     """The marker without which the rest of the frame is explained far better; None where there is none."""
     shown, least = search.shown, float(found.cost.min())
     visible, points = np.flatnonzero(shown.tracks.visible[0]), int(shown.points.seen.sum())
@@ -60,16 +52,14 @@ def unworn_marker(search: FrameSearch, found: Hypotheses) -> Unworn | None:
     # its guessed depth included, is no gain of leaving a marker out.
     if least < UNWORN_COST + 0.5 * points or len(visible) + points < 2 or not len(visible):
         return None
-    rest = {int(marker): shown.without(int(marker)) for marker in visible}
     gains = {
         # Starts of a search without a marker, which only asks how well the rest can be explained.
-        marker: least - float(replace(search, shown=one).hypotheses(24).cost.min())
-        for marker, one in rest.items()
+        int(marker): least
+        - float(replace(search, shown=shown.without(int(marker))).hypotheses(24).cost.min())
+        for marker in visible
     }
     best = max(gains, key=lambda marker: gains[marker])
-    if gains[best] < UNWORN_COST:
-        return None
-    return Unworn(shown.tracks.names[best], rest[best])
+    return best if gains[best] >= UNWORN_COST else None
 
 
 def unexplained(known: Knowledge, shown: FrameShown, posture: Posture) -> tuple[str, ...]:
@@ -131,7 +121,7 @@ def find_frame_poses(
     unworn = unworn_marker(search, found)
     left_out: tuple[str, ...] = ()
     if unworn is not None:
-        search, left_out = replace(search, shown=unworn.shown), (unworn.name,)
+        search, left_out = replace(search, shown=shown.without(unworn)), (shown.tracks.names[unworn],)
         found = _hypotheses(search, belief)
     candidates = _candidates(search, found, has_believed=belief is not None)
     named = (*left_out, *unexplained(search.known, search.shown, candidates[0].posture))

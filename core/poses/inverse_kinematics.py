@@ -113,9 +113,10 @@ def pulled(
         allowed: A posture that is allowed whatever the joint limits; by default the one to start from.
     """
     skeleton = body.skeleton
-    std = {i: free[joint] for i, joint in enumerate(map(_owner, skeleton.dof_names)) if joint in free}
-    dofs = np.array(sorted(std), dtype=np.intp)
-    scale = np.array([std[dof] for dof in dofs])
+    names = [name.rpartition(".") for name in skeleton.dof_names]
+    owners = ["place" if part.startswith("location") else joint for joint, _, part in names]
+    dofs = np.array([row for row, owner in enumerate(owners) if owner in free], dtype=np.intp)
+    scale = np.array([free[owners[dof]] for dof in dofs])
     columns = [skeleton.point_names.index(pull.point) for pull in pulls]
     places, weights = (np.array(each) for each in zip(*((p.place, p.weights) for p in pulls), strict=True))
     values = (posture if allowed is None else allowed).to_vector()
@@ -147,9 +148,3 @@ def pulled(
     # Of 40 steps each lowers the cost by this share, or is the last.
     fitted = least_squares(rows, np.zeros(len(dofs)), slopes, method="lm", ftol=1e-7, max_nfev=40)
     return posture.plus(full(fitted.x))
-
-
-def _owner(dof: str) -> str:
-    """The joint that a degree of freedom belongs to, its side included; `place` for the hips' location."""
-    joint, _, component = dof.rpartition(".")
-    return "place" if component.startswith("location") else joint
