@@ -27,7 +27,6 @@ from ..character.read_character import read_character
 from ..keys import mark_generated
 from .read_poses import action_frames, animated_action, motion_map, read_poses
 
-MOTION_ENDINGS = ARMATURE_ENDINGS
 SLOWEST, FASTEST = 1.0, 1000.0  # frames a second of a motion
 LARGEST_BVH = 2**29
 UNITS = (1.0, 0.01, 0.1, 0.001, 0.0254, 0.3048, 100.0)
@@ -50,8 +49,10 @@ def import_motion(
         InputError: Blender cannot read it, it has no armature of a person, no Action, or no usable rate.
     """
     suffix = file.path.suffix.lower()
-    if suffix not in MOTION_ENDINGS:
-        raise InputError(f"{file.path}: is no motion of an armature; it must end in {listed(MOTION_ENDINGS)}")
+    if suffix not in ARMATURE_ENDINGS:
+        raise InputError(
+            f"{file.path}: is no motion of an armature; it must end in {listed(ARMATURE_ENDINGS)}"
+        )
     if suffix == ".bvh":
         _check_bvh(file.path)
     elif suffix.startswith(".usd") and not bpy.app.build_options.usd:

@@ -15,7 +15,7 @@ from ....core.take.character_settings import CharacterFile
 from ....core.take.conversion_record import BVH, CHARACTER_BLEND, CHARACTER_PICTURE, MOTION
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion import write_motion
-from ....core.take.reference import REFERENCE_ENDINGS, read_reference
+from ....core.take.reference import ARMATURE_ENDINGS, REFERENCE_ENDINGS, read_reference
 from ..blender_silence import blender_silence
 from ..command import Command, UsageError, argument, require_blender
 from ..console import Console
@@ -46,7 +46,7 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
     settings = character_settings(arguments)
     formats = export_formats(arguments.format)
     posed = _posed(arguments.posed)
-    file = _motion_file(arguments.motion)
+    file = CharacterFile.parse(arguments.motion, (*ARMATURE_ENDINGS, *REFERENCE_ENDINGS), "is no motion")
     folder: Path = arguments.output
     refuse_unsupported_output(folder)
     if (folder / CONVERSION).exists():
@@ -152,14 +152,6 @@ def _mend_armature(
                 paths = {name: hidden[other] for name, other in exports.items()}
                 write_character_files(scene, imported, action, hidden[CHARACTER_BLEND], paths)
     return found.mended, (*imported.notes, *chosen.doubts)
-
-
-def _motion_file(text: str) -> CharacterFile:
-    """A motion's file, and after a colon the name of its armature."""
-    with blender_silence(False):
-        from ...bridge.motions.import_motion import MOTION_ENDINGS
-
-    return CharacterFile.parse(text, (*MOTION_ENDINGS, *REFERENCE_ENDINGS), "is no motion")
 
 
 def _posed(text: str) -> tuple[int, ...]:
