@@ -39,7 +39,7 @@ class Inputs:
     evidence: tuple[str, ...] | None = None
     """Kinds of evidence that are used, also of what is detected; None for all there are."""
     open_lens: Lens | None = None
-    """Of a camera that is to be found by the performer; None where its place is known."""
+    """Of a camera that is to be found; None where its place is known."""
     libraries: Sequence[Library] | None = None
     """In which poses are found; None where the take has its keyframes already."""
     floor_m: float | None = None
