@@ -1,7 +1,9 @@
 """The performer's segment lengths in meters, by default of average proportions.
 
-Proportions of stature: Drillis & Contini (1966), *Body Segment Parameters*, as tabulated in Winter,
-*Biomechanics and Motor Control of Human Movement*.
+Proportions of stature: limbs between the centers of their joints after de Leva (1996), *Adjustments to
+Zatsiorsky-Seluyanov's segment inertia parameters*, and Dumas et al. (2007), *Adjustments to McConville et al.
+and Young et al. body segment inertial parameters*, women and men alike; all else Drillis & Contini (1966),
+*Body Segment Parameters*, as tabulated in Winter, *Biomechanics and Motor Control of Human Movement*.
 """
 
 from collections.abc import Mapping
@@ -15,7 +17,9 @@ from ..files.kinds import ByName, Number
 from ..files.records import Record, kind_of
 from .skeleton import SIDES
 
-_LIMBS = {"upper_arm": 0.186, "forearm": 0.146, "hand": 0.108, "thigh": 0.245, "shin": 0.246, "foot": 0.110}
+_LIMBS = {"upper_arm": 0.156, "forearm": 0.155, "hand": 0.108, "thigh": 0.238, "shin": 0.248, "foot": 0.110}
+_SURFACE = {"upper_arm": 0.186, "forearm": 0.146, "thigh": 0.245, "shin": 0.246}
+"""Of points that are felt on the skin, which 0.1.0 gave performers whom nobody had measured."""
 SHARES_OF_STATURE: Mapping[str, float] = MappingProxyType(
     {
         **{f"{part}.{side}": share for part, share in _LIMBS.items() for side in SIDES},
@@ -61,8 +65,15 @@ class Actor(Record):
     @property
     def is_average(self) -> bool:
         """Whether all lengths follow from the stature, so that nobody has measured this performer."""
-        average = Actor.from_stature(self.stature_m).segments_m
-        return all(isclose(self.segments_m[name], length, rel_tol=1e-3) for name, length in average.items())
+        earlier = {f"{part}.{side}": share for part, share in _SURFACE.items() for side in SIDES}
+        return any(self._has({**SHARES_OF_STATURE, **shares}) for shares in ({}, earlier))
+
+    def _has(self, shares: Mapping[str, float]) -> bool:
+        """Whether the lengths are in these proportions."""
+        stature = self.segments_m["trunk"] / shares["trunk"]
+        return all(
+            isclose(self.segments_m[name], share * stature, rel_tol=1e-3) for name, share in shares.items()
+        )
 
     @classmethod
     def from_stature(cls, stature_m: float) -> "Actor":

@@ -93,14 +93,26 @@ class Uprights:
 
 
 @dataclass(frozen=True, eq=False)
+class RoomView:
+    """The camera that a room's lines show, found without anybody who draws them."""
+
+    tilt_rad: float
+    roll_rad: float
+    focal_px: float
+    covariance: Array  # (3, 3) of tilt and roll [rad] and of the logarithm of the focal length
+    share: float  # of the edges' length that runs in the room's directions
+
+
+@dataclass(frozen=True, eq=False)
 class CameraEvidence:
-    """Lines in the picture, each given by its two ends [px], and upright things of known length."""
+    """Lines in the picture by their two ends [px], upright things of known length, what a room shows."""
 
     vertical: Array = field(default_factory=_no_lines)  # (V, 2, 2) plumb: door frames, corners of walls
     along: Array = field(default_factory=_no_lines)
     """(A, 2, 2) level and parallel to each other in the world: on the floor, or on a wall."""
     across: Array = field(default_factory=_no_lines)  # (C, 2, 2) level and at right angles to those
     uprights: Uprights = field(default_factory=Uprights.none)
+    room: RoomView | None = None
 
 
 REACH_M = 8  # lines lie so far to each side of the floor's part that is looked at

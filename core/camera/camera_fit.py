@@ -173,7 +173,21 @@ class _Problem:
             parts.append(_line_residuals(camera, self.evidence.across, np.array([-along, across, 0.0])))
         lines = np.concatenate(parts)
         px, scaled = self._upright_residuals(camera, float(np.exp(x[-2])), float(x[-1]))
-        return np.concatenate([lines, px]), np.concatenate([lines / CLICK_STD_PX, scaled])
+        room = self._room_residuals(camera)
+        return np.concatenate([lines, px]), np.concatenate([lines / CLICK_STD_PX, scaled, room])
+
+    def _room_residuals(self, camera: Camera) -> Array:
+        """(3,) tilt, roll and lens against those of the room's lines, in standard deviations; else none."""
+        room = self.evidence.room
+        if room is None:
+            return np.zeros(0)
+        placement = CameraPlacement.of(camera.matrix_world)
+        off = [
+            placement.tilt_rad - room.tilt_rad,
+            placement.roll_rad - room.roll_rad,
+            np.log(camera.focal_px / room.focal_px),
+        ]
+        return np.asarray(np.linalg.solve(np.linalg.cholesky(room.covariance), off))
 
     def descend(self) -> Array:
         """The most probable x (X,), from the likeliest starts."""

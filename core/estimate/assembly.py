@@ -48,8 +48,9 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     if ankles:
         terms.append(stillness_term(clip, window))
     if evidence.keypoints.model.names:
-        points, kept = evidence.keypoints, _kept(step_s, evidence.keypoints.memory_s)
-        terms.append(KeypointTerm(points.model, data.points[frames], points.error_m, kept))
+        error_m, memory_s = evidence.keypoints.errors(belief.found_share[frames])
+        kept = _kept(step_s, memory_s[1:])
+        terms.append(KeypointTerm(evidence.keypoints.model, data.points[frames], error_m, kept))
     if np.isfinite(data.points.depth_m).any():
         points, hints = evidence.keypoints, evidence.keypoints.depths
         kept = _kept(step_s, hints.memory_s)
@@ -71,7 +72,7 @@ def stillness_term(clip: ClipProblem, window: Window) -> StillnessTerm:
     return StillnessTerm(clip.data.camera, _seen_ankles(clip.data), clip.data.step_s[pairs], rests, **loose)
 
 
-def _kept(step_s: Array, memory_s: float) -> Array:
+def _kept(step_s: Array, memory_s: Array | float) -> Array:
     """(F - 1, 1) share of an error that is left in the next frame."""
     return np.exp(-step_s / memory_s)[:, None]
 

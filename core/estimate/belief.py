@@ -78,11 +78,15 @@ class Belief:
     @property
     def depth_std_m(self) -> Array:
         """(F,) noise of the prior's depths [m], between that of posed and of found keyframes."""
-        found = np.interp(np.arange(self.prior.batch[0]), self.frame, 1.0 * ~self.posed)
         # 2.0: Noise of the points' depths as observations of their own (paper, eq. 9) near a found posture
         # [m]: so large that they count for nothing, since place and joints have errors of their own that
         # determine them.
-        return np.asarray(DEPTH_STD_M * (2.0 / DEPTH_STD_M) ** found)
+        return np.asarray(DEPTH_STD_M * (2.0 / DEPTH_STD_M) ** self.found_share)
+
+    @property
+    def found_share(self) -> Array:
+        """(F,) how much of what is believed around each frame was found and not posed, 0 to 1."""
+        return np.interp(np.arange(self.prior.batch[0]), self.frame, 1.0 * ~self.posed)
 
     def covariance(self, body: Body, camera: Camera) -> Array:
         """(K, D, D) of the keyframes' tangents, without what was put right in the picture."""

@@ -138,6 +138,16 @@ class KeypointEvidence:
         # row knows nothing.
         return np.where(self.trust > 0.0, 3.0 * self.std_m, np.inf)
 
+    def errors(self, found_share: Array) -> tuple[Array, Array]:
+        """Errors (F, N) that the estimate of a clip reckons with [m], and how long they last (F,) [s].
+
+        Posed keyframes know the motion better than single points do. Found ones (F,) came from these points,
+        which are followed then.
+        """
+        followed_m = np.where(self.trust > 0.0, _followed_std_m(self.model.names, self.sources), np.inf)
+        error_m = self.error_m ** (1.0 - found_share[:, None]) * followed_m ** found_share[:, None]
+        return error_m, self.memory_s ** (1.0 - found_share) * 0.08**found_share
+
     def with_camera(self, camera: Camera) -> "KeypointEvidence":
         """The same before another camera."""
         return replace(self, model=replace(self.model, camera=camera))
@@ -156,6 +166,20 @@ def usual_std_m(names: tuple[str, ...], sources: tuple[str, ...]) -> Array:
             for name, one in zip(names, together, strict=True)
         ]
     )
+
+
+def _followed_std_m(names: tuple[str, ...], sources: tuple[str, ...]) -> Array:
+    """(N,) error of sure detections where no keyframe is posed, so that a point's place is open too [m].
+
+    Points of one source on one segment weigh together as much as the surest of them.
+    """
+    usual = [USUAL_PLACES[name] for name in names]
+    own = np.array([np.hypot(one.error_std_m, one.place_std_m) for one in usual])
+    together = list(zip([one.joint for one in usual], sources, strict=True))
+    for group in set(together):
+        same = np.array([one == group for one in together])
+        own[same] *= np.sqrt(((own[same].min() / own[same]) ** 2).sum())
+    return own
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
-"""Place: where the camera stands, by a performer who is upright on the floor, and what it sees as it turns.
+"""Place: where the camera stands, by a performer who is upright on the floor and by the lines of the room.
 
 Somebody of known height who stands or walks upright on the floor measures the room (`standing_moments`,
-`camera_fit`). The world's origin is where the performer is in the middle of these moments, and the floor is
-z = 0.
+`camera_fit`), whose straight edges tell the camera's attitude (`room_lines`). The world's origin is where the
+performer is in the middle of these moments, and the floor is z = 0.
 """
 
 from dataclasses import dataclass, replace
@@ -10,9 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..camera.camera import EYE_HEIGHT_M, Camera
-from ..camera.camera_evidence import CameraEvidence, Uprights
+from ..camera.camera_evidence import CameraEvidence, RoomView, Uprights
 from ..camera.camera_fit import LENS, PARAMETERS, CameraFit, fit_camera
+from ..camera.room_lines import find_room
 from ..detect.standing_moments import standing_keypoints
+from ..errors import pluralize
 from ..markers.reading import Reading
 from ..progress import Job, Progress, stretch
 from ..take.performer_keypoints import performer_keypoints
@@ -23,7 +25,7 @@ from .see import Sight
 from .session import Inputs, Session, Stage
 
 FEWEST_MOMENTS = 2
-"""Upright moments that tell a camera; one is the same from a camera high above and from a low one."""
+"""Upright moments that tell a camera by themselves; one is the same from high above and from low."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,10 +33,12 @@ class FoundCamera:
     """What a camera was found by."""
 
     fit: CameraFit | None
-    """None where too few moments tell it."""
+    """None where nothing tells it."""
     lens: Lens
     moments: int
     """In which the performer is upright."""
+    room: RoomView | None = None
+    """None where too few straight lines are seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,9 +60,10 @@ def place(session: Session) -> Job[Placed]:
     if inputs.open_lens is not None:
         yield Progress("Placing the camera", 0.0)
         uprights = standing_keypoints(anyone, take.body, take.fps)
-        camera, fit = camera_by_performer(take.camera, inputs.open_lens.is_known, uprights)
-        take, found = replace(take, camera=camera), FoundCamera(fit, inputs.open_lens, len(uprights))
-        floor_m = 0.0 if floor_m is None and fit is not None else floor_m
+        room = None if reading.glimpses is None else find_room(*reading.glimpses.median(), take.camera)
+        camera, fit = camera_by_performer(take.camera, inputs.open_lens.is_known, uprights, room)
+        take, found = replace(take, camera=camera), FoundCamera(fit, inputs.open_lens, len(uprights), room)
+        floor_m = 0.0 if floor_m is None and fit is not None and len(uprights) else floor_m
     take, steady, notes = yield from stretch(steadied(take, reading, anyone), 0.5, 1.0)
     return Placed(seen_take(take, steady, notes), floor_m, found)
 
@@ -79,15 +84,15 @@ STAGE = Stage("place", place, _uses, lambda _inputs: 0.3)
 
 
 def camera_by_performer(
-    put: Camera, lens_is_known: bool, uprights: Uprights
+    put: Camera, lens_is_known: bool, uprights: Uprights, room: RoomView | None = None
 ) -> tuple[Camera, CameraFit | None]:
-    """The camera that upright moments show, with the performer about the world's origin.
+    """The camera that upright moments and a room show, with the performer about the world's origin.
 
-    Where there are too few of them, it is the camera as it was put, and there is no fit.
+    Where neither tells it, it is the camera as it was put, and there is no fit.
     """
-    if len(uprights) < FEWEST_MOMENTS:
+    if room is None and len(uprights) < FEWEST_MOMENTS:
         return put, None
-    fit = fit_camera(put, CameraEvidence(uprights=uprights), lens_is_known)
+    fit = fit_camera(put, CameraEvidence(uprights=uprights, room=room), lens_is_known)
     location, sight = fit.camera.rays(uprights.lower_px)
     falls = sight[:, 2] < 0.0
     if not falls.any():
@@ -105,10 +110,13 @@ def camera_in_words(camera: FoundCamera) -> str:
     if fit is None:
         return (
             f"assumed to be level at {EYE_HEIGHT_M:g} m, lens {lens.lens_mm:.1f} mm ({lens.source}); the "
-            "performer stands upright at no two moments, by which it would be found"
+            "performer stands upright at no two moments, and too few straight lines are seen, by which it "
+            "would be found"
         )
     found = [fit.in_words(name) for name in PARAMETERS if name not in fit.kept]
     kept = [fit.in_words(name) for name in PARAMETERS if name in fit.kept and name != LENS]
     kept += [f"{fit.in_words(LENS)} ({lens.source})"] if LENS in fit.kept else []
     parts = [", ".join(found) or "nothing found"] + ([f"assumed: {', '.join(kept)}"] if kept else [])
-    return f"{'; '.join(parts)}; by {camera.moments} moments in which the performer is upright"
+    by = [f"{pluralize(camera.moments, 'moment')} in which the performer is upright"] * bool(camera.moments)
+    by += ["the straight lines of the room"] * (camera.room is not None)
+    return f"{'; '.join(parts)}; by {' and '.join(by)}"

@@ -136,6 +136,12 @@ class Glimpses:
         image = np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8)
         return image, self.width / image.shape[1]
 
+    def median(self) -> tuple[Image, float]:
+        """The picture behind whatever moves, and how many pixels of the clip one of its is."""
+        pictures = [self.picture(index)[0] for index in self.frames]
+        image = np.asarray(np.median(np.stack(pictures), axis=0), dtype=np.uint8)
+        return image, self.width / image.shape[1]
+
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """See `packed`."""
         return packed(self._pictures, width=self.width)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from keymark.core.arrays import Array
-from keymark.core.body.actor import Actor
+from keymark.core.body.actor import SHARES_OF_STATURE, Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.camera.camera import Camera
 
@@ -118,10 +118,17 @@ def performed(
     return perform
 
 
+LIMBS = {"upper_arm": 0.186, "forearm": 0.146, "thigh": 0.245, "shin": 0.246}
+"""Shares of stature of performers, whose limbs are not those that Keymark takes for average."""
+
+
 def actor(stature_m: float, **changed: float) -> Actor:
     """An actor of a height [m] whose segments differ from the average by factors; `thigh` changes both."""
-    average = Actor.from_stature(stature_m).segments_m
-    return Actor({name: length * changed.get(name.split(".")[0], 1.0) for name, length in average.items()})
+    lengths = {}
+    for name, share in SHARES_OF_STATURE.items():
+        part = name.split(".")[0]
+        lengths[name] = LIMBS.get(part, share) * stature_m * changed.get(part, 1.0)
+    return Actor(lengths)
 
 
 def lifted_onto_a_stand(performance: Performance, first: int, last: int) -> tuple[Thing, ...]:

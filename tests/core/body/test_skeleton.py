@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from keymark.core.body.actor import REQUIRED, Actor
+from keymark.core.body.actor import REQUIRED, SHARES_OF_STATURE, Actor
 from keymark.core.body.body_volume import sole_heights_m, sole_places, standing_posture
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
@@ -138,3 +138,12 @@ def test_limbs_branch_off_the_trunk() -> None:
     for limb in limbs:
         assert sum(set(limb) <= joints for joints in names[1:]) == 1
     assert sum(len(limb) for limb in HUMAN.limbs) == HUMAN.dof_count
+
+
+def test_a_body_that_nobody_has_measured_is_known_as_one() -> None:
+    average = Actor.from_stature(1.7).segments_m
+    assert Actor(average).is_average
+    assert not Actor({**average, "forearm.L": 1.01 * average["forearm.L"]}).is_average
+    earlier = {"upper_arm": 0.186, "forearm": 0.146, "thigh": 0.245, "shin": 0.246}  # of Keymark 0.1.0
+    shares = {name: earlier.get(name.split(".")[0], share) for name, share in SHARES_OF_STATURE.items()}
+    assert Actor({name: 1.7 * share for name, share in shares.items()}).is_average

@@ -121,7 +121,7 @@ def test_what_would_stop_a_take_is_said(
 
 def swapped(shoot: Path) -> None:
     colors = json.loads((shoot / "shoot.json").read_text(encoding="utf-8"))["markers"]
-    markers = {"forearm.L": colors["forearm.R"], "forearm.R": colors["forearm.L"]}
+    markers = {"forearm.L": colors["shin.R"], "shin.R": colors["forearm.L"]}
     said_of_take(markers=markers)(shoot)
 
 

@@ -102,6 +102,6 @@ def test_postures_composed_for_the_footage_are_not_judged_by_those_that_were_cor
     posed = [Keyframe(i, TRUTH[i]) for i in (20, 45, 70)]
     given = tuple(sorted([*found, *posed], key=lambda key: key.index))
     assert select_keyframes(given, MODEL, TRACKS, FPS) == given
-    matched = Keyframe(33, unlike()[33], matched=SAID)
+    matched = Keyframe(38, unlike()[38], matched=SAID)
     more = tuple(sorted([*given, matched], key=lambda key: key.index))
     assert select_keyframes(more, MODEL, TRACKS, FPS) == given

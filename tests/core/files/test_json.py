@@ -26,7 +26,7 @@ def test_what_is_no_number_of_the_range_is_refused_in_one_sentence(value: Any) -
 
 
 def test_a_length_of_the_body_no_float_holds_is_refused() -> None:
-    with pytest.raises(InputError, match=r"actor\.segments_m\.trunk is 1000"):
+    with pytest.raises(InputError, match=r"actor\.segments_m: trunk is 1000"):
         Actor({**Actor.from_stature(1.8).segments_m, "trunk": NO_FLOAT_HOLDS_IT})
 
 

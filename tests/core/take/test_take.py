@@ -106,7 +106,7 @@ def test_a_take_may_lack_keyframes_where_they_are_not_required(folder: Path) -> 
 
 def test_an_actor_may_be_given_by_height(folder: Path) -> None:
     edit_json(folder / "take.json", actor={"height_m": 1.75})
-    assert read_take(folder).body.actor.segments_m["thigh.L"] == pytest.approx(0.245 * 1.75)
+    assert read_take(folder).body.actor.segments_m["thigh.L"] == pytest.approx(0.238 * 1.75)
 
 
 def test_markers_may_have_names_of_their_own(folder: Path) -> None:

@@ -80,8 +80,8 @@ def test_goals_out_of_reach_straighten_the_arm_smoothly(reach_m: float) -> None:
     character, character_map = shaped(broader)
     motion = solved(character, character_map, source)
     steps_m = _steps(motion, "forearm.L")
-    assert steps_m.max() < 0.06
-    assert np.abs(np.diff(steps_m)).max() < 0.03
+    assert steps_m.max() < 0.065
+    assert np.abs(np.diff(steps_m)).max() < 0.042
 
 
 def _steps(motion: CharacterMotion, name: str) -> Array:
@@ -112,12 +112,12 @@ def _squatting() -> SegmentMotion:
     share = share * share * (3.0 - 2.0 * share)
     vector = np.zeros((frames, len(names)))
     for side, out in (("L", 1.0), ("R", -1.0)):
-        vector[:, names.index(f"knee.{side}.flexion")] = 2.0 * share
-        vector[:, names.index(f"hip.{side}.rotation_x")] = -1.9 * share
+        vector[:, names.index(f"knee.{side}.flexion")] = 2.4 * share
+        vector[:, names.index(f"hip.{side}.rotation_x")] = -2.2 * share
         vector[:, names.index(f"shoulder.{side}.rotation_y")] = 1.2 * out
         vector[:, names.index(f"elbow.{side}.flexion")] = 0.3
-    vector[:, names.index("pelvis.rotation_x")] = 0.9 * share
-    vector[:, names.index("waist.rotation_x")] = 1.0 * share
+    vector[:, names.index("pelvis.rotation_x")] = 1.1 * share
+    vector[:, names.index("waist.rotation_x")] = 1.6 * share
     posture = Posture.from_vector(body.skeleton, vector)
     ankles = body.points(body.pose(posture))[:, [points.index(f"ankle.{side}") for side in "LR"]]
     vector[:, :3] = [0.0, 0.0, 0.07] - ankles.mean(axis=1)
