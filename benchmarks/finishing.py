@@ -20,10 +20,11 @@ load_project()
 from _rig import quaternion_rig, rig_values  # noqa: E402
 from keymark.core.arrays import Array, IndexArray  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
-from keymark.core.feet.planted_feet import plant_feet, point_tolerances  # noqa: E402
+from keymark.core.feet.planted_feet import plant_feet  # noqa: E402
 from keymark.core.keys.hermite import fit_keys  # noqa: E402
 from keymark.core.keys.key_reduction import ReducedKeys, reduce_keys  # noqa: E402
 from keymark.core.keys.rig import Rig  # noqa: E402
+from keymark.core.keys.tolerances import point_tolerances  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 
 TOLERANCES_MM = (5, 10, 20)

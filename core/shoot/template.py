@@ -132,7 +132,7 @@ NO_MARKERS = [
 
 
 FOUND_CAMERA = [
-    "left out, for it is found in each clip by the performer, who must stand or walk upright at two moments.",
+    "left out, for it is found in each clip, by whoever stands or walks upright and by the lines of a room.",
     "More exact is to state it, inside braces: lens_mm and sensor_width_mm, and where it stood still,",
     "height_m above the floor and tilt_deg, negative where it looked down; the lens alone helps as well.",
 ]
