@@ -23,8 +23,11 @@ def held_against_clip(
     size: tuple[int, int],
     fps: float | None,
     frame_start: int,
+    stored_size: tuple[int, int] | None = None,
 ) -> People:
     """The people of each frame of the clip, in its pixels; `frame_count` and `fps` are None where unknown.
+
+    `stored_size` is that of its pictures in the file, whose pixels need not be square.
 
     A point is not seen where its score is 0, where it lies at exactly (0, 0), which stands for nothing found,
     and outside the picture, where a network can only guess.
@@ -40,7 +43,7 @@ def held_against_clip(
         raise InputError(
             f"{detected.where}: has {aligned.frame_count} frames; at most {MOST_FRAMES} are read"
         )
-    everyone, notes = _everyone(detected, size)
+    everyone, notes = _everyone(detected, size, stored_size or size)
     points, first = len(detected.layout.numbers), 0
     nobody = SeenPeople.nobody(points)
     frames = [nobody] * aligned.frame_count
@@ -74,12 +77,14 @@ def held_against_clip(
     return People(*seen, file=detected.where, by_hand=detected.by_hand, notes=notes)
 
 
-def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeople, tuple[str, ...]]:
+def _everyone(
+    detected: DetectedFrames, size: tuple[int, int], stored_size: tuple[int, int]
+) -> tuple[SeenPeople, tuple[str, ...]]:
     """The people of all frames one after the other, and sentences on what was changed."""
     numbers, where = detected.layout.numbers, detected.where
     persons = [person for people in detected.people.values() for person in people]
     place = np.stack([person.place[numbers] for person in persons])
-    scale, notes = _scale(detected, place, size)
+    scale, notes = _scale(detected, place, size, stored_size)
     place *= scale
     scores = np.stack([person.score[numbers] for person in persons])
     placed = np.isfinite(place).all(axis=-1) & place.any(axis=-1)
@@ -98,7 +103,9 @@ def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeop
     return SeenPeople(place, score, hint), notes + score_notes
 
 
-def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tuple[Array, tuple[str, ...]]:
+def _scale(
+    detected: DetectedFrames, place: Array, size: tuple[int, int], stored_size: tuple[int, int]
+) -> tuple[Array, tuple[str, ...]]:
     """(2,) clip pixels per unit of the places; only whole pictures are scaled."""
     known = place[np.isfinite(place) & place.any(axis=-1, keepdims=True)]
     # Guesses outside 0 to 1 are the exception.
@@ -110,7 +117,7 @@ def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tup
     (width, height), (clip_width, clip_height) = detected.size, size
     # The height that fits the other's width may differ by the rounding of both.
     wanted = clip_height * width / clip_width
-    if abs(wanted - height) > 1.0 + width / clip_width:
+    if detected.size != stored_size and abs(wanted - height) > 1.0 + width / clip_width:
         turned = " (it was turned: width and height are swapped)" if size == (height, width) else ""
         raise InputError(
             f"{detected.where}: size is {[width, height]}, that of the clip is {list(size)}{turned}; the "

@@ -177,7 +177,12 @@ LARGEST_BYTES = 128 * 2**20  # twenty minutes of two people with their hints of 
 
 
 def read_keypoints(
-    path: Path, frame_count: int | None, size: tuple[int, int], fps: float | None = None, frame_start: int = 1
+    path: Path,
+    frame_count: int | None,
+    size: tuple[int, int],
+    fps: float | None = None,
+    frame_start: int = 1,
+    stored_size: tuple[int, int] | None = None,
 ) -> People:
     """Read keypoints of a clip, whatever wrote them; `notes` says what was taken for granted.
 
@@ -187,11 +192,12 @@ def read_keypoints(
         size: Width and height of the clip's pictures [px].
         fps: Frames per second of the clip; None where it is not known.
         frame_start: Scene frame of the clip's first frame.
+        stored_size: Size of the pictures in the file, whose pixels need not be square.
 
     Raises:
         InputError: It is no such file, is damaged, is of another clip, or shows nobody.
     """
-    return held_against_clip(_read(path), frame_count, size, fps, frame_start)
+    return held_against_clip(_read(path), frame_count, size, fps, frame_start, stored_size)
 
 
 def _read(path: Path) -> DetectedFrames:

@@ -181,6 +181,8 @@ def read_clip(
     """
     yield 0.0
     key = reading_key(clip.path, clip.fps, styles, expected, ignored)
+    if kept is not None and kept.tracks.size != clip.size:  # of oblong pixels, as they are stored
+        kept = None
     if kept is not None and (kept.album is not None or not with_album):
         kept = kept if with_album else replace(kept, album=None)
         if kept.key == key:

@@ -94,7 +94,7 @@ def write_pictures(
     folder.mkdir(parents=True, exist_ok=True)
     known = np.flatnonzero(motion.there)
     frames = tuple(int(known[frame]) for frame in evenly_spaced_frames(len(known)))
-    shown = footage_frames(Clip.open(take.clip, fps=take.fps), frames, reading)
+    shown = footage_frames(Clip.open(take.clip, take.fps, take.camera.resolution), frames, reading)
     if not shown:
         raise InputError(f"{take.clip}: can no longer be read; the pictures need it once more")
     write_png(str(folder / PICTURES[0]), overlay_sheet(take, motion, tracks, shown, keypoints, contours))

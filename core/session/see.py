@@ -32,7 +32,7 @@ def see(session: Session) -> Job[Sight]:
     """Detect everybody where that is wanted, and check whom others have detected."""
     inputs, take = session.inputs, session.inputs.take
     if inputs.detects:
-        job = find_people(open_footage(take.clip, take.fps), PoseNetwork())
+        job = find_people(open_footage(take.clip, take.fps, take.camera.resolution), PoseNetwork())
         take = replace(take, keypoints=((yield from stretch(job, 0.0, SEEN)),))
     if inputs.evidence is not None:
         take = with_evidence(take, inputs.evidence)

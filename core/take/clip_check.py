@@ -25,7 +25,7 @@ def open_clip(take: Take) -> Clip:
         InputError: The clip is missing or unreadable, or its size, its number of frames, the camera's
             poses or a keyframe do not fit.
     """
-    clip = open_footage(take.clip, take.fps)
+    clip = open_footage(take.clip, take.fps, take.camera.resolution)
     check_size(take, clip)
     count = clip.frame_count
     expected = {take.frame_count, *(len(people.frames) for people in take.keypoints)} - {None}
@@ -36,14 +36,14 @@ def open_clip(take: Take) -> Clip:
     return clip
 
 
-def open_footage(path: Path, fps: float | None) -> Clip:
-    """Open a clip without its take; `fps` is the rate of an image sequence.
+def open_footage(path: Path, fps: float | None, size: tuple[int, int] | None = None) -> Clip:
+    """Open a clip without its take; `fps` is the rate of an image sequence, `size` as in `Clip.open`.
 
     Raises:
         InputError: The clip is missing, unreadable or too long.
     """
     try:
-        clip = Clip.open(path, fps=fps)
+        clip = Clip.open(path, fps, size)
     except OSError as error:
         raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
     if clip.frame_count > LONGEST_FRAMES and _counted(clip) > LONGEST_FRAMES:  # headers may exaggerate

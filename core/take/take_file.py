@@ -3,6 +3,7 @@
 import os
 import shutil
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from itertools import islice
@@ -232,13 +233,16 @@ def _keypoints(
     files = keypoint_files(description, settings)
     if not files:
         return ()
+    size = stored = camera.resolution
+    with suppress(InputError):
+        stored = open_footage(description.clip, fps, size).stored_size
     if frame_count is None:  # detectors that number their files need not write one for every frame
         try:
             frame_count = picture_count(description.clip, fps)
         except InputError as error:
             where = description.fields.source_of("frame_count")
             raise InputError(f"{where}: frame_count is not given, and {error}") from error
-    return tuple(read_keypoints(file, frame_count, camera.resolution, fps, frame_start) for file in files)
+    return tuple(read_keypoints(file, frame_count, size, fps, frame_start, stored) for file in files)
 
 
 NOTHING_MORE: Mapping[str, Any] = {}

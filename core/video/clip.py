@@ -44,11 +44,12 @@ class Clip:
     notes: tuple[str, ...] = ()  # sentences on faults of the file itself
 
     @classmethod
-    def open(cls, path: str | Path, fps: float | None = None) -> "Clip":
+    def open(cls, path: str | Path, fps: float | None = None, size: tuple[int, int] | None = None) -> "Clip":
         """Open a video, a folder of images, or a numbered sequence by one of its files or a pattern.
 
         Patterns are `img_####.png` and `img_%04d.png`. Images follow their numbers (img_2 before img_10);
-        `fps` is theirs, a video has its own.
+        `fps` is theirs, a video has its own. Pixels that are not square are scaled to such, unless `size`
+        says that the clip is known with the pixels that it stores, as in Blender.
 
         Raises:
             InputError: The path does not exist, or cannot be decoded.
@@ -60,13 +61,18 @@ class Clip:
             return cls(path, sequence, left_out(path, images) + sequence.notes)
         if not path.exists():
             raise InputError(f"{path}: no such file; name a video, a folder of images or a numbered image")
-        video = VideoFile(path)
+        video = VideoFile(path, size)
         return cls(path, video, video.notes)
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height of the frames in pixels, after the rotation that the file asks for."""
+        """Width and height of the frames in square pixels, after the rotation that the file asks for."""
         return self.source.size
+
+    @property
+    def stored_size(self) -> tuple[int, int]:
+        """The same in the pixels that the file stores, which need not be square."""
+        return self.source.stored_size if isinstance(self.source, VideoFile) else self.size
 
     @property
     def fps(self) -> float:

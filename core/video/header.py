@@ -15,6 +15,8 @@ import cv2
 
 LARGEST_MOVIE_BYTES = 64 * 2**20
 """Of the index, which grows with the number of frames: hours have less."""
+MOST_OBLONG = 4.0
+"""Of pixels; widths beyond it are faults of the file."""
 HDR_TRANSFERS = {16: "PQ", 18: "HLG"}  # transfer characteristics of ITU-T H.273
 MP4 = re.compile(rb"colrncl[xc].{2}\x00(.)", re.DOTALL)
 """The color box of MP4 and QuickTime: primaries, then transfer characteristics, two bytes each."""
@@ -26,29 +28,30 @@ TEXT, FLOATS = 1, {23: ">f", 24: ">d"}
 """Well-known types of values; those of whole numbers are all others that are read here."""
 
 
-def video_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
-    """Sentences on faults of an open video."""
-    notes = []
+def pixel_shape(capture: cv2.VideoCapture) -> float:
+    """How many times as wide as high the pixels of an open video are, turned as it asks for; 1 if square."""
     across, down = capture.get(cv2.CAP_PROP_SAR_NUM), capture.get(cv2.CAP_PROP_SAR_DEN)
-    if across > 0.0 and down > 0.0 and abs(across / down - 1.0) >= 0.01:
-        notes.append(
-            f"the pixels of {path.name} are {across / down:.3g} times as wide as high, and Keymark and "
-            "Blender take them for square: the motion is out of shape; convert the clip first, as with "
-            "ffmpeg -i CLIP -vf scale=iw*sar:ih,setsar=1"
-        )
+    shape = across / down if across > 0.0 and down > 0.0 else 1.0
+    if abs(shape - 1.0) < 0.01 or not 1.0 / MOST_OBLONG <= shape <= MOST_OBLONG:
+        return 1.0
+    return 1.0 / shape if capture.get(cv2.CAP_PROP_ORIENTATION_META) % 180 else shape
+
+
+def dynamic_range_note(path: Path) -> str | None:
+    """A sentence on a video of high dynamic range."""
     transfer = None
     with suppress(*DAMAGED), path.open("rb") as file:
         start = file.read(2**16)  # Matroska describes its tracks within these
         is_matroska = start.startswith(b"\x1a\x45\xdf\xa3")
         found = MATROSKA.search(start) if is_matroska else MP4.search(_movie(path))
         transfer = HDR_TRANSFERS.get(found[1][0]) if found else None
-    if transfer:
-        notes.append(
-            f"{path.name} is of high dynamic range ({transfer}): read as it is, its colors are pale and "
-            "markers harder to tell apart; film in standard range or convert it, and pick the markers' "
-            "colors anew"
-        )
-    return tuple(notes)
+    if transfer is None:
+        return None
+    return (
+        f"{path.name} is of high dynamic range ({transfer}): read as it is, its colors are pale and "
+        "markers harder to tell apart; film in standard range or convert it, and pick the markers' "
+        "colors anew"
+    )
 
 
 def trimmed_s(path: Path) -> float | None:

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Image
 from ..errors import InputError
 from .container import check_container, check_pixels, fill_last_rows, opencv_silence
-from .header import trimmed_s, video_notes
+from .header import dynamic_range_note, pixel_shape, trimmed_s
 
 FRAMES_PER_SEEK = 125  # mean cost of seeking: half of the usual 250 frames between video keyframes
 LONGEST_PAUSE_S = 3600.0  # longest step between valid time stamps
@@ -26,13 +26,15 @@ class VideoFile:
     """A video file that OpenCV can decode."""
 
     path: Path
-    size: tuple[int, int]  # width and height in pixels, after the rotation that the file asks for
+    stored_size: tuple[int, int]  # width and height in pixels, after the rotation that the file asks for
+    size: tuple[int, int]  # the same in square pixels, to which frames are scaled
     fps: float  # nominal frames per second
     frame_count: int  # number of frames according to the file, at least 1
     is_trimmed: bool  # whether it holds pictures that it does not show, as a clip trimmed on a phone
     notes: tuple[str, ...]  # sentences on faults of the file
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, size: tuple[int, int] | None = None) -> None:
+        """Open a video; where `size` is that of its oblong pixels as stored, they are left so."""
         self.path = path
         check_container(path)
         with self._capture() as capture:
@@ -44,7 +46,12 @@ class VideoFile:
                     f"{path}: not one frame of this {_codec(capture)} video can be decoded; it is damaged, "
                     f"cut off or coded in a way that OpenCV cannot read here; {CONVERT}"
                 )
-            self.size = (int(image.shape[1]), int(image.shape[0]))
+            width, height = self.stored_size = (int(image.shape[1]), int(image.shape[0]))
+            shape = pixel_shape(capture)
+            # The longer side grows, so that no detail is lost.
+            square = (round(width * max(shape, 1.0)), round(height / min(shape, 1.0)))
+            self.size = self.stored_size if size == self.stored_size else square
+            check_pixels(path, *self.size)
             fps = float(capture.get(cv2.CAP_PROP_FPS))
             self.fps = fps if 0.0 < fps < 2000.0 else 24.0
             claimed = capture.get(cv2.CAP_PROP_FRAME_COUNT)
@@ -52,7 +59,8 @@ class VideoFile:
             self.is_trimmed = shown_s is not None
             if shown_s is not None:
                 claimed = min(claimed, max(1.0, round(shown_s * self.fps)))
-            self.notes = video_notes(path, capture)
+            notes = (_pixel_note(path, shape, self.stored_size, self.size), dynamic_range_note(path))
+            self.notes = tuple(note for note in notes if note)
         most = path.stat().st_size // 8  # bytes a frame bound what a header may claim
         self.frame_count = int(min(claimed, most)) if np.isfinite(claimed) else 0
         if self.frame_count < 2:  # it claims nothing
@@ -158,14 +166,15 @@ class VideoFile:
         if not decoded or image is None:
             return self._nothing()
         size = (int(image.shape[1]), int(image.shape[0]))
-        if size != self.size:
+        if size != self.stored_size:
+            was = self.stored_size
             raise InputError(
-                f"{self.path}: the picture changes its size from {self.size[0]} x {self.size[1]} to "
+                f"{self.path}: the picture changes its size from {was[0]} x {was[1]} to "
                 f"{size[0]} x {size[1]} pixels after {index} frames; it must stay the same; {CONVERT}"
             )
         picture = np.ascontiguousarray(image, dtype=np.uint8)
         fill_last_rows(capture, picture)
-        return picture
+        return picture if size == self.size else np.asarray(cv2.resize(picture, self.size), dtype=np.uint8)
 
     def _nothing(self) -> Image:
         return np.zeros((self.size[1], self.size[0], 3), dtype=np.uint8)
@@ -198,6 +207,19 @@ def _steps(capture: cv2.VideoCapture) -> Iterator[int]:
             failures = 0
         else:
             failures += 1
+
+
+def _pixel_note(path: Path, shape: float, stored: tuple[int, int], size: tuple[int, int]) -> str | None:
+    """A sentence on pixels that are not square."""
+    if shape == 1.0:
+        return None
+    what = f"the pixels of {path.name} are {shape:.3g} times as wide as high"
+    if size != stored:
+        return f"{what}: its pictures of {stored[0]} x {stored[1]} were scaled to {size[0]} x {size[1]}"
+    return (
+        f"{what}, and its size is given as if they were square: the motion is out of shape; convert the clip "
+        "first, as with ffmpeg -i CLIP -vf scale=iw*sar:ih,setsar=1"
+    )
 
 
 def _codec(capture: cv2.VideoCapture) -> str:

@@ -85,7 +85,7 @@ class Footage:
         # This module is imported while the extension registers, when OpenCV may be missing.
         from ...core.video.clip import Clip
 
-        return Clip.open(self.path, fps=self.rate)
+        return Clip.open(self.path, self.rate, (self.clip.size[0], self.clip.size[1]))
 
 
 def clip_path(clip: bpy.types.MovieClip) -> Path:

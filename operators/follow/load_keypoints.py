@@ -125,7 +125,7 @@ def detect(scene: Scene) -> "Job[Detected]":
     take = active_take(scene)
     identifier, source = take.identifier, footage_of(scene, take)
     output, first = keypoint_output(take, source.path), source.first_frame
-    clip = open_footage(source.path, source.rate)
+    clip = open_footage(source.path, source.rate, (source.clip.size[0], source.clip.size[1]))
     people = yield from find_people(clip, PoseNetwork())
     return Detected(identifier, output, people, clip.fps, first)
 

@@ -183,8 +183,8 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
                 f"clip '{clip.name}' is linked from {clip.library.filepath}; find it in that file, or "
                 "load it here"
             )
-        found = Clip.open(path)
         size, count = (clip.size[0], clip.size[1]), clip.frame_duration
+        found = Clip.open(path, size=size)
         clip.filepath = stored_path(clip_file(path))
         context.view_layer.update()  # makes Blender read the clip again
         for scene in bpy.data.scenes:

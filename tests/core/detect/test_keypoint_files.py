@@ -183,6 +183,16 @@ def test_one_person_is_written_as_the_plain_form(tmp_path: Path) -> None:
     assert read(tmp_path / "k.json", 2).frames[1].pixel[0].tolist() == [[5.0, 6.0]]
 
 
+def test_pixels_of_the_stored_picture_are_scaled_to_square_ones(tmp_path: Path) -> None:
+    person, stored = moving_person(COCO17), (SIZE[0] * 3 // 4, SIZE[1])
+    path = write(tmp_path / "own.json", {**own_value(person * [0.75, 1.0, 1.0]), "size": list(stored)})
+    people = read(path, stored_size=stored)
+    assert_shows(people, person, COCO17)
+    assert f"found in pictures of {stored[0]} x {stored[1]}; scaled" in people.notes[0]
+    with pytest.raises(InputError, match="proportions"):
+        read(path)
+
+
 def test_pixels_of_a_smaller_picture_are_scaled(tmp_path: Path) -> None:
     person = moving_person(COCO17)
     path = write(tmp_path / "own.json", own_value(person))

@@ -21,6 +21,7 @@ from _footage import (
     write_numbered_take,
 )
 from _fuzz import FUZZ
+from _synthetic_take import SIZE
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core.errors import InputError
@@ -180,7 +181,6 @@ def test_a_size_that_changes_is_refused(drawn: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "arguments", "word"),
     [
-        ("wide.mp4", ("-vf", "scale=120:120,setsar=4/3", *H264), "1.33 times as wide as high"),
         ("pq.mp4", (*BT2020, "-color_trc", "smpte2084"), "(PQ)"),
         ("hlg.mkv", (*BT2020, "-color_trc", "arib-std-b67"), "(HLG)"),
     ],
@@ -190,6 +190,31 @@ def test_what_the_file_says_of_itself_is_told(
 ) -> None:
     (note,) = Clip.open(video(name, *arguments)).notes
     assert word in note and name in note and "convert" in note
+
+
+@pytest.mark.parametrize(
+    ("stored", "shape", "words"),
+    [((120, 120), "4/3", "1.33 times"), ((160, 90), "3/4", "0.75 times")],
+    ids=["wide", "high"],
+)
+def test_oblong_pixels_are_scaled_to_square_ones(
+    drawn: Path, video: Callable[..., Path], stored: tuple[int, int], shape: str, words: str
+) -> None:
+    path = video("a.mp4", "-vf", f"scale={stored[0]}:{stored[1]},setsar={shape}", *H264)
+    clip = Clip.open(path)
+    assert (clip.size, clip.stored_size) == (SIZE, stored) and numbers(clip) == list(range(FRAMES))
+    first = cv2.imread(str(next(iter(sorted((drawn / "frames").iterdir())))))
+    assert np.abs(next(clip.frames())[2].astype(float) - first).mean() < 4.0  # levels
+    assert f"{words} as wide as high: its pictures of {stored[0]} x {stored[1]} were scaled" in clip.notes[0]
+    left = Clip.open(path, size=stored)
+    assert left.size == next(left.frames())[2].shape[1::-1] == stored and "convert" in left.notes[0]
+
+
+def test_oblong_pixels_turn_with_the_picture(video: Callable[..., Path], tmp_path: Path) -> None:
+    flat = video("flat.mp4", "-vf", "scale=120:120,setsar=4/3", *H264)
+    ffmpeg("-display_rotation", "90", "-i", flat, "-c", "copy", tmp_path / "turned.mp4")
+    clip = Clip.open(tmp_path / "turned.mp4")
+    assert clip.size == SIZE[::-1] == next(clip.frames())[2].shape[1::-1]
 
 
 @pytest.mark.parametrize(
