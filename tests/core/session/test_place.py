@@ -15,7 +15,7 @@ from keymark.core.detect.keypoints import Keypoints
 from keymark.core.detect.standing_moments import standing_keypoints
 from keymark.core.session.described import is_unplaced
 from keymark.core.session.lens import Lens, lens_of
-from keymark.core.session.place import FoundCamera, camera_by_performer, camera_in_words
+from keymark.core.session.place import FoundCamera, camera_in_words, find_camera
 from keymark.core.take.conversion_settings import ConversionSettings
 from keymark.core.take.description import describe, keypoints_beside
 from keymark.core.video.header import FOCAL_LENGTH, stated_lens_mm
@@ -43,7 +43,7 @@ def test_a_walk_shows_the_camera_and_the_world_is_about_the_performer() -> None:
     true = Camera(38.0, 36.0, (640, 480), CameraPlacement(1.15, np.radians(-7.0), 0.0).matrix((2.0, -5.0)))
     uprights = standing_keypoints(seen_by(true, walk()), BODY, FPS)
     put = lens_of(Path("none.mp4"), true.resolution).put(true.resolution)
-    camera, fit = camera_by_performer(put, False, uprights)
+    camera, fit = find_camera(put, False, uprights)
     assert fit is not None and fit.camera.focal_px == camera.focal_px
     found = CameraPlacement.of(camera.matrix_world)
     assert found.height_m == pytest.approx(1.15, abs=0.12)
@@ -51,14 +51,14 @@ def test_a_walk_shows_the_camera_and_the_world_is_about_the_performer() -> None:
     location, sight = camera.rays(uprights.lower_px)
     ground = location + ((uprights.lower_m - location[2]) / sight[:, 2])[:, None] * sight
     assert np.median(ground[:, :2], axis=0) == pytest.approx([0.0, 0.0], abs=1e-9)
-    known, _ = camera_by_performer(replace(put, lens_mm=38.0), True, uprights)
+    known, _ = find_camera(replace(put, lens_mm=38.0), True, uprights)
     assert known.lens_mm == pytest.approx(38.0, rel=0.02)
 
 
 def test_somebody_who_never_stands_leaves_the_camera_as_it_was_put() -> None:
     lens = lens_of(Path("none.mp4"), SIZE)
     put = lens.put(SIZE)
-    camera, fit = camera_by_performer(put, False, standing_keypoints(seen_by(put, walk(1)), BODY, FPS))
+    camera, fit = find_camera(put, False, standing_keypoints(seen_by(put, walk(1)), BODY, FPS))
     assert fit is None and camera is put
     said = camera_in_words(FoundCamera(fit, lens, 1))
     assert "assumed to be level at 1.4 m" in said and "stands upright at no two moments" in said
@@ -68,7 +68,7 @@ def test_what_is_found_and_what_is_assumed_is_said_apart() -> None:
     true = Camera(38.0, 36.0, (640, 480), CameraPlacement(1.15, np.radians(-7.0), 0.0).matrix((0.0, -5.0)))
     uprights = standing_keypoints(seen_by(true, walk()), BODY, FPS)
     lens = Lens(38.0, 36.0, "as described", True)
-    _, fit = camera_by_performer(lens.put(true.resolution), True, uprights)
+    _, fit = find_camera(lens.put(true.resolution), True, uprights)
     said = camera_in_words(FoundCamera(fit, lens, len(uprights)))
     found, _, assumed = said.partition("assumed: ")
     assert "height 1.1" in found and "±" in found and "±" not in assumed
