@@ -40,6 +40,8 @@ def pose(session: Session) -> Job[Posed]:
     """
     inputs, seen, floor_m = session.inputs, placed_take(session), session[Placed].floor_m
     said = reference_evidence(seen) if seen.take.reference is not None and inputs.method == "map" else None
+    if said is not None and seen.take.reference is not None:
+        said = replace(said, notes=(*seen.take.reference.notes, *said.notes))
     if inputs.libraries is None:
         return Posed(seen, floor_m, None, said)
     is_open = inputs.floor_open and floor_m is None

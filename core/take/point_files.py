@@ -5,10 +5,10 @@ does not tell its unit it is the one that makes a person of it.
 """
 
 import csv
+import io
 import re
 import warnings
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +17,10 @@ from .. import MOST_FRAMES
 from ..arrays import Array
 from ..body.human import HUMAN
 from ..errors import InputError, describe_unexpected, shown
-from ..files.fields import listed
 from ..files.json_file import write_atomically
 from ..files.paths import regular_file_size
+from ..files.saved_text import read_saved_text, with_decimal_point
+from .named_points import MHR_UP, PointTable, one_subject, principal_points
 
 LARGEST_BYTES = 2**30
 MOST_POINTS = 10_000
@@ -36,10 +37,6 @@ MEDIAPIPE = (
     *("left_foot_index", "right_foot_index"),
 )
 """The points of MediaPipe's pose in its order, which FreeMoCap's npy has without names."""
-HEADS = (("ear.L", "ear.R"), ("head", "nose"), ("head",), ("skull",), ("nose",))
-"""Points whose middle is the head's, the best first: a head alone may be its top."""
-IDLE_WORDS = {"joint", "center", "study", "body", "mediapipe", "marker", "jc"}
-_WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
 _AXIS = re.compile(r"[\s_.:]*(?:3D)?([XYZxyz])$")
 UPRIGHT = {
     (0, 1): ((0, 1, 0), (0, 0, 1), (1, 0, 0)),
@@ -50,25 +47,16 @@ UPRIGHT = {
     (2, -1): ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
 }
 """Rotations that make an axis of a sign Z."""
-MHR_UP = (1, -1)
 
 
-@dataclass(frozen=True, eq=False)
-class _Table:
-    """Named points over F frames."""
+def read_points(path: Path, subject: str | None = None) -> tuple[Array, float | None, tuple[str, ...]]:
+    """The 13 points (F, 13, 3) [m], Z up, NaN where absent, frames a second where the file tells, and notes.
 
-    names: tuple[str, ...]
-    values: Array  # (F, N, 3) in the file's units; NaN where absent
-    rate: float | None = None  # frames a second
-    unit_m: float | None = None
-    up: tuple[int, int] | None = None  # axis and sign that point up, where the format says
-
-
-def read_points(path: Path) -> tuple[Array, float | None]:
-    """The 13 points (F, 13, 3) [m], Z up, NaN where absent, and frames a second where the file tells.
+    Where names have prefixes, as in Anna:LKnee, the points are those of one: the subject's, or else of the
+    prefix that has all of them in the most frames.
 
     Raises:
-        InputError: The file is damaged, lacks points, or has no size of a person.
+        InputError: The file is damaged, lacks points, has no such subject, or no size of a person.
     """
     if regular_file_size(path, "a file of points") > LARGEST_BYTES:
         raise InputError(f"{path}: is larger than a gigabyte; a motion must be smaller")
@@ -80,64 +68,18 @@ def read_points(path: Path) -> tuple[Array, float | None]:
         raise InputError(
             f"{path}: its rate is {table.rate:.6g} frames a second; {SLOWEST:g} to {FASTEST:g} are valid"
         )
-    points = _principal(table, path)
+    table, notes = one_subject(table, path, subject)
+    points = principal_points(table, path)
     points[~(np.abs(points) < FARTHEST).all(axis=2) | (points == 0.0).all(axis=2)] = np.nan
     if table.up is not None:
-        return np.asarray(points @ np.array(UPRIGHT[table.up], dtype=np.float64).T), table.rate
+        return np.asarray(points @ np.array(UPRIGHT[table.up], dtype=np.float64).T), table.rate, notes
     known = int(np.isfinite(points).all(axis=(1, 2)).sum())
     if known < 2:
         raise InputError(f"{path}: a performer is in {known} of its frames; at least 2 are needed")
-    return _upright(points * _unit_m(table, points, path)), table.rate
+    return _upright(points * _unit_m(table, points, path)), table.rate, notes
 
 
-def _principal(table: _Table, path: Path) -> Array:
-    """(F, 13, 3) the principal points of named ones, in the file's axes and units."""
-    known: dict[str, int] = {}
-    for exact in (True, False):  # a name without further words comes first
-        for index, name in enumerate(table.names):
-            point, idle = _point_of(name)
-            if idle != exact:
-                known.setdefault(point, index)
-    columns, missing = [], []
-    for point in HUMAN.point_names:
-        heads = HEADS[:1] if table.up == MHR_UP else HEADS
-        choices: Sequence[Sequence[str]] = heads if point == "head" else ((point,),)
-        found = next((names for names in choices if all(name in known for name in names)), None)
-        if found is None:
-            missing.append(point)
-        else:
-            columns.append(np.mean([table.values[:, known[name]] for name in found], axis=0))
-    if missing and table.up == MHR_UP:
-        stem, dot, side = missing[0].partition(".")
-        names = [f"{'left' if side == 'L' else 'right'}_{stem}"] if dot else ["left_ear", "right_ear"]
-        absent = next((name for name in names if name not in table.names), names[0])
-        raise InputError(
-            f"{path}: has no column {absent}_3DX; a csv of MHR-70's points has columns like nose_3DX, "
-            "nose_3DY, nose_3DZ for each point"
-        )
-    if missing:
-        raise InputError(
-            f"{path}: has no point for {listed(missing, 4)}; it must have both shoulders, elbows, wrists, "
-            "hips, knees and ankles by name, and a head, ears or a nose; its points are "
-            f"{listed(table.names, 5)}"
-        )
-    return np.stack(columns, axis=1)
-
-
-def _point_of(name: str) -> tuple[str, bool]:
-    """The name as `elbow.L`, without its subject, and whether words were left out."""
-    words = [word.lower() for word in _WORD.findall(name.rpartition(":")[2])]
-    sides = {"l": "L", "left": "L", "r": "R", "right": "R"}
-    side = next((sides[word] for word in words if word in sides), "")
-    rest = [word for word in words if word not in sides]
-    kept = [word for word in rest if word not in IDLE_WORDS] or rest
-    stem = "".join(kept)
-    if not side and stem[:1] in "lr" and stem[1:] in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle"):
-        side, stem = sides[stem[0]], stem[1:]
-    return (f"{stem}.{side}" if side else stem), kept != rest
-
-
-def _unit_m(table: _Table, points: Array, path: Path) -> float:
+def _unit_m(table: PointTable, points: Array, path: Path) -> float:
     at = {name: points[:, index] for index, name in enumerate(HUMAN.point_names)}
     ends = [
         (f"{one}.{side}", f"{other}.{side}")
@@ -170,14 +112,20 @@ def _upright(points: Array) -> Array:
 # --- csv with columns NAME_x, NAME_y, NAME_z or NAME_3DX ..., and npy without names
 
 
-def _read_csv(path: Path) -> _Table:
+def _read_csv(path: Path) -> PointTable:
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            rows = csv.reader(file)
-            header = [name.strip() for name in next(rows, [])]
-            lines = [row for row in rows if row]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        text = read_saved_text(path)
+        separator = max(",;\t", key=text.partition("\n")[0].count)
+        rows = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
+        header = [name.strip() for name in next(rows, [])]
+        lines = [row for row in rows if row]
+    except csv.Error as error:
         raise InputError(f"{path}: cannot be read as a csv ({error})") from error
+    if separator == "," and lines and len(lines[0]) >= 2 * len(header) - 2 > len(header):
+        raise InputError(
+            f"{path}: has commas between its columns and, as it seems, in its numbers; they must have "
+            "decimal points, or semicolons between the columns"
+        )
     values = _numbers(lines, len(header), path, 2)
     columns: dict[str, dict[str, int]] = {}
     for index, name in enumerate(header):
@@ -191,9 +139,9 @@ def _read_csv(path: Path) -> _Table:
         )
     places = np.stack([values[:, [columns[name][axis] for axis in "xyz"]] for name in names], axis=1)
     if any(name.endswith("_3DX") for name in header):  # MHR-70: meters in a camera's axes, y down
-        return _Table(tuple(names), places, None, 1.0, MHR_UP)
+        return PointTable(tuple(names), places, None, 1.0, MHR_UP)
     times = [header.index(name) for name in ("time", "timestamp", "time_s") if name in header]
-    return _Table(tuple(names), places, _rate_of(values[:, times[0]]) if times else None)
+    return PointTable(tuple(names), places, _rate_of(values[:, times[0]]) if times else None)
 
 
 def _numbers(lines: Iterable[Sequence[str]], width: int, path: Path, first: int) -> Array:
@@ -204,7 +152,7 @@ def _numbers(lines: Iterable[Sequence[str]], width: int, path: Path, first: int)
                 f"{path}: line {number} has {len(line)} columns; it must have {width} as the header"
             )
         try:
-            rows.append([float(cell) if cell.strip() else np.nan for cell in line])
+            rows.append([float(with_decimal_point(cell)) if cell.strip() else np.nan for cell in line])
         except ValueError as error:
             raise InputError(f"{path}: line {number}: {error}; it must have numbers alone") from error
     return np.array(rows, dtype=np.float64).reshape(-1, width)
@@ -216,7 +164,7 @@ def _rate_of(times: Array) -> float | None:
     return 1.0 / float(np.median(steps)) if len(steps) else None
 
 
-def _read_npy(path: Path) -> _Table:
+def _read_npy(path: Path) -> PointTable:
     try:
         values = np.load(path, mmap_mode="r", allow_pickle=False)
         shape = values.shape
@@ -228,17 +176,14 @@ def _read_npy(path: Path) -> _Table:
         points = np.array(values[: MOST_FRAMES + 1, : len(MEDIAPIPE)], dtype=np.float64)
     except (OSError, ValueError, EOFError, TypeError, SyntaxError) as error:
         raise InputError(f"{path}: cannot be read as an npy of numbers ({error})") from error
-    return _Table(MEDIAPIPE, points)
+    return PointTable(MEDIAPIPE, points)
 
 
 # --- TRC: five lines of header, then number, time and the coordinates of each frame
 
 
-def _read_trc(path: Path) -> _Table:
-    try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror})") from error
+def _read_trc(path: Path) -> PointTable:
+    lines = read_saved_text(path).splitlines()
     if len(lines) < 6 or not lines[0].startswith("PathFileType"):
         raise InputError(f"{path}: is no TRC; it must begin with PathFileType")
     head = dict(zip(lines[1].split(), lines[2].split(), strict=False))
@@ -250,7 +195,7 @@ def _read_trc(path: Path) -> _Table:
     cells = [(row + [""] * width)[:width] if len(row) <= width + 1 else row for row in rows]
     values = _numbers(cells, width, path, 6)
     try:
-        rate = float(head.get("DataRate", "nan"))
+        rate = float(with_decimal_point(head.get("DataRate", "nan")))
     except ValueError:
         rate = float("nan")
     by_time = _rate_of(values[:, 1])
@@ -260,7 +205,7 @@ def _read_trc(path: Path) -> _Table:
             "a second; they must agree"
         )
     unit = UNITS_M.get(head.get("Units", "").lower())
-    return _Table(tuple(names), values[:, 2:].reshape(len(values), -1, 3), rate, unit)
+    return PointTable(tuple(names), values[:, 2:].reshape(len(values), -1, 3), rate, unit)
 
 
 def write_trc(
@@ -293,7 +238,7 @@ def _marker_name(name: str) -> str:
 # --- C3D: markers of motion capture, in binary
 
 
-def _read_c3d(path: Path) -> _Table:
+def _read_c3d(path: Path) -> PointTable:
     import c3d
 
     frames: list[Array] = []
@@ -314,7 +259,7 @@ def _read_c3d(path: Path) -> _Table:
     if not frames or len({len(points) for points in frames}) > 1:
         raise InputError(f"{path}: has no points; a C3D of markers must have the same ones in every frame")
     values = np.array(frames, dtype=np.float64)
-    return _Table(names[: values.shape[1]], values, rate, UNITS_M.get(units))
+    return PointTable(names[: values.shape[1]], values, rate, UNITS_M.get(units))
 
 
 def write_c3d(path: Path, points: Array, rate: float, names: Sequence[str] = HUMAN.point_names) -> None:

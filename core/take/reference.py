@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..body.human import HUMAN
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..files.fields import listed
 from ..files.json_file import ENDING
 from ..files.paths import regular_file_size
@@ -30,6 +30,7 @@ class ReferenceMotion:
     points_m: Array  # (R, 13, 3) in the skeleton's order, about in meters, Z up; NaN where absent
     fps: float | None = None  # frames a second; None where the file does not say, for the clip's own
     file: str = ""  # for sentences
+    notes: tuple[str, ...] = ()  # which of several subjects it is
 
     def __post_init__(self) -> None:
         shape = self.points_m.shape
@@ -51,11 +52,12 @@ def reference_of_take(
     return None if read_armature is None else read_armature(path)
 
 
-def read_reference(path: Path) -> ReferenceMotion:
+def read_reference(path: Path, subject: str | None = None) -> ReferenceMotion:
     """Read a reference motion: points by name, as MHR-70's csv and FreeMoCap have them, or a motion.json.
 
     Raises:
-        InputError: The file is none of these or damaged, or fewer than two of its frames have a performer.
+        InputError: The file is none of these or damaged, has no such subject, or fewer than two of its
+            frames have a performer.
     """
     ending = path.suffix.lower()
     if ending not in REFERENCE_ENDINGS:
@@ -64,10 +66,13 @@ def read_reference(path: Path) -> ReferenceMotion:
             f"or a motion.json; or be an armature's, in {listed(ARMATURE_ENDINGS)}"
         )
     if ending == ENDING:
+        if subject is not None:
+            raise InputError(f"{path}: has no subject {shown(subject)}; a motion.json is of one performer")
         motion = read_motion(path)
         reference = ReferenceMotion(motion.points, motion.fps, str(path))
     else:
-        reference = ReferenceMotion(*read_points(path), str(path))
+        points, rate, notes = read_points(path, subject)
+        reference = ReferenceMotion(points, rate, str(path), notes)
     known = np.isfinite(reference.points_m).all(axis=(1, 2))
     if known.sum() < 2:
         raise InputError(f"{path}: a performer is in {int(known.sum())} of its frames; at least 2 are needed")

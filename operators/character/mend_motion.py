@@ -46,7 +46,9 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
     requirements = (bones_editable, idle)
 
     filepath: Text("File", "The motion's file", subtype="FILE_PATH", options=SKIP_SAVE)
-    object: Text("Armature", "Name of its armature, where the file has several", options=SKIP_SAVE)
+    object: Text(
+        "Armature", "Name of its armature, ROOT or subject, where the file has several", options=SKIP_SAVE
+    )
     filter_glob: Text(default=FILTER, options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -64,14 +66,15 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
         if active is not None and active.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
         if path.suffix.lower() in REFERENCE_ENDINGS:
-            reference = read_reference(path)
+            reference = read_reference(path, self.object or None)
             rate = reference.fps or scene.render.fps / scene.render.fps_base
             mended = run_job(mend_motion(reference.points_m, rate, MendOptions()))
             loaded = add_actor(scene, mended.motion, path.stem, scene.frame_start)
-            for note in mended.notes:
-                warn(self, note)
+            notes = (*reference.notes, *mended.notes)
         else:
-            loaded = load_motion(CharacterFile(path, self.object or None), scene, map_folders())
+            loaded, notes = load_motion(CharacterFile(path, self.object or None), scene, map_folders())
+        for note in notes:
+            warn(self, note)
         _select(context, loaded)
         self.report({"INFO"}, f"'{loaded.name}' moves as {path.name} says")
 

@@ -36,12 +36,13 @@ class ImportedCharacter:
 
 
 def import_character(
-    file: CharacterFile, scene: bpy.types.Scene, animated: bool = False
+    file: CharacterFile, scene: bpy.types.Scene, animated: bool = False, text: str | None = None
 ) -> ImportedCharacter:
     """Import a character into a scene of its own (see `own_scene`), which removes it again.
 
     Of a .blend objects are appended; nothing in it is run. Other files are read by Blender's own importers,
-    without their motions unless `animated`. The objects get a collection with the armature's name.
+    without their motions unless `animated`; a `text` is read in the file's place. The objects
+    get a collection with the armature's name.
 
     Raises:
         InputError: Blender cannot read the file, it has no such armature or none at all, or several and none
@@ -52,7 +53,7 @@ def import_character(
     if suffix == BLEND:
         found, texts = _appended(file)
     else:
-        found, texts = _imported(file, scene, animated), ()
+        found, texts = _imported(file, scene, animated, text), ()
     armature = _chosen(file, found)
     members = _members(armature, found.values())
     notes: tuple[str, ...] = ()
@@ -84,12 +85,17 @@ def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[b
     return objects, tuple(text for text in wanted.texts if text is not None and text.use_module)
 
 
-def _imported(file: CharacterFile, scene: bpy.types.Scene, animated: bool) -> dict[str, bpy.types.Object]:
+def _imported(
+    file: CharacterFile, scene: bpy.types.Scene, animated: bool, text: str | None
+) -> dict[str, bpy.types.Object]:
     before = {one.name for one in bpy.data.objects}
     with showing_scene(scene), tempfile.TemporaryDirectory() as folder:
         path = real_path(file.path)
         if path.suffix.lower() == VRM:  # a GLB under another name
             path = Path(shutil.copyfile(path, Path(folder) / f"{path.stem}.glb"))
+        if text is not None:
+            path = Path(folder) / path.name
+            path.write_text(text, encoding="utf-8")
         try:
             importer = next(
                 (one for start, one in IMPORTERS.items() if path.suffix.lower().startswith(start)),

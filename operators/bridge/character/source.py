@@ -9,6 +9,7 @@ from ....core.arrays import Array
 from ....core.body.human import HUMAN
 from ....core.body.kinematics import Extremities, SegmentMotion, extremity_names, segment_motion
 from ....core.feet.natural_extremities import natural_extremities
+from ....core.files.paths import absolute_path, real_path
 from ....core.progress import Job, Progress, within
 from ....core.take.motion import Motion
 from ..actions import existing_channelbag
@@ -66,10 +67,13 @@ RENDER = ("resolution_x", "resolution_y", "resolution_percentage", "fps", "fps_b
 USUAL_SIZE = (1920, 1080)
 
 
-def show_result(scene: bpy.types.Scene, blend: Path | None, motion: Motion) -> Array:
+def show_result(
+    scene: bpy.types.Scene, blend: Path | None, motion: Motion, notes: list[str] | None = None
+) -> Array:
     """Show a result's footage behind its camera, with rate, range and look; returns the scene frames (F,).
 
-    Without a .blend the scene gets rate and range alone.
+    Without a .blend the scene gets rate and range alone. A clip that is not where the .blend says is looked
+    for beside it; the scene has none where it is nowhere, and `notes` receives a sentence.
 
     Raises:
         InputError: Blender cannot read the .blend.
@@ -77,7 +81,9 @@ def show_result(scene: bpy.types.Scene, blend: Path | None, motion: Motion) -> A
     set_scene_range(scene, USUAL_SIZE, motion.fps, motion.frame_start, len(motion.time_s))
     set_look(scene)
     if blend is not None:
-        _copy_footage(scene, blend)
+        note = _copy_footage(scene, blend)
+        if note and notes is not None:
+            notes.append(note)
     rate = scene.render.fps / scene.render.fps_base
     frames = scene_frames(motion.time_s, motion.frame_start, rate)
     scene.frame_start = motion.frame_start
@@ -85,14 +91,27 @@ def show_result(scene: bpy.types.Scene, blend: Path | None, motion: Motion) -> A
     return frames
 
 
-def _copy_footage(scene: bpy.types.Scene, blend: Path) -> None:
+def _copy_footage(scene: bpy.types.Scene, blend: Path) -> str:
+    """Copy camera and clip; a note where the clip's file is lost."""
     check_blend(blend, "a result")
     advice = "convert the take again, or name its motion.json instead"
     scenes = load_blocks(blend, "scenes", advice, list)
     shown = next((one for one in scenes if one.camera and one.active_clip), None)
     if shown is None:
-        return
+        return ""
     for name in RENDER:
         setattr(scene.render, name, getattr(shown.render, name))
     scene.collection.objects.link(shown.camera)
-    scene.camera, scene.active_clip = shown.camera, shown.active_clip
+    scene.camera, clip = shown.camera, shown.active_clip
+    file, folder = Path(bpy.path.abspath(clip.filepath)), absolute_path(blend).parent
+    names = (Path(file.name), Path(file.parent.name, file.name))  # the latter of an image sequence
+    places = (file, *(above / name for above in (folder, folder.parent) for name in names))
+    found = next((place for place in places if place.is_file()), None)
+    if found is None:
+        shown.camera.data.background_images.clear()
+        bpy.data.movieclips.remove(clip)
+        return f"the footage {file.name} is neither where it was nor beside {blend.name}, and is not shown"
+    if found != file:
+        clip.filepath = str(real_path(found))
+    scene.active_clip = clip
+    return ""

@@ -1,8 +1,8 @@
 """Import an animated armature from a file: its Action on whole frames, its rate, and a person's size."""
 
-import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
@@ -12,12 +12,13 @@ from mathutils import Matrix
 from ....core.body import rotations
 from ....core.errors import InputError
 from ....core.files.fields import listed
-from ....core.files.paths import real_path, regular_file_size
+from ....core.files.paths import real_path
 from ....core.numerics.vectors import unit
 from ....core.progress import run
 from ....core.retarget.maps.map_registry import ChosenMap
 from ....core.retarget.mended_armature import ArmaturePoints
 from ....core.retarget.solve.rest_body import RestBody
+from ....core.take.bvh_file import FASTEST, SLOWEST, read_bvh
 from ....core.take.character_settings import CharacterFile
 from ....core.take.reference import ARMATURE_ENDINGS, ReferenceMotion
 from ..actions import assign_action, curves_of, existing_channelbag
@@ -27,14 +28,10 @@ from ..character.read_character import read_character
 from ..keys import mark_generated
 from .read_poses import action_frames, animated_action, motion_map, read_poses
 
-SLOWEST, FASTEST = 1.0, 1000.0  # frames a second of a motion
-LARGEST_BVH = 2**29
 UNITS = (1.0, 0.01, 0.1, 0.001, 0.0254, 0.3048, 100.0)
 """Meters that a file's unit may have: m, cm, dm, mm, inches, feet; and characters in hundreds of meters."""
 Curves = Mapping[tuple[str, int], bpy.types.FCurve]
 SHORTEST_LEG_M, LONGEST_LEG_M = 0.35, 1.5  # of a child and of a giant
-_RATE = re.compile(r"Frame\s+Time:\s*(\S+)", re.IGNORECASE)
-_FRAMES = re.compile(r"Frames:\s*(\S+)", re.IGNORECASE)
 
 
 def import_motion(
@@ -42,8 +39,8 @@ def import_motion(
 ) -> tuple[ImportedCharacter, ChosenMap]:
     """Import an animated armature into a scene, which gets the motion's rate, and recognize its bones.
 
-    Its keys count as Keymark's own, so that those that a person sets later are known. An armature in other
-    units is scaled to a person's size.
+    A BVH's object is one of its ROOTs. The motion's keys count as Keymark's own, so that those that a person
+    sets later are known. An armature in other units is scaled to a person's size.
 
     Raises:
         InputError: Blender cannot read it, it has no armature of a person, no Action, or no usable rate.
@@ -53,11 +50,14 @@ def import_motion(
         raise InputError(
             f"{file.path}: is no motion of an armature; it must end in {listed(ARMATURE_ENDINGS)}"
         )
+    text: str | None = None
+    notes: tuple[str, ...] = ()
     if suffix == ".bvh":
-        _check_bvh(file.path)
+        text, notes = read_bvh(file.path, file.object)
+        file = CharacterFile(file.path)  # its one armature
     elif suffix.startswith(".usd") and not bpy.app.build_options.usd:
         raise InputError(f"{file.path}: this Blender is built without USD; export the motion as BVH or FBX")
-    imported = import_character(file, scene, animated=True)
+    imported = import_character(file, scene, animated=True, text=text)
     armature = imported.armature
     action = _action(armature)
     if action is None:
@@ -87,7 +87,7 @@ def import_motion(
     bag = existing_channelbag(action, armature)
     if bag is not None:
         mark_generated(bag)
-    return imported, chosen
+    return replace(imported, notes=(*notes, *imported.notes)), chosen
 
 
 def _stand_up(armature: bpy.types.Object, body: RestBody) -> None:
@@ -100,8 +100,10 @@ def _stand_up(armature: bpy.types.Object, body: RestBody) -> None:
         bpy.context.view_layer.update()
 
 
-def load_motion(file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = ()) -> bpy.types.Object:
-    """Bring an animated armature into a scene, which keeps its rate and range; returns the armature object.
+def load_motion(
+    file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = ()
+) -> tuple[bpy.types.Object, tuple[str, ...]]:
+    """Bring an animated armature into a scene, which keeps its rate and range; its object, and notes.
 
     The motion begins at the scene's first frame and takes as long as in the file.
 
@@ -125,7 +127,7 @@ def load_motion(file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path
         bpy.data.batch_remove(made)
         raise
     bpy.data.scenes.remove(meanwhile)
-    return armature
+    return armature, imported.notes
 
 
 def armature_reference(path: Path, maps: Sequence[Path] = ()) -> ReferenceMotion:
@@ -140,7 +142,8 @@ def armature_reference(path: Path, maps: Sequence[Path] = ()) -> ReferenceMotion
         points = ArmaturePoints.of(RestBody.of(read_character(armature), chosen.character_map))
         action = animated_action(armature)
         poses, _ = run(read_poses(armature, action, action_frames(armature, action), points.bones))
-        return ReferenceMotion(points.of_poses(poses), scene.render.fps / scene.render.fps_base, str(path))
+        rate = scene.render.fps / scene.render.fps_base
+        return ReferenceMotion(points.of_poses(poses), rate, str(path), imported.notes)
 
 
 def _retime(curves: Curves, first: float, factor: float, start: float) -> None:
@@ -150,32 +153,6 @@ def _retime(curves: Curves, first: float, factor: float, start: float) -> None:
             for handle in (key.co, key.handle_left, key.handle_right):
                 handle[0] = start + (handle[0] - first) * factor
         curve.update()
-
-
-def _check_bvh(path: Path) -> None:
-    """Refuse a BVH whose header lies about its rate or frames, which Blender would believe."""
-    if regular_file_size(path, "a BVH") > LARGEST_BVH:
-        raise InputError(f"{path}: is larger than {LARGEST_BVH // 2**20} MB; a motion must be smaller")
-    text = path.read_text(encoding="utf-8", errors="replace")
-    head, _, rest = text.partition("MOTION")
-    found = [pattern.search(rest[:1000]) for pattern in (_FRAMES, _RATE)]
-    if "HIERARCHY" not in head[:1000] or any(one is None for one in found):
-        raise InputError(f"{path}: is no BVH; it must have HIERARCHY, MOTION, Frames and Frame Time")
-    frames, step = (one[1] if one is not None else "" for one in found)
-    seconds = _number(step)
-    if not 1.0 / FASTEST <= seconds <= 1.0 / SLOWEST:
-        raise InputError(
-            f"{path}: Frame Time is {step[:20]}; {1.0 / FASTEST:g} to {1.0 / SLOWEST:g} s are valid"
-        )
-    rows = sum(1 for line in rest[found[1].end() if found[1] else 0 :].splitlines() if line.strip())
-    if _number(frames) != rows:
-        raise InputError(f"{path}: Frames is {frames[:20]}, but it has {rows} rows of numbers")
-
-
-def _number(text: str) -> float:
-    with suppress(ValueError):
-        return float(text)
-    return float("nan")
 
 
 def _action(armature: bpy.types.Object) -> bpy.types.Action | None:

@@ -1,6 +1,7 @@
 """`keymark mend`: mend a motion from elsewhere, without footage."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 from ....core.errors import InputError
@@ -47,6 +48,7 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
     formats = export_formats(arguments.format)
     posed = _posed(arguments.posed)
     file = CharacterFile.parse(arguments.motion, (*ARMATURE_ENDINGS, *REFERENCE_ENDINGS), "is no motion")
+    file = replace(file, object=arguments.subject or file.object)
     folder: Path = arguments.output
     refuse_unsupported_output(folder)
     if (folder / CONVERSION).exists():
@@ -55,7 +57,7 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
     notes: tuple[str, ...] = ()
     with output_folder(folder, (*FILES, AS_MADE), MOTION, kept) as staging:
         if file.path.suffix.lower() in REFERENCE_ENDINGS:
-            mended = _mend_points(file, posed, arguments, console)
+            mended, notes = _mend_points(file, posed, arguments, console)
         else:
             own = None if settings is not None else (staging, real_path(folder), formats)
             mended, notes = _mend_armature(file, posed, arguments, console, own)
@@ -105,15 +107,15 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
 
 def _mend_points(
     file: CharacterFile, posed: tuple[int, ...], arguments: argparse.Namespace, console: Console
-) -> Mended:
+) -> tuple[Mended, tuple[str, ...]]:
     console.stage("Reading the motion")
-    reference = read_reference(file.path)
+    reference = read_reference(file.path, file.object)
     rate = arguments.fps or reference.fps or USUAL_RATE
     options = MendOptions(
         tuple(frame - 1 for frame in posed), arguments.plant_feet is not False, not arguments.no_floor
     )
     try:
-        return run(mend_motion(reference.points_m, rate, options), console.progress)
+        return run(mend_motion(reference.points_m, rate, options), console.progress), reference.notes
     except InputError as error:
         raise InputError(f"{file.path}: {error}") from error
 
@@ -172,6 +174,12 @@ MEND = Command(
             "where there are several; or points by name (.csv, .npy, .trc, .c3d), or a motion.json",
         ),
         *output("DIR", "folder for the result, new or old"),
+        argument(
+            "--subject",
+            metavar="NAME",
+            help="whose motion of several in the file: the prefix of points, a BVH's ROOT, or an armature "
+            "(default: the most complete, which a note names)",
+        ),
         argument(
             "--posed",
             metavar="FRAMES",

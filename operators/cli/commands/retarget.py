@@ -76,12 +76,13 @@ def _retarget(
     motion = read_motion(motion_file)
     check_exporters(formats)
     kept: dict[str, str] = {}
+    lost: list[str] = []
     with output_folder(output, (*RESULT_FILES, AS_MADE), RECORD_FILE, kept) as staging_folder:
         job = write_character_result(
             settings,
             motion,
             absolute_path(motion_file).parent.name,
-            lambda scene, shown: show_result(scene, blend, shown),
+            lambda scene, shown: show_result(scene, blend, shown, lost),
             (staging_folder, real_path(output)),
             debug,
             formats,
@@ -94,7 +95,7 @@ def _retarget(
             before = read_retarget_record(output).files
         kept.update(changed_files(output, staging_folder, RESULT_FILES, (CHARACTER_BLEND,), before))
         files = [output / name for name in (*made, RECORD_FILE)]
-    notes = (*record.notes, *(kept_note(*names) for names in kept.items()))
+    notes = (*lost, *record.notes, *(kept_note(*names) for names in kept.items()))
     return record, files, notes
 
 

@@ -120,6 +120,9 @@ def convert_if_changed(
         console.stage("Writing Blender's files")
         notes: tuple[str, ...] = ()
         filmed = _filmed(session)
+        beside = staging_folder / filmed.clip.name
+        if beside.is_file() and staging_folder.parent == real_output.parent:
+            filmed = replace(filmed, clip=beside)  # so that the folder may be moved
         curves = {BLEND: write_blender_files(filmed, result.motion, staging_folder, real_output, debug)}
         if character is not None:
             record = session[RetargetRecord]

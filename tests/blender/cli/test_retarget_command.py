@@ -231,3 +231,31 @@ def test_feet_need_not_be_planted(retarget: Retarget, output: Path) -> None:
     assert retarget("--no-plant-feet", "--no-reach-hands") == 0
     assert sorted(tree(output)) == MADE
     assert "skate_mm" not in read_retarget_record(output).quality
+
+
+@pytest.mark.parametrize("clip", ["inside", "beside", "nowhere"])
+def test_a_result_that_was_moved_finds_the_clip_beside_it_or_goes_on_without(
+    retarget: Retarget,
+    result: Path,
+    output: Path,
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+    clip: str,
+) -> None:
+    bpy.ops.wm.open_mainfile(filepath=str(result / "motion.blend"))
+    filmed = Path(bpy.path.abspath(bpy.context.scene.active_clip.filepath)).resolve()
+    moved = tmp_path / "elsewhere" / "and" / "deeper" / "still" / "moved"
+    shutil.copytree(result, moved)
+    place = {"inside": moved, "beside": moved.parent}.get(clip)
+    if place is not None:
+        shutil.copyfile(filmed, place / filmed.name)
+    assert retarget("--json", motion=moved) == 0
+    notes = json.loads(capfd.readouterr().out.splitlines()[-1])["notes"]
+    assert any("neither where it was nor beside" in note for note in notes) == (place is None)
+    scene = opened(output / "character.blend")
+    assert scene.camera is not None and (output / "report" / "character.png").exists() == (place is not None)
+    if place is None:
+        assert scene.active_clip is None
+    else:
+        shown = Path(bpy.path.abspath(scene.active_clip.filepath)).resolve()
+        assert shown == (place / filmed.name).resolve()

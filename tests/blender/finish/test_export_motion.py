@@ -183,7 +183,7 @@ def test_joints_are_exported_as_they_show(
     bpy.ops.keymark.bake_motion()
     path = tmp_path / f"wave{FORMATS[kind].suffix}"
     assert bpy.ops.keymark.export_motion(format=kind, filepath=str(path)) == {"FINISHED"}
-    points, rate = read_points(path)
+    points, rate, _ = read_points(path)
     assert rate == 25.0 and [file.name for file in tmp_path.iterdir()] == [path.name]
     assign_action(take.armature, take.finish.action)
     first = int(take.finish.action.frame_range[0])

@@ -135,7 +135,7 @@ def points() -> Array:
 def test_what_is_written_is_read(tmp_path: Path, points: Array, write: object, ending: str) -> None:
     file = tmp_path / f"joints.{ending}"
     write(file, points, 60.0)  # type: ignore[operator]
-    found, rate = read_points(file)
+    found, rate, _ = read_points(file)
     np.testing.assert_allclose(found, points, atol=1e-6)
     assert rate == 60.0 and [path.name for path in tmp_path.iterdir()] == [file.name]
 
@@ -159,7 +159,7 @@ def test_freemocap_is_in_millimeters_and_has_no_names_in_its_npy(tmp_path: Path,
             values[:, MEDIAPIPE.index(one)] = 1e3 * points[:, index]
             header += [f"body_{one}_{axis}" for axis in "xyz"]
     np.save(tmp_path / "body.npy", values)
-    found, rate = read_points(tmp_path / "body.npy")
+    found, rate, _ = read_points(tmp_path / "body.npy")
     np.testing.assert_allclose(found, points, atol=1e-9)
     assert rate is None
     names = [name.removeprefix("body_").removesuffix("_x") for name in header[2:] if name.endswith("_x")]
@@ -168,7 +168,7 @@ def test_freemocap_is_in_millimeters_and_has_no_names_in_its_npy(tmp_path: Path,
         cells = [str(value) for name in names for value in values[frame, MEDIAPIPE.index(name)]]
         rows.append(",".join([str(frame), str(frame / 25.0), *cells]))
     (tmp_path / "body.csv").write_text("\n".join(rows))
-    found, rate = read_points(tmp_path / "body.csv")
+    found, rate, _ = read_points(tmp_path / "body.csv")
     np.testing.assert_allclose(found, points, atol=1e-6)
     assert rate == pytest.approx(25.0)
 

@@ -48,7 +48,7 @@ def test_rate_size_and_joints_are_the_files(exported: Path, shaken: bpy.types.Ob
 def test_a_loaded_motion_takes_as_long_as_in_its_file_and_the_scene_stays(exported: Path) -> None:
     scene = bpy.context.scene
     scene.render.fps, scene.frame_start, scene.frame_end = 24, 10, 200
-    loaded = load_motion(CharacterFile(exported / "motion.bvh"), scene)
+    loaded, _ = load_motion(CharacterFile(exported / "motion.bvh"), scene)
     assert loaded.name in scene.objects
     first, last = loaded.animation_data.action.frame_range
     assert first == pytest.approx(10.0) and last == pytest.approx(10.0 + 44 * 24 / 60, abs=1e-3)

@@ -1,0 +1,140 @@
+"""Named points, and which of them are the principal ones of one person."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..arrays import Array
+from ..body.human import HUMAN
+from ..errors import InputError, shown
+from ..files.fields import listed
+from .subjects import chosen_subject
+
+HEADS = (("ear.L", "ear.R"), ("head", "nose"), ("head",), ("skull",), ("nose",))
+"""Points whose middle is the head's, the best first: a head alone may be its top."""
+IDLE_WORDS = {"joint", "center", "study", "body", "mediapipe", "marker", "jc"}
+_WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
+MHR_UP = (1, -1)
+
+
+@dataclass(frozen=True, eq=False)
+class PointTable:
+    """Named points over F frames."""
+
+    names: tuple[str, ...]
+    values: Array  # (F, N, 3) in the file's units; NaN where absent
+    rate: float | None = None  # frames a second
+    unit_m: float | None = None
+    up: tuple[int, int] | None = None  # axis and sign that point up, where the format says
+
+
+def one_subject(table: PointTable, path: Path, subject: str | None) -> tuple[PointTable, tuple[str, ...]]:
+    """The points of one prefix alone, and notes; where some have a prefix, those without are another's."""
+    table = _with_prefixes(table)
+    parts = _by_prefix(table)
+    if len(parts) == 1 and subject is None:
+        return table, ()
+    people = {prefix: part for prefix, part in parts.items() if len(_missing(part)) < len(HUMAN.point_names)}
+    if not people or (subject is not None and list(people) == [""]):
+        if subject is not None:
+            raise InputError(f"{path}: has no subject {shown(subject)}; its points have no prefixes")
+        return table, ()
+    frames = []
+    for part in people.values():
+        whole = not _missing(part)
+        points = principal_points(part, path) if whole else np.full((1, 1, 3), np.nan)
+        there = np.isfinite(points).all(axis=(1, 2)) & (points != 0.0).any(axis=2).all(axis=1)
+        frames.append(float(whole + there.sum()))
+    names = [prefix or "(no prefix)" for prefix in people]
+    index, notes = chosen_subject(path, names, frames, subject)
+    if subject is None and not any(frames):
+        lacking = [
+            f"{shown(name)} {listed(_missing(part), 4)}"
+            for name, part in zip(names, people.values(), strict=True)
+        ]
+        raise InputError(
+            f"{path}: none of its {len(names)} subjects has all points; missing are those of "
+            f"{'; '.join(lacking)}"
+        )
+    return list(people.values())[index], notes
+
+
+def _with_prefixes(table: PointTable) -> PointTable:
+    """The table with colons behind prefixes that end in another sign, as in Anna_LKnee."""
+    if not _missing(table) or any(":" in name for name in table.names):
+        return table
+    for sign in "_.|/- ":
+        named = replace(table, names=tuple(name.replace(sign, ":", 1) for name in table.names))
+        people = [part for prefix, part in _by_prefix(named).items() if prefix]
+        if not all(map(_missing, people)):
+            return named
+    return table
+
+
+def _by_prefix(table: PointTable) -> dict[str, PointTable]:
+    """The points of each prefix; an empty one where names have none."""
+    columns: dict[str, list[int]] = {}
+    for index, name in enumerate(table.names):
+        columns.setdefault(name.rpartition(":")[0], []).append(index)
+    return {
+        prefix: replace(table, names=tuple(table.names[i] for i in own), values=table.values[:, own])
+        for prefix, own in columns.items()
+    }
+
+
+def _missing(table: PointTable) -> list[str]:
+    """The principal points that a table does not have."""
+    return [point for point, found in _columns(table).items() if not found]
+
+
+def _columns(table: PointTable) -> dict[str, list[int]]:
+    """The columns whose mean is a principal point, by its name; none where it is missing."""
+    known: dict[str, int] = {}
+    for exact in (True, False):  # a name without further words comes first
+        for index, name in enumerate(table.names):
+            point, idle = _point_of(name)
+            if idle != exact:
+                known.setdefault(point, index)
+    columns = {}
+    for point in HUMAN.point_names:
+        heads = HEADS[:1] if table.up == MHR_UP else HEADS
+        choices: Sequence[Sequence[str]] = heads if point == "head" else ((point,),)
+        found: Sequence[str] = next((names for names in choices if all(name in known for name in names)), ())
+        columns[point] = [known[name] for name in found]
+    return columns
+
+
+def principal_points(table: PointTable, path: Path) -> Array:
+    """(F, 13, 3) the principal points of named ones, in the file's axes and units."""
+    missing = _missing(table)
+    if missing and table.up == MHR_UP:
+        stem, dot, side = missing[0].partition(".")
+        names = [f"{'left' if side == 'L' else 'right'}_{stem}"] if dot else ["left_ear", "right_ear"]
+        absent = next((name for name in names if name not in table.names), names[0])
+        raise InputError(
+            f"{path}: has no column {absent}_3DX; a csv of MHR-70's points has columns like nose_3DX, "
+            "nose_3DY, nose_3DZ for each point"
+        )
+    if missing:
+        raise InputError(
+            f"{path}: has no point for {listed(missing, 4)}; it must have both shoulders, elbows, wrists, "
+            "hips, knees and ankles by name, and a head, ears or a nose; its points are "
+            f"{listed(table.names, 5)}"
+        )
+    return np.stack([table.values[:, own].mean(axis=1) for own in _columns(table).values()], axis=1)
+
+
+def _point_of(name: str) -> tuple[str, bool]:
+    """The name as `elbow.L`, without its subject, and whether words were left out."""
+    words = [word.lower() for word in _WORD.findall(name.rpartition(":")[2])]
+    sides = {"l": "L", "left": "L", "r": "R", "right": "R"}
+    side = next((sides[word] for word in words if word in sides), "")
+    rest = [word for word in words if word not in sides]
+    kept = [word for word in rest if word not in IDLE_WORDS] or rest
+    stem = "".join(kept)
+    if not side and stem[:1] in "lr" and stem[1:] in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle"):
+        side, stem = sides[stem[0]], stem[1:]
+    return (f"{stem}.{side}" if side else stem), kept != rest
