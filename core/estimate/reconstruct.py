@@ -26,6 +26,7 @@ from ..take.motion import Motion
 from ..take.presence import absence_notes, unseen_notes
 from ..take.read_footage import average_model
 from ..take.seen_take import SeenTake
+from ..take.shots import within_shot
 from ..take.take import Take
 from ..terms.region_model import RegionModel
 from .belief import Belief
@@ -133,7 +134,7 @@ def _reconstruct(
             referred, take = reference, with_reference(take, reference)
         elif len(take.keyframes) < 2:
             raise InputError(f"{reference.notes[0]}; without it at least 2 keyframes are needed")
-    absent = absence_notes(take, there)
+    absent = absence_notes(take, there, within_shot(reading))
     take = _present(take, there)
     worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps, keypoints)
     left_out = len(take.keyframes) - len(worth)

@@ -32,6 +32,8 @@ class Reading:
     key: str = ""  # cache key of the clip and the settings, see `reading_key`; empty where unknown
     frame_findings: FrameFindings = NO_FINDINGS  # blank and repeated frames, cuts and interlacing
     glimpses: Glimpses | None = None  # a few larger pictures; None where it was not read from a clip
+    shot: tuple[int, int] | None = None
+    """First frame of the only shot that it shows and the one after its last, see `shots`; None for all."""
     steady: Array | None = None  # (F, 3, 3) from what it shows to the clip's pixels, see `steady_camera`
 
 
@@ -49,6 +51,7 @@ def reading_arrays(reading: Reading) -> Arrays:
         "notes": _text(reading.notes),
         "noticed.blank": np.array(findings.blank, dtype=np.int64),
         "noticed.cuts": np.array(findings.cuts, dtype=np.int64),
+        "noticed.changes": np.array(findings.changes, dtype=np.int64),
         "noticed.repeated": np.array(findings.repeated, dtype=np.int64),
         "noticed.rest": np.array([findings.frames, findings.interlaced], dtype=np.int64),
         "tracks.names": _text(tracks.names),
@@ -76,10 +79,10 @@ def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
     album = Album.from_arrays(_under("album", arrays)) if "album.picture" in arrays else None
     seen = _detections(_under("seen", arrays), tracks) if "seen.start" in arrays else None
     frames, interlaced = arrays["noticed.rest"].tolist()
-    blank, cuts, repeated = (
-        tuple(arrays[f"noticed.{name}"].tolist()) for name in ("blank", "cuts", "repeated")
+    blank, cuts, changes, repeated = (
+        tuple(arrays[f"noticed.{name}"].tolist()) for name in ("blank", "cuts", "changes", "repeated")
     )
-    findings = FrameFindings(frames, blank, cuts, bool(interlaced), repeated)
+    findings = FrameFindings(frames, blank, cuts, changes, bool(interlaced), repeated)
     glimpses = Glimpses.from_arrays(_under("glimpses", arrays)) if "glimpses.picture" in arrays else None
     notes = tuple(arrays["notes"].tolist())
     return Reading(tracks, album, seen, notes, str(arrays["key"]), findings, glimpses)
@@ -223,13 +226,17 @@ def read_clip(
 
 def _each_once(tracks: RegionTracks, findings: FrameFindings) -> RegionTracks:
     """The tracks without those of repeated pictures, which show no other moment."""
-    if not findings.repeated:
+    return without_tracks(tracks, findings.repeated)
+
+
+def without_tracks(tracks: RegionTracks, frames: Sequence[int]) -> RegionTracks:
+    """The tracks with nothing seen in some frames."""
+    if not frames:
         return tracks
-    again = list(findings.repeated)
     nothing = {"centroid": np.nan, "second_moment": np.nan, "area": np.nan, "quality": 0.0, "clipped": False}
     arrays: dict[str, Any] = {name: np.array(getattr(tracks, name)) for name in nothing}
     for name, value in nothing.items():
-        arrays[name][again] = value
+        arrays[name][list(frames)] = value
     return replace(tracks, **arrays)
 
 

@@ -102,7 +102,9 @@ def findings(session: Session, description: Description) -> tuple[str, ...]:
     if camera is None:
         return ()
     if session.inputs.detects:
-        seen = people_in_words(session[Sight].people[0])
+        shown = session[Placed].seen
+        people = session[Sight].people if shown.reading.shot is None else shown.take.keypoints
+        seen = people_in_words(people[0])
     else:
         seen = f"read from {listed(Path(people.file).name for people in take.keypoints)}"
     is_assumed = description.fields.source_of("actor") == ASSUMED

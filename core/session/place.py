@@ -19,6 +19,7 @@ from ..markers.reading import Reading
 from ..progress import Job, Progress, stretch
 from ..take.performer_keypoints import performer_keypoints
 from ..take.seen_take import SeenTake, seen_take
+from ..take.shots import of_one_shot
 from ..take.steady_camera import steadied
 from .lens import Lens
 from .see import Sight
@@ -56,6 +57,7 @@ def place(session: Session) -> Job[Placed]:
     """Find a camera that nobody has placed, take its turning back, and tell who performs when."""
     inputs, reading = session.inputs, session[Reading]
     take, floor_m, found = replace(inputs.take, keypoints=session[Sight].checked), inputs.floor_m, None
+    take, reading = of_one_shot(take, reading)
     anyone = performer_keypoints(replace(take, keyframes=()), reading.tracks)
     if inputs.open_lens is not None:
         yield Progress("Placing the camera", 0.0)

@@ -15,6 +15,7 @@ from ..markers.reading import Reading
 from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import runs, usual_step
 from ..video.album import Album, changed_pixels
+from .shots import within_shot
 from .take import Take
 
 BRIDGED_S = 0.5
@@ -42,7 +43,7 @@ def presence(take: Take, reading: Reading, keypoints: Keypoints) -> BoolArray:
     tracks = reading.tracks
     sure = keypoints.seen & (keypoints.score > LEAST_SCORE)
     seen = tracks.visible.any(axis=1) | sure.any(axis=1)
-    there = np.ones(tracks.frame_count, dtype=np.bool_)
+    there = within_shot(reading)
     if not seen.any():
         return there
     posed = np.array([key.index for key in take.keyframes if key.matched is None], dtype=np.intp)
@@ -111,8 +112,12 @@ def _changed_elsewhere(album: Album, places: Array, seen: int, empty: int) -> fl
     return float(changed.sum() - inside) / inside if inside else np.inf
 
 
-def absence_notes(take: Take, there: BoolArray) -> tuple[str, ...]:
-    """Notes on frames in which the performer is not there, and on keyframes posed in them."""
+def absence_notes(take: Take, there: BoolArray, shot: BoolArray | None = None) -> tuple[str, ...]:
+    """Notes on frames in which the performer is not there, and on keyframes posed in them.
+
+    `shot` (F,): the frames of the only shot that is animated; nothing is said of others.
+    """
+    there = there if shot is None else there | ~shot
     if there.all():
         return ()
     empty = [(first + take.frame_start, last - 1 + take.frame_start) for first, last in runs(~there)]

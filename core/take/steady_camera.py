@@ -48,14 +48,17 @@ def steadied(
     noticed = camera_motion(album, some, places, matrix, camera.resolution)
     if noticed is None or not noticed.noticed:
         return take, reading, ()
-    found = camera_motion(album, np.arange(count), places, matrix, camera.resolution)
-    if found is None or not found.noticed or not found.turns or len(found.frames) < count:
+    own = np.arange(count)[slice(*(reading.shot or (0, None)))]
+    found = camera_motion(album, own, places, matrix, camera.resolution)
+    if found is None or not found.noticed or not found.turns or len(found.frames) < len(own):
         lost = (
             f"the camera moves, by {noticed.moved_px:.0f} px of the picture, and is taken to stand still; "
             "one that only turns or zooms is followed, one that walks by Blender's camera solver"
         )
         return take, reading, (lost,)
-    back = np.linalg.inv(found.homography)
+    homography = np.tile(np.eye(3), (count, 1, 1))
+    homography[own] = found.homography
+    back = np.linalg.inv(homography)
     keypoints = tuple(_people(people, back) for people in take.keypoints)
     note = (
         f"the camera {'zooms' if found.zoom > 1.0 + ZOOMING else 'turns'}: its picture moves by up to "
@@ -66,7 +69,7 @@ def steadied(
         tracks=_tracks(tracks, back),
         album=album.warped(back),
         notes=(*reading.notes, note),
-        steady=found.homography,
+        steady=homography,
     )
     return replace(take, keypoints=keypoints), steady, ()
 

@@ -38,6 +38,12 @@ class Album:
         for index in indices:
             self._pictures.pop(index, None)
 
+    def excluding(self, indices: Collection[int]) -> "Album":
+        """The album without the pictures of some frames."""
+        own = Album(self.factor, dict(self._pictures))
+        own.without(indices)
+        return own
+
     def every(self, step: int) -> "Album":
         """The album of a clip that consists of every `step`-th frame, with indices of its own."""
         kept = {index // step: packed for index, packed in self._pictures.items() if index % step == 0}
@@ -125,6 +131,12 @@ class Glimpses:
         scale = min(1.0, GLIMPSE_SIDE_PX / max(image.shape[:2]))
         small = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
         self._pictures[index] = compressed(small)
+
+    def excluding(self, indices: Collection[int]) -> "Glimpses | None":
+        """Those but of some frames; None where none are left."""
+        kept = {index: packed for index, packed in self._pictures.items() if index not in indices}
+        own = Glimpses(self.width, kept)
+        return own if own.frames else None
 
     @property
     def frames(self) -> list[int]:

@@ -1,5 +1,6 @@
 """Checks of frames while they are read: blank ones, repeated ones, cuts, and interlacing."""
 
+from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -8,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Image
+from ..files.fields import listed
 
 STEP = 8  # difference of neighboring rows where a moving edge is combed, in levels
 TEETH = 5  # alternating steps that make a comb; noise and textures seldom have as many
@@ -39,6 +41,7 @@ class FrameFindings:
     frames: int = 0  # number of checked frames
     blank: tuple[int, ...] = ()  # indices of blank frames, in order
     cuts: tuple[int, ...] = ()  # indices of frames after a cut
+    changes: tuple[int, ...] = ()  # indices of frames in which the whole picture changes, beside cuts
     interlaced: bool = False  # whether each picture consists of two fields
     repeated: tuple[int, ...] = ()  # indices of frames whose picture is that of the frame before
 
@@ -62,15 +65,29 @@ class FrameFindings:
                 f"({_ranges(self.repeated, first)}), as where a clip was saved at a higher frame rate; each "
                 "counts once, and the motion goes on in between"
             )
-        if self.cuts:
+        if self.changes:
             notes.append(
-                f"the whole picture changes at frame {_ranges(self.cuts, first)}: a cut, a fade or "
+                f"the whole picture changes at frame {_ranges(self.changes, first)}: a flash, a fade or "
                 "another light; a take must show one scene from one place"
             )
+        if self.cuts:
+            notes.append(self.cut_note(first))
         return tuple(notes)
+
+    def cut_note(self, first: int) -> str:
+        """A sentence with the frame of each cut; the clip's first frame has the number `first`."""
+        return f"the clip is cut at frame {listed([str(cut + first) for cut in self.cuts], MOST_CUTS)}"
 
 
 NO_FINDINGS = FrameFindings()
+MOST_CUTS = 12  # that are named
+
+ALIKE = 0.85
+"""Least correlation of two pictures of one shot: in twenty clips neighbors stay above 0.93; pictures of two
+rooms, and of one from elsewhere or at another size, are below it."""
+CUT_LEVELS = 5.0  # by which half of the pixels change at a cut, at least
+ALONE = 3.0  # how many times more a cut changes than the frames beside it: fast pans go on
+FLASH = 4  # frames to either side over which a cut stays
 
 
 class FrameChecks:
@@ -84,6 +101,11 @@ class FrameChecks:
         self._last: Image | None = None
         self._changes: dict[int, float] = {}
         self._moved: dict[int, float] = {}
+        self._unlike: dict[int, float] = {}  # 1 less the correlation with the picture before
+        self._recent: deque[Image] = deque(maxlen=FLASH)
+        self._open: dict[int, tuple[int, Image]] = {}
+        """Possible cuts: frames that are yet to be seen, and a picture some frames before."""
+        self._stays: set[int] = set()
 
     def add(self, index: int, image: Image) -> bool:
         """Look at a frame (rows, columns, 3); tell whether anything is to be seen in it."""
@@ -100,18 +122,39 @@ class FrameChecks:
             change = cv2.absdiff(small, self._last)
             self._changes[index] = float(np.median(change))
             self._moved[index] = float(change.mean())
+            self._unlike[index] = 1.0 - _likeness(small, self._last)
+            if self._changes[index] > CUT_LEVELS and self._unlike[index] > 1.0 - ALIKE:
+                self._open[index] = (FLASH, self._recent[0])
+        for cut, (left, before) in list(self._open.items()):
+            self._open[cut] = (left - 1, before)
+            if left == 1:
+                del self._open[cut]
+                self._stays |= {cut} if 1.0 - _likeness(small, before) > 0.5 * self._unlike[cut] else set()
+        self._recent.append(small)
         self._last = small
         return True
 
     def findings(self) -> FrameFindings:
         """The findings so far."""
         usual = float(np.median(list(self._changes.values()))) if self._changes else 0.0
+        cuts = self._cuts()
         # Levels, and several times the usual change.
-        cuts = tuple(index for index, one in self._changes.items() if one > max(10.0, 5.0 * usual))
+        changed = [index for index, one in self._changes.items() if one > max(10.0, 5.0 * usual)]
+        changes = tuple(index for index in changed if index not in cuts)
         rows, columns = np.mean(self._combed, axis=0) if self._combed else (0.0, 0.0)
         # Sixteen progressive clips stay below 1.2e-4 and a ratio of three, three interlaced ones have 1e-2.
         interlaced = bool(rows > 5e-4 and rows > 10.0 * columns)
-        return FrameFindings(self._frames, tuple(self._blank), cuts, interlaced, _repeated(self._moved))
+        repeated = _repeated(self._moved)
+        return FrameFindings(self._frames, tuple(self._blank), cuts, changes, interlaced, repeated)
+
+    def _cuts(self) -> tuple[int, ...]:
+        """Frames after a cut: another picture all at once, which stays."""
+        known, unlike = list(self._unlike), [0.0, *self._unlike.values(), 0.0]
+        return tuple(
+            index
+            for index, before, own, after in zip(known, unlike, unlike[1:], unlike[2:], strict=False)
+            if index in self._stays and own > ALONE * max(before, after)
+        )
 
     def nothing_seen(self) -> str | None:
         """The reason why no marker can be found in the clip; None without one."""
@@ -120,6 +163,13 @@ class FrameChecks:
         if self._color < 10:  # levels, after compression
             return "the clip has no colors, by which markers are found; it must be filmed in color"
         return None
+
+
+def _likeness(one: Image, other: Image) -> float:
+    """Correlation of two small pictures' brightness, which no change of light but one of layout lowers."""
+    levels = [cv2.GaussianBlur(image.mean(axis=-1), (0, 0), 1.5) for image in (one, other)]
+    first, second = (each - each.mean() for each in levels)
+    return float((first * second).sum() / (np.linalg.norm(first) * np.linalg.norm(second) + 1.0))
 
 
 STOPS = 6.0

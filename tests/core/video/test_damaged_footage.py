@@ -222,7 +222,7 @@ def test_oblong_pixels_turn_with_the_picture(video: Callable[..., Path], tmp_pat
     [
         (("-vf", "drawbox=c=black:t=fill:enable='gte(n,12)'"), "12 of 24 frames are blank (13 to 24)"),
         (("-vf", "tinterlace=interleave_top,fieldorder=tff", "-flags", "+ilme+ildct"), "interlaced"),
-        (("-vf", "negate=enable='gte(n,10)'"), "changes at frame 11:"),
+        (("-vf", "negate=enable='gte(n,10)'"), "cut at frame 11"),
     ],
     ids=["black half", "interlaced", "cut"],
 )
