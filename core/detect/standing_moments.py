@@ -21,6 +21,33 @@ IN_LINE = float(np.cos(np.radians(15.0)))  # cosine of the largest angle between
 MOST_UNLIKE = 0.2  # logarithm of the ratio of legs to trunk, relative to that of someone upright
 
 
+ON_ITS_SIDE = {
+    (-1.0, 0.0): ("left of", "on its side, turn it by 90 degrees, as with ffmpeg -i CLIP -vf transpose=1"),
+    (1.0, 0.0): ("right of", "on its side, turn it by 90 degrees, as with ffmpeg -i CLIP -vf transpose=2"),
+    (0.0, 1.0): ("below", "upside down, turn it, as with ffmpeg -i CLIP -vf hflip,vflip"),
+}
+"""Ways from the feet to the head in a picture that was turned: where the head is, and what mends it."""
+MOSTLY, FEWEST_LOOKS = 0.8, 10  # share and number of the frames in which it is so
+
+
+def turned_note(keypoints: Keypoints) -> str | None:
+    """A sentence where the picture may be on its side or upside down: the performer is, nearly always."""
+    principal = principal_keypoints(keypoints)
+    pixel = np.where((principal.score >= 0.3)[..., None], principal.pixel, np.nan)
+    names = HUMAN.point_names
+    feet = np.mean([pixel[:, names.index(f"ankle.{side}")] for side in SIDES], axis=0)
+    up = pixel[:, names.index("head")] - feet
+    seen = int(np.isfinite(up).all(axis=1).sum())
+    for way, (where, remedy) in ON_ITS_SIDE.items():
+        so = int(_along(up, np.array(way), float(np.cos(np.radians(30.0)))).sum())
+        if seen >= FEWEST_LOOKS and so >= MOSTLY * seen:
+            return (
+                f"the performer's head is {where} the feet in {so} of {seen} frames: where the picture is "
+                f"{remedy} turned.mp4"
+            )
+    return None
+
+
 def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights:
     """Moments in which the performer is upright, from the middle of the ankles to that of the head.
 

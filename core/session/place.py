@@ -13,7 +13,7 @@ from ..camera.camera import EYE_HEIGHT_M, Camera
 from ..camera.camera_evidence import CameraEvidence, RoomView, Uprights
 from ..camera.camera_fit import LENS, PARAMETERS, CameraFit, fit_camera
 from ..camera.room_lines import find_room
-from ..detect.standing_moments import standing_keypoints
+from ..detect.standing_moments import standing_keypoints, turned_note
 from ..errors import pluralize
 from ..markers.reading import Reading
 from ..progress import Job, Progress, stretch
@@ -67,6 +67,8 @@ def place(session: Session) -> Job[Placed]:
         take, found = replace(take, camera=camera), FoundCamera(fit, inputs.open_lens, len(uprights), room)
         floor_m = 0.0 if floor_m is None and fit is not None and len(uprights) else floor_m
     take, steady, notes = yield from stretch(steadied(take, reading, anyone), 0.5, 1.0)
+    turned = None if inputs.open_lens is None else turned_note(anyone)
+    notes += () if turned is None else (turned,)
     return Placed(seen_take(take, steady, notes), floor_m, found)
 
 

@@ -12,7 +12,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera, lens_of_equivalent
 from keymark.core.camera.camera_fields import CameraPlacement
 from keymark.core.detect.keypoints import Keypoints
-from keymark.core.detect.standing_moments import standing_keypoints
+from keymark.core.detect.standing_moments import standing_keypoints, turned_note
 from keymark.core.session.described import is_unplaced
 from keymark.core.session.lens import Lens, lens_of
 from keymark.core.session.place import FoundCamera, camera_in_words, find_camera
@@ -53,6 +53,27 @@ def test_a_walk_shows_the_camera_and_the_world_is_about_the_performer() -> None:
     assert np.median(ground[:, :2], axis=0) == pytest.approx([0.0, 0.0], abs=1e-9)
     known, _ = find_camera(replace(put, lens_mm=38.0), True, uprights)
     assert known.lens_mm == pytest.approx(38.0, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("turns", "words"),
+    [
+        (0, None),
+        (1, ("left of", "on its side", "transpose=1")),
+        (2, ("below", "upside down", "hflip,vflip")),
+        (3, ("right of", "on its side", "transpose=2")),
+    ],
+)
+def test_a_picture_on_its_side_is_told_by_who_stands_in_it(turns: int, words: tuple[str, ...] | None) -> None:
+    camera = Camera(38.0, 36.0, (640, 480), CameraPlacement(1.15, 0.0, 0.0).matrix((2.0, -5.0)))
+    upright = seen_by(camera, walk())
+    pixel = upright.pixel
+    for _ in range(turns):  # to the left, as by np.rot90
+        pixel = np.stack([pixel[..., 1], -pixel[..., 0]], axis=-1)
+    note = turned_note(replace(upright, pixel=pixel))
+    assert note is None if words is None else all(word in (note or "") for word in words)
+    half = np.where(np.arange(len(pixel))[:, None, None] % 2 == 0, pixel, upright.pixel)
+    assert turned_note(replace(upright, pixel=half)) is None  # who lies half of the time
 
 
 def test_somebody_who_never_stands_leaves_the_camera_as_it_was_put() -> None:
