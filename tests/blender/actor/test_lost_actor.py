@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from _scene_state import posture_of
+from _results import posture_of
 from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body

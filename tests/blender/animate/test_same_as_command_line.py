@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from _scene_state import shown
+from _results import shown
 from _synthetic_take import BODY, gliding, true_postures, write_shaken
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body

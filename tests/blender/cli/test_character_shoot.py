@@ -9,7 +9,7 @@ import bpy
 import pytest
 from _characters import full_map, plain_character, plain_map
 from _command_line import one_line, tree
-from _scene_state import is_whole
+from _results import is_whole
 from _synthetic_take import write_shoot
 from keymark.core.retarget.maps.character_map import write_character_map
 from keymark.core.retarget.retarget_record import read_retarget_record

@@ -13,7 +13,7 @@ from pathlib import Path
 import bpy
 import pytest
 from _faults import tree
-from _scene_state import blend_is_of, hidden_files, is_whole, same_in_every_run
+from _results import blend_is_of, hidden_files, is_whole, same_in_every_run
 from _synthetic_take import write_synthetic_take
 from keymark.core.files.paths import real_path
 from keymark.operators.cli.main import main

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _scene_state import blend_is_of, finished_folders, hidden_files, is_whole, same_in_every_run
+from _results import blend_is_of, finished_folders, hidden_files, is_whole, same_in_every_run
 from _synthetic_take import write_shoot
 
 pytestmark = [

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _scene_state import blend_is_of, hidden_files, is_whole, same_in_every_run
+from _results import blend_is_of, hidden_files, is_whole, same_in_every_run
 from _synthetic_take import write_synthetic_take
 
 pytestmark = [

@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from _scene_state import posture_of
+from _results import posture_of
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.follow.frame_keypoints import clear_readings

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from _scene_state import made_up_frames, wave_library
+from _results import made_up_frames, wave_library
 from keymark.core.poses import clip as posing
 from keymark.core.poses.found_poses import FoundPoses
 from keymark.core.progress import Progress

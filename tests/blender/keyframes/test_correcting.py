@@ -5,7 +5,7 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 import pytest
-from _scene_state import posture_of
+from _results import posture_of
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture

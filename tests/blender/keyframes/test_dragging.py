@@ -6,7 +6,8 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from _scene_state import differences, posture_of, scene_state, shown
+from _results import posture_of, shown
+from _scene_state import differences, scene_state
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.operators.bridge.keyframes import unchanged_keyframes

@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from _scene_state import differences, scene_state, shown
+from _results import shown
+from _scene_state import differences, scene_state
 from keymark.core.take.motion import Motion
 from keymark.operators.keyframes.change_match import candidate_title
 from keymark.operators.keyframes.found_keyframes import known_matches

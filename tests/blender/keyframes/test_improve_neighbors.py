@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from _scene_state import differences, posture_of, scene_state, shown
+from _results import posture_of, shown
+from _scene_state import differences, scene_state
 from keymark.core.body.human import HUMAN
 from keymark.core.errors import InputError
 from keymark.core.markers.ignored_regions import IgnoredRegion

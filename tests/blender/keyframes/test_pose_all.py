@@ -8,7 +8,8 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from _scene_state import differences, scene_state, shown, wave_library
+from _results import shown, wave_library
+from _scene_state import differences, scene_state
 from keymark.core.errors import InputError
 from keymark.core.prior.library import LibraryMotion, MotionStep, write_library
 from keymark.core.prior.texts import COMPOSED

@@ -6,7 +6,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from _scene_state import posture_of
+from _results import posture_of
 from keymark.core.body.human import HUMAN
 from keymark.core.errors import InputError
 from keymark.core.take.motion import Motion

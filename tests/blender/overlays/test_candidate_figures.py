@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from _scene_state import made_up_frames
+from _results import made_up_frames
 from keymark.core.body.human import HUMAN
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.camera_placement import read_camera

@@ -61,7 +61,8 @@ def run_script(
     script = Path(__file__).with_name(name)
     done = blender.run(
         *("--factory-startup", "--addons", "bl_ext.user_default.keymark", "--enable-event-simulate"),
-        *("--window-geometry", "0", "0", *screen, "--no-window-focus", "--python", script, "--"),
+        *("--window-geometry", "0", "0", *screen, "--no-window-focus", "--python-exit-code", "1"),
+        *("--python", script, "--"),
         *([] if take is None else [take]),
         folder,
         *words,
