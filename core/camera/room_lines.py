@@ -67,9 +67,12 @@ def room_of(lines: Array, camera: Camera) -> RoomView | None:
         ray = sights * [1.0, -1.0, 0.0] / focal_px - [0.0, 0.0, 1.0]
         return unit(np.cross(ray[:, 0], ray[:, 1]))
 
+    def offsets(x: Array) -> Array:
+        """(N, 3) sines of the angles between each segment's plane and the room's directions."""
+        return np.asarray(normals(camera.focal_px * np.exp(x[3])) @ _directions(*x[:3]).T)
+
     def agreement(x: Array, kernel: float) -> float:
-        off = normals(camera.focal_px * np.exp(x[3])) @ _directions(*x[:3]).T
-        return float(np.exp(-((off / kernel) ** 2)).max(axis=1) @ weight)
+        return float(np.exp(-((offsets(x) / kernel) ** 2)).max(axis=1) @ weight)
 
     def cost(x: Array, kernel: float) -> float:
         return LENS_COST * (x[3] / LENS_STD) ** 2 - agreement(x, kernel)
@@ -87,14 +90,11 @@ def room_of(lines: Array, camera: Camera) -> RoomView | None:
     if share < LEAST_SHARE:
         return None
 
-    def offsets(x: Array) -> Array:
-        off = normals(camera.focal_px * np.exp(x[3])) @ _directions(*x[:3]).T
-        return np.asarray(off[np.arange(len(off)), nearest])
-
-    nearest = np.abs(normals(camera.focal_px * np.exp(best[3])) @ _directions(*best[:3]).T).argmin(axis=1)
-    runs = np.abs(offsets(best)) < 2.0 * KERNEL
+    own = np.arange(len(lines)), np.abs(offsets(best)).argmin(axis=1)  # the direction that each runs in
+    runs = np.abs(offsets(best)[own]) < 2.0 * KERNEL
     step = 1e-4 * np.eye(4)
-    slopes = np.stack([(offsets(best + each) - offsets(best - each)) / 2e-4 for each in step], axis=-1)[runs]
+    changes = [offsets(best + each)[own] - offsets(best - each)[own] for each in step]
+    slopes = np.stack(changes, axis=-1)[runs] / 2e-4
     worth = weight / np.square(weight).sum() * 2.0 / (REPEATED * KERNEL**2)
     information = slopes.T @ (worth[runs, None] * slopes) + np.diag([1e-3, 1e-3, 1e-3, LENS_STD**-2.0 * 1e-2])
     covariance = np.linalg.inv(information)[np.ix_([0, 1, 3], [0, 1, 3])] + np.diag(FLOOR_STD**2)

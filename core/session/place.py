@@ -62,7 +62,8 @@ def place(session: Session) -> Job[Placed]:
     if inputs.open_lens is not None:
         yield Progress("Placing the camera", 0.0)
         uprights = standing_keypoints(anyone, take.body, take.fps)
-        room = None if reading.glimpses is None else find_room(*reading.glimpses.median(), take.camera)
+        background = None if reading.glimpses is None else reading.glimpses.median()
+        room = None if background is None else find_room(*background, take.camera)
         camera, fit = find_camera(take.camera, inputs.open_lens.is_known, uprights, room)
         take, found = replace(take, camera=camera), FoundCamera(fit, inputs.open_lens, len(uprights), room)
         floor_m = 0.0 if floor_m is None and fit is not None and len(uprights) else floor_m

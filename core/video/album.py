@@ -148,9 +148,11 @@ class Glimpses:
         image = np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8)
         return image, self.width / image.shape[1]
 
-    def median(self) -> tuple[Image, float]:
-        """The picture behind whatever moves, and how many pixels of the clip one of its is."""
+    def median(self) -> tuple[Image, float] | None:
+        """What stands behind whatever moves, and pixels of the clip to one of it; None without pictures."""
         pictures = [self.picture(index)[0] for index in self.frames]
+        if not pictures:  # all blank, or of other shots
+            return None
         image = np.asarray(np.median(np.stack(pictures), axis=0), dtype=np.uint8)
         return image, self.width / image.shape[1]
 

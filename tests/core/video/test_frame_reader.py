@@ -100,3 +100,15 @@ def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
         np.testing.assert_array_equal(image, GRADIENTS[index])
         small = cv2.resize(image, (320, 240), interpolation=cv2.INTER_AREA)
         assert np.abs(album.picture(index).astype(float) - small).max() <= 4.0
+
+
+def test_what_stands_behind_whatever_moves_is_the_median_of_what_was_kept() -> None:
+    glimpses = Glimpses(1280, {index: np.zeros(0, dtype=np.uint8) for index in range(3)})
+    assert glimpses.median() is None  # as of a shot that none of the pictures shows
+    for index in range(3):
+        picture = np.full((720, 1280, 3), 40, dtype=np.uint8)
+        picture[:, 400 * index : 400 * index + 300] = 200
+        glimpses.add(index, picture)
+    behind = glimpses.median()
+    assert behind is not None and behind[1] == 2.0
+    assert behind[0].shape == (360, 640, 3) and np.abs(behind[0].astype(int) - 40).max() < 12
