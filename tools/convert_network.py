@@ -174,7 +174,7 @@ class Converter:
         return (shape[0], shape[3], *shape[1:3]) if len(shape) == 4 else shape
 
     def weights(self, index: int, order: str = "") -> str:
-        """The name of constant weights; `order` OHWI or HWO has an image's axes put as ONNX has them."""
+        """The name of constant weights; `order` OHWI, HWO or HWC, of one pixel, has an image's axes put as ONNX has them."""
         tensor = self.tensors[self.widened.get(index, index)]
         kind, name = TYPES[tensor.kind], f"w{index}"
         code, _ = BYTES[kind]
@@ -188,6 +188,8 @@ class Converter:
         elif order == "HWO":  # of a convolution that has a filter a channel
             values = array(code, chain.from_iterable(values[i :: shape[3]] for i in range(shape[3])))
             shape = (shape[3], 1, *shape[1:3])
+        elif order == "HWC":
+            shape = (shape[2], *shape[:2])
         if kind == FLOAT:
             return self.graph.constant(name, kind, shape, values.tobytes())
         return self.graph.node(
@@ -278,29 +280,39 @@ class Converter:
         sizes = self.graph.integers(f"{name}s", self.tensors[one.outputs[0]].shape)
         self.graph.node("Reshape", [source, sizes], name)
 
+    def averaged(self, one: Operation) -> None:
+        """The mean of each channel, over the whole image."""
+        name = _name(one.outputs[0])
+        self.graph.node("ReduceMean", [_name(one.inputs[0])], name, axes=[2, 3], keepdims=0)
+
+    def connected(self, one: Operation) -> None:
+        """A layer in which all depends on all."""
+        image, weights, bias = one.inputs
+        inputs = [_name(image), self.weights(weights), self.weights(bias)]
+        self.activated(one.options.number(0, "<b"), one.outputs[0], "Gemm", inputs, transB=1)
+
+    def sloped(self, one: Operation) -> None:
+        """What is below zero times a slope for each channel."""
+        image, slopes = one.inputs
+        self.graph.node("PRelu", [_name(image), self.weights(slopes, "HWC")], _name(one.outputs[0]))
+
     def logistic(self, one: Operation) -> None:
         """The logistic function."""
         self.graph.node("Sigmoid", [_name(one.inputs[0])], _name(one.outputs[0]))
 
 
-ADD, CONVOLUTION, DEPTHWISE, DEQUANTIZE, LOGISTIC, MAX_POOL, RESHAPE, RESIZE, PAD = (
-    0,
-    3,
-    4,
-    6,
-    14,
-    17,
-    22,
-    23,
-    34,
-)
+ADD, CONVOLUTION, DEPTHWISE, DEQUANTIZE, CONNECTED, LOGISTIC, MAX_POOL = 0, 3, 4, 6, 9, 14, 17
+RESHAPE, RESIZE, PAD, MEAN, PRELU = 22, 23, 34, 40, 54
 WRITERS = {
     ADD: Converter.addition,
+    CONNECTED: Converter.connected,
     CONVOLUTION: Converter.convolution,
     DEPTHWISE: Converter.convolution,
     LOGISTIC: Converter.logistic,
     MAX_POOL: Converter.largest,
+    MEAN: Converter.averaged,
     PAD: Converter.padded,
+    PRELU: Converter.sloped,
     RESHAPE: Converter.reshaped,
     RESIZE: Converter.enlarged,
 }

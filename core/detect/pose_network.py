@@ -4,24 +4,20 @@ onnxruntime runs it on the processor. It has learned crops about the hips with t
 crop must move and turn with the person: `Pose.crop` is where to look next.
 """
 
-import hashlib
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import cv2
 import numpy as np
 
 from ..arrays import Array, Image, SingleArray
-from ..errors import InputError
 from .layouts import LAYOUTS
+from .network_file import FOLDER, network_input, network_session
 
-FOLDER = Path(__file__).resolve().parents[2] / "presets" / "models"
 MODEL = FOLDER / "pose_landmark.onnx"
 """The weights, which are no part of the source: `tools/fetch_model.py` puts them here."""
-CHECKSUMS = FOLDER / "SHA256SUMS"
 NAME = "BlazePose"
 LAYOUT = LAYOUTS["blazepose33"]
 SIDE, CELLS = 256, 64  # of the network's input and of its heat maps
@@ -69,17 +65,7 @@ class PoseNetwork:
     """The network with its weights."""
 
     def __init__(self, model: Path = MODEL) -> None:
-        again = "install Keymark's zip again, or run tools/fetch_model.py in a copy of its source"
-        try:
-            weights = model.read_bytes()
-        except OSError as error:
-            raise InputError(
-                f"{model}: the network that finds keypoints cannot be read ({error.strerror}); {again}"
-            ) from error
-        known = [line.split()[0] for line in CHECKSUMS.read_text(encoding="utf-8").splitlines()]
-        if hashlib.sha256(weights).hexdigest() not in known:
-            raise InputError(f"{model}: the network that finds keypoints is damaged or another one; {again}")
-        self._session = _session(weights)
+        self._session = network_session(model, "keypoints")
 
     def __call__(self, picture: Image, crop: Crop) -> Pose:
         """The person in a crop of a picture (height, width, 3), blue first."""
@@ -96,12 +82,7 @@ class PoseNetwork:
 
     def preprocess(self, picture: Image, crop: Crop) -> SingleArray:
         """The network's input (1, 3, 256, 256), red first, 0 to 1."""
-        matrix = crop.matrix
-        matrix[:, 2] += matrix[:, :2] @ np.full(2, 0.5) - 0.5  # OpenCV counts from the middle of a pixel
-        flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
-        size = (SIDE, SIDE)
-        seen = cv2.warpAffine(picture, matrix, size, flags=flags, borderMode=cv2.BORDER_REPLICATE)
-        return np.asarray(cv2.dnn.blobFromImage(seen, 1.0 / 255.0, swapRB=True), dtype=np.float32)
+        return network_input(picture, crop.matrix, SIDE)
 
     def infer(self, blob: SingleArray) -> tuple[SingleArray, float, SingleArray, SingleArray]:
         """Points (39, 5), presence, heat maps (39, 64, 64) and points in space (39, 3)."""
@@ -126,22 +107,6 @@ class PoseNetwork:
         hint[:, :2] = hint[:, :2] @ crop.turn.T
         used = LAYOUT.numbers
         return Pose(pixel[used], _sigmoid(points[used, 3]), hint[used], float(presence), around)
-
-
-def _session(weights: bytes) -> Any:
-    """An onnxruntime session on one thread, for several looks at once."""
-    try:
-        import onnxruntime
-    except ImportError as error:
-        raise InputError(
-            f"onnxruntime, which runs the network that finds keypoints, cannot be loaded ({error}); install "
-            "Keymark's zip for this Blender again"
-        ) from error
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = options.inter_op_num_threads = 1
-    options.log_severity_level = 4
-    options.enable_cpu_mem_arena = False
-    return onnxruntime.InferenceSession(weights, options, providers=["CPUExecutionProvider"])
 
 
 def _refined(place: SingleArray, heat: SingleArray) -> Array:

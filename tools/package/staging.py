@@ -10,8 +10,8 @@ from .builds import Build
 from .wheels import ROOT, wheels_of
 
 MANIFEST = "blender_manifest.toml"
-MODEL = "presets/models/pose_landmark.onnx"
-"""The network, which git does not know."""
+MODELS = [f"presets/models/{part}_landmark.onnx" for part in ("pose", "face", "hand")]
+"""The networks, which git does not know."""
 
 
 def manifest_version() -> str:
@@ -21,14 +21,15 @@ def manifest_version() -> str:
 
 
 def stage(folder: Path, build: Build, version: str) -> None:
-    """Copy the tree into `folder`, with the network, the wheels of one zip, and a manifest for it."""
+    """Copy the tree into `folder`, with the networks, the wheels of one zip, and a manifest for it."""
     for name in tracked_files():
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(ROOT / name, target)
-    if not (ROOT / MODEL).is_file():
-        raise SystemExit(f"{MODEL} is missing: run tools/fetch_model.py.")
-    shutil.copyfile(ROOT / MODEL, folder / MODEL)
+    for model in MODELS:
+        if not (ROOT / model).is_file():
+            raise SystemExit(f"{model} is missing: run tools/fetch_model.py.")
+        shutil.copyfile(ROOT / model, folder / model)
     wheels = sorted(wheels_of(build))
     (folder / "wheels").mkdir()
     for wheel in wheels:

@@ -199,7 +199,7 @@ def test_a_missing_runtime_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     weights.write_bytes(b"ONNX")
     listed = tmp_path / "SHA256SUMS"
     listed.write_text(f"{hashlib.sha256(b'ONNX').hexdigest()}  weights.onnx\n", encoding="utf-8")
-    monkeypatch.setattr("keymark.core.detect.pose_network.CHECKSUMS", listed)
+    monkeypatch.setattr("keymark.core.detect.network_file.CHECKSUMS", listed)
     monkeypatch.setitem(sys.modules, "onnxruntime", None)
     with pytest.raises(InputError, match=r"^onnxruntime, .* cannot be loaded .*; install Keymark's zip"):
         PoseNetwork(weights)
