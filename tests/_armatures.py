@@ -10,6 +10,8 @@ from _boot import ROOT
 from _characters import plain_character, plain_map
 from keymark.core.retarget.character import Character, CharacterBone
 from keymark.core.retarget.maps.character_map import CharacterMap
+from keymark.operators.bridge.actions import curves_of
+from keymark.operators.bridge.keys import keys_changed
 from mathutils import Matrix
 
 
@@ -165,3 +167,11 @@ def add_rig(file: Path, name: str = "Human", link: bool = False) -> bpy.types.Ob
     bpy.context.view_layer.objects.active = rig
     bpy.context.view_layer.update()
     return rig
+
+
+def move_a_key(action: bpy.types.Action) -> None:
+    """Move a key of an Action, as an animator does."""
+    curve = next(iter(curves_of(action).values()))
+    curve.keyframe_points[0].co[1] += 0.1
+    curve.update()
+    keys_changed()

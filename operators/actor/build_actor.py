@@ -9,9 +9,10 @@ from ..shell.fields import SKIP_SAVE, Switch, Vector
 from ..shell.footage_clicks import ClickSequence
 from ..shell.footage_view import FootageRequest
 from ..shell.notices import give_notices
-from ..shell.requirements import actor, bones_editable, camera, footage, idle
+from ..shell.requirements import any_actor, bones_editable, camera, footage, idle
 from ..shell.results import reading_of
-from ..shell.takes import active_take, ensure_take, find_take, footage_of, has_lost_actor
+from ..shell.take_state import TakeState
+from ..shell.takes import active_take, ensure_take, find_take, footage_of
 from .properties import Stature, panel_lengths
 
 
@@ -61,12 +62,6 @@ class KEYMARK_OT_build_actor(Stature, BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, sentence)
 
 
-def any_actor(context: bpy.types.Context) -> str | None:
-    """The take has an actor, or had one."""
-    take = find_take(context.scene)
-    return None if take is not None and has_lost_actor(take) else actor(context)
-
-
 class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
     """Give the actor these lengths, or bring a deleted one back; its pose, keyframes and motion stay"""
 
@@ -80,7 +75,7 @@ class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
         from .take_actor import restore_actor
 
         take = active_take(context.scene)
-        if has_lost_actor(take):
+        if TakeState(take).has_lost_actor:
             restore_actor(context, take)
             self.report({"INFO"}, "The actor is back, with its keyframes and its motion")
             return

@@ -5,7 +5,8 @@ import bpy
 from ..bridge.actor_bones import is_actor
 from ..follow.panel import draw_evidence, followed
 from ..shell.panel import Popover, StepPanel, draw_sentence
-from ..shell.takes import active_take, has_lost_actor, kept_actions
+from ..shell.take_state import TakeState
+from ..shell.takes import active_take
 from .properties import MIDDLE, SIDED, length_property
 
 
@@ -17,23 +18,24 @@ class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
     options = "KEYMARK_PT_actor_options"
 
     @classmethod
-    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+    def summary(cls, state: TakeState) -> str:
+        take = state.take
         return followed(take) if take.armature is None else f"{take.stature:.4g} m"
 
     @classmethod
-    def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
-        return has_lost_actor(take) or (take.armature is not None and not is_actor(take.armature))
+    def is_wrong(cls, state: TakeState) -> bool:
+        armature = state.take.armature
+        return state.has_lost_actor or (armature is not None and not is_actor(armature))
 
     @classmethod
-    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
-        return ("keymark.build_actor", "Build Actor") if take.armature is None else ("", "")
+    def action(cls, state: TakeState) -> tuple[str, str]:
+        return ("keymark.build_actor", "Build Actor") if state.take.armature is None else ("", "")
 
-    def draw_step(
-        self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup
-    ) -> None:
+    def draw_step(self, context: bpy.types.Context, body: bpy.types.UILayout, state: TakeState) -> None:
+        take = state.take
         column = body.column()
-        if has_lost_actor(take):
-            _draw_lost(column, context, take)
+        if state.has_lost_actor:
+            _draw_lost(column, context, state)
         elif take.armature is None:
             column.prop(take, "stature")
             row = column.row()
@@ -46,12 +48,12 @@ class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
         draw_evidence(body, context, take)
 
 
-def _draw_lost(layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+def _draw_lost(layout: bpy.types.UILayout, context: bpy.types.Context, state: TakeState) -> None:
     """Draw that the actor is gone, what of it is kept, and the button that brings it back."""
-    box = layout.box().column()
+    box, take = layout.box().column(), state.take
     if take.keyframe_action is not None and take.motion_action is not None:
         sentence = "The actor is gone from the scene; its keyframes and its motion are kept"
-    elif kept_actions(take):
+    elif state.kept_actions:
         sentence = "The actor is gone from the scene; its keyframes are kept"
     else:
         sentence = "The actor is gone from the scene"

@@ -15,7 +15,8 @@ from ..bridge.armature import build_armature
 from ..follow.evidence import scene_evidence
 from ..shell.notices import give_notices
 from ..shell.results import reading_of
-from ..shell.takes import footage_of, has_lost_actor, kept_actions, present_actor
+from ..shell.take_state import TakeState
+from ..shell.takes import footage_of
 from .properties import length_names, length_property, panel_lengths
 
 if TYPE_CHECKING:
@@ -31,10 +32,10 @@ def restore_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> 
     """
     scene = context.scene
     if take.armature is not None:
-        if present_actor(take) is None:
+        if TakeState(take).actor is None:
             scene.collection.objects.link(take.armature)
     else:
-        actions = kept_actions(take)
+        actions = TakeState(take).kept_actions
         found = next((each for each in scene.objects if is_actor(each) and action_of(each) in actions), None)
         if found is None:
             new_actor(context, take, Body(Actor(panel_lengths(take.lengths))))
@@ -47,7 +48,7 @@ def new_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: B
     """Build an armature, selected, as a take's actor; what the take has of another animates it."""
     leave_mode(context)
     armature_object = build_armature(context.scene, body, f"{take.name} Actor")
-    if kept_actions(take) and any(take.rest_hips):
+    if TakeState(take).kept_actions and any(take.rest_hips):
         away = Vector(take.rest_hips) - Vector(hips_at_rest(armature_object))
         armature_object.data.transform(Matrix.Translation(away))
     select_alone(context, armature_object)
@@ -94,7 +95,7 @@ def size_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: 
     Raises:
         InputError: The take's armature cannot be changed.
     """
-    if has_lost_actor(take):
+    if TakeState(take).has_lost_actor:
         restore_actor(context, take)
     elif take.armature is None:
         add_actor(context, take, body)

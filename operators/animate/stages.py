@@ -1,6 +1,7 @@
 """The stages of *Animate*: each does what its step's own operators do, and keeps its result in the scene."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,14 +20,14 @@ from ..character.add_character import add_rigify_character
 from ..character.characters import add_character
 from ..character.retarget import keep_retargeted, retarget_take
 from ..finish.bake_motion import bake, keep_baked
-from ..follow.evidence import has_keypoints, keypoint_path, scene_evidence
+from ..follow.evidence import keypoint_path
 from ..follow.load_keypoints import Detected, follow_file, keep_detected, keypoint_output
 from ..footage.found_camera import is_found, write_fit
 from ..footage.take_footage import lens_is_guess
 from ..keyframes.pose_all import keep_poses
-from ..keyframes.scene_session import SceneSession
+from ..keyframes.scene_session import SceneSession, clip_session
 from ..reconstruct.reconstruct import judge, keep_motion
-from ..shell.results import reading_of
+from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of, take_by_identifier
 from . import FILE, NOTHING, RIGIFY
 
@@ -51,43 +52,36 @@ def animate(
     take = active_take(scene)
     take.stature = stature_m
     said: list[str] = []
-    identifier = take.identifier
-    session = yield from stretch(_clip_session(scene, take, stature_m, character, file), 0.0, 0.02)
+    started = yield from stretch(_clip_session(scene, take, character, file), 0.0, 0.02)
 
     def keep(stage: str, session: "Session") -> "Job[object] | None":
+        made = replace(started, session=session)
         if stage == "reconstruct":
-            return _keep_motion(operator, scene, SceneSession(identifier, session), said)
+            return _keep_motion(operator, scene, made, said)
         if stage in KEPT and session.made[stage] is not None:
-            said.append(KEPT[stage](operator, scene, SceneSession(identifier, session)))
+            said.append(KEPT[stage](operator, scene, made))
         return None
 
-    yield from stretch(reach(session, "retarget", None, keep), 0.02, 1.0)
+    yield from stretch(reach(started.session, "retarget", None, keep), 0.02, 1.0)
     _hide_what_stands_before(bpy.context, active_take(scene))
     scene.frame_set(scene.frame_start)
     return said
 
 
 def _clip_session(
-    scene: bpy.types.Scene, take: bpy.types.PropertyGroup, stature_m: float, character: str, file: str
-) -> "Job[Session]":
+    scene: bpy.types.Scene, take: bpy.types.PropertyGroup, character: str, file: str
+) -> "Job[SceneSession]":
     """What is known of a clip: its performer's height, its keypoints if there are any, and about its lens."""
-    from ...core.body.actor import Actor
-    from ...core.body.kinematics import Body
     from ...core.session.lens import Lens, lens_of
-    from ...core.session.session import Inputs, Session
-    from ..bridge.take_from_scene import clip_frames, scene_take
     from ..library.registry_files import named_libraries
 
-    footage, evidence, kept = footage_of(scene, take), scene_evidence(take), reading_of(take)
-    size, matching = (footage.clip.size[0], footage.clip.size[1]), take.matching
+    footage, matching = footage_of(scene, take), take.matching
+    size = (footage.clip.size[0], footage.clip.size[1])
     lens, camera = lens_of(footage.path, size), still_camera(footage)
     if lens_is_guess(take):
         camera = lens.put(size)
     else:
         lens = Lens(camera.lens_mm, camera.sensor_width_mm, "as it is set", True)
-    libraries = named_libraries(matching.library_name)
-    floor_m = float(matching.floor_height) if matching.floor == "HEIGHT" else None
-    detects = not has_keypoints(take)
 
     def retarget(_session: "Session") -> "Job[object]":
         yield Progress("Opening the character", 0.0)
@@ -97,20 +91,16 @@ def _clip_session(
     bridge: dict[str, Callable[[Session], Job[object]]] = {"finish": lambda _session: bake(scene)}
     if character != NOTHING:
         bridge["retarget"] = retarget
-    frames = yield from clip_frames(footage, evidence, kept)
-    body = Body(Actor.from_stature(stature_m))
-    known_take = scene_take(footage, evidence, frames, body, camera)
-    return Session(
-        Inputs(
-            known_take,
-            detects=detects,
-            open_lens=lens,
-            floor_open=True,
-            libraries=libraries,
-            floor_m=floor_m,
-            kept=kept,
-            bridge=bridge,
-        )
+    return clip_session(
+        scene,
+        take,
+        camera,
+        detects=not TakeState(take).has_keypoints,
+        open_lens=lens,
+        floor_open=True,
+        libraries=named_libraries(matching.library_name),
+        floor_m=float(matching.floor_height) if matching.floor == "HEIGHT" else None,
+        bridge=bridge,
     )
 
 
@@ -183,7 +173,7 @@ def follow_found_file(take: bpy.types.PropertyGroup, clip: Path) -> None:
     from ...core.take.description import keypoints_beside
 
     file = keypoints_beside(clip)
-    if file is not None and not has_keypoints(take):
+    if file is not None and not TakeState(take).has_keypoints:
         follow_file(take, file)
 
 

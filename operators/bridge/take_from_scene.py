@@ -6,7 +6,6 @@ from dataclasses import replace
 import bpy
 
 from ...core.arrays import Array
-from ...core.body.actor import Actor
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
 from ...core.camera.camera import Camera
@@ -23,14 +22,6 @@ from .footage import Footage
 from .keyframes import NOT_MATCHED, Matches, read_keyframes
 from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
-
-
-def keypoints_without_keyframes(
-    footage: Footage, evidence: SceneEvidence, tracks: RegionTracks, stature_m: float
-) -> Keypoints:
-    """The keypoints of the performer as clicks, markers or else size tell who that is."""
-    frames = scene_frames(tracks.time_s, footage.first_frame, footage.rate)
-    return performers_keypoints(footage, evidence, frames, Body(Actor.from_stature(stature_m)), (), tracks)
 
 
 def performers_keypoints(

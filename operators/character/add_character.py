@@ -8,6 +8,7 @@ from ..bridge.character.rigify_human import add_rigify_human, enable_rigify, has
 from ..shell.base_operator import BaseOperator
 from ..shell.fields import SKIP_SAVE, Text
 from ..shell.requirements import bones_editable, idle
+from ..shell.take_state import TakeState
 from ..shell.takes import active_take
 from .characters import (
     active_character,
@@ -64,7 +65,7 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
 # --- Add a Rigify rig of the performer's size as the character
 
 
-def rigify(context: bpy.types.Context) -> str | None:
+def rigify(_context: bpy.types.Context, _state: object) -> str | None:
     """Blender brings Rigify along."""
     return None if has_rigify() else "This Blender comes without the add-on Rigify; install Rigify first"
 
@@ -131,9 +132,9 @@ class KEYMARK_OT_remove_character(BaseOperator, bpy.types.Operator):
 # --- Make a library override of a linked character, so that it can be animated here
 
 
-def linked(context: bpy.types.Context) -> str | None:
+def linked(context: bpy.types.Context, state: TakeState | None) -> str | None:
     """The chosen character is linked, without an override."""
-    unmet = armature(context)
+    unmet = armature(context, state)
     if unmet is not None:
         return unmet
     return None if needs_override(active_character(context.scene).armature) else "The character is not linked"

@@ -10,6 +10,7 @@ from ...core.errors import InputError
 from ...core.retarget.character import REQUIRED
 from ..bridge.actor_bones import is_actor
 from ..shell.base_operator import capitalized
+from ..shell.take_state import TakeState
 from ..shell.takes import find_take
 from .map_properties import role_title
 
@@ -164,13 +165,12 @@ LACKING = {
 
 def _source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> tuple[str, Any, Any]:
     """The kind of motion that a character is to perform, its Action, and the actor that this moves."""
-    kind, final = str(character.source), take.finish
+    kind = str(character.source)
     if kind == "ACTION":
         return kind, character.source_action, character.source_actor or take.armature
     if kind == "NEWEST":
-        newer = final.outdated and take.motion_action is not None
-        kind = "FINAL" if final.action is not None and not newer else "MOTION"
-    return kind, final.action if kind == "FINAL" else take.motion_action, take.armature
+        return *TakeState(take).newest, take.armature
+    return kind, take.finish.action if kind == "FINAL" else take.motion_action, take.armature
 
 
 # --- Results of retargeting, in a character's list
@@ -200,9 +200,12 @@ def result_to_replace(
 
 
 def add_result(
-    character: bpy.types.PropertyGroup, source: SourceMotion, action: bpy.types.Action
+    character: bpy.types.PropertyGroup, source: SourceMotion, action: bpy.types.Action, made_from: str
 ) -> bpy.types.PropertyGroup:
-    """List an Action as a result, in place of what was listed of it, and choose it; deleted ones go."""
+    """List an Action as a result, in place of what was listed of it, and choose it; deleted ones go.
+
+    `made_from` is the digest of the source's curves.
+    """
     for empty in reversed([i for i, each in enumerate(character.results) if each.action is None]):
         character.results.remove(empty)
     index = next((i for i, each in enumerate(character.results) if each.action == action), None)
@@ -210,7 +213,7 @@ def add_result(
         index = len(character.results)
         character.results.add()
     result = character.results[index]
-    result.action, result.outdated, result.armature = action, False, character.armature
+    result.action, result.made_from, result.armature = action, made_from, character.armature
     result.source, result.source_action, result.source_actor = source.kind, source.action, source.actor
     character.active_result = index
     return result

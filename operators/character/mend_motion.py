@@ -29,7 +29,7 @@ ONTO = (
 FILTER = "*.bvh;*.fbx;*.glb;*.gltf;*.vrm;*.usd;*.usda;*.usdc;*.usdz;*.blend;*.csv;*.npy;*.trc;*.c3d;*.json"
 
 
-def animated(context: bpy.types.Context) -> str | None:
+def animated(context: bpy.types.Context, _state: object) -> str | None:
     """The active object is an armature with an Action."""
     active = context.view_layer.objects.active
     if active is None or active.type != "ARMATURE":

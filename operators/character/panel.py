@@ -6,6 +6,8 @@ from bpy.types import Context, PropertyGroup, UILayout
 from ...core.retarget.character import CHAINS
 from ..bridge.character.read_character import needs_override
 from ..shell.panel import Popover, RowList, StepPanel, TakePanel, draw_progress, draw_sentence
+from ..shell.take_state import TakeState
+from ..shell.takes import active_take
 from .characters import (
     active_character,
     find_character,
@@ -142,7 +144,8 @@ class KEYMARK_UL_characters(RowList, bpy.types.UIList):
         done = any(result.action is not None for result in item.results)
         name = item.armature.name if item.armature is not None else "No Armature"
         row.label(text=name, icon="ACTION" if done else "ARMATURE_DATA", translate=False)
-        if item.problem or item.armature is None or any(result.outdated for result in item.results):
+        state = TakeState(active_take(context.scene))
+        if item.problem or item.armature is None or any(map(state.is_outdated, item.results)):
             row.label(text="", icon="ERROR")
 
 
@@ -154,22 +157,24 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
     options = "KEYMARK_PT_retarget_options"
 
     @classmethod
-    def summary(cls, take: PropertyGroup) -> str:
-        performing = sum(any(result.action for result in each.results) for each in take.characters)
-        return "" if not len(take.characters) else f"{performing} of {len(take.characters)}"
+    def summary(cls, state: TakeState) -> str:
+        all_ = state.take.characters
+        performing = sum(any(result.action for result in each.results) for each in all_)
+        return f"{performing} of {len(all_)}" if len(all_) else ""
 
     @classmethod
-    def is_wrong(cls, take: PropertyGroup) -> bool:
-        return any(each.problem or any(r.outdated for r in each.results) for each in take.characters)
+    def is_wrong(cls, state: TakeState) -> bool:
+        return state.has_outdated_result or any(each.problem for each in state.take.characters)
 
     @classmethod
-    def action(cls, take: PropertyGroup) -> tuple[str, str]:
-        if len(take.characters) or take.motion_action is None:
+    def action(cls, state: TakeState) -> tuple[str, str]:
+        if len(state.take.characters) or state.take.motion_action is None:
             return "keymark.retarget", "Retarget"
         free = any(may_be_character(each) for each in bpy.context.view_layer.objects)
         return ("keymark.add_character", "Add") if free else ("keymark.add_rigify_human", "Add Human")
 
-    def draw_step(self, context: Context, body: UILayout, take: PropertyGroup) -> None:
+    def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
+        take = state.take
         character = find_character(context.scene)
         elsewhere = body.row(align=True)
         elsewhere.operator("keymark.load_motion", icon="IMPORT")
@@ -190,14 +195,14 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
             column.operator("keymark.make_override", icon="LIBRARY_DATA_OVERRIDE")
         elif character.problem:
             draw_sentence(column, context, character.problem, "ERROR", MOST_LINES_PANEL)
-        elif (unmet := recognized(context)) is not None:
+        elif (unmet := recognized(context, state)) is not None:
             draw_sentence(column, context, unmet, "ERROR", MOST_LINES_PANEL)
         row = column.row()
         row.scale_y = 1.4
         if not draw_progress(row, context, "keymark.retarget"):
             row.operator("keymark.retarget", icon="COMMUNITY")
         if len(character.results):
-            _draw_results(column, context, character)
+            _draw_results(column, context, state, character)
 
 
 def _draw_choice(body: UILayout, take: PropertyGroup, character: PropertyGroup) -> UILayout:
@@ -219,7 +224,7 @@ def _draw_choice(body: UILayout, take: PropertyGroup, character: PropertyGroup) 
     return column
 
 
-def _draw_results(column: UILayout, context: Context, character: PropertyGroup) -> None:
+def _draw_results(column: UILayout, context: Context, state: TakeState, character: PropertyGroup) -> None:
     column.separator()
     rows = column.column(align=True)
     for index, result in enumerate(character.results):
@@ -227,7 +232,7 @@ def _draw_results(column: UILayout, context: Context, character: PropertyGroup) 
         if result.action is None:
             row.label(text="Deleted", icon="ACTION")
         else:
-            icon = "ERROR" if result.outdated else "ACTION"
+            icon = "ERROR" if state.is_outdated(result) else "ACTION"
             text, shown = result.action.name, is_shown(character, result)
             show = row.operator("keymark.show_result", text=text, icon=icon, depress=shown, translate=False)
             show.index = index
@@ -236,7 +241,7 @@ def _draw_results(column: UILayout, context: Context, character: PropertyGroup) 
     if chosen is None or chosen.action is None:
         return
     lines = column.column(align=True)
-    if chosen.outdated:
+    if state.is_outdated(chosen):
         draw_sentence(lines, context, "Motion is newer: retarget again", "ERROR")
     for line in chosen.lines:
         draw_sentence(lines, context, line.text, "ERROR" if line.level == "ERROR" else "DOT")

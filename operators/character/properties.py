@@ -58,11 +58,7 @@ class KEYMARK_PG_retargeted(bpy.types.PropertyGroup):
     source_actor: Group(
         name="Of Actor", description="The actor that the source Action moves", type=bpy.types.Object
     )
-    outdated: Switch(
-        "Outdated",
-        "Whether the take's motion was changed after this was made from it",
-        options=HIDDEN,
-    )
+    made_from: Text("Made From", "Digest of the motion it was made from", options=HIDDEN)
     lines: Entries(type=KEYMARK_PG_result_line)
 
 

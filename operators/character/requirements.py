@@ -5,6 +5,7 @@ import bpy
 from ...core.files.fields import listed
 from ..bridge.character.read_character import needs_override
 from ..shell.requirements import of_take
+from ..shell.take_state import TakeState
 from ..shell.takes import active_take
 from .characters import (
     MOST_NAMED,
@@ -16,19 +17,19 @@ from .characters import (
 )
 from .map_conversion import map_of
 
-take = of_take(lambda take: True, "Load the footage or open a take first")
+take = of_take(lambda state: True, "Load the footage or open a take first")
 
 
-def character(context: bpy.types.Context) -> str | None:
+def character(context: bpy.types.Context, _state: TakeState | None) -> str | None:
     """A character is chosen."""
     return None if find_character(context.scene) is not None else "Add a character first"
 
 
-def armature(context: bpy.types.Context) -> str | None:
+def armature(context: bpy.types.Context, state: TakeState | None) -> str | None:
     """The chosen character has an armature, in this scene."""
     chosen = find_character(context.scene)
     if chosen is None:
-        return character(context)
+        return character(context, state)
     if chosen.armature is None:
         return "Choose the character's armature first"
     if chosen.armature.type != "ARMATURE":
@@ -36,9 +37,9 @@ def armature(context: bpy.types.Context) -> str | None:
     return None
 
 
-def editable(context: bpy.types.Context) -> str | None:
+def editable(context: bpy.types.Context, state: TakeState | None) -> str | None:
     """The chosen character is in the scene and can be animated."""
-    unmet = armature(context)
+    unmet = armature(context, state)
     if unmet is not None:
         return unmet
     chosen = active_character(context.scene).armature
@@ -49,9 +50,9 @@ def editable(context: bpy.types.Context) -> str | None:
     return None
 
 
-def recognized(context: bpy.types.Context) -> str | None:
+def recognized(context: bpy.types.Context, state: TakeState | None) -> str | None:
     """The chosen character's bones have their roles, and are there."""
-    unmet = armature(context)
+    unmet = armature(context, state)
     if unmet is not None:
         return unmet
     chosen = active_character(context.scene)
@@ -69,16 +70,16 @@ def recognized(context: bpy.types.Context) -> str | None:
     return None
 
 
-def source(context: bpy.types.Context) -> str | None:
+def source(context: bpy.types.Context, state: TakeState | None) -> str | None:
     """There is a motion for the character to perform."""
     chosen = find_character(context.scene)
-    return character(context) if chosen is None else missing_source(active_take(context.scene), chosen)
+    return character(context, state) if chosen is None else missing_source(active_take(context.scene), chosen)
 
 
-def result(context: bpy.types.Context) -> str | None:
+def result(context: bpy.types.Context, state: TakeState | None) -> str | None:
     """The chosen character has a result."""
     chosen = find_character(context.scene)
     if chosen is None:
-        return character(context)
+        return character(context, state)
     made = any(each.action is not None for each in chosen.results)
     return None if made else "Retarget the motion first"

@@ -15,6 +15,7 @@ from ..shell.declared_properties import read_declared
 from ..shell.fields import Integer
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import idle
+from ..shell.take_state import TakeState, digest_of
 from ..shell.takes import active_take, take_by_identifier
 from .characters import (
     SourceMotion,
@@ -42,18 +43,19 @@ def retarget_take(scene: bpy.types.Scene) -> "Job[tuple[Any, ...]]":
     character = active_character(scene)
     motion = source_of(take, character)
     identifier, armature_object = take.identifier, character.armature
+    made_from = digest_of(motion.action)
     uids = armature_object.session_uid, motion.action.session_uid, motion.actor.session_uid
     character_map, options = map_of(character.character_map), options_of(character.options)
     del take, character  # Blender may move them while the job runs
     source, frames = yield from stretch(read_source(motion.actor, motion.action), 0.0, 0.1)
     job = retarget(armature_object, source, frames, character_map, options)
     retargeted = yield from stretch(job, 0.1, 1.0)
-    return identifier, uids, motion.kind, motion.title, retargeted
+    return identifier, uids, motion.kind, motion.title, made_from, retargeted
 
 
 def keep_retargeted(operator: bpy.types.Operator, scene: bpy.types.Scene, result: tuple[Any, ...]) -> str:
     """Let the character perform the motion; returns a sentence on it."""
-    identifier, uids, kind, title, retargeted = result
+    identifier, uids, kind, title, made_from, retargeted = result
     take = take_by_identifier(scene, identifier)
     character = next((each for each in take.characters if _uid(each.armature) == uids[0]), None)
     source_action = next((each for each in bpy.data.actions if _uid(each) == uids[1]), None)
@@ -67,7 +69,7 @@ def keep_retargeted(operator: bpy.types.Operator, scene: bpy.types.Scene, result
         earlier = result_to_replace(character, kind, source_action)
     into = earlier.action if earlier is not None else f"{title} {character.armature.name}"
     action = retargeted.write(scene, into)
-    listed = add_result(character, SourceMotion(kind, source_action, actor, title), action)
+    listed = add_result(character, SourceMotion(kind, source_action, actor, title), action, made_from)
     listed.lines.clear()
     add_lines(listed.lines, figures(retargeted.quality), "INFO")
     add_lines(listed.lines, retargeted.notes, "ERROR")
@@ -161,7 +163,7 @@ class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
         if made is None or made.action is None:
             raise InputError("the result's Action has been deleted; retarget the motion again")
         mark_motion_asset(context, take, made.action, made.source_action, made.source_actor)
-        if made.outdated:
+        if TakeState(take).is_outdated(made):
             self.report(
                 {"WARNING"}, "The character's motion is of an earlier one; retarget it for the newest"
             )

@@ -16,7 +16,7 @@ from ..shell.fields import HIDDEN, Choice, Text
 from ..shell.job_operator import JobOperator
 from ..shell.notices import give_notices
 from ..shell.requirements import actor, idle, motion
-from ..shell.results import finished_again
+from ..shell.take_state import digest_of
 from ..shell.takes import active_take, actor_of, refresh_asset_browsers, take_by_identifier
 
 if TYPE_CHECKING:
@@ -57,6 +57,7 @@ class FinishedTake:
     """A finished motion of a take."""
 
     take: str  # The take's identifier
+    made_from: str  # Digest of the motion
     finished: "Finished"
 
 
@@ -65,7 +66,7 @@ def bake(scene: bpy.types.Scene) -> "Job[FinishedTake]":
     from ..bridge.finish_motion import FinishOptions, finish_motion
 
     take = active_take(scene)
-    settings, identifier = take.finish, take.identifier
+    settings, identifier, made_from = take.finish, take.identifier, digest_of(take.motion_action)
     options = FinishOptions(
         tolerance_m=settings.tolerance_mm / 1000.0 if settings.keys == "TOLERANCE" else None,
         whole_pose=settings.shared == "WHOLE_POSE",
@@ -74,7 +75,7 @@ def bake(scene: bpy.types.Scene) -> "Job[FinishedTake]":
     frame_s = scene.render.fps_base / scene.render.fps
     job = finish_motion(take.armature, take.motion_action, take.keyframe_action, options, frame_s)
     del take, settings  # Blender may move them while the job runs
-    return FinishedTake(identifier, (yield from job))
+    return FinishedTake(identifier, made_from, (yield from job))
 
 
 def keep_baked(operator: bpy.types.Operator, scene: bpy.types.Scene, result: FinishedTake) -> str:
@@ -87,9 +88,8 @@ def keep_baked(operator: bpy.types.Operator, scene: bpy.types.Scene, result: Fin
         settings.action = bpy.data.actions.new(f"{armature_object.name} Final")
     settings.action.use_fake_user = True
     settings.keys_after = finished.write(armature_object, take.motion_action, settings.action)
-    settings.keys_before, settings.outdated = finished.keys_before, False
+    settings.keys_before, settings.made_from = finished.keys_before, result.made_from
     settings.furthest_mm, settings.rests = 1000.0 * finished.furthest_m, len(finished.contacts)
-    finished_again(take)
     assign_action(armature_object, settings.action)
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
     give_notices(take, "finish", "bake", [warn(operator, note) for note in finished.notes])

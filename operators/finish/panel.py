@@ -5,6 +5,7 @@ import bpy
 from ..bridge.export_formats import FORMATS
 from ..reconstruct.panel import draw_shown_action
 from ..shell.panel import Popover, StepPanel, draw_progress, draw_sentence
+from ..shell.take_state import TakeState
 from ..shell.takes import active_take
 
 
@@ -16,28 +17,27 @@ class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
     options = "KEYMARK_PT_finish_options"
 
     @classmethod
-    def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        done = take.finish.action is not None
-        return f"{take.finish.keys_after} keys" if done else ""
+    def summary(cls, state: TakeState) -> str:
+        made = state.take.finish
+        return "" if made.action is None else f"{made.keys_after} keys"
 
     @classmethod
-    def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
-        return bool(take.finish.outdated)
+    def is_wrong(cls, state: TakeState) -> bool:
+        return state.final_is_outdated
 
     @classmethod
-    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+    def action(cls, state: TakeState) -> tuple[str, str]:
         return "keymark.bake_motion", "Bake"
 
-    def draw_step(
-        self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup
-    ) -> None:
+    def draw_step(self, context: bpy.types.Context, body: bpy.types.UILayout, state: TakeState) -> None:
+        take = state.take
         column = body.column()
         row = column.row()
         row.scale_y = 1.4
         if not draw_progress(row, context, "keymark.bake_motion"):
             row.operator("keymark.bake_motion", icon="ACTION")
         if take.finish.action is not None and take.armature is not None:
-            _draw_result(column, context, take)
+            _draw_result(column, context, state)
         column.popover("KEYMARK_PT_asset", icon="ASSET_MANAGER")
         grid = column.grid_flow(columns=2, even_columns=True, align=True)
         for kind, listed in FORMATS.items():
@@ -46,15 +46,13 @@ class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
             each.operator("keymark.export_motion", text=listed.name, icon="EXPORT").format = kind
 
 
-def _draw_result(
-    column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-) -> None:
+def _draw_result(column: bpy.types.UILayout, context: bpy.types.Context, state: TakeState) -> None:
     """Draw the result of the last bake, and the switch between it and the motion."""
-    settings = take.finish
+    take, settings = state.take, state.take.finish
     column.separator()
-    draw_shown_action(column, take, {"MOTION": take.motion_action, "FINAL": settings.action})
+    draw_shown_action(column, state, {"MOTION": take.motion_action, "FINAL": settings.action})
     lines = column.column(align=True)
-    if settings.outdated:
+    if state.final_is_outdated:
         draw_sentence(lines, context, "The motion is newer: bake again", "ERROR")
     kept = f"{settings.keys_after} keys instead of {settings.keys_before}"
     draw_sentence(lines, context, kept, "KEYFRAME_HLT")

@@ -50,11 +50,7 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
         description="The Action that holds the finished motion, in keys of your own to edit",
         type=bpy.types.Action,
     )
-    outdated: Switch(
-        "Outdated",
-        "Whether the motion was reconstructed again after the final Action was made",
-        options=HIDDEN,
-    )
+    made_from: Text("Made From", "Digest of the motion it was made from", options=HIDDEN)
     keys_before: Integer("Keys Before", options=HIDDEN)
     keys_after: Integer("Keys After", options=HIDDEN)
     furthest_mm: Number("Furthest", options=HIDDEN)

@@ -30,8 +30,9 @@ from ..shell.fields import SKIP_SAVE, Choice
 from ..shell.footage_clicks import ClickSequence
 from ..shell.footage_view import FootageRequest, FootageView, follow_mouse, view_of_footage_under
 from ..shell.requirements import camera, footage, idle
+from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of, redraw_sidebars_soon
-from .evidence import has_keypoints, scene_evidence
+from .evidence import scene_evidence
 
 if TYPE_CHECKING:
     from ...core.camera.camera_evidence import Uprights
@@ -45,16 +46,22 @@ def standing_performer(take: PropertyGroup, stature_m: float) -> "Uprights":
     from ...core.camera.camera_evidence import Uprights
     from ...core.detect.standing_moments import standing_keypoints
     from ...core.markers.region_tracks import RegionTracks
-    from ..bridge.take_from_scene import keypoints_without_keyframes
+    from ..bridge.scene_frames import scene_frames
+    from ..bridge.take_from_scene import performers_keypoints
 
-    if not has_keypoints(take):
+    if not TakeState(take).has_keypoints:
         return Uprights.none()
+    body = Body(Actor.from_stature(stature_m))
     with suppress(InputError):
         source = footage_of(take.id_data, take)
         time_s = np.arange(source.clip.frame_duration) / source.rate
         tracks = RegionTracks.unmarked(time_s, (source.clip.size[0], source.clip.size[1]))
-        keypoints = keypoints_without_keyframes(source, scene_evidence(take), tracks, stature_m)
-        found = standing_keypoints(keypoints, Body(Actor.from_stature(stature_m)), source.rate)
+        frames, body = (
+            scene_frames(time_s, source.first_frame, source.rate),
+            Body(Actor.from_stature(stature_m)),
+        )
+        keypoints = performers_keypoints(source, scene_evidence(take), frames, body, (), tracks)
+        found = standing_keypoints(keypoints, body, source.rate)
         if len(found) >= 2:  # fewer tell nothing
             return found
     return Uprights.none()

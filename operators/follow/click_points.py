@@ -14,9 +14,9 @@ from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.fields import SKIP_SAVE, Choice, Text, Vector
 from ..shell.footage_clicks import ClickSequence
 from ..shell.footage_view import FootageRequest, side_of
-from ..shell.requirements import footage, idle
+from ..shell.requirements import footage, idle, keypoint_files
 from ..shell.takes import active_take, redraw_footage, redraw_sidebars_soon
-from .evidence import clicked_here, clicked_points, clip_frame, keypoint_files
+from .evidence import clicked_here, clicked_points, clip_frame
 from .frame_keypoints import keypoints_at
 from .marker_properties import segment_title
 from .tracks import body_point_items

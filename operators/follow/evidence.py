@@ -5,15 +5,12 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 import bpy
-from bpy.types import Context, PropertyGroup
+from bpy.types import PropertyGroup
 
-from ..bridge.footage_camera import may_move
 from ..bridge.scene_evidence import ClickedPoint, SceneEvidence, file_state
-from ..shell.requirements import of_take
-from ..shell.takes import find_take, footage_of
+from ..shell.takes import assigned_tracks, footage_of
 from .marker_properties import ignored_regions
 from .marker_styles import marker_styles
-from .tracks import assigned_tracks
 
 if TYPE_CHECKING:
     from ...core.markers.region_tracks import MarkerStyle
@@ -49,18 +46,6 @@ def clicked_points(take: PropertyGroup) -> tuple[ClickedPoint, ...]:
     return tuple(ClickedPoint(click.point, click.frame, tuple(click.pixel)) for click in take.follow.clicks)
 
 
-def has_keypoints(take: PropertyGroup) -> bool:
-    """Whether a take follows any keypoints: files, motion tracks or clicked points."""
-    follow = take.follow
-    loaded = follow.use_keypoints and (any(entry.is_used for entry in follow.files) or len(follow.clicks))
-    return bool(loaded or (follow.use_tracks and assigned_tracks(take)))
-
-
-def has_contours(take: PropertyGroup) -> bool:
-    """Whether a take's contours can be followed: they are switched on, and the camera stands still."""
-    return bool(take.follow.use_contours and take.camera is not None and not may_move(take.camera))
-
-
 def clip_frame(take: PropertyGroup) -> int:
     """The scene's current frame, counted from the clip's first."""
     scene = take.id_data
@@ -70,37 +55,6 @@ def clip_frame(take: PropertyGroup) -> int:
 def clicked_here(take: PropertyGroup) -> list[str]:
     """The points that were clicked on in the current frame."""
     return [click.point for click in take.follow.clicks if click.frame == clip_frame(take)]
-
-
-# --- Requirements of operators that follow the footage
-
-
-def anything_to_follow(context: Context) -> str | None:
-    """The take follows markers, keypoints, tracks or contours."""
-    take = find_take(context.scene)
-    if take is None or _has_points(take) or has_contours(take):
-        return None  # a take without footage says so itself
-    if take.follow.use_contours and take.camera is not None:
-        return "Load keypoints, assign tracks or add markers first: contours need a camera that stands still"
-    return "Switch on the contours, load keypoints, assign tracks or add markers first (step Performer)"
-
-
-keypoint_files = of_take(lambda take: len(take.follow.files), "Load keypoints first")
-
-
-def points_to_follow(context: Context) -> str | None:
-    """The take follows markers, keypoints or tracks; contours alone are not enough."""
-    take = find_take(context.scene)
-    missing = take is not None and not _has_points(take)
-    return (
-        "Load keypoints, assign tracks or add markers first; this needs more than contours"
-        if missing
-        else None
-    )
-
-
-def _has_points(take: PropertyGroup) -> bool:
-    return bool((take.follow.use_markers and len(take.markers)) or has_keypoints(take))
 
 
 # --- Keypoint files on disk

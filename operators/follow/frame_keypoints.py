@@ -15,9 +15,8 @@ from ..bridge.footage_camera import may_move
 from ..bridge.scene_evidence import CLICKS, TRACKS, read_keypoint_file, tracks_at
 from ..shell.footage_view import clip_index
 from ..shell.results import LruCache
-from ..shell.takes import footage_of
+from ..shell.takes import assigned_tracks, footage_of
 from .evidence import clicked_here, clicked_points, forget_states, keypoint_path, recent_state
-from .tracks import assigned_tracks
 
 
 @dataclass(frozen=True, eq=False)

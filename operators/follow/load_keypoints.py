@@ -13,10 +13,10 @@ from ...core.progress import run
 from ..shell.base_operator import BaseOperator, browse, chosen_path, remove_active, warn
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.job_operator import JobOperator
-from ..shell.requirements import footage, idle
+from ..shell.requirements import footage, idle, keypoint_files
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of, redraw_footage, take_by_identifier
-from .evidence import add_keypoint_file, keypoint_files, keypoint_path, scene_evidence
+from .evidence import add_keypoint_file, keypoint_path, scene_evidence
 from .frame_keypoints import clear_readings
 
 if TYPE_CHECKING:

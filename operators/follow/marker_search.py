@@ -154,7 +154,10 @@ def has_still_areas(take: PropertyGroup) -> bool:
     return any(marker.has_readout(take) and len(marker.still_areas) for marker in take.markers)
 
 
-still_areas = of_take(has_still_areas, "Check the markers first; no still area of a marker's color is known")
+still_areas = of_take(
+    lambda state: has_still_areas(state.take),
+    "Check the markers first; no still area of a marker's color is known",
+)
 
 
 class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
@@ -215,7 +218,7 @@ class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
         remove_active(take, "markers", "active_marker")
 
 
-some_ignored = of_take(lambda take: len(take.ignored_regions), "No region of the picture is left out")
+some_ignored = of_take(lambda state: len(state.take.ignored_regions), "No region of the picture is left out")
 
 
 class KEYMARK_OT_remove_ignored_region(BaseOperator, bpy.types.Operator):

@@ -21,7 +21,7 @@ from ..shell.panel import (
     side_by_side,
 )
 from ..shell.steps import KINDS
-from ..shell.takes import active_take, find_take
+from ..shell.takes import active_take, assigned_tracks, find_take, point_of
 from .evidence import clip_frame, keypoint_path
 from .frame_keypoints import (
     clicked_label,
@@ -34,7 +34,6 @@ from .frame_keypoints import (
 from .marker_properties import segment_title
 from .marker_search import has_still_areas
 from .marker_styles import markers_label
-from .tracks import assigned_tracks, point_of
 
 ROWS = 2  # of a list that is seldom long
 

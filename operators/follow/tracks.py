@@ -7,25 +7,12 @@ from ...core.body.human import HUMAN
 from ...core.detect.keypoints import FACE, FEET, HANDS, SPINE
 from ...core.detect.layouts import named_point
 from ...core.errors import InputError
-from ..bridge.scene_evidence import AssignedTrack, clip_tracks
+from ..bridge.scene_evidence import clip_tracks
 from ..shell.base_operator import BaseOperator
 from ..shell.fields import Choice, Text
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, redraw_footage
 from .marker_properties import segment_title
-
-
-def assigned_tracks(take: PropertyGroup) -> tuple[AssignedTrack, ...]:
-    """The motion tracks of a take's clip that follow a body point."""
-    tracks = [(owner, track.name) for owner, track in clip_tracks(take.clip)] if take.clip is not None else []
-    points = [(owner, name, point_of(take, owner, name)) for owner, name in tracks]
-    return tuple(AssignedTrack(*each) for each in points if each[-1])
-
-
-def point_of(take: PropertyGroup, owner: str, track: str) -> str:
-    """The body point that a motion track follows; empty for none."""
-    choices = {(choice.owner, choice.track): choice.point for choice in take.follow.tracks}
-    return choices.get((owner, track), named_point(track) or "")
 
 
 def assign(take: PropertyGroup, owner: str, track: str, point: str) -> None:

@@ -9,7 +9,7 @@ from ..shell.base_operator import BaseOperator, browse, chosen_file, warn
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.notices import give_notices
 from ..shell.requirements import footage, idle, of_take
-from ..shell.takes import active_take, add_take, find_take, placement_is_guess
+from ..shell.takes import active_take, add_take, find_take
 from .properties import confirm_placement
 from .take_footage import (
     IMAGES,
@@ -23,7 +23,7 @@ from .take_footage import (
 )
 
 
-def any_clip(_context: bpy.types.Context) -> str | None:
+def any_clip(_context: bpy.types.Context, _state: object) -> str | None:
     """The file has a clip."""
     return None if bpy.data.movieclips else "This file has no clip; load the footage"
 
@@ -56,7 +56,7 @@ class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
         return None
 
 
-guessed_lens = of_take(lambda take: take.guessed_lens_mm > 0.0, "The lens is not a guess")
+guessed_lens = of_take(lambda state: state.take.guessed_lens_mm > 0.0, "The lens is not a guess")
 
 
 class KEYMARK_OT_keep_lens(BaseOperator, bpy.types.Operator):
@@ -72,7 +72,7 @@ class KEYMARK_OT_keep_lens(BaseOperator, bpy.types.Operator):
                 take.guessed_lens_mm = 0.0
 
 
-guessed_placement = of_take(placement_is_guess, "The camera's place is not a guess")
+guessed_placement = of_take(lambda state: state.placement_is_guess, "The camera's place is not a guess")
 
 
 class KEYMARK_OT_keep_camera(BaseOperator, bpy.types.Operator):

@@ -5,16 +5,15 @@ import bpy
 from ..bridge.camera_placement import fixed_reason
 from ..bridge.footage_camera import may_move, solver_constraint
 from ..shell.panel import Popover, StepPanel, draw_sentence
-from ..shell.takes import active_take, find_take, placement_is_guess
+from ..shell.take_state import TakeState
+from ..shell.takes import active_take, find_take
 from .drawn_lines import HEIGHT, VERTICAL
 from .take_footage import lens_is_guess
 
 
-def _draw_camera(
-    column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-) -> None:
+def _draw_camera(column: bpy.types.UILayout, context: bpy.types.Context, state: TakeState) -> None:
     """Draw the lens and the camera's place, whether that is a guess, and the tools that find it."""
-    scene, camera = context.scene, take.camera
+    scene, take, camera = context.scene, state.take, state.take.camera
     if camera.name not in scene.objects:
         column.label(text="Camera is not in the scene", icon="ERROR")
     reason = fixed_reason(camera)
@@ -31,7 +30,7 @@ def _draw_camera(
     elif reason is not None:
         draw_sentence(column, context, reason, "LINKED")
     else:
-        if placement_is_guess(take):
+        if state.placement_is_guess:
             _draw_guess(column, "Height and tilt are a guess", "keymark.keep_camera")
         found = column.column(align=True)
         found.operator("keymark.camera_from_lines", text="From Lines", icon="MOD_EDGESPLIT").kind = VERTICAL
@@ -54,16 +53,16 @@ class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
     options = "KEYMARK_PT_footage_options"
 
     @classmethod
-    def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        return f"{take.clip.frame_duration} frames" if take.clip is not None else ""
+    def summary(cls, state: TakeState) -> str:
+        clip = state.take.clip
+        return "" if clip is None else f"{clip.frame_duration} frames"
 
     @classmethod
-    def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
-        return bool(take.clip_state.missing)
+    def is_wrong(cls, state: TakeState) -> bool:
+        return bool(state.take.clip_state.missing)
 
-    def draw_step(
-        self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup
-    ) -> None:
+    def draw_step(self, context: bpy.types.Context, body: bpy.types.UILayout, state: TakeState) -> None:
+        take = state.take
         column = body.column()
         if take.clip is not None:
             _draw_clip(column, context, take)
@@ -72,7 +71,7 @@ class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
             row.operator("keymark.load_footage", icon="FILE_MOVIE")
             row.menu("KEYMARK_MT_clips", text="", icon="DOWNARROW_HLT")
         if take.camera is not None:
-            _draw_camera(column, context, take)
+            _draw_camera(column, context, state)
         else:
             column.prop(take, "camera")
 

@@ -9,15 +9,15 @@ import bpy
 from ..bridge.camera_placement import fixed_reason, read_placement, write_placement
 from ..shell.base_operator import capitalized
 from ..shell.fields import HIDDEN, Choice, Integer, Number, Switch, Text, Vector
-from ..shell.takes import NO_GUESS, find_take
+from ..shell.take_state import TakeState
+from ..shell.takes import NO_GUESS
 
 DECIMALS = 5  # Digits that are shown: Blender's own matrices have about as many, and a level camera shows 0
 
 
-def still_camera(context: bpy.types.Context) -> str | None:
+def still_camera(_context: bpy.types.Context, state: TakeState | None) -> str | None:
     """The take's camera stands still, and can be set."""
-    take = find_take(context.scene)
-    reason = fixed_reason(take.camera if take else None)
+    reason = fixed_reason(None if state is None else state.take.camera)
     return None if reason is None else capitalized(reason)
 
 

@@ -13,14 +13,9 @@ from ..overlays.candidates import look_at
 from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.contradictions import note_contradictions
 from ..shell.fields import Choice, Integer, Switch
-from ..shell.keyed_frames import (
-    doubtful_matches,
-    match_at,
-    offered_at,
-    show_keyframes,
-    state_of,
-)
+from ..shell.keyed_frames import show_keyframes
 from ..shell.requirements import actor, idle, matches
+from ..shell.take_state import TakeState
 from ..shell.takes import active_take
 from .corrections import LIMBS
 from .found_keyframes import chosen_match, undecided_matches
@@ -56,7 +51,7 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
     def run(self, context: Context) -> None:
         take, now = active_take(context.scene), context.scene.frame_current_final
         if self.only_doubtful:  # the most doubtful one or, where that is shown, the one after it
-            places, here = doubtful_matches(take), match_at(take, now)
+            places, here = TakeState(take).doubtful, TakeState(take).match_at(now)
             at = places.index(here) if here in places else None
             if not places:
                 raise Unchanged("no found keyframe is in doubt")
@@ -81,7 +76,7 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
 
         take = active_take(context.scene)
         match = chosen_match(take)
-        if state_of(take, match) != "FOUND":
+        if TakeState(take).of_match(match) != "FOUND":
             raise Unchanged(f"frame {match.frame:g} is no found keyframe any more")
         frame = round(match.frame, 3)
         take_over(take.armature, take.keyframe_action, HUMAN, (frame,))
@@ -101,7 +96,7 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
         take = active_take(context.scene)
         matching, match = take.matching, chosen_match(take)
         frame = round(match.frame, 3)
-        if state_of(take, match) == "FOUND":
+        if TakeState(take).of_match(match) == "FOUND":
             remove_keyframes(take.armature, take.keyframe_action, HUMAN, (frame,))
         note_contradictions(take, frame, ())
         removed = matching.shown_match
@@ -228,7 +223,7 @@ class KEYMARK_OT_show_offered(CandidateOperator, bpy.types.Operator):
     @classmethod
     def source(cls, take: PropertyGroup) -> PropertyGroup:
         frame = take.id_data.frame_current_final
-        offered = offered_at(take, frame)
+        offered = TakeState(take).offered_at(frame)
         if offered is None:
             raise InputError(f"frame {frame:g} offers no poses; fit it to the footage first")
         return offered

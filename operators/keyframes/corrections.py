@@ -9,20 +9,15 @@ from bpy.types import Context, OperatorProperties, PropertyGroup, Scene
 
 from ...core.body.human import HUMAN, TRUNK, limb_of
 from ...core.errors import InputError
-from ..follow.evidence import points_to_follow, scene_evidence
+from ..follow.evidence import scene_evidence
 from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.fields import SKIP_SAVE, Choice, Switch
 from ..shell.job_progress import job_is_running
-from ..shell.keyed_frames import (
-    SAME_FRAME,
-    depth_is_found,
-    has_frame,
-    keyframes_of,
-    show_keyframes,
-)
+from ..shell.keyed_frames import SAME_FRAME, has_frame, show_keyframes
 from ..shell.requirements import actor, camera, footage, idle, keyframes
 from ..shell.results import reading_of
-from ..shell.takes import active_take, find_take, footage_of, redraw_footage
+from ..shell.take_state import TakeState
+from ..shell.takes import active_take, footage_of, redraw_footage
 from .found_keyframes import known_matches
 from .store_keyframe import SAME_POSE, key_pose, note_corrected
 
@@ -57,7 +52,7 @@ def camera_now(scene: Scene, take: PropertyGroup) -> "Camera":
 
 def is_keyed(take: PropertyGroup, frame: float) -> bool:
     """Whether a frame holds a keyframe."""
-    return take.keyframe_action is not None and has_frame(keyframes_of(take), frame)
+    return take.keyframe_action is not None and has_frame(TakeState(take).keyed.all, frame)
 
 
 def set_corrected(
@@ -77,7 +72,7 @@ def set_corrected(
     if not is_keyed(take, frame):
         note_corrected(take, frame, in_depth)
         return
-    improved = key_pose(context, take, depth_found=not in_depth and depth_is_found(take, frame))
+    improved = key_pose(context, take, depth_found=not in_depth and TakeState(take).depth_is_found(frame))
     if improved:
         operator.report({"INFO"}, f"{improved} found keyframes around this one were posed anew")
 
@@ -97,7 +92,7 @@ def put_right(
     where the points lie in the view, by name.
     """
     frame = scene.frame_current_final
-    if not is_keyed(take, frame) or not depth_is_found(take, frame):
+    if not is_keyed(take, frame) or not TakeState(take).depth_is_found(frame):
         return shown
     from ...core.poses import picture_depth
     from ..library.registry_files import named_libraries
@@ -136,7 +131,7 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
         from ..bridge.scene_frames import at_scene_frame, showing_action
 
         take, scene = active_take(context.scene), context.scene
-        now, keyed = scene.frame_current_final, keyframes_of(take)
+        now, keyed = scene.frame_current_final, TakeState(take).keyed.all
         if self.direction == "NEXT":
             neighbor = min((frame for frame in keyed if frame > now + SAME_FRAME), default=None)
         else:
@@ -149,7 +144,7 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
             go_to(neighbor)
             there = read_posture(take.armature, body).posture
         posture = Posture(HUMAN, here.translation, there.rotations, there.angles)
-        set_corrected(self, context, take, posture, in_depth=not depth_is_found(take, neighbor))
+        set_corrected(self, context, take, posture, in_depth=not TakeState(take).depth_is_found(neighbor))
         self.report({"INFO"}, f"Pose of frame {neighbor:g}, at the place of this one")
 
 
@@ -195,7 +190,7 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
         facing = Facing[self.facing]
         wanted = list(Sides) if self.sides == "AUTO" else [Sides[self.sides]]
         ways = [turned(body, posture, seen, facing, sides) for sides in wanted]
-        found = _fitted(context, take, ways) if self.fit and points_to_follow(context) is None else []
+        found = _fitted(context, take, ways) if self.fit and TakeState(take).has_points else []
         # A fit may turn the performer on: what faces elsewhere is not what was asked for.
         fitted = next((each for each in found if facing_of(each, seen) is facing), None)
         chosen = fitted or min(ways, key=lambda way: way.strain).posture
@@ -259,12 +254,11 @@ def selected_limbs(take: PropertyGroup) -> list[str]:
     return [name for name in LIMBS if name in chosen]
 
 
-def limb_chosen(context: Context) -> str | None:
+def limb_chosen(context: Context, state: TakeState | None) -> str | None:
     """A bone is selected in Pose Mode, or joints are being dragged, where the one under the mouse counts."""
-    take = find_take(context.scene)
-    if job_is_running(context, DRAGGING) or take is None or take.armature is None:
+    if job_is_running(context, DRAGGING) or state is None or state.take.armature is None:
         return None  # without an actor another requirement's
-    if take.armature.mode != "POSE" or not selected_limbs(take):
+    if state.take.armature.mode != "POSE" or not selected_limbs(state.take):
         return "Select a bone of an arm, a leg or the trunk in Pose Mode first"
     return None
 

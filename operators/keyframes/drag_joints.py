@@ -18,8 +18,8 @@ from ..shell.base_operator import BaseOperator, reported
 from ..shell.fields import Choice, Switch, Vector
 from ..shell.footage_clicks import NAVIGATION, WorldInRegion, view_under
 from ..shell.job_progress import job_is_running
-from ..shell.keyed_frames import keyframes_of
 from ..shell.requirements import actor, all_met, idle
+from ..shell.take_state import TakeState
 from ..shell.takes import active_take, find_take, redraw_editors, redraw_sidebars_soon
 from .corrections import DRAGGING, camera_now, put_right, set_corrected, shown_pose
 
@@ -143,7 +143,7 @@ HOVER_KEYS = "{joint}   |   {keys}"
 DRAG_KEYS = "{joint}   |   Ctrl: In Depth, Up Is Away   |   Shift: Precise   |   Esc, Right Click: Cancel"
 
 
-def not_dragging(context: Context) -> str | None:
+def not_dragging(context: Context, _state: object) -> str | None:
     """Joints are not being dragged already."""
     running = job_is_running(context, DRAGGING)
     return "Joints can be dragged already; Enter in the viewport ends it" if running else None
@@ -180,14 +180,14 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
 
     def modal(self, context: Context, event: Event) -> set[str]:
         take = find_take(context.scene)
-        if take is None or actor(context) is not None:
+        if take is None or actor(context, TakeState(take)) is not None:
             self.cancel(context)
             return {"CANCELLED"}
         if (self._drag or self._done) and context.scene.frame_current_final != self._frame:
             self._drag, self._done = None, ()  # Blender has evaluated another pose
             self.report({"WARNING"}, f"The pose dragged at frame {self._frame:g} was not stored")
             self._show(context)
-        if self._drag is None and idle(context) is not None:
+        if self._drag is None and idle(context, None) is not None:
             return {"PASS_THROUGH"}  # a job that was started meanwhile
         if self._drag is not None:
             return self._dragging(context, take, event)
@@ -307,7 +307,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         """Read all keyframes, counted from the first of them and the current frame."""
         from ..bridge.keyframes import read_keyframes
 
-        keyed = keyframes_of(take)
+        keyed = TakeState(take).keyed.all
         first = floor(min((*keyed, self._frame)))
         self._index, self._keyframes = round(self._frame - first), ()
         if keyed:

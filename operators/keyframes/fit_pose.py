@@ -7,12 +7,12 @@ import bpy
 import numpy as np
 from bpy.types import Context, Event, PropertyGroup
 
-from ..follow.evidence import points_to_follow, scene_evidence
+from ..follow.evidence import scene_evidence
 from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
 from ..shell.fields import Choice
 from ..shell.keyed_frames import show_keyframes
-from ..shell.requirements import actor, camera, footage, idle
+from ..shell.requirements import actor, camera, footage, idle, points_to_follow
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
 from .found_keyframes import known_matches

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import InputError
-from ..shell.keyed_frames import matched_frames
+from ..shell.take_state import TakeState
 
 if TYPE_CHECKING:
     from ...core.prior.keyframes import Matched
@@ -22,7 +22,7 @@ def undecided_matches(take: bpy.types.PropertyGroup) -> "dict[float, Matched]":
 
 
 def _untouched(take: bpy.types.PropertyGroup) -> list[bpy.types.PropertyGroup]:
-    untouched = set(matched_frames(take))
+    untouched = set(TakeState(take).matched)
     return [match for match in take.matching.matches if round(match.frame, 3) in untouched]
 
 

@@ -10,7 +10,7 @@ from ...core.prior.texts import EVERY_LIBRARY
 from ..bridge.scene_frames import show_frame
 from ..library.registry import library_items
 from ..shell.fields import HIDDEN, Choice, Entries, Integer, Number, Switch, Text, Vector
-from ..shell.keyed_frames import match_at
+from ..shell.take_state import TakeState
 
 if TYPE_CHECKING:
     from ...core.prior.keyframes import Matched
@@ -51,7 +51,7 @@ def _shown_match(matching: PropertyGroup) -> int:
     """The found keyframe of the current frame; elsewhere the one that was chosen last."""
     scene = matching.id_data
     take = next((take for take in scene.keymark.takes if take.matching == matching), None)
-    here = -1 if take is None else match_at(take, scene.frame_current_final)
+    here = -1 if take is None else TakeState(take).match_at(scene.frame_current_final)
     return here if here >= 0 else min(matching.active_match, max(len(matching.matches) - 1, 0))
 
 

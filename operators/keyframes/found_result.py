@@ -16,8 +16,9 @@ from ..bridge.footage_camera import set_still_pose
 from ..bridge.keyframes import remove_keyframes, take_over
 from ..shell.base_operator import capitalized
 from ..shell.contradictions import note_contradictions
-from ..shell.keyed_frames import has_frame, posed_frames, state_of
+from ..shell.keyed_frames import has_frame
 from ..shell.results import keep_reading
+from ..shell.take_state import TakeState
 from ..shell.takes import actor_of, take_by_identifier
 from .found_keyframes import undecided_matches
 from .match_edits import add_candidate, add_match, key_matches
@@ -35,7 +36,7 @@ def write_poses(scene: bpy.types.Scene, made: SceneSession) -> bpy.types.Propert
     matching, found, frames = take.matching, posed.found, made.frames
     matching.fit, matching.floor_found = found.fit, found.floor_m
     matching.reason = capitalized(found.reason)
-    decided = (*posed_frames(take), *(match.frame for match in matching.matches))
+    decided = (*TakeState(take).posed, *(match.frame for match in matching.matches))
     keep_reading(take, made.session[Reading])
     if made.session.inputs.frames is None:
         take.proposals.clear()
@@ -65,9 +66,9 @@ def clear_found(take: bpy.types.PropertyGroup) -> int:
     actor, matching = actor_of(take), take.matching
     undecided = tuple(undecided_matches(take))
     if take.keyframe_action is not None:
-        take_over(actor, take.keyframe_action, HUMAN, posed_frames(take))
+        take_over(actor, take.keyframe_action, HUMAN, TakeState(take).posed)
         remove_keyframes(actor, take.keyframe_action, HUMAN, undecided)
-    kept = [match.by_hand and state_of(take, match) == "FOUND" for match in matching.matches]
+    kept = [match.by_hand and TakeState(take).of_match(match) == "FOUND" for match in matching.matches]
     for index in reversed(range(len(kept))):
         if not kept[index]:
             note_contradictions(take, matching.matches[index].frame, ())

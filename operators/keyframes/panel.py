@@ -5,20 +5,8 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from ...core.prior.texts import COMPOSED
 from ..overlays.drawing import candidate_icon
-from ..shell.contradictions import contradictions_at
 from ..shell.job_progress import job_is_running, steady_frame
-from ..shell.keyed_frames import (
-    DOUBTFUL,
-    count_found,
-    has_frame,
-    keyframes_of,
-    matched_frames,
-    offered_at,
-    posed_frames,
-    proposed_frames,
-    state_of,
-    unposed_proposals,
-)
+from ..shell.keyed_frames import has_frame
 from ..shell.panel import (
     Popover,
     RowList,
@@ -29,6 +17,7 @@ from ..shell.panel import (
     right_end,
     side_by_side,
 )
+from ..shell.take_state import DOUBTFUL, TakeState
 from ..shell.takes import active_take
 from .change_match import candidate_title
 from .corrections import DRAGGING, LIMBS, selected_limbs
@@ -43,7 +32,7 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
 
     def draw_row(self, context: Context, layout: UILayout, item: PropertyGroup) -> None:
         take = active_take(context.scene)
-        state = state_of(take, item)
+        state = TakeState(take).of_match(item)
         row = layout.row(align=True)
         row.active = state != "GONE"
         number = row.row()
@@ -64,7 +53,7 @@ def _how_sure(take: PropertyGroup, match: PropertyGroup) -> tuple[str, str]:
     """Icon and words of a found keyframe: chosen by hand, contradicted, sure, fair or doubtful."""
     if match.by_hand:
         return "VIEW_PAN", "chosen"
-    if contradictions_at(take, match.frame):
+    if TakeState(take).contradictions_at(match.frame):
         return "ERROR", "contradicted"
     if match.confidence < DOUBTFUL:
         return "QUESTION", "doubtful"
@@ -85,14 +74,15 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
     options = "KEYMARK_PT_keyframes_options"
 
     @classmethod
-    def summary(cls, take: PropertyGroup) -> str:
-        return f"{len(keyframes_of(take))} keyed" if take.keyframe_action else ""
+    def summary(cls, state: TakeState) -> str:
+        return f"{len(state.keyed.all)} keyed" if state.take.keyframe_action else ""
 
     @classmethod
-    def action(cls, take: PropertyGroup) -> tuple[str, str]:
-        return ("keymark.pose_all", "Pose All") if take.keyframe_action is None else ("", "")
+    def action(cls, state: TakeState) -> tuple[str, str]:
+        return ("keymark.pose_all", "Pose All") if state.take.keyframe_action is None else ("", "")
 
-    def draw_step(self, context: Context, body: UILayout, take: PropertyGroup) -> None:
+    def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
+        take = state.take
         column = body.column()
         everything = column.row(align=True)
         everything.scale_y = 1.4
@@ -100,19 +90,19 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
             everything.operator("keymark.pose_all", icon="OUTLINER_OB_ARMATURE")
             everything.popover("KEYMARK_PT_libraries", text="", icon="ASSET_MANAGER")
         if len(take.matching.matches):
-            _draw_found(column, context, take)
+            _draw_found(column, context, state)
         else:
-            _draw_proposed(column, context, take)
-        _draw_here(column, context, take)
+            _draw_proposed(column, context, state)
+        _draw_here(column, context, state)
         _draw_corrections(column, context, take)
 
 
-def _draw_found(column: UILayout, context: Context, take: PropertyGroup) -> None:
+def _draw_found(column: UILayout, context: Context, state: TakeState) -> None:
     """Draw found keyframes, the way to the next doubtful one, and the choice among a frame's candidates."""
-    matching = take.matching
+    matching = state.take.matching
     source = (matching, "matches", matching, "shown_match")
     column.template_list("KEYMARK_UL_matches", "", *source, rows=3, maxrows=3)
-    count, doubtful = count_found(take)
+    count, doubtful = state.found_count, len(state.doubtful)
     row = column.row(align=True)
     going = row.row(align=True)
     going.enabled = doubtful > 0
@@ -124,7 +114,7 @@ def _draw_found(column: UILayout, context: Context, take: PropertyGroup) -> None
         return
     match = matching.matches[matching.shown_match]
     box = column.column(align=True)
-    is_found = state_of(take, match) == "FOUND"
+    is_found = state.of_match(match) == "FOUND"
     _draw_candidates(box, match, "keymark.replace_match", is_found)
     row = column.row(align=True)
     accept = row.row(align=True)
@@ -159,9 +149,9 @@ def _draw_candidates(layout: UILayout, match: PropertyGroup, operator: str, is_s
         _draw_percent(row, candidate.confidence)
 
 
-def _draw_proposed(column: UILayout, context: Context, take: PropertyGroup) -> None:
+def _draw_proposed(column: UILayout, context: Context, state: TakeState) -> None:
     """Draw how many of the proposed frames are posed and the way to the next, or the button that proposes."""
-    proposed, left, posed = len(proposed_frames(take)), len(unposed_proposals(take)), len(posed_frames(take))
+    proposed, left, posed = len(state.proposed), len(state.unposed), len(state.posed)
     if not proposed:
         _draw_propose(column, context)
         return
@@ -181,29 +171,27 @@ def _draw_propose(layout: UILayout, context: Context) -> None:
         layout.operator("keymark.propose_keyframes", icon="MARKER_HLT")
 
 
-def _draw_here(column: UILayout, context: Context, take: PropertyGroup) -> None:
+def _draw_here(column: UILayout, context: Context, state: TakeState) -> None:
     """Draw what this frame holds, what contradicts in it, and how its pose is fitted and stored."""
     frame = round(steady_frame(context))
-    data = take.armature.animation_data if take.armature is not None else None
-    shown = data.action if data is not None else None
-    if shown is not None and shown in (take.motion_action, take.finish.action):
+    if state.shown_action in state.kept_actions and not state.shows_keyframes:
         column.operator("keymark.show_action", text="Show Keyframes", icon="ERROR").which = "KEYFRAMES"
         return
-    if any(round(posed) == frame for posed in posed_frames(take)):
+    if any(round(posed) == frame for posed in state.posed):
         column.label(text=f"Frame {frame} is posed", icon="KEYFRAME_HLT", translate=False)
-    elif has_frame(matched_frames(take), frame):
+    elif has_frame(state.matched, frame):
         pass  # the list of found ones shows it
-    elif frame in proposed_frames(take):
+    elif frame in state.proposed:
         column.label(text=f"Frame {frame} is proposed, not posed yet", icon="KEYFRAME", translate=False)
     else:
         column.label(text=f"Frame {frame} is not posed", icon="DOT", translate=False)
-    draw_contradictions(column, context, take)
+    draw_contradictions(column, context, state)
     posing = column.column(align=True)
     if not draw_progress(posing, context, "keymark.fit_pose"):
         row = side_by_side(posing)
         row.operator("keymark.fit_pose", text="Fit Pose", icon="ARMATURE_DATA").start = "KEYFRAMES"
         row.operator("keymark.store_keyframe", icon="KEY_HLT")
-    offered = offered_at(take, context.scene.frame_current_final)
+    offered = state.offered_at(context.scene.frame_current_final)
     if offered is not None:
         head = posing.row(align=True)
         head.label(text=f"Frame {offered.frame:g} may show", translate=False)

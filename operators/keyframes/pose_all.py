@@ -9,13 +9,12 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.progress import stretch
 from ..bridge.scene_frames import shown_index
-from ..follow.evidence import points_to_follow
 from ..shell.base_operator import warn
 from ..shell.fields import Text
 from ..shell.job_operator import JobOperator
-from ..shell.keyed_frames import count_found, doubtful_matches, posed_frames, proposed_frames
-from ..shell.requirements import actor, all_colors, camera, footage, idle
-from ..shell.takes import active_take, placement_is_guess
+from ..shell.requirements import actor, all_colors, camera, footage, idle, points_to_follow
+from ..shell.take_state import TakeState
+from ..shell.takes import active_take
 from .found_keyframes import undecided_matches
 from .found_properties import FloorSettings
 from .scene_session import READ, SceneSession, go_on, read_session
@@ -34,8 +33,8 @@ def find_poses(scene: bpy.types.Scene, library: str, floor_m: float | None) -> "
 
     settings = active_take(scene)
     libraries = named_libraries(library or settings.matching.library_name)
-    count, proposed = settings.keyframe_count or None, proposed_frames(settings)
-    is_open = placement_is_guess(settings) and not posed_frames(settings)
+    count, proposed = settings.keyframe_count or None, TakeState(settings).proposed
+    is_open = TakeState(settings).placement_is_guess and not TakeState(settings).posed
     reading = read_session(
         scene,
         settings,
@@ -66,11 +65,12 @@ def keep_poses(scene: bpy.types.Scene, made: "SceneSession") -> tuple[str, bool]
 
     take = write_poses(scene, made)
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-    count, doubtful = count_found(take)
+    state = TakeState(take)
+    count, doubtful = state.found_count, state.doubtful
     if not doubtful:
         return f"{count} keyframes found, none of them doubtful", False
-    take.matching.shown_match = doubtful_matches(take)[0]
-    return f"{count} keyframes found, {doubtful} of them doubtful; the most doubtful one is shown", True
+    take.matching.shown_match = doubtful[0]
+    return f"{count} keyframes found, {len(doubtful)} of them doubtful; the most doubtful one is shown", True
 
 
 class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):

@@ -1,30 +1,26 @@
 """Propose frames to pose, from the speed of the performer in the footage."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import bpy
 from bpy.types import Context, OperatorProperties, Scene
 
-from ...core.progress import within
-from ..bridge.scene_frames import scene_frames
-from ..follow.evidence import scene_evidence
+from ...core.progress import stretch, within
 from ..shell.base_operator import BaseOperator, Unchanged, warn
 from ..shell.fields import Choice, Switch
 from ..shell.job_operator import JobOperator
-from ..shell.keyed_frames import proposed_frames, unposed_proposals
 from ..shell.notices import give_notices
-from ..shell.requirements import all_colors, footage, idle, of_take
-from ..shell.results import keep_reading, keep_speed, reading_of
-from ..shell.takes import active_take, find_take, footage_of, take_by_identifier
+from ..shell.requirements import all_colors, camera, footage, idle, of_take
+from ..shell.results import keep_reading, keep_speed
+from ..shell.take_state import TakeState
+from ..shell.takes import active_take, find_take, take_by_identifier
+from .scene_session import READ, clip_session, go_on
 
 if TYPE_CHECKING:
     from ...core.arrays import Array
     from ...core.markers.reading import Reading
     from ...core.progress import Job
-
-
-READ = 0.9  # Share of the job at which the clip is read
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,31 +40,27 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
     """Follow the performer through the footage and propose the frames that are best posed"""
 
     bl_label = "Propose Keyframes"
-    requirements = (footage, all_colors, idle)
+    requirements = (footage, camera, all_colors, idle)
 
     def start(self, scene: Scene) -> "Job[Outcome]":
         """Return the job; a clip that was read for these markers before is not read again."""
-        from ...core.markers.reading import of_same_footage, read_clip, reading_key
+        from ...core.markers.reading import Reading
         from ...core.prior.keyframe_proposals import evidence_speed, propose_keyframes
-        from ..bridge.take_from_scene import keypoints_without_keyframes
+        from ...core.session.see import Sight
+        from ...core.take.performer_keypoints import performer_keypoints
 
         take = active_take(scene)
-        identifier, count, stature = take.identifier, take.keyframe_count or None, take.stature
-        footage, evidence, reading = footage_of(scene, take), scene_evidence(take), reading_of(take)
-        styles, ignored = evidence.markers, evidence.ignored_regions
-        clip, first, rate = footage.open(), footage.first_frame, footage.rate
-        key = reading_key(clip.path, clip.fps, styles, None, ignored)
-        if reading is None or not of_same_footage(reading.key, key):
-            job = read_clip(clip, styles, ignored=ignored)
-            reading = yield from within("Following the performer", job, 0.0, READ)
-        segments = tuple(style.segment for style in styles)
-        keypoints = keypoints_without_keyframes(footage, evidence, reading.tracks, stature)
+        count = take.keyframe_count or None
+        made = yield from stretch(clip_session(scene, take), 0.0, READ)
+        made = yield from stretch(go_on(made, "see"), 0.0, 0.9)
+        known, reading = made.session.inputs.take, made.session[Reading]
+        keypoints = performer_keypoints(replace(known, keypoints=made.session[Sight].checked), reading.tracks)
+        segments = tuple(style.segment for style in known.markers)
         moved = evidence_speed(reading.tracks, segments, keypoints, reading.album)
-        speed = yield from within("Measuring the speed", moved, READ, 1.0)
-        chosen = propose_keyframes(speed.values, count)
-        frames = scene_frames(reading.tracks.time_s, first, rate)
-        proposed = tuple(round(float(frame)) for frame in frames[chosen])
-        return Outcome(identifier, reading, proposed, speed.values, frames, speed.note)
+        speed = yield from within("Measuring the speed", moved, 0.9, 1.0)
+        chosen = made.frames[propose_keyframes(speed.values, count)]
+        proposed = tuple(round(float(frame)) for frame in chosen)
+        return Outcome(made.take, reading, proposed, speed.values, made.frames, speed.note)
 
     def finish(self, scene: Scene, result: Outcome) -> None:
         take = take_by_identifier(scene, result.take)
@@ -82,7 +74,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         give_notices(take, "keyframes", "proposals", notes)
 
 
-proposals = of_take(proposed_frames, "Propose keyframes first")
+proposals = of_take(lambda state: state.proposed, "Propose keyframes first")
 
 
 class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
@@ -113,7 +105,7 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
 
     def run(self, context: Context) -> None:
         scene, take = context.scene, find_take(context.scene)
-        frames = unposed_proposals(take) if self.skip_posed else proposed_frames(take)
+        frames = TakeState(take).unposed if self.skip_posed else TakeState(take).proposed
         if not frames:
             raise Unchanged("all proposed keyframes are posed")
         ahead = [frame for frame in frames if frame > scene.frame_current]

@@ -1,7 +1,7 @@
 """The scene's take as a session: Blender says what its stages start from, and keeps what they have made."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import bpy
@@ -10,9 +10,11 @@ from ...core.arrays import Array
 from ...core.progress import stretch
 from ..follow.evidence import scene_evidence
 from ..shell.results import MADE, reading_of
+from ..shell.take_state import digest_of
 from ..shell.takes import footage_of
 
 if TYPE_CHECKING:
+    from ...core.camera.camera import Camera
     from ...core.progress import Job
     from ...core.session.session import Session
     from ..bridge.keyframes import Matches
@@ -28,6 +30,7 @@ class SceneSession:
     take: str  # The take's identifier
     session: "Session"
     notes: tuple[str, ...] = ()  # Sentences for the animator
+    keyframes: str = ""  # Digest of those it was read with; of those that are there later where empty
 
     @property
     def frames(self) -> Array:
@@ -37,6 +40,26 @@ class SceneSession:
 
         take = self.session.inputs.take
         return scene_frames(self.session[Reading].tracks.time_s, take.frame_start, take.fps)
+
+
+def clip_session(
+    scene: bpy.types.Scene, settings: bpy.types.PropertyGroup, camera: "Camera | None" = None, **wanted: Any
+) -> "Job[SceneSession]":
+    """Read what the session of a take starts from before there is an actor: it is of average proportions.
+
+    `camera` is the scene's where None. `wanted`: further fields of core's `Inputs`.
+    """
+    from ...core.body.actor import Actor
+    from ...core.body.kinematics import Body
+    from ...core.session.session import Inputs, Session
+    from ..bridge.camera_placement import read_camera
+    from ..bridge.take_from_scene import clip_frames, scene_take
+
+    identifier, body = settings.identifier, Body(Actor.from_stature(settings.stature))
+    footage, evidence, kept = footage_of(scene, settings), scene_evidence(settings), reading_of(settings)
+    frames = yield from clip_frames(footage, evidence, kept)
+    take = scene_take(footage, evidence, frames, body, camera or read_camera(footage, frames))
+    return SceneSession(identifier, Session(Inputs(take, kept=kept, **wanted)))
 
 
 def read_session(
@@ -52,9 +75,10 @@ def read_session(
     identifier = settings.identifier
     kept, floor_m = reading_of(settings), settings.matching.known_floor_m
     source, actor, keys = footage_of(scene, settings), settings.armature, settings.keyframe_action
+    digest = digest_of(keys)
     take, notes = yield from read_scene_take(source, actor, keys, scene_evidence(settings), matches, kept)
     inputs = Inputs(take, **{"floor_m": floor_m, "kept": kept, **wanted})
-    return SceneSession(identifier, Session(inputs), notes)
+    return SceneSession(identifier, Session(inputs), notes, digest)
 
 
 def go_on(
@@ -64,7 +88,7 @@ def go_on(
     from ...core.session.stages import reach
 
     def kept(stage: str, session: "Session") -> None:
-        keep(stage, SceneSession(made.take, session, made.notes))
+        keep(stage, replace(made, session=session))
 
     session = yield from stretch(reach(made.session, last, MADE, kept), READ, 1.0)
-    return SceneSession(made.take, session, made.notes)
+    return replace(made, session=session)

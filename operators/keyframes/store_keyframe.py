@@ -16,19 +16,11 @@ from ..follow.evidence import followed_markers
 from ..follow.marker_properties import ignored_regions
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.contradictions import note_contradictions
-from ..shell.keyed_frames import (
-    SAME_FRAME,
-    depth_is_found,
-    has_frame,
-    keyframes_of,
-    match_at,
-    new_keyframe_action,
-    shows_keyframes,
-    straighten_unposed,
-)
+from ..shell.keyed_frames import SAME_FRAME, has_frame, new_keyframe_action, straighten_unposed
 from ..shell.notices import give_notices
 from ..shell.requirements import actor, idle
 from ..shell.results import MADE, reading_of
+from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of
 from .found_keyframes import known_matches, undecided_matches
 from .scene_session import read_session
@@ -92,7 +84,7 @@ def _pose_anew(scene: Scene, settings: PropertyGroup, reading: "Reading", frame:
     found = run(job)
     keyframes = [found.keyframe(each) for each in found.frames]
     for each in keyframes:
-        matching.matches.remove(match_at(settings, float(frames[each.index])))
+        matching.matches.remove(TakeState(settings).match_at(float(frames[each.index])))
     write_found(settings, frames, keyframes, found)
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
     return len(keyframes)
@@ -123,9 +115,9 @@ def _depth_found(take: PropertyGroup, body: "Body", posture: "Posture", frame: f
     from ..bridge.pose import read_posture
     from ..bridge.scene_frames import at_scene_frame, showing_action
 
-    if take.keyframe_action is None or not depth_is_found(take, frame):
+    if take.keyframe_action is None or not TakeState(take).depth_is_found(frame):
         return False
-    if not has_frame(keyframes_of(take), frame):
+    if not has_frame(TakeState(take).keyed.all, frame):
         matching = take.matching
         return abs(matching.corrected_frame - frame) < SAME_FRAME and not matching.corrected_in_depth
     with showing_action(take.armature, take.keyframe_action), at_scene_frame(take.id_data) as go_to:
@@ -169,7 +161,7 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         if take.keyframe_action is None:
             take.keyframe_action = new_keyframe_action(armature_object)
         frame = scene.frame_current_final
-        switched = not shows_keyframes(take)
+        switched = not TakeState(take).shows_keyframes
         straighten_unposed(take)
         was_found = frame in known_matches(take)
         depth_found = _depth_found(take, body, read.posture, frame)

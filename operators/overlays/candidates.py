@@ -10,22 +10,11 @@ from bpy.types import Context, PropertyGroup, Scene
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
-from ..shell.keyed_frames import match_at, offered_at, shows_keyframes, state_of
 from ..shell.results import LruCache
+from ..shell.take_state import TakeState
 from ..shell.takes import find_take, redraw_footage
 from . import drawing
-from .drawing import (
-    CANDIDATE_COLORS,
-    CORE,
-    GHOST,
-    TALL_M,
-    Color,
-    Item,
-    Label,
-    Stroke,
-    Style,
-    body_scale,
-)
+from .drawing import CANDIDATE_COLORS, CORE, GHOST, TALL_M, Color, Item, Label, Stroke, Style, body_scale
 from .figures import limb_lines
 from .views import motion_view
 
@@ -65,7 +54,7 @@ def draw(context: Context) -> list[Item]:
     if take is None or not settings.show_candidates or context.screen.is_animation_playing:
         return []
     candidate = looked_at(scene)
-    if candidate < 0 or take.armature is None or not shows_keyframes(take):
+    if candidate < 0 or take.armature is None or not TakeState(take).shows_keyframes:
         return []
     match, view = _shown(take, scene.frame_current_final), motion_view(context, take)
     # The frame may have got other candidates since.
@@ -77,11 +66,11 @@ def draw(context: Context) -> list[Item]:
 
 def _shown(take: PropertyGroup, frame: float) -> PropertyGroup | None:
     """What there is to choose from at a scene frame: a found keyframe's candidates, or those offered."""
-    place = match_at(take, frame)
+    place = TakeState(take).match_at(frame)
     match = take.matching.matches[place] if place >= 0 else None
-    if match is not None and len(match.candidates) > 1 and state_of(take, match) == "FOUND":
+    if match is not None and len(match.candidates) > 1 and TakeState(take).of_match(match) == "FOUND":
         return match
-    return offered_at(take, frame)
+    return TakeState(take).offered_at(frame)
 
 
 def candidate_points(armature_object: bpy.types.Object, match: PropertyGroup) -> Array:

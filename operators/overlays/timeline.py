@@ -8,16 +8,15 @@ from bpy.types import Context, PropertyGroup, Region, Scene
 
 from ...core.arrays import Array, BoolArray
 from ..bridge.scene_frames import scene_frames
-from ..shell.keyed_frames import doubtful_matches, have_frames, matched_frames, posed_frames
+from ..shell.keyed_frames import have_frames
 from ..shell.results import FootageSpeed, LruCache, reading_of, review_of, speed_of
+from ..shell.take_state import DOUBTFUL, TakeState
 from ..shell.takes import find_take, footage_of
 from .drawing import Color, Fill, Item, Label, Stroke, faded, ui_scale
 from .figures import diamonds, polygons, segments, squares
 
 CONFIDENCE_COLORS = np.array([[0.90, 0.42, 0.10], [0.93, 0.83, 0.35], [0.22, 0.55, 0.90]])
 """Of low, middle and high confidence, also for color-blind eyes."""
-DOUBTED = 0.5
-"""Confidence up to which a frame has the lowest color: no better than chance that a joint is correct."""
 FINEST_PX = 1.5  # frames nearer than this are drawn as one
 
 
@@ -67,7 +66,7 @@ def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Arr
 
 def confidence_color(confidence: Array) -> Array:
     """Colors (N, 3) of confidences (N,)."""
-    share = np.nan_to_num(np.clip((confidence - DOUBTED) / (1.0 - DOUBTED), 0.0, 1.0))
+    share = np.nan_to_num(np.clip((confidence - DOUBTFUL) / (1.0 - DOUBTFUL), 0.0, 1.0))
     return np.stack([np.interp(share, (0.0, 0.5, 1.0), column) for column in CONFIDENCE_COLORS.T], axis=-1)
 
 
@@ -166,6 +165,7 @@ def draw(context: Context) -> list[Item]:
 def picture(scene: Scene, take: PropertyGroup, timeline: Timeline) -> list[Item]:
     """All items that have data; graph and strip are kept, so that a redraw of the same view only draws."""
     items: list[Item] = []
+    state = TakeState(take)
     speed, review = _speed(scene, take), review_of(take)
     if speed is not None:
         key = f"speed {speed.key} {timeline}"
@@ -175,11 +175,11 @@ def picture(scene: Scene, take: PropertyGroup, timeline: Timeline) -> list[Item]
         items += _views.known(key, lambda: confidence_strip(review.frames, review.confidence, timeline)) or []
     weak = np.array([weak.frame for weak in take.review.weak_frames], dtype=np.float64)
     proposed = np.array([proposal.frame for proposal in take.proposals], dtype=np.float64)
-    posed = posed_frames(take) if len(weak) or len(proposed) else ()
-    found = matched_frames(take)
+    posed = state.posed if len(weak) or len(proposed) else ()
+    found = state.matched
     items += weak_pointers(weak[~have_frames(posed, weak)], timeline)
     still, matched = proposed[~have_frames(found, proposed)], np.array(found)
-    doubtful = [round(take.matching.matches[place].frame, 3) for place in doubtful_matches(take)]
+    doubtful = [round(take.matching.matches[place].frame, 3) for place in state.doubtful]
     for shape, frames, filled, color in (
         (diamonds, still, have_frames(posed, still), PROPOSED),
         (squares, matched, ~np.isin(matched, doubtful), MATCHED),

@@ -19,7 +19,8 @@ from ..bridge.pose import write_posture
 from ..bridge.review_curves import write_review_curves
 from ..bridge.scene_frames import at_scene_frame, showing_action
 from ..keyframes.scene_session import SceneSession
-from ..shell.results import clear_review, keep_reading, keep_review, reconstructed_again
+from ..shell.results import clear_review, keep_reading, keep_review
+from ..shell.take_state import digest_of
 from ..shell.takes import actor_of, take_by_identifier
 
 ENDS = ("save_pre", "undo_pre", "redo_pre", "load_pre")
@@ -97,7 +98,7 @@ def write_result(scene: bpy.types.Scene, made: SceneSession, judged: Review) -> 
         actor_of(take), result.motion, take.motion_action, take.keyframe_action, made.frames
     )
     take.motion_action.use_fake_user = True
-    reconstructed_again(take)
+    take.made_from = made.keyframes or digest_of(take.keyframe_action)
     keep_reading(take, made.session[Reading])
     keep_review(take, judged)
     show_review(take, judged)

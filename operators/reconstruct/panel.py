@@ -4,6 +4,7 @@ import bpy
 
 from ..review.weak_frames import draw_review
 from ..shell.panel import Popover, StepPanel, draw_progress, draw_sentence
+from ..shell.take_state import TakeState
 from ..shell.takes import active_take
 
 
@@ -15,42 +16,41 @@ class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
     options = "KEYMARK_PT_reconstruct_options"
 
     @classmethod
-    def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        count = len(take.review.weak_frames)
+    def summary(cls, state: TakeState) -> str:
+        count = len(state.take.review.weak_frames)
         return f"{count} weak" if count else ""
 
     @classmethod
-    def action(cls, take: bpy.types.PropertyGroup) -> tuple[str, str]:
+    def action(cls, state: TakeState) -> tuple[str, str]:
         return "keymark.reconstruct", "Reconstruct"
 
-    def draw_step(
-        self, context: bpy.types.Context, body: bpy.types.UILayout, take: bpy.types.PropertyGroup
-    ) -> None:
+    def draw_step(self, context: bpy.types.Context, body: bpy.types.UILayout, state: TakeState) -> None:
+        take = state.take
         column = body.column()
         row = column.row()
         row.scale_y = 1.4
         if not draw_progress(row, context, "keymark.reconstruct"):
             row.operator("keymark.reconstruct", icon="ARMATURE_DATA")
         if take.armature is not None and take.motion_action is not None:
-            draw_shown_action(column, take, {"KEYFRAMES": take.keyframe_action, "MOTION": take.motion_action})
+            draw_shown_action(
+                column, state, {"KEYFRAMES": take.keyframe_action, "MOTION": take.motion_action}
+            )
         if take.review.unseen:
             draw_sentence(column, context, take.review.unseen, "HIDE_ON")
         if len(take.notes):
             text = "1 Note" if len(take.notes) == 1 else f"{len(take.notes)} Notes"
             column.popover("KEYMARK_PT_reconstruct_notes", text=text, icon="INFO", translate=False)
         if take.review.frame_count:
-            draw_review(column, context, take)
+            draw_review(column, context, state)
 
 
 def draw_shown_action(
-    layout: bpy.types.UILayout, take: bpy.types.PropertyGroup, actions: dict[str, bpy.types.Action | None]
+    layout: bpy.types.UILayout, state: TakeState, actions: dict[str, bpy.types.Action | None]
 ) -> None:
     """Draw the switch between Actions on the actor, by the names of `keymark.show_action`."""
-    data = take.armature.animation_data
-    shown = data.action if data else None
     row = layout.row(align=True)
     for which, action in actions.items():
-        depress = action is not None and action == shown
+        depress = action is not None and action == state.shown_action
         button = row.operator("keymark.show_action", text=which.title(), depress=depress, translate=False)
         button.which = which
 

@@ -7,14 +7,13 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import stretch
 from ..bridge.actions import assign_action
-from ..follow.evidence import anything_to_follow
 from ..keyframes.found_keyframes import known_matches
 from ..keyframes.scene_session import READ, go_on, read_session
 from ..shell.base_operator import BaseOperator, capitalized, warn
 from ..shell.fields import Choice
 from ..shell.job_operator import JobOperator
 from ..shell.keyed_frames import straighten_unposed
-from ..shell.requirements import actor, all_colors, footage, idle, two_keyframes
+from ..shell.requirements import actor, all_colors, anything_to_follow, footage, idle, two_keyframes
 from ..shell.takes import active_take
 
 if TYPE_CHECKING:

@@ -14,14 +14,10 @@ from ..follow.marker_properties import segment_title
 from ..footage.camera_view import look_through, viewports
 from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.fields import Choice
-from ..shell.keyed_frames import (
-    depth_is_found,
-    is_posed,
-    new_keyframe_action,
-    straighten_unposed,
-)
+from ..shell.keyed_frames import new_keyframe_action, straighten_unposed
 from ..shell.panel import RowList, draw_sentence
 from ..shell.requirements import actor, camera, idle, motion, weak_frames
+from ..shell.take_state import TakeState
 from ..shell.takes import active_take
 
 
@@ -35,7 +31,7 @@ class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
         number.label(text=f"{item.frame:g}")
         reason = item.bl_rna.properties["reason"].enum_items[item.reason]
         row.label(text=reason_words(item), icon=reason.icon, translate=False)
-        if is_posed(active_take(context.scene), item.frame):
+        if TakeState(active_take(context.scene)).is_posed(item.frame):
             row.label(text="", icon="KEYTYPE_KEYFRAME_VEC")
 
 
@@ -46,13 +42,13 @@ def reason_words(item: PropertyGroup) -> str:
     return f"{words}: {what}" if what else words
 
 
-def draw_review(column: UILayout, context: Context, take: PropertyGroup) -> None:
+def draw_review(column: UILayout, context: Context, state: TakeState) -> None:
     """Draw how sure the motion is, and the frames worth another keyframe."""
     from ...core.review.confidence import TOLERANCE_SHARE
 
-    review = take.review
+    review = state.take.review
     if review.confidence >= 0.0:
-        near_cm = 100.0 * TOLERANCE_SHARE * take.stature
+        near_cm = 100.0 * TOLERANCE_SHARE * state.take.stature
         words = f"Joints Within {near_cm:.0f} cm: {100.0 * review.confidence:.0f} %"
         column.progress(factor=review.confidence, text=words, type="BAR")
     if not len(review.weak_frames):
@@ -137,7 +133,7 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         with showing_action(take.armature, take.motion_action), at_scene_frame(scene) as go_to:
             go_to(frame)
             straighten_unposed(take)
-            store_pose(take.armature, action, HUMAN, frame, depth_is_found(take, frame))
+            store_pose(take.armature, action, HUMAN, frame, TakeState(take).depth_is_found(frame))
         take.keyframe_action = action
         assign_action(take.armature, action)
         show_frame(scene, frame)

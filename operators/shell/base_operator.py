@@ -13,12 +13,13 @@ from bpy.types import Context, PropertyGroup
 from ...core.errors import InputError, KeymarkError
 from ..bridge.keys import keys_changed
 from .requirements import Requirement, all_met
+from .take_state import TakeState
 from .takes import redraw_sidebars_soon
 
 
 def warn_if_outdated(operator: bpy.types.Operator, take: PropertyGroup) -> None:
     """Warn that a take's final Action, which is about to be used, was baked from an earlier motion."""
-    if take.finish.action is not None and take.finish.outdated:
+    if TakeState(take).final_is_outdated:
         operator.report({"WARNING"}, "The final Action is of an earlier motion; bake it again for the newest")
 
 

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 
 import bpy
 
-from ...core.detect.keypoints import BODY_POINTS
 from .fields import HIDDEN, Number, Text
 
 SAME_FRAME = 0.5  # a note nearer to a frame than this [frames] is of that frame
@@ -32,17 +31,3 @@ def note_contradictions(take: bpy.types.PropertyGroup, frame: float, names: Sequ
     if names:
         entry = noted.add()
         entry.frame, entry.names, entry.reading = frame, SEPARATOR.join(names), take.reading_key
-
-
-def contradictions_at(take: bpy.types.PropertyGroup, frame: float) -> tuple[str, ...]:
-    """Names of what no plausible posture explains at a scene frame, as far as it is still followed."""
-    for entry in take.contradictions:
-        if abs(entry.frame - frame) < SAME_FRAME and entry.reading == take.reading_key:
-            return tuple(name for name in entry.names.split(SEPARATOR) if _is_followed(take, name))
-    return ()
-
-
-def _is_followed(take: bpy.types.PropertyGroup, name: str) -> bool:
-    if any(marker.name == name for marker in take.markers):
-        return bool(take.follow.use_markers)
-    return name in BODY_POINTS and bool(take.follow.use_keypoints or take.follow.use_tracks)

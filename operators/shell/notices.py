@@ -9,7 +9,6 @@ from collections.abc import Iterable
 import bpy
 
 from .fields import HIDDEN, Number, Switch, Text
-from .keyed_frames import has_frame, keyframes_of
 
 
 class KEYMARK_PG_notice(bpy.types.PropertyGroup):
@@ -42,13 +41,3 @@ def give_notices(
         entry.step, entry.about = step, about
         entry.text = sentence
         entry.of_keyframe, entry.frame = frame is not None, frame or 0.0
-
-
-def notices_of(take: bpy.types.PropertyGroup, step: str) -> list[str]:
-    """The sentences of a step that hold now."""
-    posed = keyframes_of(take)
-    return [
-        entry.text
-        for entry in take.notices
-        if entry.step == step and (not entry.of_keyframe or has_frame(posed, entry.frame))
-    ]

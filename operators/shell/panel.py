@@ -10,10 +10,9 @@ from typing import ClassVar
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
-from .contradictions import contradictions_at
 from .job_progress import job_is_running, steady_frame
-from .notices import notices_of
-from .steps import is_behind, is_open
+from .steps import is_open
+from .take_state import TakeState
 from .takes import active_take, find_take
 
 ROOMY_PX = 270.0
@@ -147,9 +146,9 @@ def _lines(context: Context, sentence: str, most_lines: int | None = None) -> li
     return wrap(kept, letters, max_lines=most_lines, placeholder=" ...")
 
 
-def draw_contradictions(layout: UILayout, context: Context, take: PropertyGroup) -> None:
+def draw_contradictions(layout: UILayout, context: Context, state: TakeState) -> None:
     """Draw what no plausible pose explains in the current frame, in a line, if there is anything."""
-    names = contradictions_at(take, steady_frame(context))
+    names = state.contradictions_at(steady_frame(context))
     if names:
         draw_sentence(layout, context, f"Unexplained: {', '.join(names)}", "ERROR", most_lines=1)
 
@@ -182,32 +181,32 @@ class StepPanel(TakePanel):
 
     def draw(self, context: Context) -> None:
         """Draw the header; where it is open, the notices and the step."""
-        take = active_take(context.scene)
+        state = TakeState(active_take(context.scene))
         header, body = self.layout.panel_prop(context.window_manager.keymark_steps, self.step)
         header.label(text=self.bl_label)
-        self._draw_state(header, context, take)
+        self._draw_state(header, context, state)
         if body is None:
-            self._draw_action(header, context, take)
+            self._draw_action(header, context, state)
             return
         if self.options:
             header.popover(self.options, text="", icon="PREFERENCES")
-        for sentence in notices_of(take, self.step):
+        for sentence in state.notices(self.step):
             draw_sentence(body, context, sentence, "ERROR")
         property_column(body)
-        self.draw_step(context, body, take)
+        self.draw_step(context, body, state)
 
-    def _draw_state(self, header: UILayout, context: Context, take: PropertyGroup) -> None:
+    def _draw_state(self, header: UILayout, context: Context, state: TakeState) -> None:
         """Draw at the header's end what the step has come to, if it fits, or that something is wrong."""
-        state = header.row()
-        state.alignment = "RIGHT"
-        state.active = False
-        wrong = bool(notices_of(take, self.step)) or self.is_wrong(take)
-        icon = "ERROR" if wrong else "CHECKMARK" if is_behind(take, self.step) else "NONE"
-        state.label(text=self.summary(take) if is_roomy(context) else "", icon=icon, translate=False)
+        right = header.row()
+        right.alignment = "RIGHT"
+        right.active = False
+        wrong = bool(state.notices(self.step)) or self.is_wrong(state)
+        icon = "ERROR" if wrong else "CHECKMARK" if state.is_behind(self.step) else "NONE"
+        right.label(text=self.summary(state) if is_roomy(context) else "", icon=icon, translate=False)
 
-    def _draw_action(self, header: UILayout, context: Context, take: PropertyGroup) -> None:
+    def _draw_action(self, header: UILayout, context: Context, state: TakeState) -> None:
         """Draw what is next in a step that is folded, where it can be pressed; or that it runs."""
-        action, text = self.action(take)
+        action, text = self.action(state)
         if not action or draw_progress(header, context, action):
             return
         group, _, name = action.partition(".")
@@ -217,20 +216,20 @@ class StepPanel(TakePanel):
             button.operator(action, text=text if is_roomy(context) else "", icon="PLAY", translate=False)
 
     @abstractmethod
-    def draw_step(self, context: Context, body: UILayout, take: PropertyGroup) -> None:
+    def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         """Draw the step below its header, with properties in Blender's two columns."""
 
     @classmethod
-    def summary(cls, take: PropertyGroup) -> str:
+    def summary(cls, state: TakeState) -> str:
         """What the step has come to, in few letters; nothing by default."""
         return ""
 
     @classmethod
-    def is_wrong(cls, take: PropertyGroup) -> bool:
+    def is_wrong(cls, state: TakeState) -> bool:
         """Whether something is wrong with the step that its body tells of."""
         return False
 
     @classmethod
-    def action(cls, take: PropertyGroup) -> tuple[str, str]:
+    def action(cls, state: TakeState) -> tuple[str, str]:
         """The operator that is next while the step is folded, and a short label; none by default."""
         return "", ""

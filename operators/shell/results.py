@@ -1,4 +1,4 @@
-"""A take's results, cached in memory and on disk, and what a new motion makes outdated."""
+"""A take's results, cached in memory and on disk."""
 
 from collections import OrderedDict
 from collections.abc import Callable
@@ -163,20 +163,3 @@ def register() -> None:
 def unregister() -> None:
     """Drop all results from memory."""
     clear_cache()
-
-
-# --- What a new motion makes outdated
-
-
-def reconstructed_again(take: bpy.types.PropertyGroup) -> None:
-    """Note that the take's motion is newer than what was made from it."""
-    take.finish.outdated = take.finish.action is not None
-    finished_again(take)
-
-
-def finished_again(take: bpy.types.PropertyGroup) -> None:
-    """Note that the take's final Action is newer than the characters' motions."""
-    for character in take.characters:
-        for result in character.results:
-            if result.source in ("FINAL", "MOTION"):  # not those of other Actions
-                result.outdated = result.action is not None

@@ -7,10 +7,10 @@ from uuid import uuid4
 import bpy
 from bpy.app import timers
 
+from ...core.detect.layouts import named_point
 from ...core.errors import InputError
-from ..bridge.camera_placement import read_placement
 from ..bridge.footage import Footage, set_scene_range
-from ..bridge.footage_camera import may_move
+from ..bridge.scene_evidence import AssignedTrack, clip_tracks
 
 if TYPE_CHECKING:
     from ...core.camera.camera_fields import CameraPlacement
@@ -60,27 +60,6 @@ def actor_of(take: bpy.types.PropertyGroup) -> bpy.types.Object:
     if take.armature is None:
         raise InputError(f"take '{take.name}' has no actor; build one, or choose its armature")
     return take.armature
-
-
-def present_actor(take: bpy.types.PropertyGroup) -> bpy.types.Object | None:
-    """A take's armature if it is in the scene.
-
-    Deleted with X it is in no scene any more, yet in the file, as long as the take points to it.
-    """
-    armature_object = take.armature
-    there = armature_object is not None and armature_object.name in take.id_data.objects
-    return armature_object if there else None
-
-
-def kept_actions(take: bpy.types.PropertyGroup) -> tuple[bpy.types.Action, ...]:
-    """The Actions of a take's actor: keyframes, motion and final; they outlive the actor."""
-    actions = (take.keyframe_action, take.motion_action, take.finish.action)
-    return tuple(action for action in actions if action is not None)
-
-
-def has_lost_actor(take: bpy.types.PropertyGroup) -> bool:
-    """Whether a take had an actor that is gone from the scene."""
-    return present_actor(take) is None and (take.armature is not None or bool(kept_actions(take)))
 
 
 def add_take(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
@@ -148,6 +127,22 @@ def _select(scene: bpy.types.Scene, armature_object: bpy.types.Object | None) ->
     layer.objects.active = armature_object
 
 
+# --- Motion tracks that follow a body point
+
+
+def assigned_tracks(take: bpy.types.PropertyGroup) -> tuple[AssignedTrack, ...]:
+    """The motion tracks of a take's clip that follow a body point."""
+    tracks = [(owner, track.name) for owner, track in clip_tracks(take.clip)] if take.clip is not None else []
+    points = [(owner, name, point_of(take, owner, name)) for owner, name in tracks]
+    return tuple(AssignedTrack(*each) for each in points if each[-1])
+
+
+def point_of(take: bpy.types.PropertyGroup, owner: str, track: str) -> str:
+    """The body point that a motion track follows; empty for none."""
+    choices = {(choice.owner, choice.track): choice.point for choice in take.follow.tracks}
+    return choices.get((owner, track), named_point(track) or "")
+
+
 # --- Redrawing editors and their sidebars
 
 
@@ -206,14 +201,6 @@ def _redraw_once() -> None:
 
 
 NO_GUESS = (0.0, 0.0, 0.0)  # height, tilt and roll of a take whose camera was not put anywhere by guess
-
-
-def placement_is_guess(take: bpy.types.PropertyGroup) -> bool:
-    """Whether the take's camera still is where it was put because nobody had said where it stood."""
-    if take.camera is None or tuple(take.guessed_placement) == NO_GUESS or may_move(take.camera):
-        return False
-    now = as_numbers(read_placement(take.camera))
-    return max(abs(one - other) for one, other in zip(now, take.guessed_placement, strict=True)) < 1e-4
 
 
 def as_numbers(placement: "CameraPlacement") -> tuple[float, float, float]:

@@ -9,7 +9,7 @@ from ...core.files.json_file import read_json_value
 from ..footage.take_footage import IMAGES, VIDEOS
 from ..shell.base_operator import BaseOperator, browse, chosen_path, reported
 from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
-from ..shell.requirements import footage, idle, object_mode_possible
+from ..shell.requirements import idle, object_mode_possible
 
 
 class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
@@ -163,7 +163,7 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
             operator = bpy.ops.keymark.open_take
         elif "clip" in fields:
             raise InputError(f"{path}: a take's file is called {TAKE_FILE}; give it that name to open it")
-        elif footage(bpy.context) is None:
+        elif bpy.ops.keymark.load_keypoints.poll():
             operator = bpy.ops.keymark.load_keypoints
         else:
             raise InputError(

@@ -2,72 +2,12 @@
 
 import bpy
 
-from ..follow.evidence import has_contours, has_keypoints
 from ..footage.camera_view import keep_beside_sidebar
 from ..library import registry
-from ..overlays.timeline import DOUBTED
-from ..shell.keyed_frames import doubtful_matches, is_posed, keyframes_of, matched_frames, unposed_proposals
 from ..shell.panel import Popover, RowList, SidebarPanel, draw_progress, draw_sentence, sentence_height
-from ..shell.takes import find_take, has_lost_actor, placement_is_guess, present_actor
+from ..shell.take_state import TakeState
+from ..shell.takes import find_take
 from .upgrade import is_newer
-
-
-def next_step(take: bpy.types.PropertyGroup) -> str:
-    """The next step, from properties alone, in a label short enough for a narrow sidebar."""
-    if take.clip is None:
-        return "Next: load the footage"
-    if take.clip_state.missing:
-        return "Next: find the clip's file"
-    if placement_is_guess(take):
-        return "Next: say where the camera stood"
-    follow = take.follow
-    if follow.use_markers and any(not marker.is_picked for marker in take.markers):
-        return "Next: pick the markers' colors"
-    if has_lost_actor(take):
-        return "Next: bring the actor back"
-    has_actor = present_actor(take) is not None
-    followed = (follow.use_markers and len(take.markers)) or has_keypoints(take)
-    # Contours need nothing to be done: whoever goes on to the actor follows these alone.
-    if not followed and not (has_actor and has_contours(take)):
-        return "Next: choose what to follow"
-    if not has_actor:
-        return "Next: build the actor"
-    if not len(take.proposals) and not keyframes_of(take):
-        return "Next: pose all keyframes" if followed else "Next: propose keyframes"
-    if take.motion_action is None:
-        if unposed_proposals(take) and not matched_frames(take):
-            return "Next: pose all keyframes" if followed else "Next: pose the proposed frames"
-        if len(keyframes_of(take)) < 2:
-            return "Next: pose and store keyframes"
-        if doubtful_matches(take):
-            return "Next: check the doubtful poses"
-        return "Next: reconstruct the motion"
-    if (take.finish.action is None or take.finish.outdated) and is_doubtful(take):
-        return _how_to_better(take)
-    if take.finish.outdated:
-        return "Next: review, then bake again"
-    if any(result.outdated for character in take.characters for result in character.results):
-        return "Next: retarget again"
-    if not any(result.action for character in take.characters for result in character.results):
-        finished = take.finish.action is not None
-        return "Next: a character, or export" if finished else "Next: review, then a character"
-    return "Next: export, or another take"
-
-
-def is_doubtful(take: bpy.types.PropertyGroup) -> bool:
-    """Whether a take's motion is to be corrected and not finished: no better than chance."""
-    return 0.0 <= take.review.confidence < DOUBTED
-
-
-def _how_to_better(take: bpy.types.PropertyGroup) -> str:
-    """What makes a doubtful motion better: the keyframes are what it lacks."""
-    weak = [each.frame for each in take.review.weak_frames]
-    if doubtful_matches(take):
-        return "Next: check the doubtful poses"
-    if any(not is_posed(take, frame) for frame in weak):
-        return "Next: pose the weak frames"
-    return "Next: reconstruct again" if weak else "Next: pose more keyframes"
-
 
 STEPS = (
     ("FILE_MOVIE", "Clip: load it, say where the camera stood"),
@@ -149,7 +89,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
             return
         _draw_takes(layout, context.scene.keymark)
         # As high as the sentence, so that nothing moves when a job begins or ends.
-        sentence = next_step(take)
+        sentence = f"Next: {TakeState(take).next[1]}"
         row = layout.row()
         row.scale_y = sentence_height(context, sentence)
         if not draw_progress(row, context):

@@ -174,6 +174,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     motion_action: Group(
         name="Motion", description="The Action that holds the reconstructed motion", type=bpy.types.Action
     )
+    made_from: Text("Made From", "Digest of the keyframes that the motion was made from", options=HIDDEN)
     live_preview: Switch(
         "Live Preview",
         "Let the actor follow while frames are solved; without it the result comes sooner",

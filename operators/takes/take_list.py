@@ -37,7 +37,7 @@ class KEYMARK_OT_add_performer(BaseOperator, bpy.types.Operator):
             add_keypoint_file(take, path)
 
 
-take = of_take(lambda take: True, "There is no take to remove")
+take = of_take(lambda state: True, "There is no take to remove")
 
 
 class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):

@@ -18,6 +18,7 @@ from keymark.core.shoot.discovery import take_path
 from keymark.core.take.conversion_digest import conversion_digest
 from keymark.core.take.conversion_record import is_up_to_date, read_record
 from keymark.core.take.description import describe, effective_settings
+from keymark.operators.shell.take_state import TakeState
 
 SAVED = Path(__file__).resolve().parent / "saved"
 VERSIONS = ("0.1.0",)
@@ -179,13 +180,15 @@ def test_the_motion_is_reconstructed_and_finished_anew(saved: Saved, scene: bpy.
     matched = saved.property("matching.matches.len")
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
     take = active_take(scene)
-    assert take.finish.outdated and take.review.frame_count == scene.frame_end
+    assert TakeState(take).final_is_outdated and take.review.frame_count == scene.frame_end
     assert take.notes[0].text.startswith(f"2 of {2 + matched} keyframes are posed")
     # Intervals of found keyframes follow from their confidence now, and these are not too sure of themselves.
     assert take.review.confidence == pytest.approx(saved.property("review.confidence"), abs=0.1)
     assert bpy.ops.keymark.bake_motion() == {"FINISHED"}
     settings = active_take(scene).finish
-    assert not settings.outdated and 0 < settings.keys_after < settings.keys_before
+    assert (
+        not TakeState(active_take(scene)).final_is_outdated and 0 < settings.keys_after < settings.keys_before
+    )
     assert settings.furthest_mm <= settings.tolerance_mm == saved.property("finish.tolerance_mm")
     assert set(bpy.data.actions) == before
 

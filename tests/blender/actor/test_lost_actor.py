@@ -9,9 +9,8 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.shell.keyed_frames import keyframes_of
-from keymark.operators.shell.takes import active_take, has_lost_actor, present_actor
-from keymark.operators.takes.panel import next_step
+from keymark.operators.shell.take_state import TakeState
+from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 FRAME = 7
@@ -29,15 +28,15 @@ def test_a_deleted_actor_comes_back_with_its_keyframes(opened: bpy.types.Scene, 
     take = active_take(opened)
     bpy.ops.keymark.apply_lengths()
     opened.frame_set(FRAME)
-    before, frames, action = posture_of(opened), keyframes_of(take), take.keyframe_action
+    before, frames, action = posture_of(opened), TakeState(take).keyed.all, take.keyframe_action
     lengths = read_body(take.armature, HUMAN).actor.segments_m
     stature = read_body(take.armature, HUMAN).actor.stature_m
     if how == "in the viewport":
         delete(take.armature)
     else:
         bpy.data.objects.remove(take.armature)
-    assert present_actor(take) is None and has_lost_actor(take)
-    assert take.keyframe_action == action and next_step(take) == "Next: bring the actor back"
+    assert TakeState(take).actor is None and TakeState(take).has_lost_actor
+    assert take.keyframe_action == action and TakeState(take).next[1] == "bring the actor back"
     with pytest.raises(RuntimeError, match="Bring the deleted actor back"):
         bpy.ops.keymark.store_keyframe()
 
@@ -46,9 +45,9 @@ def test_a_deleted_actor_comes_back_with_its_keyframes(opened: bpy.types.Scene, 
         assert read_body(take.armature, HUMAN).actor.segments_m == pytest.approx(lengths, rel=1e-4)
     else:
         assert bpy.ops.keymark.build_actor(stature=stature) == {"FINISHED"}
-    assert present_actor(take) is take.armature is not None and not has_lost_actor(take)
+    assert TakeState(take).actor is take.armature is not None and not TakeState(take).has_lost_actor
     assert take.armature.animation_data.action == take.keyframe_action == action
-    assert keyframes_of(take) == frames
+    assert TakeState(take).keyed.all == frames
     opened.frame_set(FRAME + 1)
     opened.frame_set(FRAME)
     np.testing.assert_allclose(posture_of(opened).minus(before), 0.0, atol=NEAR)
@@ -67,10 +66,10 @@ def test_an_actor_that_stood_higher_at_rest_is_built_where_its_keys_put_it(opene
 
 def test_another_actor_that_is_chosen_is_animated_by_the_takes_keyframes(opened: bpy.types.Scene) -> None:
     take = active_take(opened)
-    frames = keyframes_of(take)
+    frames = TakeState(take).keyed.all
     first, other = take.armature, build_armature(opened, Body(Actor.from_stature(1.7)))
     take.armature = other
-    assert other.animation_data.action == take.keyframe_action and keyframes_of(take) == frames
+    assert other.animation_data.action == take.keyframe_action and TakeState(take).keyed.all == frames
     own = bpy.data.actions.new("Own")
     first.animation_data.action = own
     take.armature = first

@@ -17,7 +17,7 @@ from keymark.operators.bridge.camera_placement import read_placement
 from keymark.operators.follow.evidence import keypoint_path
 from keymark.operators.footage.load_footage import load_into_take
 from keymark.operators.library import registry_files
-from keymark.operators.shell.keyed_frames import count_found
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -69,8 +69,12 @@ def test_all_steps_are_there_and_the_character_of_a_file_performs(clip: Path, tm
     take, scene = only_take(), bpy.context.scene
     assert take.name == "hall" and take.stature == pytest.approx(1.75) and take.follow.use_keypoints
     assert [keypoint_path(entry).name for entry in take.follow.files] == ["hall.keypoints.json"]
-    assert count_found(take)[0] >= 3 and (scene.frame_start, scene.frame_end) == (1, 40)
-    assert take.motion_action is not None and take.finish.action is not None and not take.finish.outdated
+    assert TakeState(take).found_count >= 3 and (scene.frame_start, scene.frame_end) == (1, 40)
+    assert (
+        take.motion_action is not None
+        and take.finish.action is not None
+        and not TakeState(take).final_is_outdated
+    )
     (character,) = take.characters
     assert character.armature.name == name and character.results[0].action is not None
     assert before.hide_get() and not behind.hide_get() and not character.armature.hide_get()
@@ -96,7 +100,7 @@ def test_an_early_end_leaves_the_stages_that_are_complete(clip: Path) -> None:
     job.close()
     take = only_take()
     assert [fraction for _, fraction in stages] == sorted(fraction for _, fraction in stages)
-    assert take.armature is not None and count_found(take)[0] >= 3 and take.motion_action is None
+    assert take.armature is not None and TakeState(take).found_count >= 3 and take.motion_action is None
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"} and take.motion_action is not None
 
 

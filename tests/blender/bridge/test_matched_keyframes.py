@@ -30,11 +30,7 @@ from keymark.operators.bridge.pose import read_posture
 from keymark.operators.bridge.take_from_scene import read_scene_take
 from keymark.operators.follow.evidence import scene_evidence
 from keymark.operators.keyframes.found_keyframes import known_matches
-from keymark.operators.shell.keyed_frames import (
-    keyframes_of,
-    matched_frames,
-    posed_frames,
-)
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take, footage_of
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -81,8 +77,8 @@ def key_at(take: bpy.types.PropertyGroup, path: str, index: int, frame: float) -
 def test_a_take_with_matched_keyframes_is_opened_and_saved_as_it_was(
     take: bpy.types.PropertyGroup, matched_take: Take
 ) -> None:
-    assert keyframes_of(take) == (1.0, 7.0, 13.0)
-    assert (matched_frames(take), posed_frames(take)) == ((7.0,), (1.0, 13.0))
+    assert TakeState(take).keyed.all == (1.0, 7.0, 13.0)
+    assert (TakeState(take).matched, TakeState(take).posed) == ((7.0,), (1.0, 13.0))
     bpy.ops.keymark.save_take(directory=str(matched_take.folder / "again"))
     again = read_take(matched_take.folder / "again")
     assert [keyframe.matched for keyframe in again.keyframes] == [None, MATCHED, None]
@@ -175,7 +171,7 @@ def test_matched_keyframes_are_taken_over_and_removed(take: bpy.types.PropertyGr
     assert key.type == "KEYFRAME" and key.amplitude != FOUND.amplitude
     remove_keyframes(armature_object, action, HUMAN, (7.0,))
     keys_changed()
-    assert keyed_frames(armature_object, action, HUMAN) == keyframes_of(take) == (1.0, 13.0)
+    assert keyed_frames(armature_object, action, HUMAN) == TakeState(take).keyed.all == (1.0, 13.0)
 
 
 def test_removing_all_keyframes_leaves_keys_of_the_hands(take: bpy.types.PropertyGroup) -> None:

@@ -41,7 +41,7 @@ def test_the_rigs_are_the_performers_size_and_recognized(file: Path) -> None:
         assert character.problem == "" and not len(character.doubts)
         assert character.character_map.preset == "rigify"
         take.active_character = number
-        assert recognized(bpy.context) is None
+        assert recognized(bpy.context, None) is None
     assert not bpy.ops.keymark.retarget.poll()  # nothing but the motion is missing yet
     assert bpy.context.view_layer.objects.active.mode == "OBJECT"
 

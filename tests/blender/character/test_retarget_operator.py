@@ -6,7 +6,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from _armatures import build_character
+from _armatures import build_character, move_a_key
 from _characters import plain_character
 from _scene_state import assert_undoable, differences, scene_state
 from bpy.types import Action, Object, PropertyGroup, Scene
@@ -18,6 +18,7 @@ from keymark.operators.bridge.actions import assign_action, curve_digest, existi
 from keymark.operators.bridge.actor_bones import moves_an_actor
 from keymark.operators.character.characters import source_of
 from keymark.operators.character.retarget import figures
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -90,7 +91,7 @@ def test_the_newest_motion_is_performed(character: PropertyGroup, take: Property
     assert source_of(take, character).kind == "MOTION"
     bpy.ops.keymark.bake_motion()
     assert source_of(take, character).action == take.finish.action
-    take.finish.outdated = True
+    take.finish.made_from = "earlier"
     assert source_of(take, character).action == take.motion_action
     character.source = "FINAL"
     assert source_of(take, character).action == take.finish.action
@@ -105,13 +106,13 @@ def test_a_newer_motion_marks_the_result(opened: Scene) -> None:
     bpy.ops.keymark.reconstruct()
     bpy.ops.keymark.add_character(armature=build_character(plain_character()).name)
     character = active_take(opened).characters[0]
-    for newer in (bpy.ops.keymark.reconstruct, bpy.ops.keymark.bake_motion):
+    for newer in (lambda: move_a_key(take.motion_action), bpy.ops.keymark.bake_motion):
         bpy.ops.keymark.retarget()
-        assert not character.results[0].outdated
+        assert not TakeState(take).is_outdated(character.results[0])
         newer()
-        assert character.results[0].outdated
+        assert TakeState(take).is_outdated(character.results[0])
     bpy.ops.keymark.retarget()
-    assert not character.results[0].outdated and len(character.results) == 1
+    assert not TakeState(take).is_outdated(character.results[0]) and len(character.results) == 1
 
 
 def test_any_action_of_an_actor_is_performed(character: PropertyGroup, take: PropertyGroup) -> None:
@@ -127,7 +128,7 @@ def test_any_action_of_an_actor_is_performed(character: PropertyGroup, take: Pro
     assert [each.action.name for each in character.results] == ["Walk Character", "Jump Character"]
     assert character.results[1].source_actor == take.armature
     bpy.ops.keymark.bake_motion()
-    assert [each.outdated for each in character.results] == [True, False]
+    assert [TakeState(take).is_outdated(each) for each in character.results] == [True, False]
     bpy.ops.keymark.retarget()
     assert len(character.results) == 2
     character.source_actor = character.armature

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
+from _armatures import move_a_key
 from keymark.core.body.kinematics import Body
 from keymark.core.errors import InputError
 from keymark.core.take.motion import Motion, read_motion
@@ -19,8 +20,8 @@ from keymark.operators.bridge.assets.catalogs import NAME, ensure_catalog
 from keymark.operators.bridge.export_formats import FORMATS
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.shell.base_operator import warn_if_outdated
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take, add_take
-from keymark.operators.takes.panel import next_step
 
 ShownPoints = Callable[[bpy.types.Object], np.ndarray]
 
@@ -267,17 +268,19 @@ def test_a_final_action_of_an_earlier_motion_says_so(tiny_take: Take, tmp_path: 
     take = active_take(bpy.context.scene)
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()
-    assert not take.finish.outdated and next_step(take) == "Next: review, then a character"
+    assert not TakeState(take).final_is_outdated and TakeState(take).next[1] == "review, then a character"
     bpy.ops.keymark.bake_motion()
-    assert not take.finish.outdated
+    assert not TakeState(take).final_is_outdated
     bpy.ops.keymark.reconstruct()
-    assert take.finish.outdated and next_step(take) == "Next: review, then bake again"
+    assert not TakeState(take).final_is_outdated  # it is the same motion
+    move_a_key(take.motion_action)
+    assert TakeState(take).final_is_outdated and TakeState(take).next[1] == "review, then bake again"
     said: list[tuple[set[str], str]] = []
     warn_if_outdated(SimpleNamespace(report=lambda *words: said.append(words)), take)
     assert [kind for kind, _ in said] == [{"WARNING"}] and "bake it again" in said[0][1]
     bpy.ops.keymark.bake_motion()
     warn_if_outdated(SimpleNamespace(report=lambda *words: said.append(words)), take)
-    assert not take.finish.outdated and len(said) == 1
+    assert not TakeState(take).final_is_outdated and len(said) == 1
 
 
 def test_where_nobody_is_seen_is_said_and_left_empty(

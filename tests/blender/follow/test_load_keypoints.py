@@ -22,8 +22,8 @@ from keymark.operators.follow.frame_keypoints import (
     keypoints_label,
 )
 from keymark.operators.follow.load_keypoints import KEYMARK_OT_detect_keypoints
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
-from keymark.operators.takes.panel import next_step
 
 FRAMES = 13
 
@@ -217,23 +217,23 @@ def test_markers_that_are_switched_off_are_left_out(opened: bpy.types.Scene) -> 
         bpy.ops.keymark.reconstruct()
     take.follow.use_markers = False
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
-    assert next_step(active_take(opened)) == "Next: review, then a character"
+    assert TakeState(active_take(opened)).next[1] == "review, then a character"
 
 
 @pytest.mark.usefixtures("registered")
 def test_the_next_step_goes_on_without_markers(plain_take: Take, keypoint_file: Path) -> None:
     bpy.ops.keymark.load_footage(filepath=str(plain_take.clip))
     scene = bpy.context.scene
-    assert next_step(active_take(scene)) == "Next: say where the camera stood"
+    assert TakeState(active_take(scene)).next[1] == "say where the camera stood"
     bpy.ops.keymark.keep_camera()
-    assert next_step(active_take(scene)) == "Next: choose what to follow"
+    assert TakeState(active_take(scene)).next[1] == "choose what to follow"
     take = load(keypoint_file)
-    assert next_step(take) == "Next: build the actor"
+    assert TakeState(take).next[1] == "build the actor"
     bpy.ops.keymark.remove_keypoints()
     bpy.ops.keymark.build_actor()
-    assert next_step(active_take(scene)) == "Next: propose keyframes"
+    assert TakeState(active_take(scene)).next[1] == "propose keyframes"
     active_take(scene).follow.use_contours = False
-    assert next_step(active_take(scene)) == "Next: choose what to follow"
+    assert TakeState(active_take(scene)).next[1] == "choose what to follow"
 
 
 def test_a_dropped_file_of_keypoints_is_loaded(plain: bpy.types.Scene, keypoint_file: Path) -> None:

@@ -9,10 +9,9 @@ from keymark.core.detect.keypoints import People
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.scene_evidence import AssignedTrack, people_of_tracks
-from keymark.operators.follow.evidence import has_keypoints
 from keymark.operators.follow.frame_keypoints import keypoints_at
-from keymark.operators.follow.tracks import assigned_tracks
-from keymark.operators.shell.takes import active_take, footage_of
+from keymark.operators.shell.take_state import TakeState
+from keymark.operators.shell.takes import active_take, assigned_tracks, footage_of
 
 FRAMES = 13
 WIDTH, HEIGHT = 160, 120
@@ -120,9 +119,9 @@ def test_two_tracks_of_one_point_are_two_sources(plain: bpy.types.Scene) -> None
 def test_the_switch_takes_all_tracks_away(plain: bpy.types.Scene) -> None:
     take = active_take(plain)
     add_track(take.clip, "head", {1: (10.0, 10.0)})
-    assert has_keypoints(take) and keypoints_at(take, 1)
+    assert TakeState(take).has_keypoints and keypoints_at(take, 1)
     take.follow.use_tracks = False
-    assert not has_keypoints(take) and keypoints_at(take, 1) == ()
+    assert not TakeState(take).has_keypoints and keypoints_at(take, 1) == ()
     assert len(assigned_tracks(take)) == 1
 
 

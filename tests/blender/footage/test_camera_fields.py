@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 from keymark.core.camera.camera_fields import CameraPlacement, heading_rad
 from keymark.operators.bridge.camera_placement import fixed_reason
-from keymark.operators.shell.takes import active_take, placement_is_guess
-from keymark.operators.takes.panel import next_step
+from keymark.operators.shell.take_state import TakeState
+from keymark.operators.shell.takes import active_take
 from mathutils import Euler
 
 pytestmark = pytest.mark.usefixtures("registered")
-ASKED = "Next: say where the camera stood"
+ASKED = "say where the camera stood"
 
 
 def matrix(camera: bpy.types.Object) -> np.ndarray:
@@ -48,17 +48,17 @@ def test_a_camera_with_a_parent_keeps_its_parent(loaded: bpy.types.PropertyGroup
 def test_a_new_camera_is_asked_about_until_somebody_says_where_it_stood(
     loaded: bpy.types.PropertyGroup,
 ) -> None:
-    assert placement_is_guess(loaded) and next_step(loaded) == ASKED
+    assert TakeState(loaded).placement_is_guess and TakeState(loaded).next[1] == ASKED
     loaded.camera.location.z = 1.0
-    assert not placement_is_guess(loaded) and next_step(loaded) != ASKED
+    assert not TakeState(loaded).placement_is_guess and TakeState(loaded).next[1] != ASKED
     loaded.camera.location.z = 1.4
-    assert next_step(loaded) == ASKED
+    assert TakeState(loaded).next[1] == ASKED
     bpy.ops.keymark.add_performer()
     second = active_take(bpy.context.scene)
-    assert placement_is_guess(second)
+    assert TakeState(second).placement_is_guess
     second.camera_height = 1.4  # entered, though the same
     first = bpy.context.scene.keymark.takes[0]
-    assert not placement_is_guess(second) and not placement_is_guess(first)
+    assert not TakeState(second).placement_is_guess and not TakeState(first).placement_is_guess
     with pytest.raises(RuntimeError, match="The camera's place is not a guess"):
         bpy.ops.keymark.keep_camera()
 
@@ -66,16 +66,16 @@ def test_a_new_camera_is_asked_about_until_somebody_says_where_it_stood(
 def test_the_tick_confirms_the_place_and_not_the_lens(loaded: bpy.types.PropertyGroup) -> None:
     before = loaded.guessed_lens_mm
     assert bpy.ops.keymark.keep_camera() == {"FINISHED"}
-    assert not placement_is_guess(loaded) and loaded.guessed_lens_mm == before > 0.0
+    assert not TakeState(loaded).placement_is_guess and loaded.guessed_lens_mm == before > 0.0
 
 
 def test_a_take_that_is_opened_knows_its_camera(opened: bpy.types.Scene) -> None:
-    assert not placement_is_guess(active_take(opened))
+    assert not TakeState(active_take(opened)).placement_is_guess
 
 
 def test_a_camera_that_moves_is_read_only_with_a_reason(loaded: bpy.types.PropertyGroup) -> None:
     loaded.camera.keyframe_insert("location", frame=1)
-    assert "animated" in (fixed_reason(loaded.camera) or "") and not placement_is_guess(loaded)
+    assert "animated" in (fixed_reason(loaded.camera) or "") and not TakeState(loaded).placement_is_guess
     loaded.camera_height = 3.0
     assert loaded.camera_height == pytest.approx(1.4)
     with pytest.raises(RuntimeError, match="animated or constrained"):

@@ -19,7 +19,7 @@ from keymark.operators.footage.drawn_lines import (
     store_lines,
 )
 from keymark.operators.footage.take_footage import lens_is_guess
-from keymark.operators.shell.takes import placement_is_guess
+from keymark.operators.shell.take_state import TakeState
 
 pytestmark = pytest.mark.usefixtures("registered")
 SIZE = (160, 120)
@@ -54,7 +54,7 @@ def test_lines_set_the_camera_and_are_kept(loaded: bpy.types.PropertyGroup) -> N
     assert np.degrees(loaded.camera_tilt) == pytest.approx(-9.0, abs=0.7)
     assert np.degrees(loaded.camera_roll) == pytest.approx(0.0, abs=0.2)
     assert tuple(loaded.camera.location[:2]) == pytest.approx(place)
-    assert not placement_is_guess(loaded) and "tilt ±" in loaded.camera_findings
+    assert not TakeState(loaded).placement_is_guess and "tilt ±" in loaded.camera_findings
     assert lens_is_guess(loaded) and "Lens is kept" in loaded.camera_findings
     loaded.camera_height = 1.2
     assert loaded.camera_findings == ""  # what was entered is not what was found
@@ -96,7 +96,7 @@ def test_without_lines_or_with_useless_ones_nothing_changes(loaded: bpy.types.Pr
     store_lines(loaded, [DrawnLine(LEVEL, [(10.0, 10.0), (12.0, 10.0)], 1)])
     with pytest.raises(RuntimeError, match="says nothing of its camera yet"):
         bpy.ops.keymark.camera_from_lines()
-    assert placement_is_guess(loaded) and tuple(loaded.guessed_placement) == before
+    assert TakeState(loaded).placement_is_guess and tuple(loaded.guessed_placement) == before
 
 
 def near(pixel: Pixel) -> "object":

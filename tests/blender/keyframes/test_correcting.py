@@ -16,7 +16,7 @@ from keymark.operators.bridge.keys import PICTURED
 from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.keyframes.corrections import camera_now, selected_limbs
-from keymark.operators.shell.keyed_frames import matched_frames, posed_frames
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -79,7 +79,7 @@ def test_flipping_in_a_posed_frame_changes_its_keyframe_at_once(opened: bpy.type
     opened.frame_set(7)
     reaching(opened)
     bpy.ops.keymark.store_keyframe()
-    frames = posed_frames(take)
+    frames = TakeState(take).posed
     select(opened, "upper_arm.L")
     bpy.ops.keymark.flip_depth()
     flipped = posture_of(opened)
@@ -87,7 +87,7 @@ def test_flipping_in_a_posed_frame_changes_its_keyframe_at_once(opened: bpy.type
     first = posture_of(opened)
     opened.frame_set(7)
     np.testing.assert_allclose(posture_of(opened).minus(flipped), 0.0, atol=1e-4)
-    assert posed_frames(take) == frames
+    assert TakeState(take).posed == frames
     opened.frame_set(1)
     np.testing.assert_allclose(posture_of(opened).minus(first), 0.0, atol=1e-6)
 
@@ -140,12 +140,12 @@ def test_a_neighbors_pose_is_copied_to_the_place_of_this_frame(
     there = posture_of(opened)
     opened.frame_set(10)
     here = posture_of(opened)
-    keys = posed_frames(take)
+    keys = TakeState(take).posed
     assert bpy.ops.keymark.copy_neighbor(direction=direction) == {"FINISHED"}
     copied = posture_of(opened)
     np.testing.assert_allclose(copied.translation, here.translation, atol=1e-5)
     np.testing.assert_allclose(copied.minus(there)[3:], 0.0, atol=1e-4)
-    assert opened.frame_current == 10 and posed_frames(take) == keys
+    assert opened.frame_current == 10 and TakeState(take).posed == keys
 
 
 def test_beyond_the_last_keyframe_there_is_no_neighbor(opened: bpy.types.Scene) -> None:
@@ -174,7 +174,7 @@ def test_correcting_the_shown_motion_goes_on_with_the_keyframes(opened: bpy.type
     bpy.ops.keymark.move_joint(joint="wrist.L", place=place, sight=(0.0, 1.0, 0.0))
     assert take.armature.animation_data.action == take.keyframe_action
     np.testing.assert_allclose(points_of(opened)[HUMAN.point_names.index("wrist.L")][2], place[2], atol=2e-3)
-    assert 4.0 not in posed_frames(take)
+    assert 4.0 not in TakeState(take).posed
 
 
 def test_joints_are_read_from_bones(
@@ -208,7 +208,7 @@ def test_a_drag_in_the_cameras_view_vouches_for_the_picture_and_one_in_depth_for
     found: bpy.types.PropertyGroup,
 ) -> None:
     scene = bpy.context.scene
-    (frame, *_) = matched_frames(found)
+    (frame, *_) = TakeState(found).matched
     scene.frame_set(int(frame))
 
     def drag(pushed: bool = False, aside: bool = False) -> None:
@@ -219,23 +219,23 @@ def test_a_drag_in_the_cameras_view_vouches_for_the_picture_and_one_in_depth_for
         bpy.ops.keymark.move_joint(joint="wrist.R", place=place, sight=sight, pushed=pushed)
 
     drag()
-    assert pictured(found) == (frame,) and frame not in matched_frames(found)
+    assert pictured(found) == (frame,) and frame not in TakeState(found).matched
     bpy.ops.keymark.store_keyframe()  # as it is
     assert pictured(found) == (frame,)
     drag(aside=True)
     assert pictured(found) == ()
     drag()  # its depth stays vouched for
-    assert pictured(found) == () and frame in posed_frames(found)
+    assert pictured(found) == () and frame in TakeState(found).posed
 
 
 @pytest.mark.usefixtures("still_neighbors")
 def test_a_found_keyframe_that_is_accepted_keeps_its_depth_as_sure_as_it_was(
     found: bpy.types.PropertyGroup,
 ) -> None:
-    (frame, *_) = matched_frames(found)
+    (frame, *_) = TakeState(found).matched
     bpy.context.scene.frame_set(int(frame))
     bpy.ops.keymark.accept_match()
-    assert pictured(found) == (frame,) and frame in posed_frames(found)
+    assert pictured(found) == (frame,) and frame in TakeState(found).posed
     reaching(bpy.context.scene)
     bpy.ops.keymark.store_keyframe()  # posed by hand
     assert pictured(found) == ()

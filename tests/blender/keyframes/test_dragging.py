@@ -15,7 +15,7 @@ from keymark.operators.bridge.keys import PICTURED
 from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.keyframes import drag_joints
 from keymark.operators.overlays.tools import Handles
-from keymark.operators.shell.keyed_frames import matched_frames, posed_frames
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 
 pytestmark = [pytest.mark.usefixtures("registered")]
@@ -86,7 +86,7 @@ def test_a_drag_is_shown_and_escape_leaves_everything_as_it_was(tool: Any) -> No
     tool.drag(0, 40, ctrl=True)
     assert np.abs(first.minus(posture)).max() > 0.05
     assert np.abs(posture_of(bpy.context.scene).minus(first)).max() > 0.05
-    assert matched_frames(active_take(bpy.context.scene)) == (1.0, 7.0, 13.0)
+    assert TakeState(active_take(bpy.context.scene)).matched == (1.0, 7.0, 13.0)
     assert tool.send("ESC") == {"CANCELLED"}
     assert differences(before, scene_state()) == ""
     assert posture_of(bpy.context.scene).minus(posture) == pytest.approx(0.0, abs=1e-6)
@@ -101,7 +101,7 @@ def test_enter_stores_all_drags_once_and_leaves_the_neighbors(tool: Any, given: 
     assert given.frames[asked:] == []
     assert tool.send("RET") == {"FINISHED"}
     take = active_take(bpy.context.scene)
-    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
+    assert (TakeState(take).posed, TakeState(take).matched) == ((7.0,), (1.0, 13.0))
     assert given.frames[asked:] == []
     assert shown(take, 7).minus(wanted) == pytest.approx(0.0, abs=1e-4)
     bpy.ops.ed.undo()
@@ -139,7 +139,7 @@ def test_depth_counts_if_one_of_the_drags_was_in_depth(tool: Any) -> None:
     tool.drag(30, 0)
     tool.send("RET")
     assert unchanged_keyframes(take.armature, take.keyframe_action, HUMAN, PICTURED) == ()
-    assert 7.0 in posed_frames(take)
+    assert 7.0 in TakeState(take).posed
 
 
 def test_undo_takes_back_the_last_drag_alone(tool: Any) -> None:
@@ -168,9 +168,9 @@ def test_a_click_elsewhere_stores_first_and_another_frame_drops_it_with_a_word(t
     bpy.context.scene.frame_set(9)
     tool.send("TIMER")
     assert tool.reports == ["The pose dragged at frame 7 was not stored"]
-    assert posed_frames(active_take(bpy.context.scene)) == ()
+    assert TakeState(active_take(bpy.context.scene)).posed == ()
     bpy.context.scene.frame_set(7)
     tool.drag(50, 40)
     tool.inside = False
     assert tool.send("LEFTMOUSE") == {"FINISHED", "PASS_THROUGH"}
-    assert posed_frames(active_take(bpy.context.scene)) == (7.0,)
+    assert TakeState(active_take(bpy.context.scene)).posed == (7.0,)

@@ -13,7 +13,7 @@ from keymark.operators.keyframes.change_match import candidate_title
 from keymark.operators.keyframes.found_keyframes import known_matches
 from keymark.operators.overlays.drawing import Fill, Stroke
 from keymark.operators.overlays.timeline import ROOMY, Timeline, picture
-from keymark.operators.shell.keyed_frames import doubtful_matches, keyframes_of, matched_frames, posed_frames
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered", "still_neighbors")
@@ -27,8 +27,8 @@ def test_another_posture_is_chosen_by_one_click(found: Group, wave_motion: Motio
     bpy.ops.keymark.replace_match(candidate=1)
     match = found.matching.matches[0]
     assert (match.matched.posture, match.matched.mirrored) == ("Back", True)
-    assert match.confidence == pytest.approx(0.9) and doubtful_matches(found) == [1]
-    assert matched_frames(found) == (1.0, 7.0, 13.0)
+    assert match.confidence == pytest.approx(0.9) and TakeState(found).doubtful == [1]
+    assert TakeState(found).matched == (1.0, 7.0, 13.0)
     assert shown(found, 1).minus(wave_motion.posture[12]) == pytest.approx(0.0, abs=1e-5)
     bpy.ops.keymark.replace_match(candidate=0)
     assert shown(found, 1).minus(wave_motion.posture[0]) == pytest.approx(0.0, abs=1e-5)
@@ -40,13 +40,13 @@ def test_found_keyframes_are_accepted_and_removed(found: Group) -> None:
     found.matching.shown_match = 1
     before = shown(found, 7)
     bpy.ops.keymark.accept_match()
-    assert (posed_frames(found), matched_frames(found)) == ((7.0,), (1.0, 13.0))
+    assert (TakeState(found).posed, TakeState(found).matched) == ((7.0,), (1.0, 13.0))
     assert shown(found, 7).minus(before) == pytest.approx(0.0, abs=1e-6)
     bpy.ops.keymark.remove_match()  # the entry goes, the animator's keys stay
-    assert keyframes_of(found) == (1.0, 7.0, 13.0)
+    assert TakeState(found).keyed.all == (1.0, 7.0, 13.0)
     assert bpy.context.scene.frame_current == 13
     bpy.ops.keymark.remove_match()
-    assert keyframes_of(found) == (1.0, 7.0)
+    assert TakeState(found).keyed.all == (1.0, 7.0)
     assert [match.frame for match in found.matching.matches] == [1.0]
 
 
@@ -56,10 +56,10 @@ def test_all_found_are_removed_but_what_the_animator_decided_on(found: Group) ->
     bpy.context.scene.frame_set(7)
     bpy.ops.keymark.store_keyframe()
     bpy.ops.keymark.remove_found()
-    assert (posed_frames(found), matched_frames(found)) == ((7.0,), (1.0,))
+    assert (TakeState(found).posed, TakeState(found).matched) == ((7.0,), (1.0,))
     assert [match.frame for match in found.matching.matches] == [1.0]
     assert bpy.ops.keymark.remove_found() == {"CANCELLED"}
-    assert keyframes_of(found) == (1.0, 7.0)
+    assert TakeState(found).keyed.all == (1.0, 7.0)
 
 
 def test_the_most_doubtful_is_gone_to_first(found: Group) -> None:

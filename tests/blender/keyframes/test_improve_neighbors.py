@@ -16,7 +16,7 @@ from keymark.operators.follow.marker_properties import add_ignored_regions
 from keymark.operators.keyframes.corrections import camera_now
 from keymark.operators.keyframes.store_keyframe import improve_neighbors
 from keymark.operators.shell import results
-from keymark.operators.shell.keyed_frames import matched_frames, posed_frames
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -36,7 +36,7 @@ def test_storing_a_keyframe_improves_the_found_ones_around_it(found: Group, give
     bpy.ops.keymark.store_keyframe()
     bpy.ops.ed.undo_push(message="Stored")
     take = active_take(scene)
-    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
+    assert (TakeState(take).posed, TakeState(take).matched) == ((7.0,), (1.0, 13.0))
     assert (given.between[-1], given.frames[-1]) == ((0, 12), (0, 12))
     assert [each.index for each in given.takes[-1].keyframes] == [6]
     assert given.floors[-1] == pytest.approx(0.02)
@@ -90,7 +90,7 @@ def test_a_correction_holds_where_nothing_is_found_around_it(found: Group, given
     bpy.context.scene.frame_set(7)
     given.error = InputError("no marker is seen in the footage")
     assert bpy.ops.keymark.store_keyframe() == {"FINISHED"}
-    assert (posed_frames(found), matched_frames(found)) == ((7.0,), (1.0, 13.0))
+    assert (TakeState(found).posed, TakeState(found).matched) == ((7.0,), (1.0, 13.0))
     for frame, posture in zip((1, 13), others, strict=True):
         assert shown(found, frame).minus(posture) == pytest.approx(0.0, abs=1e-6)
     assert results.reading_of(found) is not None
@@ -110,8 +110,8 @@ def test_a_dragged_joint_of_a_found_keyframe_stays_and_improves_its_neighbors_in
     bpy.ops.keymark.move_joint(joint="wrist.L", place=place, sight=camera.sight(place, 0), pushed=pushed)
     bpy.ops.ed.undo_push(message="Moved")
     take = active_take(scene)
-    assert posed_frames(take) == (7.0,)
-    assert matched_frames(take) == (1.0, 13.0)
+    assert TakeState(take).posed == (7.0,)
+    assert TakeState(take).matched == (1.0, 13.0)
     assert given.frames[asked:] == improved
     reached = joint_places(take.armature)[HUMAN.point_names.index("wrist.L")]
     np.testing.assert_allclose(camera.project(reached, 0)[0], camera.project(place, 0)[0], atol=0.5)  # px
@@ -123,5 +123,5 @@ def test_a_turned_found_keyframe_is_posed(found: bpy.types.PropertyGroup, given:
     bpy.context.scene.frame_set(13)
     before = posture_of(bpy.context.scene)
     bpy.ops.keymark.turn_performer(facing="AWAY", fit=False)
-    assert posed_frames(active_take(bpy.context.scene)) == (13.0,)
+    assert TakeState(active_take(bpy.context.scene)).posed == (13.0,)
     assert np.abs(posture_of(bpy.context.scene).minus(before)).max() > 0.5

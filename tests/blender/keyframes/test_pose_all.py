@@ -18,17 +18,8 @@ from keymark.core.take.take import Take
 from keymark.operators.bridge.keyframes import candidate_posture
 from keymark.operators.library import registry_files
 from keymark.operators.shell import results
-from keymark.operators.shell.contradictions import contradictions_at
-from keymark.operators.shell.keyed_frames import (
-    count_found,
-    doubtful_matches,
-    keyframes_of,
-    matched_frames,
-    posed_frames,
-    proposed_frames,
-)
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
-from keymark.operators.takes.panel import next_step
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -38,7 +29,7 @@ Group = bpy.types.PropertyGroup
 def test_every_proposed_frame_is_keyed_as_found(
     found: Group, given: SimpleNamespace, wave_motion: Motion
 ) -> None:
-    assert (keyframes_of(found), posed_frames(found)) == ((1.0, 7.0, 13.0), ())
+    assert (TakeState(found).keyed.all, TakeState(found).posed) == ((1.0, 7.0, 13.0), ())
     assert shown(found, 7).minus(wave_motion.posture[6]) == pytest.approx(0.0, abs=1e-5)
     state = found.matching
     assert (state.reason, state.fit, round(state.floor_found, 6)) == ("It is", 0.75, 0.02)
@@ -56,7 +47,7 @@ def test_doubtful_ones_are_said_and_shown(
     bpy.ops.keymark.pose_all()
     assert "3 keyframes found, 1 of them doubtful" in capfd.readouterr().out
     take = active_take(bpy.context.scene)
-    assert count_found(take) == (3, 1)
+    assert (TakeState(take).found_count, len(TakeState(take).doubtful)) == (3, 1)
     assert bpy.context.scene.frame_current == 7 and take.matching.shown_match == 1
     given.confidences = dict.fromkeys((0, 6, 12), 0.9)
     results.clear_cache()
@@ -70,22 +61,22 @@ def test_what_contradicts_is_doubtful_and_shown_first(unposed: Group, given: Sim
     given.contradictions = {12: ("shin.L",)}
     bpy.ops.keymark.pose_all()
     take = active_take(bpy.context.scene)
-    assert doubtful_matches(take) == [2, 1]
+    assert TakeState(take).doubtful == [2, 1]
     assert bpy.context.scene.frame_current == 13
-    assert [contradictions_at(take, frame) for frame in (7.0, 13.0)] == [(), ("shin.L",)]
+    assert [TakeState(take).contradictions_at(frame) for frame in (7.0, 13.0)] == [(), ("shin.L",)]
     take.follow.use_markers = False
-    assert contradictions_at(take, 13.0) == ()
+    assert TakeState(take).contradictions_at(13.0) == ()
     take.follow.use_markers = True
     bpy.ops.keymark.accept_match()
-    assert contradictions_at(take, 13.0) == () and doubtful_matches(take) == [1]
+    assert TakeState(take).contradictions_at(13.0) == () and TakeState(take).doubtful == [1]
 
 
 def test_frames_are_proposed_where_there_are_none(unposed: Group, given: SimpleNamespace) -> None:
     unposed.proposals.clear()
     bpy.ops.keymark.pose_all()
     take = active_take(bpy.context.scene)
-    found = proposed_frames(take)
-    assert list(matched_frames(take)) == found and len(found) >= 2
+    found = TakeState(take).proposed
+    assert list(TakeState(take).matched) == found and len(found) >= 2
 
 
 def test_what_is_posed_stays_and_is_handed_on(found: Group, given: SimpleNamespace) -> None:
@@ -101,7 +92,7 @@ def test_what_is_posed_stays_and_is_handed_on(found: Group, given: SimpleNamespa
     assert (handed.index, handed.matched, given.frames[-1]) == (6, None, (0, 12))
     assert handed.posture.minus(before) == pytest.approx(0.0, abs=1e-5)
     assert shown(take, 7).minus(before) == pytest.approx(0.0, abs=1e-6)
-    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
+    assert (TakeState(take).posed, TakeState(take).matched) == ((7.0,), (1.0, 13.0))
     assert [match.frame for match in take.matching.matches] == [1.0, 13.0]
 
 
@@ -122,7 +113,7 @@ def test_a_candidate_that_a_person_chose_stays(
         (13.0, False),
     ]
     assert shown(take, 1).minus(wave_motion.posture[12]) == pytest.approx(0.0, abs=1e-5)
-    assert matched_frames(take) == (1.0, 7.0, 13.0)
+    assert TakeState(take).matched == (1.0, 7.0, 13.0)
 
 
 def test_where_all_is_posed_nothing_is_done(found: Group) -> None:
@@ -141,7 +132,7 @@ def test_a_frame_posed_while_the_job_runs_stays_posed(unposed: Group, given: Sim
     given.meanwhile = bpy.ops.keymark.store_keyframe
     bpy.ops.keymark.pose_all()
     take = active_take(bpy.context.scene)
-    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
+    assert (TakeState(take).posed, TakeState(take).matched) == ((7.0,), (1.0, 13.0))
     assert shown(take, 7).minus(before) == pytest.approx(0.0, abs=1e-5)
 
 
@@ -161,13 +152,13 @@ def test_what_fails_leaves_the_scene_as_it_was(found: Group, given: SimpleNamesp
 
 
 def test_a_reconstruction_may_follow_directly(unposed: Group, given: SimpleNamespace) -> None:
-    assert next_step(unposed) == "Next: pose all keyframes"
+    assert TakeState(unposed).next[1] == "pose all keyframes"
     bpy.ops.keymark.pose_all()
     take = active_take(bpy.context.scene)
-    assert next_step(take) == "Next: check the doubtful poses"
+    assert TakeState(take).next[1] == "check the doubtful poses"
     for match in take.matching.matches:
         match.by_hand = True
-    assert next_step(take) == "Next: reconstruct the motion"
+    assert TakeState(take).next[1] == "reconstruct the motion"
     take.method = "interpolation"
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
 
@@ -183,7 +174,7 @@ def test_the_drawn_clip_is_posed(
 ) -> None:
     assert bpy.ops.keymark.pose_all() == {"FINISHED"}
     take = active_take(bpy.context.scene)
-    assert matched_frames(take) == (1.0, 7.0, 13.0)
+    assert TakeState(take).matched == (1.0, 7.0, 13.0)
     for frame in (1, 13):
         bpy.context.scene.frame_set(frame)
         apart = np.linalg.norm(shown_points(take.armature) - wave_motion.points[frame - 1], axis=-1)
@@ -232,7 +223,7 @@ def test_poses_are_found_with_a_library_file(
     write_library(tmp_path / "waves.json", waves)
     assert bpy.ops.keymark.pose_all(library=str(tmp_path / "waves.json")) == {"FINISHED"}
     take = active_take(bpy.context.scene)
-    assert len(matched_frames(take)) >= 2 and take.matching.fit > 0.5
+    assert len(TakeState(take).matched) >= 2 and take.matching.fit > 0.5
     for frame in (1, 13):
         bpy.context.scene.frame_set(frame)
         apart = np.linalg.norm(shown_points(take.armature) - wave_motion.points[frame - 1], axis=-1)
@@ -250,5 +241,5 @@ def test_postures_are_keyed_in_any_rotation_mode(
     bpy.context.view_layer.update()
     assert bpy.ops.keymark.pose_all() == {"FINISHED"}
     take = active_take(bpy.context.scene)
-    assert len(matched_frames(take)) == 3 and not posed_frames(take)
+    assert len(TakeState(take).matched) == 3 and not TakeState(take).posed
     assert np.abs(shown(take, 7).minus(wave_motion.posture[6])[6:]).max() < 1e-4

@@ -16,9 +16,9 @@ from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.bridge.single_frame_fit import fit_to_frame, frame_in_footage
 from keymark.operators.follow.evidence import scene_evidence
-from keymark.operators.shell.contradictions import contradictions_at, note_contradictions
-from keymark.operators.shell.keyed_frames import offered_at, posed_frames, unposed_proposals
+from keymark.operators.shell.contradictions import note_contradictions
 from keymark.operators.shell.results import reading_of
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take, footage_of
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -60,7 +60,7 @@ def test_what_was_fitted_is_stored_and_read_back(opened: bpy.types.Scene) -> Non
     opened.frame_set(1)
     opened.frame_set(4)
     np.testing.assert_allclose(posture_of(opened).minus(fitted), 0.0, atol=1e-4)
-    assert 4.0 in posed_frames(take)
+    assert 4.0 in TakeState(take).posed
 
 
 def test_the_first_keyframe_is_fitted_from_standing(
@@ -114,8 +114,8 @@ def test_posed_proposals_are_counted_wherever_keys_are_moved(opened: bpy.types.S
     take.proposals.clear()
     for frame in (1, 4, 7, 10, 13):
         take.proposals.add().frame = frame
-    assert posed_frames(take) == (1.0, 7.0, 13.0)
-    assert unposed_proposals(take) == [4, 10]
+    assert TakeState(take).posed == (1.0, 7.0, 13.0)
+    assert TakeState(take).unposed == [4, 10]
     opened.frame_set(4)
     bpy.ops.keymark.jump_to_proposal(direction="NEXT", skip_posed=True)
     assert opened.frame_current == 10
@@ -126,8 +126,8 @@ def test_posed_proposals_are_counted_wherever_keys_are_moved(opened: bpy.types.S
         fcurve.update()
     take.keyframe_action.update_tag()
     bpy.context.view_layer.update()
-    assert posed_frames(take) == (1.0, 4.0, 13.0)
-    assert unposed_proposals(take) == [7, 10]
+    assert TakeState(take).posed == (1.0, 4.0, 13.0)
+    assert TakeState(take).unposed == [7, 10]
 
 
 def test_undo_takes_a_stored_keyframe_back(opened: bpy.types.Scene) -> None:
@@ -136,10 +136,10 @@ def test_undo_takes_a_stored_keyframe_back(opened: bpy.types.Scene) -> None:
     bpy.ops.ed.undo_push(message="before")
     bpy.ops.keymark.store_keyframe()
     bpy.ops.ed.undo_push(message="stored")
-    assert 4.0 in posed_frames(take)
+    assert 4.0 in TakeState(take).posed
     bpy.ops.ed.undo()
     take = active_take(bpy.context.scene)
-    assert 4.0 not in posed_frames(take)
+    assert 4.0 not in TakeState(take).posed
 
 
 def test_a_moving_camera_sees_the_pose_from_where_it_is(opened: bpy.types.Scene, wave_motion: Motion) -> None:
@@ -194,11 +194,11 @@ def test_in_two_scenes_the_frame_of_the_one_worked_in_counts(opened: bpy.types.S
 
 def test_posed_frames_are_those_of_this_very_action(opened: bpy.types.Scene, tiny_take: Take) -> None:
     take = active_take(opened)
-    before, name = posed_frames(take), take.keyframe_action.name
+    before, name = TakeState(take).posed, take.keyframe_action.name
     assert len(before) == len(tiny_take.keyframes)
     bpy.data.actions.remove(take.keyframe_action)
     take.keyframe_action = bpy.data.actions.new(name)
-    assert take.keyframe_action.name == name and posed_frames(take) == ()
+    assert take.keyframe_action.name == name and TakeState(take).posed == ()
 
 
 def test_a_frame_between_those_of_a_varying_rate_says_which_to_go_to(opened: bpy.types.Scene) -> None:
@@ -225,16 +225,16 @@ def fitted(opened: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
 
 def test_a_fitted_frame_offers_other_poses_and_keys_none(fitted: bpy.types.Scene) -> None:
     take = active_take(fitted)
-    offered = offered_at(take, 4.0)
+    offered = TakeState(take).offered_at(4.0)
     assert offered is not None and offered.chosen == 0
-    assert 4.0 not in posed_frames(take)
+    assert 4.0 not in TakeState(take).posed
     first = posture_of(fitted)
     assert bpy.ops.keymark.show_offered(candidate=1) == {"FINISHED"}
     assert np.abs(posture_of(fitted).minus(first)).max() > 0.05
-    assert offered_at(take, 4.0).chosen == 1
+    assert TakeState(take).offered_at(4.0).chosen == 1
     assert bpy.ops.keymark.show_offered(candidate=0) == {"FINISHED"}
     np.testing.assert_allclose(posture_of(fitted).minus(first), 0.0, atol=1e-4)
-    assert offered_at(take, 5.0) is None
+    assert TakeState(take).offered_at(5.0) is None
     with pytest.raises(RuntimeError, match="candidate must be 0 to"):
         bpy.ops.keymark.show_offered(candidate=9)
 
@@ -243,8 +243,8 @@ def test_storing_the_pose_ends_the_choice(fitted: bpy.types.Scene) -> None:
     take = active_take(fitted)
     note_contradictions(take, 4.0, ("trunk",))
     bpy.ops.keymark.store_keyframe()
-    assert offered_at(take, 4.0) is None
-    assert contradictions_at(take, 4.0) == ()
+    assert TakeState(take).offered_at(4.0) is None
+    assert TakeState(take).contradictions_at(4.0) == ()
     with pytest.raises(RuntimeError, match="offers no poses"):
         bpy.ops.keymark.show_offered(candidate=0)
 
@@ -256,15 +256,15 @@ def test_what_contradicts_is_kept_until_the_frame_is_fitted_otherwise(fitted: bp
     bpy.ops.ed.undo_push(message="noted")
     fitted.frame_set(1)
     fitted.frame_set(4)
-    assert contradictions_at(take, 4.0) == (name,)
+    assert TakeState(take).contradictions_at(4.0) == (name,)
     bpy.ops.keymark.fit_pose(start="ANEW")
-    assert contradictions_at(active_take(fitted), 4.0) == ()
+    assert TakeState(active_take(fitted)).contradictions_at(4.0) == ()
     bpy.ops.ed.undo_push(message="fitted")
     bpy.ops.ed.undo()
-    assert contradictions_at(active_take(bpy.context.scene), 4.0) == (name,)
+    assert TakeState(active_take(bpy.context.scene)).contradictions_at(4.0) == (name,)
 
 
 def test_a_pose_that_is_only_brought_nearer_offers_no_other(opened: bpy.types.Scene) -> None:
     opened.frame_set(4)
     bpy.ops.keymark.fit_pose(start="POSE")
-    assert offered_at(active_take(opened), 4.0) is None
+    assert TakeState(active_take(opened)).offered_at(4.0) is None

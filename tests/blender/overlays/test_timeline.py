@@ -23,8 +23,8 @@ from keymark.operators.overlays.timeline import (
     relative,
     strip,
 )
-from keymark.operators.shell.keyed_frames import is_posed
 from keymark.operators.shell.results import keep_reading, keep_review, keep_speed
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -64,7 +64,7 @@ def test_proposals_are_filled_once_posed(take: bpy.types.PropertyGroup) -> None:
     (outline,), (filled,) = items_of(take, Stroke), items_of(take, Fill)
     assert len(outline.segments) == 3 * 4
     assert filled.corners.mean(axis=1)[:, 0] == pytest.approx([30.0, 90.0])
-    assert [is_posed(take, frame) for frame in (1.0, 4.0, 7.4)] == [True, False, True]
+    assert [TakeState(take).is_posed(frame) for frame in (1.0, 4.0, 7.4)] == [True, False, True]
 
 
 def test_the_graph_rises_where_the_markers_move(take: bpy.types.PropertyGroup) -> None:

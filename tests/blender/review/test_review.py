@@ -20,8 +20,8 @@ from keymark.operators.bridge.keyframes import keyed_frames
 from keymark.operators.bridge.review_curves import GROUP, SUFFIX, curve_path, write_review_curves
 from keymark.operators.reconstruct.live_preview import show_review
 from keymark.operators.review.weak_frames import look_from_side, reason_words
-from keymark.operators.shell.keyed_frames import is_posed
 from keymark.operators.shell.results import clear_review, review_of
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 from mathutils import Matrix, Quaternion, Vector
 
@@ -176,7 +176,7 @@ def test_the_reconstructed_pose_becomes_a_keyframe(
     assert keyed_frames(take.armature, take.keyframe_action, HUMAN) == tuple(sorted({*before, 4.0}))
     assert shown_points(take.armature) == pytest.approx(wave_motion.points[3], abs=1e-4)
     assert posed_extremities(take.armature, HUMAN, take.keyframe_action) == frozenset()
-    assert [is_posed(take, weak.frame) for weak in take.review.weak_frames] == [True, True]
+    assert [TakeState(take).is_posed(weak.frame) for weak in take.review.weak_frames] == [True, True]
     assert len(curve(take, "Confidence").keyframe_points) == 13
 
 

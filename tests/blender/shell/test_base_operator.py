@@ -8,7 +8,7 @@ from keymark.core.errors import InputError
 from keymark.operators.shell.base_operator import BaseOperator, Unchanged, remove_active
 from keymark.operators.shell.job_operator import cancel_click, cancel_job
 
-CONTEXT = SimpleNamespace()
+CONTEXT = SimpleNamespace(scene=SimpleNamespace(keymark=SimpleNamespace(takes=())))
 
 
 class Operator(BaseOperator):
@@ -41,7 +41,7 @@ def test_the_first_unmet_requirement_is_the_tooltip() -> None:
 
     class Demanding(Operator):
         tooltips = []
-        requirements = (lambda context: None, lambda context: "Load it", lambda context: "Save it")
+        requirements = (lambda *_: None, lambda *_: "Load it", lambda *_: "Save it")
 
     assert not Demanding.poll(CONTEXT)
     assert Demanding.tooltips == ["Load it"]

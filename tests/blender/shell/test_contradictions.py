@@ -4,8 +4,9 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from keymark.operators.shell.contradictions import contradictions_at, note_contradictions
+from keymark.operators.shell.contradictions import note_contradictions
 from keymark.operators.shell.panel import draw_contradictions
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 
 Group = bpy.types.PropertyGroup
@@ -44,7 +45,7 @@ def take(opened: bpy.types.Scene) -> Group:
 def drawn(scene: bpy.types.Scene, frame: int) -> str:
     scene.frame_set(frame)
     layout = Layout()
-    draw_contradictions(layout, Context(scene), active_take(scene))
+    draw_contradictions(layout, Context(scene), TakeState(active_take(scene)))
     return " ".join(layout.lines)
 
 
@@ -56,22 +57,22 @@ def test_it_is_said_at_its_frame_alone(take: Group, opened: bpy.types.Scene) -> 
 
 def test_a_frame_that_is_looked_at_again_says_the_newest(take: Group) -> None:
     note_contradictions(take, 5.0, ("trunk",))
-    assert contradictions_at(take, 5.0) == ("trunk",)
+    assert TakeState(take).contradictions_at(5.0) == ("trunk",)
     note_contradictions(take, 5.0, ())
-    assert contradictions_at(take, 5.0) == () and not len(take.contradictions)
+    assert TakeState(take).contradictions_at(5.0) == () and not len(take.contradictions)
 
 
 def test_what_is_followed_no_more_contradicts_no_more(take: Group) -> None:
     take.follow.use_keypoints = take.follow.use_tracks = False
-    assert contradictions_at(take, 5.0) == ("shin.L",)
+    assert TakeState(take).contradictions_at(5.0) == ("shin.L",)
     take.follow.use_keypoints = True
     take.markers.remove([marker.name for marker in take.markers].index("shin.L"))
-    assert contradictions_at(take, 5.0) == ("wrist.R",)
+    assert TakeState(take).contradictions_at(5.0) == ("wrist.R",)
     take.reading_key = "another"
-    assert contradictions_at(take, 5.0) == ()
+    assert TakeState(take).contradictions_at(5.0) == ()
 
 
 def test_storing_a_keyframe_settles_it(take: Group, opened: bpy.types.Scene) -> None:
     opened.frame_set(5)
     bpy.ops.keymark.store_keyframe()
-    assert contradictions_at(active_take(opened), 5.0) == ()
+    assert TakeState(active_take(opened)).contradictions_at(5.0) == ()

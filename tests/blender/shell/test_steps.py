@@ -3,8 +3,9 @@
 import bpy
 import pytest
 from keymark.core.take.take import Take
-from keymark.operators.shell.notices import give_notices, notices_of
-from keymark.operators.shell.steps import STEPS, is_open
+from keymark.operators.shell.notices import give_notices
+from keymark.operators.shell.steps import is_open
+from keymark.operators.shell.take_state import STEPS, TakeState, digest_of
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -27,8 +28,9 @@ def test_the_step_is_open_that_the_work_has_come_to(tiny_take: Take) -> None:
     take.motion_action = bpy.data.actions.new("Motion")
     assert opened_steps(take) == ["reconstruct"]
     take.finish.action = bpy.data.actions.new("Final")
+    take.finish.made_from = digest_of(take.motion_action)
     assert opened_steps(take) == ["character"]
-    take.finish.outdated = True
+    take.finish.made_from = "earlier"
     assert opened_steps(take) == ["reconstruct"]
     bpy.data.objects.remove(take.armature)
     assert opened_steps(take) == ["actor"]
@@ -67,11 +69,11 @@ def test_newer_notices_replace_those_about_the_same(opened: bpy.types.Scene) -> 
     take = active_take(opened)
     give_notices(take, "finish", "bake", ("the left foot slides", "the right one too"))
     give_notices(take, "finish", "asset", ("no catalog",))
-    assert notices_of(take, "finish") == ["the left foot slides", "the right one too", "no catalog"]
+    assert TakeState(take).notices("finish") == ["the left foot slides", "the right one too", "no catalog"]
     give_notices(take, "finish", "bake", ("the left foot slides less",))
-    assert notices_of(take, "finish") == ["no catalog", "the left foot slides less"]
+    assert TakeState(take).notices("finish") == ["no catalog", "the left foot slides less"]
     give_notices(take, "finish", "bake")
-    assert notices_of(take, "finish") == ["no catalog"] and notices_of(take, "review") == []
+    assert TakeState(take).notices("finish") == ["no catalog"] and TakeState(take).notices("review") == []
 
 
 def test_a_pose_beyond_the_skeleton_is_said_while_it_is_keyed(opened: bpy.types.Scene) -> None:
@@ -84,10 +86,10 @@ def test_a_pose_beyond_the_skeleton_is_said_while_it_is_keyed(opened: bpy.types.
         thigh.scale = (1.0, 1.0 + turned, 1.0)
         bpy.context.view_layer.update()
         bpy.ops.keymark.store_keyframe()
-        said = notices_of(take, "keyframes")
+        said = TakeState(take).notices("keyframes")
         assert len(said) == (turned > 0.0)
         assert all("beyond what the skeleton can do" in sentence for sentence in said)
     thigh.rotation_mode = mode
     give_notices(take, "keyframes", "pose at 5", ("of a key",), frame=5.0)
     give_notices(take, "keyframes", "pose at 6", ("of no key",), frame=6.0)
-    assert notices_of(take, "keyframes") == ["of a key"]
+    assert TakeState(take).notices("keyframes") == ["of a key"]

@@ -8,10 +8,9 @@ import pytest
 from _scene_state import differences, scene_state
 from keymark.core.take import examples
 from keymark.core.take.examples import COPIED, SHIPPED
-from keymark.operators.shell.keyed_frames import posed_frames
+from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 from keymark.operators.takes import open_take as open_example
-from keymark.operators.takes.panel import next_step
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -28,9 +27,9 @@ def test_an_example_is_ready_to_reconstruct(name: str) -> None:
     before = files(SHIPPED)
     assert bpy.ops.keymark.open_example(example=name) == {"FINISHED"}
     take = active_take(bpy.context.scene)
-    assert next_step(take) == "Next: reconstruct the motion"
+    assert TakeState(take).next[1] == "reconstruct the motion"
     assert take.camera == bpy.context.scene.camera and take.armature is not None
-    assert len(posed_frames(take)) == KEYFRAMES[name]
+    assert len(TakeState(take).posed) == KEYFRAMES[name]
     assert take.follow.use_contours
     assert bool(take.markers) == (name == AEROBIC) and all(marker.is_picked for marker in take.markers)
     assert take.follow.use_keypoints == (name == GREETING) and len(take.follow.files) == 1
@@ -68,9 +67,9 @@ def test_a_copy_is_a_take_of_its_own(tmp_path: Path) -> None:
     assert {file.name for file in tmp_path.iterdir()} == {"greeting"}
     take = active_take(bpy.context.scene)
     assert Path(bpy.path.abspath(take.clip.filepath)) == copy / "clip.mp4"
-    frames = posed_frames(take)
+    frames = TakeState(take).posed
     bpy.ops.keymark.open_take(filepath=str(copy))
-    assert posed_frames(active_take(bpy.context.scene)) == frames
+    assert TakeState(active_take(bpy.context.scene)).posed == frames
 
 
 def test_a_copy_that_is_there_already_is_opened(tmp_path: Path) -> None:

@@ -7,8 +7,8 @@ import bpy
 import pytest
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import write_take
+from keymark.operators.shell.take_state import TakeState, digest_of
 from keymark.operators.shell.takes import active_take, unique_name
-from keymark.operators.takes.panel import next_step
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -163,7 +163,7 @@ def test_the_next_step_follows_what_is_there(tiny_take: Take) -> None:
     take, said = active_take(scene), []
 
     def says(words: str) -> bool:
-        said.append(next_step(take))
+        said.append(TakeState(take).next[1])
         return words in said[-1]
 
     assert says("where the camera stood")
@@ -193,7 +193,7 @@ def test_the_next_step_follows_what_is_there(tiny_take: Take) -> None:
     assert says("reconstruct again")
     take.review.confidence = 0.8
     assert says("review, then a character")
-    take.finish.action = take.keyframe_action
+    take.finish.action, take.finish.made_from = take.keyframe_action, digest_of(take.motion_action)
     assert says("export")
     take.clip_state.missing = True
     assert says("find the clip")

@@ -17,7 +17,7 @@ import bpy  # noqa: E402
 import steps_correct  # noqa: E402
 import steps_first  # noqa: E402
 from driver import Camera, Steps, drive, expect, turns  # noqa: E402
-from person import EXTENSION, Person, keymark  # noqa: E402
+from person import EXTENSION, Person  # noqa: E402
 from steps_prepare import choose_file  # noqa: E402
 from steps_reconstruct import job  # noqa: E402
 
@@ -52,10 +52,10 @@ def animate(person: Person, clip: Path) -> Steps[None]:
 
 def corrected(person: Person) -> Steps[None]:
     """A wrist dragged in two poses, the doubtful ones first, and the character performs that motion."""
-    hands, frames = person.hands, keymark("operators.shell.keyed_frames")
+    hands = person.hands
     for number in range(2):
         matching = person.take.matching
-        if frames.doubtful_matches(person.take):
+        if person.state.doubtful:
             yield from hands.click_button("keymark.jump_to_match", "only_doubtful=True")
         else:  # a click on a line of the list
             matching.shown_match = number + 1
@@ -64,7 +64,7 @@ def corrected(person: Person) -> Steps[None]:
         frame = person.scene.frame_current
         yield from steps_correct.begun(person)
         yield from steps_correct.stored(person, steps_correct.dragged, "wrist.L")
-        expect(frame in frames.posed_frames(person.take), f"frame {frame} is not put right")
+        expect(frame in person.state.posed, f"frame {frame} is not put right")
         hands.clicks += 1  # the drag
     yield from job(person, "keymark.reconstruct")
     yield from steps_first.retarget(person)

@@ -51,6 +51,11 @@ class Person:
     def take(self) -> bpy.types.PropertyGroup:
         return keymark("operators.shell.takes").active_take(self.scene)
 
+    @property
+    def state(self) -> Any:
+        """What the active take has come to, now."""
+        return keymark("operators.shell.take_state").TakeState(self.take)
+
     def look(self, name: str) -> Steps[None]:
         yield from turns(4)
         self.camera.shoot(name)

@@ -19,12 +19,11 @@ TILT_DEGREES, HEIGHT_M = 3.0, 0.2
 
 def find_camera(person: Person) -> Steps[None]:
     """Lines are asked for before markers, drawn, forgotten by Esc, taken by Enter, and undone by one step."""
-    step = keymark("operators.takes.panel").next_step
-    expect("camera" in step(person.take), f"after loading, the next step is '{step(person.take)}'")
+    expect("camera" in person.state.next[1], f"after loading, '{person.state.next[1]}' is next")
     yield from person.changes_nothing("forgetting lines", lambda: _draw(person, "ESC"))
     yield from person.undoable("finding the camera", lambda: _draw(person, "RET"))
     _expect_near(person)
-    expect("camera" not in step(person.take), f"with the camera, the next step is '{step(person.take)}'")
+    expect("camera" not in person.state.next[1], f"with the camera, '{person.state.next[1]}' is next")
     person.scene.keymark.overlays.show_floor_grid = True
     person.step_done("Show the floor")
     yield from person.look("camera")

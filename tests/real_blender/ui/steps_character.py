@@ -93,12 +93,17 @@ def _again(person: Person) -> Steps[None]:
     """A newer final Action marks the result; retargeting again writes into the same Action."""
     first, count = person.take.characters[0].results[0].action.name, len(bpy.data.actions)
     yield from job(person, "keymark.bake_motion")
-    expect(person.take.characters[0].results[0].outdated, "the result is not marked as outdated")
+    expect(
+        person.state.is_outdated(person.take.characters[0].results[0]), "the result is not marked as outdated"
+    )
     yield from person.hands.move_over("VIEW_3D")
     yield from person.look("character_outdated")
     yield from job(person, RETARGET)
     result = person.take.characters[0].results[0]
-    expect(not result.outdated and result.action.name == first, "the result was not made again")
+    expect(
+        not person.state.is_outdated(result) and result.action.name == first,
+        "the result was not made again",
+    )
     expect(len(bpy.data.actions) == count, "retargeting again left another Action")
     yield from person.undoable(
         "marking the asset", lambda: person.hands.click_button("keymark.mark_result_asset")

@@ -52,7 +52,7 @@ def stored(person: Person, drag: Callable[[Person, str], Steps[None]], joint: st
     bpy.context.view_layer.update()
     off = float(np.linalg.norm(place(person, joint) - shown))
     expect(off < SAME_M, f"the joint is stored {off:.4f} m from where it was dragged")
-    keyed = keymark("operators.shell.keyed_frames").posed_frames(person.take)
+    keyed = person.state.posed
     expect(person.scene.frame_current in keyed, "the keyframe is gone")
 
 
@@ -67,7 +67,7 @@ def given_up(person: Person, joint: str) -> Steps[None]:
 
 
 def go_to_keyframe(person: Person) -> Steps[None]:
-    frames = keymark("operators.shell.keyed_frames").posed_frames(person.take)
+    frames = person.state.posed
     person.scene.frame_set(round(frames[len(frames) // 2]))
     person.step_done("Go to a keyframe")
     yield from turns(3)

@@ -23,10 +23,9 @@ LIMBS = {"elbow.L": "wrist.L", "elbow.R": "wrist.R", "knee.L": "ankle.L", "knee.
 
 def doubtful(person: Person) -> Steps[None]:
     """Go from one doubtful frame to the next, and decide each; at least the least sure one."""
-    found = keymark("operators.shell.keyed_frames")
-    before = found.count_found(person.take)[1]
+    before = len(person.state.doubtful)
     for number in range(MOST_FRAMES):
-        waiting = found.doubtful_matches(person.take)
+        waiting = person.state.doubtful
         if not waiting and number:
             break
         if not waiting:  # whoever finds none looks at the least sure one
@@ -38,7 +37,7 @@ def doubtful(person: Person) -> Steps[None]:
         yield from _decide(person)
         if number == 0:
             yield from person.look("decided")
-    left = found.count_found(person.take)[1]
+    left = len(person.state.doubtful)
     print(f"{before} keyframes were doubtful, {left} are", flush=True)
     expect(before == 0 or left < before, f"of {before} doubtful keyframes {left} are left")
     yield from person.look("corrected")
@@ -65,7 +64,7 @@ def _decide(person: Person) -> Steps[None]:
     if len(done) == 1:
         yield from hands.click_button("keymark.accept_match")
     print(f"Frame {frame}: {', '.join(done)}", flush=True)
-    now = keymark("operators.shell.keyed_frames").doubtful_matches(person.take)
+    now = person.state.doubtful
     decided = all(round(person.take.matching.matches[index].frame) != frame for index in now)
     expect(decided, f"frame {frame} is doubtful still")
 

@@ -1,7 +1,7 @@
 """A session's middle without posing: found keyframes, a choice among candidates, and the motion."""
 
 from driver import Steps, expect, turns
-from person import Person, keymark
+from person import Person
 from steps_finish import shown_points, write_points
 from steps_reconstruct import cancelled, job
 
@@ -10,34 +10,34 @@ OTHER = 1  # Candidate that is tried instead of the first one
 
 def match(person: Person, library: str) -> Steps[None]:
     """Find poses with a named library alone, and think better of it."""
-    frames, matching = keymark("operators.shell.keyed_frames"), person.take.matching
+    matching = person.take.matching
     matching.library = library
     person.step_done("Choose the library")
     yield from person.undoable("finding poses with it", lambda: job(person, "keymark.pose_all"))
     expect(len(person.take.matching.matches) >= 2, f"{library} gave too few keyframes")
-    expect(not frames.posed_frames(person.take), "frames count as posed that nobody posed")
+    expect(not person.state.posed, "frames count as posed that nobody posed")
     yield from person.look("matched")
     yield from person.undoable("removing what was found", lambda: person.hands.invoke("keymark.remove_found"))
-    expect(not frames.keyframes_of(person.take), "found keyframes are left")
+    expect(not person.state.keyed.all, "found keyframes are left")
     person.take.matching.library = "auto"
     person.step_done("Choose all libraries")
 
 
 def pose_all(person: Person) -> Steps[None]:
     """Pose all proposed frames by one button, cancelled by Esc once."""
-    name, frames = "keymark.pose_all", keymark("operators.shell.keyed_frames")
+    name = "keymark.pose_all"
     yield from person.changes_nothing("cancelling Pose All", lambda: cancelled(person, name))
     yield from person.undoable("posing all", lambda: job(person, name))
-    found = frames.matched_frames(person.take)
+    found = person.state.matched
     expect(len(found) >= 2, f"keyframes were found at {found}")
-    expect(not frames.unposed_proposals(person.take), "proposed frames are left without a pose")
-    expect(not frames.posed_frames(person.take), "frames count as posed that nobody posed")
+    expect(not person.state.unposed, "proposed frames are left without a pose")
+    expect(not person.state.posed, "frames count as posed that nobody posed")
     yield from person.look("posed_all")
 
 
 def choose(person: Person) -> Steps[None]:
     """Look at a doubtful frame from the side, take another candidate, and think better of it."""
-    count, doubtful = keymark("operators.shell.keyed_frames").count_found(person.take)
+    count, doubtful = person.state.found_count, person.state.doubtful
     if doubtful:
         yield from person.hands.click_button("keymark.jump_to_match", "only_doubtful=True")
     else:
@@ -53,7 +53,7 @@ def choose(person: Person) -> Steps[None]:
         yield from person.look("replaced")
         yield from _take(person, 0)
     yield from person.hands.click_button("keymark.look_from_side")
-    left = keymark("operators.shell.keyed_frames").count_found(person.take)[0]
+    left = person.state.found_count
     expect(left == count, f"of {count} found keyframes {left} are left")
 
 

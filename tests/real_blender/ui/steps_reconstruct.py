@@ -30,7 +30,7 @@ def keyframes(person: Person) -> Steps[None]:
             # Blender's undo and redo show what is keyed: the pose is there still.
         else:
             yield from _store(person)
-    keyed = keymark("operators.shell.keyed_frames").posed_frames(person.take)
+    keyed = person.state.posed
     expect(len(keyed) == len(person.known.keyframes), f"keyframes are stored at {keyed}")
     yield from person.look("keyframes")
 
