@@ -16,6 +16,7 @@ from ...core.take.character_settings import CharacterFile
 from ..actor.take_actor import size_actor
 from ..bridge.camera_placement import still_camera
 from ..bridge.footage_camera import set_still_pose
+from ..bridge.object_space import moved_by
 from ..character.add_character import add_rigify_character
 from ..character.characters import add_character
 from ..character.retarget import keep_retargeted, retarget_take
@@ -237,7 +238,4 @@ def _of_performers(take: bpy.types.PropertyGroup) -> Iterator[bpy.types.Object]:
     roots = [take.armature, *(character.armature for character in take.characters)]
     for root in filter(None, roots):
         yield root
-        yield from root.children_recursive
-        for each in take.id_data.objects:
-            if any(getattr(modifier, "object", None) == root for modifier in each.modifiers):
-                yield each
+        yield from moved_by(take.id_data, root)

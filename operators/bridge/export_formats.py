@@ -30,6 +30,7 @@ class ExportFormat:
     """Class name of the exporter that an add-on registers; empty where Blender has it built in."""
     addon: str = ""  # name of the add-on, as in the Preferences
     built_in: bool = False  # whether Keymark writes it itself
+    of_actor: bool = False  # whether it holds the performer's own motion alone
 
     def missing(self) -> str | None:
         """Why this Blender cannot write the format; None where it can."""
@@ -101,9 +102,10 @@ FORMATS = {
     "KEYMARK": ExportFormat(
         "Keymark Motion",
         ".json",
-        "Write motion.json, as Keymark keeps it, for its command line and programs of your own",
+        "Write the performer's motion.json, as Keymark keeps it, for its command line and your programs",
         _write_keymark,
         built_in=True,
+        of_actor=True,
     ),
     "BVH": ExportFormat(
         "BVH",
@@ -244,7 +246,8 @@ def _only(
         for one in selected:
             one.select_set(False, view_layer=layer)
         for one in (*along, chosen):
-            one.select_set(True, view_layer=layer)
+            if one.name in layer.objects:
+                one.select_set(True, view_layer=layer)
         layer.objects.active = chosen
         yield
     finally:

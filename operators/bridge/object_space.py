@@ -83,3 +83,13 @@ def joint_places(armature_object: bpy.types.Object) -> Array:
         bone, end = _ENDS[stem]
         places.append(matrix @ getattr(bones[f"{bone}{dot}{side}"], end))
     return np.array(places, dtype=np.float64)
+
+
+def moved_by(scene: bpy.types.Scene, armature_object: bpy.types.Object) -> list[bpy.types.Object]:
+    """What an armature moves in a scene: its children, and what it deforms."""
+    deformed = [
+        each
+        for each in scene.objects
+        if any(getattr(modifier, "object", None) == armature_object for modifier in each.modifiers)
+    ]
+    return list(dict.fromkeys([*armature_object.children_recursive, *deformed]))

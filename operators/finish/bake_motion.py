@@ -8,15 +8,18 @@ import bpy
 
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
+from ...core.files.fields import listed
+from ...core.progress import run as run_job
 from ..bridge.actions import assign_action
 from ..bridge.assets.catalogs import catalog_file, ensure_catalog
-from ..bridge.export_formats import FORMATS, export_motion
+from ..bridge.export_formats import FORMATS, ExportFormat, export_motion
+from ..bridge.object_space import moved_by
 from ..shell.base_operator import BaseOperator, warn, warn_if_outdated
-from ..shell.fields import HIDDEN, Choice, Text
+from ..shell.fields import HIDDEN, Choice, Switch, Text
 from ..shell.job_operator import JobOperator
 from ..shell.notices import give_notices
-from ..shell.requirements import actor, idle, motion
-from ..shell.take_state import digest_of
+from ..shell.requirements import actor, idle, motion, of_take
+from ..shell.take_state import TakeState, digest_of
 from ..shell.takes import active_take, actor_of, refresh_asset_browsers, take_by_identifier
 
 if TYPE_CHECKING:
@@ -127,8 +130,11 @@ class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, f"'{action.name}' is an asset now; save the .blend to keep it")
 
 
+performance = of_take(lambda state: state.performers, "Reconstruct the motion first")
+
+
 class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
-    """Write the actor's armature with its motion, the final Action if there is one, for another program"""
+    """Write somebody's motion for another program; the actor's is baked first where that is due"""
 
     bl_label = "Export Motion"
     bl_options = {"REGISTER"}
@@ -139,10 +145,12 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         items=[(kind, listed.name, listed.description) for kind, listed in FORMATS.items()],
         default="BVH",
     )
+    who: Text("Who", "Name of the armature whose motion is written; the panel's choice where empty")
+    bake: Switch("Bake", "Bake the final Action first where there is none of the motion", default=True)
     filepath: Text("File", "File to write", subtype="FILE_PATH")
     filter_glob: Text(default=";".join(f"*{listed.suffix}" for listed in FORMATS.values()), options=HIDDEN)
 
-    requirements = (actor, motion, idle)
+    requirements = (performance, idle)
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
@@ -150,11 +158,17 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         return chosen.missing() or chosen.description
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        folder = "//" if bpy.data.filepath else ""
-        name = bpy.path.clean_name(active_take(context.scene).name)
-        self.filepath = bpy.path.abspath(folder + name + FORMATS[self.format].suffix)
+        take, self.who = active_take(context.scene), ""
+        folder, name = "//" if bpy.data.filepath else "", f"{take.name} {take.finish.who}"
+        self.filepath = bpy.path.abspath(folder + bpy.path.clean_name(name) + FORMATS[self.format].suffix)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        take, of_actor = active_take(context.scene), FORMATS[self.format].of_actor
+        draw_who(self.layout, take, of_actor)
+        if not of_actor and take.armature is not None and take.finish.who == take.armature.name:
+            self.layout.prop(self, "bake")
 
     def check(self, context: bpy.types.Context) -> bool:
         path = bpy.path.ensure_ext(self.filepath, FORMATS[self.format].suffix)
@@ -163,24 +177,55 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         return changed
 
     def run(self, context: bpy.types.Context) -> None:
-        from ..bridge.actor_lengths import read_body
-        from ..bridge.rig import absence_note, motion_frames
-
         if not self.filepath:
             raise InputError("no file is named to export to; give filepath")
-        chosen = FORMATS[self.format]
+        chosen, scene = FORMATS[self.format], context.scene
         missing = chosen.missing()
         if missing:
             raise InputError(f"{chosen.name} cannot be written: {missing}")
-        take = active_take(context.scene)
-        action = take.finish.action or take.motion_action
-        body, render = read_body(take.armature, HUMAN), context.scene.render
-        frames = motion_frames(take.armature, action, body)
+        take = active_take(scene)
+        performing = {each.name: (each, action) for each, action in TakeState(take).performers}
+        actors = [take.armature.name] if chosen.of_actor and take.armature is not None else []
+        name = next(iter([*actors, self.who or take.finish.who]))
+        if name not in performing:
+            raise InputError(f"'{name}' performs nothing; valid is {listed(performing)}")
+        who, action = performing[name]
         path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), chosen.suffix))
-        span = int(frames[0]), int(frames[-1])
-        export_motion(context.scene, take.armature, action, span, chosen, path)
+        if who == take.armature:
+            self._write_actor(scene, take, chosen, path)
+        else:
+            span = int(action.frame_range[0]), int(action.frame_range[1])
+            export_motion(scene, who, action, span, chosen, path, moved_by(scene, who))
+            if TakeState(take).has_outdated_result:
+                warn(self, f"'{who.name}' performs an earlier motion; retarget again for the newest")
+        self.report({"INFO"}, f"Wrote what '{who.name}' performs: {path}")
+
+    def _write_actor(
+        self, scene: bpy.types.Scene, take: bpy.types.PropertyGroup, chosen: ExportFormat, path: Path
+    ) -> None:
+        """Write the actor's final Action, baked anew where there is none of the newest motion."""
+        from ..bridge.actor_lengths import read_body
+        from ..bridge.rig import absence_note, motion_frames
+
+        if self.bake and not chosen.of_actor and TakeState(take).newest[0] == "MOTION":
+            keep_baked(self, scene, run_job(bake(scene)))
+            if not bpy.app.background:
+                bpy.ops.ed.undo_push(message="Bake Final Action")
+        action = take.finish.action or take.motion_action
+        body, render = read_body(take.armature, HUMAN), scene.render
+        frames = motion_frames(take.armature, action, body)
+        export_motion(scene, take.armature, action, (int(frames[0]), int(frames[-1])), chosen, path)
         warn_if_outdated(self, take)
         away = absence_note(take.armature, take.motion_action, body, render.fps / render.fps_base)
         if away:
             warn(self, away)
-        self.report({"INFO"}, f"Wrote {path}")
+
+
+def draw_who(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup, of_actor: bool = False) -> None:
+    """Draw the choice of whose motion is exported; of a format that holds the actor's alone, that it does."""
+    row = layout.row()
+    row.use_property_split, row.use_property_decorate = True, False
+    if of_actor:
+        row.label(text="The performer's own motion", icon="INFO")
+    else:
+        row.prop(take.finish, "who")

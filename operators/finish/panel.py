@@ -7,6 +7,7 @@ from ..reconstruct.panel import draw_shown_action
 from ..shell.panel import Popover, StepPanel, draw_progress, draw_sentence
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take
+from .bake_motion import draw_who
 
 
 class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
@@ -32,18 +33,20 @@ class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
     def draw_step(self, context: bpy.types.Context, body: bpy.types.UILayout, state: TakeState) -> None:
         take = state.take
         column = body.column()
-        row = column.row()
-        row.scale_y = 1.4
-        if not draw_progress(row, context, "keymark.bake_motion"):
-            row.operator("keymark.bake_motion", icon="ACTION")
-        if take.finish.action is not None and take.armature is not None:
-            _draw_result(column, context, state)
-        column.popover("KEYMARK_PT_asset", icon="ASSET_MANAGER")
+        if state.performers:
+            draw_who(column, take)
         grid = column.grid_flow(columns=2, even_columns=True, align=True)
         for kind, listed in FORMATS.items():
             each = grid.row()
             each.enabled = listed.missing() is None  # its tooltip says why
             each.operator("keymark.export_motion", text=listed.name, icon="EXPORT").format = kind
+        column.separator()
+        row = column.row()
+        if not draw_progress(row, context, "keymark.bake_motion"):
+            row.operator("keymark.bake_motion", icon="ACTION")
+        if take.finish.action is not None and take.armature is not None:
+            _draw_result(column, context, state)
+        column.popover("KEYMARK_PT_asset", icon="ASSET_MANAGER")
 
 
 def _draw_result(column: bpy.types.UILayout, context: bpy.types.Context, state: TakeState) -> None:

@@ -3,6 +3,7 @@
 import bpy
 
 from ..shell.fields import HIDDEN, Choice, Group, Integer, Number, Switch, Text
+from ..shell.take_state import TakeState
 
 KEYS = (
     ("TOLERANCE", "Within Tolerance", "As few keys as keep the body within the tolerance in every frame"),
@@ -12,6 +13,28 @@ SHARED = (
     ("PER_BONE", "Per Bone", "Each bone has keys where it needs them; the fewest keys"),
     ("WHOLE_POSE", "Whole Pose", "All bones have keys on the same frames, pose by pose"),
 )
+_performers: list[tuple[str, str, str, str, int]] = []  # Blender keeps no copy of the strings
+
+
+def _names(finish: bpy.types.PropertyGroup) -> list[str]:
+    take = next(take for take in finish.id_data.keymark.takes if take.finish == finish)
+    return [each.name for each, _ in TakeState(take).performers]
+
+
+def _items(finish: bpy.types.PropertyGroup, _context: object) -> list[tuple[str, str, str, str, int]]:
+    words = "Write what this armature performs, with what it moves"
+    names = _names(finish) or [""]
+    _performers[:] = [(name, name, words, "ARMATURE_DATA", index) for index, name in enumerate(names)]
+    return _performers
+
+
+def _chosen(finish: bpy.types.PropertyGroup) -> int:
+    names = _names(finish)
+    return names.index(finish.performer) if finish.performer in names else 0
+
+
+def _choose(finish: bpy.types.PropertyGroup, index: int) -> None:
+    finish.performer = _names(finish)[index] if index else ""
 
 
 class KEYMARK_PG_finish(bpy.types.PropertyGroup):
@@ -45,6 +68,8 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
         precision=0,
         step=100,
     )
+    performer: Text("Performer", "Whose motion is exported; empty for the first", options=HIDDEN)
+    who: Choice("Who", "Whose motion is exported", items=_items, get=_chosen, set=_choose)
     action: Group(
         name="Final",
         description="The Action that holds the finished motion, in keys of your own to edit",

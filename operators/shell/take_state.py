@@ -273,6 +273,20 @@ class TakeState:
         """Whether a character performs an earlier motion."""
         return any(self.is_outdated(result) for result in self.results)
 
+    @cached_property
+    def performers(self) -> list[tuple[Object, Action]]:
+        """Whose motion there is, and what it is: the active character, the others, the actor last."""
+        take, found = self.take, []
+        characters = list(take.characters)
+        first = min(take.active_character, max(len(characters) - 1, 0))
+        for each in characters[first : first + 1] + characters[:first] + characters[first + 1 :]:
+            result = each.results[min(each.active_result, len(each.results) - 1)] if each.results else None
+            if result is not None and result.action is not None and each.armature is not None:
+                found.append((each.armature, result.action))
+        if self.actor is not None and take.motion_action is not None:
+            found.append((self.actor, take.finish.action or take.motion_action))
+        return found
+
     # --- What is to be known, and to be done
 
     def notices(self, step: str) -> list[str]:

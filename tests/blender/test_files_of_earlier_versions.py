@@ -72,6 +72,7 @@ def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
 DROPPED = (
     "].matching.ranking",  # libraries are not ranked, all of them take part
     "].turntable.",
+    ".outdated",  # follows from the digest of what was made
     "].strength",  # of weak frames, which are in their order
     "keymark.libraries",  # the library is in its pose assets
     "keymark.active_library",
@@ -136,6 +137,8 @@ def test_every_property_has_its_value(saved: Saved, scene: bpy.types.Scene) -> N
         if not is_gone(path, value) and not is_same(found(scene, path), value)
     ]
     assert differing == []
+    for index, take in enumerate(scene.keymark.takes):
+        assert TakeState(take).final_is_outdated is expected[f"keymark.takes[{index}].finish.outdated"]
 
 
 def test_the_scene_is_set_up_as_it_was(saved: Saved, scene: bpy.types.Scene) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -113,6 +114,45 @@ def test_a_newer_motion_marks_the_result(opened: Scene) -> None:
         assert TakeState(take).is_outdated(character.results[0])
     bpy.ops.keymark.retarget()
     assert not TakeState(take).is_outdated(character.results[0]) and len(character.results) == 1
+
+
+def turned(armature: bpy.types.Object, frames: range) -> np.ndarray:
+    """(F, B, 3, 3) rotations of an armature's bones in the world."""
+    shown = []
+    for frame in frames:
+        bpy.context.scene.frame_set(frame)
+        world = [(armature.matrix_world @ bone.matrix).to_quaternion() for bone in armature.pose.bones]
+        shown.append([np.array(turn.to_matrix()) for turn in world])
+    return np.array(shown)
+
+
+def test_a_file_has_whom_one_sees(character: PropertyGroup, take: PropertyGroup, tmp_path: Path) -> None:
+    assert take.finish.who == take.armature.name  # nobody else performs yet
+    bpy.ops.keymark.retarget()
+    rig, frames = character.armature, range(1, 21)
+    assert take.finish.who == rig.name
+    skin = bpy.data.objects.new("Skin", bpy.data.meshes.new("Skin"))
+    bpy.context.scene.collection.objects.link(skin)
+    skin.modifiers.new("Armature", "ARMATURE").object = rig
+    assert bpy.ops.keymark.export_motion(format="FBX", filepath=str(tmp_path / "who.fbx")) == {"FINISHED"}
+    assert take.finish.action is None  # the actor's is not wanted
+    wanted, known = turned(rig, frames), set(bpy.data.objects)
+    bpy.ops.import_scene.fbx(filepath=str(tmp_path / "who.fbx"), anim_offset=0.0)
+    made = {each.type: each for each in bpy.data.objects if each not in known}
+    assert set(made) == {"ARMATURE", "MESH"}
+    assert [bone.name for bone in made["ARMATURE"].pose.bones] == [bone.name for bone in rig.pose.bones]
+    since_first = [all_ @ np.swapaxes(all_[0], -1, -2) for all_ in (wanted, turned(made["ARMATURE"], frames))]
+    trace = np.einsum("fbij,fbij->fb", *since_first)  # importers turn rest poses, which cancels
+    assert np.degrees(np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0))).max() < 1.0
+    assert np.ptp(since_first[0], axis=0).max() > 0.2
+    take.finish.who = take.armature.name
+    for named, who in (("", take.armature.name), (rig.name, rig.name)):
+        bpy.ops.keymark.export_motion(format="BVH", who=named, filepath=str(tmp_path / "who.bvh"))
+        joints = (tmp_path / "who.bvh").read_text().count("JOINT") + 1
+        assert joints == len(bpy.data.objects[who].data.bones)
+    assert not TakeState(take).final_is_outdated and take.finish.action is not None  # baked for the file
+    with pytest.raises(RuntimeError, match=r"'Nobody' performs nothing; valid is .*Walk Actor"):
+        bpy.ops.keymark.export_motion(format="BVH", who="Nobody", filepath=str(tmp_path / "who.bvh"))
 
 
 def test_any_action_of_an_actor_is_performed(character: PropertyGroup, take: PropertyGroup) -> None:

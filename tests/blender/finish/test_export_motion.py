@@ -219,6 +219,7 @@ def way(armature_object: bpy.types.Object, bone: str, later: int = 0) -> np.ndar
 def test_a_failed_export_leaves_no_file_and_the_scene(take: bpy.types.PropertyGroup, tmp_path: Path) -> None:
     folder = tmp_path / "wave.bvh"
     folder.mkdir()
+    bpy.ops.keymark.bake_motion()
     before = state(bpy.context.scene)
     with pytest.raises(RuntimeError, match="cannot be written"):
         bpy.ops.keymark.export_motion(format="BVH", filepath=str(folder))
