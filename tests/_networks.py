@@ -1,0 +1,179 @@
+"""Networks in ONNX files for tests: they find colored dots by soft-argmax, and say so as a family does."""
+
+from collections.abc import Callable, Sequence
+from itertools import product
+from pathlib import Path
+
+import cv2
+import numpy as np
+import onnx
+from keymark.core.arrays import Array, Image
+from onnx import TensorProto, helper, numpy_helper
+
+MEAN, STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
+SPREAD, FAINTEST = 0.02, 0.3
+"""Of a color that still counts as a dot's own, and the least share of it in a pixel that does."""
+COLORS = np.array([each for each in product((0.0, 1 / 3, 2 / 3, 1.0), repeat=3) if max(each) == 1.0])
+"""(37, 3) red first: none is another one with some black, as at the edges of dots."""
+METERS = 1.7
+"""Height of what a network sees, for networks that guess places in space."""
+
+
+class Graph:
+    """A graph that is written operator by operator, each of one output."""
+
+    def __init__(self, half: bool = False) -> None:
+        self.nodes: list[onnx.NodeProto] = []
+        self.constants: list[onnx.TensorProto] = []
+        self.kind = TensorProto.FLOAT16 if half else TensorProto.FLOAT
+        self.dtype = np.float16 if half else np.float32
+
+    def constant(self, value: object, dtype: type | None = None) -> str:
+        name = f"c{len(self.constants)}"
+        array = np.asarray(value, dtype=dtype or np.float32)
+        self.constants.append(numpy_helper.from_array(array, name))
+        return name
+
+    def __call__(self, kind: str, *inputs: object, name: str = "", **attributes: object) -> str:
+        out = name or f"v{len(self.nodes)}"
+        names = [one if isinstance(one, str) else self.constant(one) for one in inputs]
+        self.nodes.append(helper.make_node(kind, names, [out], **attributes))
+        return out
+
+    def total(self, value: str, *axes: int, keep: int = 0) -> str:
+        return self("ReduceSum", value, self.constant(axes, np.int64), keepdims=keep)
+
+    def write(
+        self, path: Path, inputs: dict[str, Sequence[object]], outputs: dict[str, Sequence[object]]
+    ) -> Path:
+        described = [
+            [helper.make_tensor_value_info(name, self.kind, shape) for name, shape in part.items()]
+            for part in (inputs, outputs)
+        ]
+        graph = helper.make_graph(self.nodes, "dots", *described, self.constants)
+        model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 17)], ir_version=8)
+        onnx.save(model, path)
+        return path
+
+
+def _found(
+    graph: Graph, picture: str, size: tuple[int, int], count: int, numbers: Sequence[int]
+) -> list[str]:
+    """Column and row (1, K) of each dot in the pixels' own numbers, and whether it is there."""
+    width, height = size
+    colors, sent = COLORS[: len(numbers)], np.eye(count)[list(numbers)]
+    whole = graph("Cast", picture, to=TensorProto.FLOAT)
+    scaled = graph("Mul", whole, np.reshape(STD, (1, 3, 1, 1)))
+    seen = graph("Add", scaled, np.reshape(MEAN, (1, 3, 1, 1)))
+    square = graph.total(graph("Mul", seen, seen), 1, keep=1)
+    length = np.linalg.norm(colors, axis=1)
+    along = graph("Conv", seen, (colors / length[:, None])[:, :, None, None])
+    off = graph("Sub", square, graph("Mul", along, along))
+    share = graph(
+        "Div", graph("Sub", graph("Div", along, length.reshape(1, -1, 1, 1)), FAINTEST), 1.0 - FAINTEST
+    )
+    share = graph("Min", graph("Relu", share), 1.0)
+    weight = graph("Mul", share, graph("Exp", graph("Div", off, -(SPREAD**2))))
+    total = graph("Add", graph.total(weight, 2, 3), 1e-6)
+    places = [
+        graph("Div", graph.total(graph("Mul", weight, own), 2, 3), total)
+        for own in (np.arange(width).reshape(1, 1, 1, -1), np.arange(height).reshape(1, 1, -1, 1))
+    ]
+    found = [*places, graph("Div", total, graph("Add", total, 1.0))]
+    return [graph("MatMul", one, sent) for one in found]
+
+
+def _bell(graph: Graph, place: str, bins: int, std: float, axes: Sequence[int] = (2,)) -> str:
+    """Gaussians (1, K, bins) about places (1, K)."""
+    off = graph("Sub", graph("Unsqueeze", place, graph.constant(axes, np.int64)), np.arange(bins))
+    return graph("Exp", graph("Div", graph("Mul", off, off), -2.0 * std**2))
+
+
+def simcc(
+    path: Path, count: int, numbers: Sequence[int], size: tuple[int, int] = (192, 256), deep: bool = False
+) -> Path:
+    """RTMPose's and its kin's; with `deep` depths grow from the left of what it sees to its right."""
+    graph, (width, height) = Graph(), size
+    column, row, there = _found(graph, "input", size, count, numbers)
+    there = graph("Unsqueeze", there, graph.constant([2], np.int64))
+    outputs = {"simcc_x": (column, 2 * width), "simcc_y": (row, 2 * height)}
+    if deep:
+        outputs["simcc_z"] = (column, 2 * width)
+    for name, (place, bins) in outputs.items():
+        graph("Mul", _bell(graph, graph("Mul", place, 2.0), bins, 6.0), there, name=name)
+    shapes = {name: ["batch", f"dim_{name}", bins] for name, (_, bins) in outputs.items()}
+    return graph.write(path, {"input": ["batch", 3, height, width]}, shapes)
+
+
+def heat_maps(
+    path: Path, count: int, numbers: Sequence[int], size: tuple[int, int] = (192, 256), unbiased: bool = True
+) -> Path:
+    """ViTPose's, which is known by its transformer, or HRNet's."""
+    graph, (width, height) = Graph(), size
+    column, row, there = _found(graph, "input", size, count, numbers)
+    steps = [(side - 1) / (side // 4 - 1) if unbiased else 4.0 for side in size]
+    across, down = (
+        _bell(graph, graph("Div", place, step), side // 4, 2.0)
+        for place, step, side in zip((column, row), steps, size, strict=True)
+    )
+    maps = graph("MatMul", graph("Unsqueeze", down, graph.constant([3], np.int64)),
+                 graph("Unsqueeze", across, graph.constant([2], np.int64)))  # fmt: skip
+    if unbiased:
+        graph("Softmax", maps)
+    graph("Mul", maps, graph("Unsqueeze", there, graph.constant([2, 3], np.int64)), name="output")
+    return graph.write(
+        path, {"input": [1, 3, height, width]}, {"output": [1, count, height // 4, width // 4]}
+    )
+
+
+def instant_hmr(
+    path: Path, numbers: Sequence[int], half: bool = False, deep: bool = True, names: bool = True
+) -> Path:
+    """InstantHMR's, whose points in space lie in a plane that leans away to the right and downward."""
+    graph, side = Graph(half), 224
+    column, row, _ = _found(graph, "image", (side, side), 70, numbers)
+    flat = [
+        graph("Unsqueeze", graph("Add", graph("Mul", place, 2.0 / side), 1.0 / side - 1.0),
+              graph.constant([2], np.int64))
+        for place in (column, row)
+    ]  # fmt: skip
+    lean = graph("Mul", graph("Add", *flat), 0.25)
+    told = graph("Cast", "cliff_cond", to=TensorProto.FLOAT)
+    outputs = {
+        "mhr_params": graph("MatMul", told, np.ones((3, 204))),
+        "shape_params": graph("MatMul", told, np.ones((3, 45))),
+        "cam_trans": told,
+        "joints_2d": graph("Concat", *flat, axis=2),
+    }
+    if deep:
+        outputs["joints_3d"] = graph("Mul", graph("Concat", *flat, lean, axis=2), 0.5 * METERS)
+    sizes = {
+        "mhr_params": [204],
+        "shape_params": [45],
+        "cam_trans": [3],
+        "joints_2d": [70, 2],
+        "joints_3d": [70, 3],
+    }
+    shapes = {}
+    for name, value in outputs.items():
+        own = name if names else f"out_{len(shapes)}"
+        graph("Cast", value, to=graph.kind, name=own)
+        shapes[own] = ["N", *sizes[name]]
+    return graph.write(path, {"image": ["N", 3, side, side], "cliff_cond": ["N", 3]}, shapes)
+
+
+def draw_dots(size: tuple[int, int], people: Sequence[Array], radius: float = 7.0) -> Image:
+    """A picture of dots (N, 2) [px], each in its own color, of several people; those of NaN are left out."""
+    fine = 4
+    picture = np.zeros((size[1] * fine, size[0] * fine, 3), dtype=np.uint8)
+    for points in people:
+        for color, place in zip(COLORS, points, strict=False):
+            if np.isfinite(place).all():
+                at = tuple(round((one * fine - 0.5) * 16) for one in place)
+                cv2.circle(
+                    picture, at, round(radius * fine * 16), (255 * color[::-1]).round().tolist(), -1, shift=4
+                )
+    return np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+
+
+Builder = Callable[[Path], Path]
