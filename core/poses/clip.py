@@ -71,7 +71,7 @@ def pose_clip(
         if between is not None:
             given = stretch_of(given, *between)
         yield Progress("Learning the parts of postures", 0.0)
-        composing = compose_frames(given, floor_m, usable)
+        composing = compose_frames(given, floor_m, usable, floor_open)
         composed = yield from within("Composing postures", composing, 0.05, 0.8)
         fitting = within("Fitting the postures", _fitting(take, given, composed), 0.0, 1.0)
         result = yield from stretch(fitting, 0.8, 1.0)

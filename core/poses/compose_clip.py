@@ -85,9 +85,11 @@ class Composition:
 
 
 def compose_frames(
-    given: PosingInput, floor_m: float | None, libraries: Sequence[Library]
+    given: PosingInput, floor_m: float | None, libraries: Sequence[Library], floor_open: bool = False
 ) -> Part[Composition]:
     """Compose the postures of the T frames of a clip that are looked at; `floor_m` is None where unknown.
+
+    `floor_open` as in `floor_height_m`.
 
     At least one library has a posture.
 
@@ -107,7 +109,7 @@ def compose_frames(
     else:
         rough = rough_depths(given.body, camera, evidence, sampled, time_s)
     if floor_m is None:
-        floor_m = floor_height_m(given, stances, rough)
+        floor_m = floor_height_m(given, stances, rough, floor_open)
     floor_seen_m = None if set(LEGS) <= set(given.unseen) else floor_m  # feet never seen tell no place
     yield 0.1
     beliefs: Sequence[PartBelief | None] = [None] * len(sampled)
@@ -196,8 +198,11 @@ def frame_costs(
     return [FrameCosts(each, stances, floor_m, own) for each, own in zip(likelihoods, every, strict=True)]
 
 
-def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array) -> float:
-    """Height of the floor by where feet are without it; 0 where sizes allow it, as scenes are built."""
+def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array, floor_open: bool) -> float:
+    """Height of the floor by where feet are without it; 0 where sizes allow it, as scenes are built.
+
+    `floor_open`: that height has no such preference, as before a camera whose own height was assumed.
+    """
     sampled = given.sampled
     rows = np.unique(np.linspace(0, len(sampled) - 1, MOST_PLACED).astype(int))
     free, heights, eyes = [], [], []
@@ -216,6 +221,8 @@ def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array) ->
         eyes.append(float(cost.likelihood.location[2]))
         free.append((row, float(states.cost.min())))
     found = float(np.median(heights)) if heights else 0.0
+    if floor_open:
+        return found
     if abs(found) < 0.25:  # sizes are no more exact, and scenes are built on z = 0
         return 0.0
     # On a floor the performer is as far away as the camera is above it.

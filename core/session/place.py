@@ -2,7 +2,8 @@
 
 Somebody of known height who stands or walks upright on the floor measures the room (`standing_moments`,
 `camera_fit`), whose straight edges tell the camera's attitude (`room_lines`). The world's origin is where the
-performer is in the middle of these moments, and the floor is z = 0.
+performer is in the middle of these moments. How high the camera stands is settled with the poses, which know
+how far knees are bent.
 """
 
 from dataclasses import dataclass, replace
@@ -47,8 +48,6 @@ class Placed:
     """A take that is seen from where its camera stands."""
 
     seen: SeenTake
-    floor_m: float | None
-    """Height of the floor [m]; None where it is not known."""
     camera: FoundCamera | None = None
     """None where the camera's place was known."""
 
@@ -56,7 +55,7 @@ class Placed:
 def place(session: Session) -> Job[Placed]:
     """Find a camera that nobody has placed, take its turning back, and tell who performs when."""
     inputs, reading = session.inputs, session[Reading]
-    take, floor_m, found = replace(inputs.take, keypoints=session[Sight].checked), inputs.floor_m, None
+    take, found = replace(inputs.take, keypoints=session[Sight].checked), None
     take, reading = of_one_shot(take, reading)
     anyone = performer_keypoints(replace(take, keyframes=()), reading.tracks)
     if inputs.open_lens is not None:
@@ -66,11 +65,10 @@ def place(session: Session) -> Job[Placed]:
         room = None if background is None else find_room(*background, take.camera)
         camera, fit = find_camera(take.camera, inputs.open_lens.is_known, uprights, room)
         take, found = replace(take, camera=camera), FoundCamera(fit, inputs.open_lens, len(uprights), room)
-        floor_m = 0.0 if floor_m is None and fit is not None and len(uprights) else floor_m
     take, steady, notes = yield from stretch(steadied(take, reading, anyone), 0.5, 1.0)
     turned = None if inputs.open_lens is None else turned_note(anyone)
     notes += () if turned is None else (turned,)
-    return Placed(seen_take(take, steady, notes), floor_m, found)
+    return Placed(seen_take(take, steady, notes), found)
 
 
 def placed_take(session: Session) -> SeenTake:
@@ -82,7 +80,7 @@ def placed_take(session: Session) -> SeenTake:
 def _uses(inputs: Inputs) -> tuple[object, ...]:
     take = inputs.take
     posed = tuple(key for key in take.keyframes if key.matched is None)
-    return take.camera, take.body.actor.segments_m, take.fps, inputs.open_lens, inputs.floor_m, posed
+    return take.camera, take.body.actor.segments_m, take.fps, inputs.open_lens, posed
 
 
 STAGE = Stage("place", place, _uses, lambda _inputs: 0.3)

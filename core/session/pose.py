@@ -15,7 +15,7 @@ from ..prior.library import library_digest
 from ..progress import Job
 from ..take.seen_take import SeenTake
 from ..take.take import Take
-from .place import Placed, placed_take
+from .place import placed_take
 from .session import Inputs, Session, Stage
 
 
@@ -38,13 +38,12 @@ def pose(session: Session) -> Job[Posed]:
     Raises:
         InputError: There is no library with a posture.
     """
-    inputs, seen, floor_m = session.inputs, placed_take(session), session[Placed].floor_m
+    inputs, seen, floor_m = session.inputs, placed_take(session), session.inputs.floor_m
     said = reference_evidence(seen) if seen.take.reference is not None and inputs.method == "map" else None
     if said is not None and seen.take.reference is not None:
         said = replace(said, notes=(*seen.take.reference.notes, *said.notes))
     if inputs.libraries is None:
         return Posed(seen, floor_m, None, said)
-    is_open = inputs.floor_open and floor_m is None
     if isinstance(said, ReferenceEvidence) and not said.left_out.any():
         take = with_reference(seen.take, said)
         found = referred_poses(take, said)
@@ -52,14 +51,15 @@ def pose(session: Session) -> Job[Posed]:
         found = yield from pose_clip(
             seen,
             inputs.libraries,
-            floor_m,
+            None if inputs.floor_open else floor_m,
             inputs.keyframe_count,
             frames=inputs.frames,
-            floor_open=is_open,
+            floor_open=inputs.floor_open,
         )
         take = with_found(seen.take, found)
-    if is_open:
-        take, found = lowered(take, found.floor_m), found.lowered(found.floor_m)
+    if inputs.floor_open:
+        by_m = found.floor_m - (floor_m or 0.0)
+        take, found = lowered(take, by_m), found.lowered(by_m)
     return Posed(replace(seen, take=take), found.floor_m, found, said)
 
 
@@ -76,7 +76,7 @@ _library_digest = lru_cache(maxsize=64)(library_digest)
 
 def _uses(inputs: Inputs) -> tuple[object, ...]:
     libraries = None if inputs.libraries is None else tuple(map(_library_digest, inputs.libraries))
-    take, asked = inputs.take, (inputs.frames, inputs.keyframe_count, inputs.floor_open)
+    take, asked = inputs.take, (inputs.frames, inputs.keyframe_count, inputs.floor_m, inputs.floor_open)
     return libraries, asked, take.keyframes, take.reference, inputs.method == "map"
 
 

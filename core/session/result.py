@@ -40,7 +40,6 @@ from ..take.motion import write_motion
 from ..take.take import Take
 from ..take.take_file import write_take
 from .described import findings
-from .place import Placed
 from .pose import Posed
 from .see import Sight
 from .session import Session
@@ -173,7 +172,7 @@ def write_take_files(
         with suppress(OSError):
             os.link(take.clip, clip)
     take = replace(take, clip=clip) if clip.exists() else take
-    floor_m = session[Placed].floor_m or 0.0
+    floor_m = session[Posed].floor_m or 0.0
     write_take(take, folder, evidence, {"//found": list(findings(session, description)), "floor_m": floor_m})
 
 

@@ -45,7 +45,7 @@ class Inputs:
     floor_m: float | None = None
     """Height of the floor [m] where it is known."""
     floor_open: bool = False
-    """Whether the world is moved so that an unknown floor, once it is found, is z = 0."""
+    """Whether the poses tell where the floor is, and the world is moved so that it is there, else z = 0."""
     frames: tuple[int, ...] | None = None
     """Frames to find keyframes at; None for those in which the performer rests or turns back."""
     keyframe_count: int | None = None

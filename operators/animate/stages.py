@@ -132,8 +132,6 @@ def _keep_place(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: Sce
     else:
         write_fit(take, found.fit)
     set_still_pose(take.camera, camera)
-    if placed.floor_m is not None:
-        take.matching.floor, take.matching.floor_height = "HEIGHT", placed.floor_m
     size_actor(bpy.context, take, placed.seen.take.body)
     return f"Camera: {said}"
 
