@@ -20,8 +20,13 @@ from ..take.presence import named_limbs
 from .candidates import PROBABILITY_BOUNDS, MatchedFrame
 from .clip_input import PosingInput
 
+GUESSED_SIZE, GUESSED_SIZE_STD = 0.89, 0.07
+"""Length of limbs by a network's guess over that between the joints' centers, and the deviation of its
+logarithm: a network draws everybody at about one size, so heights that are unusual are doubted."""
 WRONG_SHARE = 0.1  # of all takes whose height, camera or floor are wrong: a round guess
 USABLE = 0.5  # least confidence
+AGREES = 0.8  # least probability of what a check finds
+SEEN_SHARE = 0.9  # of the frames; where somebody is seen in less, that is said
 BONES = tuple(
     (f"{root}.{side}", f"{end}.{side}")
     for side in SIDES
@@ -49,18 +54,21 @@ def agreement(
     points = given.body.points(given.body.pose(postures[given.sampled]))
     size = _relative_size(given, points)
     if size is not None:
-        # Of a logarithm: networks' sizes of a known person, and the range of wrong heights.
-        own = _right(float(np.log(size)), 0.12, 0.7)
+        own = _right(float(np.log(size)), GUESSED_SIZE_STD, 0.7)  # in a range of wrong heights
         probability *= own
         what = f"by the detector's guess in space the performer is {abs(size - 1.0):.0%} "
         said = what + ("taller" if size > 1.0 else "shorter") + " than stated"
-        (agree if own >= USABLE else against).append("the detector's sizes" if own >= USABLE else said)
+        (agree if own >= AGREES else against).append("the detector's sizes" if own >= AGREES else said)
     if floor_m is not None and not {"leg.L", "leg.R"} <= set(given.unseen):
         off_m = feet_over_floor_m(given.body, points, floor_m)
         own = _right(off_m, GROUND_STD_M, 1.0)  # anywhere in it where camera, height or floor are wrong [m]
         probability *= own
         said = f"the feet are {abs(off_m) * 100.0:.0f} cm {'above' if off_m > 0.0 else 'below'} the floor"
-        (agree if own >= USABLE else against).append("the floor" if own >= USABLE else said)
+        (agree if own >= AGREES else against).append("the floor" if own >= AGREES else said)
+    share = float(given.there.mean())
+    probability *= share
+    if share < SEEN_SHARE:
+        against.append(f"nobody is seen in {1.0 - share:.0%} of the frames")
     if given.unseen:
         probability *= 0.5 ** len(given.unseen)  # that a limb which is never seen is about right
         against.append(f"{named_limbs(given.unseen)} never seen")
@@ -75,7 +83,7 @@ def agreement(
 
 
 def _relative_size(given: PosingInput, points: Array) -> float | None:
-    """How long limbs are by the network's guess, over those of points (T, P, 3); None without one."""
+    """How tall the performer is by the network's guess, over points (T, P, 3); None without one."""
     hints, names = given.evidence.keypoints.hint_m[given.sampled], given.evidence.keypoints.names
     ratios = []
     for pair in BONES:
@@ -86,7 +94,7 @@ def _relative_size(given: PosingInput, points: Array) -> float | None:
                 own = np.subtract(*(points[0, HUMAN.point_names.index(name)] for name in pair))
                 length = np.median(np.linalg.norm((end - root)[known], axis=-1))
                 ratios.append(float(length / np.linalg.norm(own)))
-    return float(np.median(ratios)) if ratios else None
+    return float(np.median(ratios)) / GUESSED_SIZE if ratios else None
 
 
 def _right(off: float, std: float, spread: float) -> float:

@@ -110,6 +110,8 @@ def _draw_found(column: UILayout, context: Context, state: TakeState) -> None:
     jump = going.operator("keymark.jump_to_match", text=words, translate=False, icon="NEXT_KEYFRAME")
     jump.direction, jump.only_doubtful = "NEXT", True
     _draw_side_view(row, context)
+    if state.sure_by_poses:
+        draw_sentence(column, context, matching.reason, "INFO")
     if matching.shown_match >= len(matching.matches):
         return
     match = matching.matches[matching.shown_match]
@@ -214,15 +216,13 @@ def _draw_corrections(column: UILayout, context: Context, take: PropertyGroup) -
 
 
 class KEYMARK_PT_keyframes_options(Popover, bpy.types.Panel):
-    """What was found of the footage, the floor, proposed frames, and the Action with the keyframes."""
+    """The floor, proposed frames, and the Action with the keyframes."""
 
     bl_label = "Options of Poses"
 
     def draw(self, context: Context) -> None:
         take, column = active_take(context.scene), self.column()
         matching = take.matching
-        if matching.reason:
-            draw_sentence(column, context, matching.reason, "INFO")
         column.prop(matching, "floor")
         if matching.floor == "HEIGHT":
             column.prop(matching, "floor_height")

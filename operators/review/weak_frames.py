@@ -47,7 +47,9 @@ def draw_review(column: UILayout, context: Context, state: TakeState) -> None:
     from ...core.review.confidence import TOLERANCE_SHARE
 
     review = state.take.review
-    if review.confidence >= 0.0:
+    if state.sure_by_poses:
+        draw_sentence(column, context, state.take.matching.reason, "INFO")
+    elif review.confidence >= 0.0:
         near_cm = 100.0 * TOLERANCE_SHARE * state.take.stature
         words = f"Joints Within {near_cm:.0f} cm: {100.0 * review.confidence:.0f} %"
         column.progress(factor=review.confidence, text=words, type="BAR")

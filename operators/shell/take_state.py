@@ -149,6 +149,11 @@ class TakeState:
         matched = set(self.matched)
         return tuple(frame for frame in self.keyed.all if frame not in matched)
 
+    @property
+    def sure_by_poses(self) -> bool:
+        """Whether how sure the motion is follows from its poses, all of which were found."""
+        return bool(self.matched) and not self.posed and bool(self.take.matching.reason)
+
     def is_posed(self, frame: float) -> bool:
         """Whether the animator posed a frame; a clip's frame may lie between whole scene frames."""
         return has_frame(self.posed, frame)
@@ -335,7 +340,8 @@ class TakeState:
 
     def _of_motion(self) -> tuple[str, str]:
         review, final = self.take.review, self.take.finish.action
-        if (final is None or self.final_is_outdated) and 0.0 <= review.confidence < DOUBTFUL:
+        sure = self.take.matching.fit if self.sure_by_poses else review.confidence
+        if (final is None or self.final_is_outdated) and 0.0 <= sure < DOUBTFUL:
             if self.doubtful:
                 return "reconstruct", "check the doubtful poses"
             if not all(self.is_posed(weak.frame) for weak in review.weak_frames):

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
+from _panel import drawn_panels
 from _results import shown, wave_library
 from _scene_state import differences, scene_state
 from keymark.core.errors import InputError
@@ -229,6 +230,13 @@ def test_poses_are_found_with_a_library_file(
         apart = np.linalg.norm(shown_points(take.armature) - wave_motion.points[frame - 1], axis=-1)
         assert apart.mean() < 0.15
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
+    take.review.confidence = 0.1  # of points; how sure poses are that nobody posed is said alike everywhere
+    steps = bpy.context.window_manager.keymark_steps
+    for step in ("keyframes", "reconstruct"):
+        setattr(steps, step, True)
+        words = " ".join(words for kind, _, words in drawn_panels() if kind == "label")
+        assert f"{take.matching.fit:.0%} sure" in words.replace("\N{NO-BREAK SPACE}", " ")
+    assert TakeState(take).next[1] != "pose the weak frames"
 
 
 @pytest.mark.parametrize("mode", ["QUATERNION", "AXIS_ANGLE", "ZYX"])
