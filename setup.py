@@ -15,7 +15,7 @@ setup(
     packages=["keymark", *(f"keymark.{name}" for name in find_packages(str(ROOT), include=ROOMS))],
     package_data={
         "keymark": ["blender_manifest.toml", "presets/**/*"],
-        "keymark.core.report.summary": ["*.css", "*.js"],
+        "keymark.core.report": ["*.css"],
     },
     include_package_data=False,
 )

@@ -68,7 +68,7 @@ def waiting(output: Path, name: str) -> Outcome:
 # --- Parsed HTML pages: their elements in order, with the text in each
 
 
-VOID = {"br", "meta", "img", "input", "wbr", "rect"}
+VOID = {"br", "meta", "img", "rect"}
 """Elements that are never closed, or close themselves."""
 
 
@@ -128,7 +128,7 @@ class Page(HTMLParser):
 
     def rows(self) -> list[Element]:
         """The rows of takes."""
-        return [element for element in self.all("tr") if element.attributes.get("id", "").startswith("take-")]
+        return [element for element in self.all("tr") if element.attributes.get("class") == "take"]
 
     def shape(self) -> list[tuple[str, tuple[str, ...]]]:
         """Tags and attribute names of all elements, without texts and values."""

@@ -12,8 +12,7 @@ from typing import Any
 from ....core.errors import KeymarkError, pluralize
 from ....core.files.json_file import write_atomically
 from ....core.files.paths import absolute_path
-from ....core.report.summary.page import summary_page
-from ....core.report.summary.row import current_record, relative_path
+from ....core.report.batch_page import current_record, relative_path, summary_page
 from ....core.shoot.discovery import Shoot
 from ....core.shoot.outcomes import (
     CONVERSION,

@@ -19,7 +19,7 @@ def package_data(repository: Path) -> set[Path]:
     assert any(path.match("presets/keyframes/*.json") for path in relative)
     assert Path("presets/models/NOTICE") in relative
     assert {Path(f"presets/demo/{name}/clip.mp4") for name in (AEROBIC, GREETING)} <= relative
-    assert {Path("core/report/summary/style.css"), Path("core/report/summary/script.js")} <= relative
+    assert Path("core/report/batch_page.css") in relative
     return relative
 
 
