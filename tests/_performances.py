@@ -263,8 +263,7 @@ def made_up_review(frames: int = 13, first: float = 1.0) -> Review:
     rng = np.random.default_rng(4)
     middle = np.sin(np.pi * np.arange(frames) / (frames - 1))
     observed = rng.normal(size=(frames, 2, 8, 2))
-    reprojection = rng.uniform(size=(frames, 2))
-    observed[2, 1], reprojection[2, 1], reprojection[3] = np.nan, np.nan, np.nan
+    observed[2, 1] = np.nan
     return Review(
         frames=np.arange(frames) + first,
         size=(160, 120),
@@ -275,8 +274,6 @@ def made_up_review(frames: int = 13, first: float = 1.0) -> Review:
         points=rng.normal(size=(frames, 13, 3)),
         image_points=rng.normal(size=(frames, 13, 2)),
         sigma_m=0.01 + 0.02 * middle[:, None] * rng.uniform(0.5, 1.0, size=(frames, 13)),
-        reprojection_px=reprojection,
-        nearness=1.0 - middle,
         speed=5.0 + 3.0 * middle,
         confidence=1.0 - 0.6 * middle,
         keyframe_indices=np.array([0, frames - 1]),

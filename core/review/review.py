@@ -14,9 +14,8 @@ from ..progress import Job, Part, within
 from ..take.take import Take
 from ..terms.region_model import RegionModel
 from ..terms.regions import NOISE, limb_widths
-from .compared_keypoints import ComparedKeypoints
+from .compared_keypoints import Arrays, ComparedKeypoints, from_arrays, to_arrays
 from .confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
-from .field_arrays import Arrays, from_arrays, to_arrays
 from .frame_evidence import (
     ContourSight,
     MarkerSight,
@@ -48,8 +47,6 @@ class Review:
     points: Array  # (F, 13, 3) principal points in the world [m]
     image_points: Array  # (F, 13, 2) the same in the picture, through the calibrated lens [px]
     sigma_m: Array  # (F, 13) root of the trace of each point's covariance [m]; NaN without
-    reprojection_px: Array  # (F, M) predicted from observed centroids [px]; NaN where not compared
-    nearness: Array  # (F,) degree to which a keyframe is near, 0 to 1
     speed: Array  # (F,) V_sum [px per frame]
     confidence: Array  # (F,) from 0 to 1; NaN for a method without uncertainty
     keyframe_indices: IndexArray  # (K,) frame indices of the keyframes
@@ -128,8 +125,6 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
         points=motion.points,
         image_points=model.camera.project(motion.points, frame[:, None])[0],
         sigma_m=motion.sigma_m,
-        reprojection_px=offset,
-        nearness=motion.diagnostics["nearness"],
         speed=reconstruction.speed,
         confidence=believed,
         keyframe_indices=index,

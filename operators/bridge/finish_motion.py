@@ -27,7 +27,6 @@ from .extremity_curves import turned_extremities
 from .fcurves import moved_paths, posture_columns
 from .keyframes import keyed_frames, unchanged_keyframes
 from .keys import FOUND, copy_keys, ensure_fcurve, write_column
-from .review_curves import is_review_curve
 from .rig import (
     absence_note,
     motion_frames,
@@ -40,6 +39,7 @@ from .rig import (
 from .rotation_modes import ALL_PATHS, bone_path
 
 PLANTING = "Planting the feet"
+REVIEW = " (Keymark)"  # end of the names of properties in which 0.1.0 told how good a motion is
 READ, SEEN, PLANTED = 0.1, 0.3, 0.4
 """Shares of the job at which the motion is read, its postures are known, and the feet are planted."""
 NOTICEABLE_M = 0.005  # distance between a pose and its nearest posture above which a note is made [m]
@@ -80,7 +80,7 @@ class Finished:
         """Write the motion as ordinary keys, replacing all that the Action held for the actor.
 
         Other curves of `source`, from which the motion was read (posed hands and feet, properties), are
-        copied, but for review curves. Returns the number of keys on the bones' curves.
+        copied, but for what 0.1.0 told of a motion there. Returns the number of keys on the bones' curves.
         """
         channelbag = channelbag_for(action, armature_object)
         for fcurve in list(channelbag.fcurves):
@@ -93,7 +93,7 @@ class Finished:
         written = set(moved_paths(armature_object, self.body.skeleton))
         written |= {bone_path(bone.name, channel) for bone in self.rig.bones for channel in ALL_PATHS}
         for (path, index), fcurve in curves_of(source, armature_object).items():
-            if path not in written and not is_review_curve(fcurve):
+            if path not in written and REVIEW not in path:
                 group = fcurve.group.name if fcurve.group is not None else armature_object.name
                 copy_keys(fcurve, ensure_fcurve(channelbag, path, index, group))
         action.use_frame_range = True

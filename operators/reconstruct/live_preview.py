@@ -16,7 +16,6 @@ from ...core.progress import Preview
 from ...core.review.review import Review
 from ..bridge.fcurves import write_motion
 from ..bridge.pose import write_posture
-from ..bridge.review_curves import write_review_curves
 from ..bridge.scene_frames import at_scene_frame, showing_action
 from ..keyframes.scene_session import SceneSession
 from ..shell.results import clear_review, keep_reading, keep_review
@@ -106,7 +105,7 @@ def write_result(scene: bpy.types.Scene, made: SceneSession, judged: Review) -> 
 
 
 def show_review(take: bpy.types.PropertyGroup, review: Review) -> None:
-    """Fill the review of a take whose motion was written, and write its curves into the motion's Action."""
+    """Fill the review of a take whose motion was written."""
     shown = take.review
     clear_review(take)
     shown.frame_count = len(review.frames)
@@ -118,4 +117,3 @@ def show_review(take: bpy.types.PropertyGroup, review: Review) -> None:
         item.reason = weak.reason.name
         item.marker = "" if weak.marker is None else review.marker_names[weak.marker]
         item.point = weak.point or ""
-    write_review_curves(take.armature, take.motion_action, review)

@@ -16,7 +16,6 @@ from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.extremity_curves import straighten_extremities
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.bridge.keyframes import store_pose
-from keymark.operators.bridge.review_curves import curve_path
 from keymark.operators.bridge.rig import motion_frames, read_rig, read_values
 from keymark.operators.shell.takes import add_take
 
@@ -184,7 +183,8 @@ def test_other_curves_come_along_and_what_judges_the_motion_stays_behind(
     channelbag = existing_channelbag(take.motion_action, take.armature)
     for curve in [curve for curve in channelbag.fcurves if '"hand.L"' in curve.data_path]:
         channelbag.fcurves.remove(curve)
-    for path in (curve_path("Confidence"), '["mood"]'):
+    judged = '["Confidence (Keymark)"]'  # 0.1.0 kept it beside the motion
+    for path in (judged, '["mood"]'):
         channelbag.fcurves.new(path, index=0).keyframe_points.insert(4.0, 0.5)
     assign_action(take.armature, take.motion_action)
     for frame in (3, 9):
@@ -193,7 +193,7 @@ def test_other_curves_come_along_and_what_judges_the_motion_stays_behind(
     final = curves(take, take.finish.action)
     points = final['pose.bones["hand.L"].rotation_quaternion', 0].keyframe_points
     assert [point.co.x for point in points] == [3.0, 9.0]
-    assert ('["mood"]', 0) in final and (curve_path("Confidence"), 0) not in final
+    assert ('["mood"]', 0) in final and (judged, 0) not in final
 
 
 def test_the_rig_shows_what_blender_shows(take: bpy.types.PropertyGroup, shown_points: ShownPoints) -> None:

@@ -112,7 +112,7 @@ def test_without_markers_the_legend_says_nothing_of_them(
     scene: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     full = made_up_review().to_arrays()
-    none = {name: full[name][:, :0] for name in ("observed", "predicted", "reprojection_px")}
+    none = {name: full[name][:, :0] for name in ("observed", "predicted")}
     weak = {name: full[name][:0] for name in full if name.startswith("weak")}
     bare = Review.from_arrays({**full, **none, **weak, "marker_names": full["marker_names"][:0]})
     monkeypatch.setattr(motion, "review_of", lambda _take: bare)

@@ -46,8 +46,6 @@ def review() -> Review:
         points=points,
         image_points=np.array([160.0, 120.0]) + 400.0 * points[..., :2] / 4.0,
         sigma_m=sigma,
-        reprojection_px=np.zeros((FRAMES, 2)),
-        nearness=np.ones(FRAMES),
         speed=np.ones(FRAMES),
         confidence=np.ones(FRAMES),
         keyframe_indices=np.array([0, 12, 39]),

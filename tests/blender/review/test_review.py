@@ -1,4 +1,4 @@
-"""Being told how good a motion is: list, curves, going to weak frames and posing there."""
+"""Being told how good a motion is: list, going to weak frames and posing there."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -9,15 +9,12 @@ import numpy as np
 import pytest
 from _performances import made_up_review
 from keymark.core.body.human import HUMAN
-from keymark.core.review.compared_keypoints import ComparedKeypoints
 from keymark.core.review.weak_frames import Reason, WeakFrame
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
-from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.extremity_curves import posed_extremities
-from keymark.operators.bridge.fcurves import moved_paths, write_motion
+from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.bridge.keyframes import keyed_frames
-from keymark.operators.bridge.review_curves import GROUP, SUFFIX, curve_path, write_review_curves
 from keymark.operators.reconstruct.live_preview import show_review
 from keymark.operators.review.weak_frames import look_from_side, reason_words
 from keymark.operators.shell.results import clear_review, review_of
@@ -25,7 +22,6 @@ from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 from mathutils import Matrix, Quaternion, Vector
 
-NO_KEYPOINTS = ComparedKeypoints.none(13)
 pytestmark = pytest.mark.usefixtures("registered")
 
 
@@ -49,15 +45,9 @@ def test_reconstructing_fills_the_review(tiny_take: Take) -> None:
     assert [weak.frame for weak in take.review.weak_frames] == [
         review.frames[weak.index] for weak in review.weak_frames
     ]
-    keys = curve(take, "Confidence").keyframe_points
-    assert [key.co[1] for key in keys] == pytest.approx(review.confidence, abs=1e-5)
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()
-    assert take.review.confidence < 0.0 and curve(take, "Confidence") is None
-
-
-def curve(take: bpy.types.PropertyGroup, name: str) -> bpy.types.FCurve | None:
-    return existing_channelbag(take.motion_action, take.armature).fcurves.find(curve_path(name))
+    assert take.review.confidence < 0.0
 
 
 def test_the_list_tells_frame_reason_and_marker(take: bpy.types.PropertyGroup) -> None:
@@ -74,36 +64,6 @@ def test_a_method_that_cannot_tell_says_so(take: bpy.types.PropertyGroup) -> Non
     unknown = np.full(13, np.nan)
     show_review(take, replace(made_up_review(), confidence=unknown, sigma_m=np.full((13, 13), np.nan)))
     assert take.review.confidence < 0.0
-    assert curve(take, "Confidence") is None and curve(take, "Sigma head mm") is None
-    assert "Confidence" + SUFFIX not in take.armature
-    assert curve(take, "Nearness") is not None
-
-
-def test_curves_hold_the_reviews_numbers(take: bpy.types.PropertyGroup) -> None:
-    review = made_up_review()
-    keypoints = review.keypoints
-    distances = np.concatenate(
-        [review.reprojection_px, np.where(keypoints.thrown_out, np.nan, keypoints.distance_px)], axis=1
-    )
-    expected = {
-        "Confidence": review.confidence,
-        "Nearness": review.nearness,
-        "Reprojection px": np.nanmean(distances, axis=1),
-        "Sigma wrist.L mm": 1e3 * review.sigma_m[:, HUMAN.point_names.index("wrist.L")],
-    }
-    for name, values in expected.items():
-        found = curve(take, name)
-        assert found.group.name == GROUP
-        known = np.isfinite(values)
-        assert [key.co[0] for key in found.keyframe_points] == pytest.approx(review.frames[known])
-        assert [key.co[1] for key in found.keyframe_points] == pytest.approx(values[known], rel=1e-5)
-        assert {key.type for key in found.keyframe_points} == {"GENERATED"}
-    assert len(curve(take, "Reprojection px").keyframe_points) == 13
-
-
-def test_frames_in_which_nothing_is_compared_have_no_key(take: bpy.types.PropertyGroup) -> None:
-    write_review_curves(take.armature, take.motion_action, replace(made_up_review(), keypoints=NO_KEYPOINTS))
-    assert len(curve(take, "Reprojection px").keyframe_points) == 12
 
 
 def test_a_body_point_is_a_reason_by_its_name(take: bpy.types.PropertyGroup) -> None:
@@ -113,35 +73,6 @@ def test_a_body_point_is_a_reason_by_its_name(take: bpy.types.PropertyGroup) -> 
         "Off: Wrist Left",
         "Hidden: Ärmel",
     ]
-
-
-def test_curves_animate_properties_with_ranges_and_words(take: bpy.types.PropertyGroup) -> None:
-    scene = bpy.context.scene
-    scene.frame_set(7)
-    shown = take.armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    assert shown["Confidence" + SUFFIX] == pytest.approx(0.4, abs=1e-5)
-    interface = take.armature.id_properties_ui("Confidence" + SUFFIX).as_dict()
-    assert (interface["min"], interface["soft_max"]) == (0.0, 1.0)
-    assert "height" in interface["description"]
-
-
-def test_curves_disturb_neither_pose_nor_keyframes(
-    take: bpy.types.PropertyGroup, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
-) -> None:
-    for frame in (1, 7, 13):
-        bpy.context.scene.frame_set(frame)
-        assert shown_points(take.armature) == pytest.approx(wave_motion.points[frame - 1], abs=1e-4)
-    assert keyed_frames(take.armature, take.motion_action, HUMAN) == ()
-    assert not any(path.startswith("[") for path in moved_paths(take.armature, HUMAN))
-
-
-def test_a_second_review_replaces_the_first_but_not_the_animators_keys(take: bpy.types.PropertyGroup) -> None:
-    own = curve(take, "Confidence").keyframe_points.insert(4.0, 0.123)
-    own.type = "KEYFRAME"
-    write_review_curves(take.armature, take.motion_action, made_up_review(frames=9))
-    points = curve(take, "Confidence").keyframe_points
-    assert [key.co[0] for key in points] == [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]
-    assert points[3].co[1] == pytest.approx(0.123)
 
 
 def test_going_through_weak_frames(take: bpy.types.PropertyGroup) -> None:
@@ -177,7 +108,6 @@ def test_the_reconstructed_pose_becomes_a_keyframe(
     assert shown_points(take.armature) == pytest.approx(wave_motion.points[3], abs=1e-4)
     assert posed_extremities(take.armature, HUMAN, take.keyframe_action) == frozenset()
     assert [TakeState(take).is_posed(weak.frame) for weak in take.review.weak_frames] == [True, True]
-    assert len(curve(take, "Confidence").keyframe_points) == 13
 
 
 def test_the_pose_of_the_current_frame_can_be_taken_too(take: bpy.types.PropertyGroup) -> None:

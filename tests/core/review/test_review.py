@@ -70,8 +70,6 @@ def test_a_reconstruction_of_every_method_can_be_reviewed(take: Take, method: st
     assert seen.observed.shape[:2] == seen.predicted.shape[:2] == (24, 5)
     centers = [np.nanmean(outline, axis=2) for outline in (seen.observed, seen.predicted)]
     assert np.nanmedian(np.linalg.norm(centers[0] - centers[1], axis=-1)) < 3.0
-    assert np.nanmedian(seen.reprojection_px) < 3.0
-    assert seen.nearness[list(take.keyframe_indices)] == pytest.approx(1.0)
     known = method != "interpolation"
     assert np.isfinite(seen.confidence).all() == known and np.isfinite(seen.sigma_m).all() == known
     if known:
@@ -82,7 +80,6 @@ def test_a_reconstruction_of_every_method_can_be_reviewed(take: Take, method: st
 def test_the_motion_that_was_found_is_the_one_that_is_shown(take: Take) -> None:
     result = run(reconstruct(take))
     seen = run(review(take, result, np.arange(24) + 1.0))
-    assert seen.reprojection_px == pytest.approx(result.motion.diagnostics["residual_px"], nan_ok=True)
     pixels, _ = result.model.camera.project(seen.points)
     assert seen.image_points == pytest.approx(pixels)
 
