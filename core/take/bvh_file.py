@@ -8,7 +8,7 @@ from pathlib import Path
 from ..errors import InputError, shown
 from ..files.paths import regular_file_size
 from ..files.saved_text import read_saved_text, with_decimal_point
-from .subjects import chosen_subject
+from .named_points import chosen_subject
 
 LARGEST_BYTES = 2**29
 SLOWEST, FASTEST = 1.0, 1000.0  # frames a second

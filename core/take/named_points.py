@@ -11,7 +11,6 @@ from ..arrays import Array
 from ..body.human import HUMAN
 from ..errors import InputError, shown
 from ..files.fields import listed
-from .subjects import chosen_subject
 
 HEADS = (("ear.L", "ear.R"), ("head", "nose"), ("head",), ("skull",), ("nose",))
 """Points whose middle is the head's, the best first: a head alone may be its top."""
@@ -138,3 +137,27 @@ def _point_of(name: str) -> tuple[str, bool]:
     if not side and stem[:1] in "lr" and stem[1:] in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle"):
         side, stem = sides[stem[0]], stem[1:]
     return (f"{stem}.{side}" if side else stem), kept != rest
+
+
+# --- Which of the people in one motion file is meant: one of them whole, never parts of two
+
+
+def chosen_subject(
+    path: Path, names: Sequence[str], completeness: Sequence[float], wanted: str | None
+) -> tuple[int, tuple[str, ...]]:
+    """The index of the wanted subject, or else of the most complete, the first of equals; and notes.
+
+    Raises:
+        InputError: Nobody is called so; the sentence lists all.
+    """
+    every = listed([shown(name) for name in names], 10)
+    if wanted is not None:
+        if wanted not in names:
+            raise InputError(f"{path}: has no subject {shown(wanted)}; its subjects are {every}")
+        return names.index(wanted), ()
+    index = int(np.argmax(completeness))
+    note = (
+        f"{path.name} has {len(names)} subjects, {every}; the motion is that of {shown(names[index])}, and "
+        "mend --subject names another"
+    )
+    return index, (note,) if len(names) > 1 else ()

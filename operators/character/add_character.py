@@ -17,7 +17,7 @@ from .characters import (
     find_character,
     require_character_armature,
 )
-from .map_conversion import map_of, show_map
+from .map_properties import map_of, show_map
 from .recognition import say_recognized
 from .requirements import armature, character, take
 

@@ -9,7 +9,7 @@ from ..shell.base_operator import BaseOperator, browse, chosen_file, reported
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.requirements import idle
 from .characters import active_character
-from .map_conversion import map_of, show_map
+from .map_properties import map_of, show_map
 from .recognition import map_folders, show_doubts
 from .requirements import armature, recognized
 

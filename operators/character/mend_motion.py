@@ -11,7 +11,7 @@ from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import bones_editable, idle
 from .characters import with_map
-from .map_conversion import map_of
+from .map_properties import map_of
 from .recognition import map_folders
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from ..shell.footage_view import FootageRequest, ask, follow_mouse, stop_asking
 from ..shell.job_operator import cancel_click
 from ..shell.requirements import idle
 from .characters import MOST_NAMED, active_character, find_character, full_title
-from .map_conversion import map_of, role_named, show_map
+from .map_properties import map_of, role_named, show_map
 from .recognition import RoleBoneOperator, active_bone_of, give_bone, told
 from .requirements import armature
 

@@ -20,8 +20,7 @@ from .characters import (
     require_character_armature,
     with_map,
 )
-from .map_conversion import clear_map, map_of, role_named, show_map
-from .map_properties import SOURCE_WORDS
+from .map_properties import SOURCE_WORDS, clear_map, map_of, role_named, show_map
 from .requirements import armature
 
 

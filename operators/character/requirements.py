@@ -15,7 +15,7 @@ from .characters import (
     missing_roles,
     missing_source,
 )
-from .map_conversion import map_of
+from .map_properties import map_of
 
 take = of_take(lambda state: True, "Load the footage or open a take first")
 

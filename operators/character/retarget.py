@@ -26,7 +26,7 @@ from .characters import (
     shown_result,
     source_of,
 )
-from .map_conversion import map_of
+from .map_properties import map_of
 from .requirements import character, editable, recognized, result, source
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from ...core.errors import InputError
 from ...core.files.fields import listed
 from ...core.progress import run as run_job
 from ..bridge.actions import assign_action
-from ..bridge.assets.catalogs import catalog_file, ensure_catalog
+from ..bridge.asset_catalogs import catalog_file, ensure_catalog
 from ..bridge.export_formats import FORMATS, ExportFormat, export_motion
 from ..bridge.object_space import moved_by
 from ..shell.base_operator import BaseOperator, warn, warn_if_outdated
@@ -42,7 +42,7 @@ def mark_motion_asset(
         InputError: The catalog is unusable, or the pictured Action is not the actor's.
         ConversionError: The catalog cannot be written.
     """
-    from ..bridge.assets.marking import AssetDetails, action_picture, mark_asset
+    from ..bridge.assets import AssetDetails, action_picture, mark_asset
 
     settings, performer = take.finish, actor or take.armature
     picture = None

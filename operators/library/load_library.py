@@ -93,7 +93,7 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Add an Action for each posture; a saved file's catalogs are named beside it."""
-        from ..bridge.assets.catalogs import catalog_file, ensure_catalog
+        from ..bridge.asset_catalogs import catalog_file, ensure_catalog
         from ..bridge.library.pose_assets import add_assets, assets_by_library, catalog_of
         from .registry_files import load_registered
 

@@ -104,7 +104,7 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         from ...core.prior.library import write_library
-        from ..bridge.assets.catalogs import asset_root
+        from ..bridge.asset_catalogs import asset_root
         from ..bridge.library.library_file import write_library_blend
 
         if not self.filepath:

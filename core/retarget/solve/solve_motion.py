@@ -1,25 +1,230 @@
 """A performer's motion solved for a character: what its role bones do, before any control."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, BoolArray
 from ...body.kinematics import SegmentMotion
-from ...body.posture import turn_headings_rad, yaw_rotation
+from ...body.posture import UP, turn_headings_rad, yaw_rotation
 from ...body.skeleton import SIDES
-from ...feet.fading import smoothed
+from ...feet.fading import ease, smooth_above, smoothed
+from ...feet.ground import Ground
 from ...progress import Job, Progress
 from ...take.character_settings import Placement, RetargetOptions, RootMotion
-from ..character import Character
-from ..character_motion import CharacterMotion, Similarity
+from ..character import LIMBS, Character, joint_roles
+from ..character_motion import CharacterMotion, FootRest, HandGoal, Similarity
 from ..maps.character_map import CharacterMap
-from .body_frames import rest_alignment
-from .foot_shape import foot_shape, performer_ground, rest_floor_m, sole_points
+from .body_frames import bone_turns, joint_places, rest_alignment
+from .feet import FootPath, plan_foot, toe_bends
+from .foot_shape import FootShape, foot_shape, performer_ground, rest_floor_m, sole_points
+from .hands import above_floor, floor_goals, hand_goals, reach
 from .rest_body import RestBody, rest_notes
-from .solution import Solution
-from .stage import find_stage
+from .stage import Stage, find_stage
+from .two_bone import ARM_SOFT, LEG_SOFT, STRAIGHTEST, LimbPose, reach_for
+
+HINGES = {
+    "arm.L": (0.0, 0.0, -1.0),
+    "arm.R": (0.0, 0.0, 1.0),
+    "leg.L": (1.0, 0.0, 0.0),
+    "leg.R": (1.0, 0.0, 0.0),
+}
+"""Axis of elbow or knee by limb, of the performer at rest."""
+SINK_S = 0.12  # time over which the hips go down and up again
+CARRY_S = 0.08  # standard deviation in time of the smoothing of what they are moved by with the feet
+MOMENT_S = 0.07  # standard deviation in time of the smoothing of how far a limb may be stretched
+DEEPEST_SHARE = 0.08  # farthest that they go down or up, as a share of the legs' length
+
+
+@dataclass(eq=False)
+class Solution:
+    """A motion of the character on its stage while it is solved."""
+
+    body: RestBody
+    alignment: Mapping[str, Array]
+    source: SegmentMotion
+    stage: Stage
+    ground: Ground
+    hips: Array  # (F, 3) the midpoint of the hip joints, canonical [m]
+    turns: list[Array]  # (F, 3, 3) a bone: its turn from rest, canonical
+
+    @classmethod
+    def by_directions(
+        cls,
+        body: RestBody,
+        alignment: Mapping[str, Array],
+        source: SegmentMotion,
+        stage: Stage,
+        ground: Ground,
+    ) -> "Solution":
+        """The motion by the performer's directions alone."""
+        turn = {name: stage.turn @ own for name, own in source.turn.items()}
+        middle = stage.joints(0.5 * (source.start["thigh.L"] + source.start["thigh.R"]))
+        if not body.is_moved("hips"):
+            middle = np.broadcast_to(body.hip_joints, middle.shape).copy()
+        return cls(body, alignment, source, stage, ground, middle, bone_turns(body, turn, alignment))
+
+    def places(self) -> list[Array]:
+        """(F, 3) the joint of each bone, canonical [m]."""
+        return [self.hips + place for place in joint_places(self.body, self.turns)]
+
+    def limb(self, limb: str) -> LimbPose | None:
+        """A limb as it is; None where its end is not there or one of its bones is left alone."""
+        roles = joint_roles(limb)
+        if not all(self.body.is_moved(role) for role in roles):
+            return None
+        places = self.places()
+        upper, lower, end = (self.body.first[role] for role in roles)
+        return LimbPose(
+            self.turns[upper] @ self.alignment[roles[0]].T,
+            self.turns[lower] @ self.alignment[roles[1]].T,
+            places[upper],
+            places[lower],
+            places[end],
+            self.turns[upper] @ (self.alignment[roles[0]].T @ np.array(HINGES[limb])),
+        )
+
+    def arms(self) -> dict[str, LimbPose]:
+        """The arms that can reach, by side."""
+        found = {side: self.limb(f"arm.{side}") for side in SIDES}
+        return {side: arm for side, arm in found.items() if arm is not None}
+
+    def plan_feet(self, shapes: Mapping[str, FootShape], lifts: Mapping[str, Array]) -> dict[str, FootPath]:
+        """Paths of the feet that can be planted, by side, lifted by (F,) by leg [m]."""
+        if not self.body.is_moved("hips"):
+            return {}
+        none = np.zeros(len(self.source.time_s))
+        return {
+            side: plan_foot(
+                self.source, self.stage, self.ground, shapes[side], side, leg, lifts.get(f"leg.{side}", none)
+            )
+            for side in SIDES
+            if (leg := self.limb(f"leg.{side}")) is not None
+        }
+
+    def move_hips(self, feet: Mapping[str, FootPath], arms: Mapping[str, LimbPose]) -> None:
+        """Move the hips with feet that stand, and lower them for these and for hands on the floor."""
+        legs = {side: leg for side in feet if (leg := self.limb(f"leg.{side}")) is not None}
+        if not legs:
+            return
+        time_s, leg_m = self.source.time_s, self.body.leg_m
+        ankles, over_m = [feet[side].ankle for side in legs], [feet[side].over_m for side in legs]
+        raised = _raised_m(list(legs.values()), ankles, over_m, time_s, leg_m)
+        needed = []
+        for side, leg in legs.items():
+            moved = feet[side].ankle - raised[:, None] * UP
+            needed.append(_needed_drop_m(leg, moved, feet[side].planted, LEG_SOFT, time_s))
+        for side, arm in arms.items():
+            goal, share = floor_goals(self.source, self.stage, self.ground, arm, side)
+            moved = goal - raised[:, None] * UP
+            needed.append(share * _needed_drop_m(arm, moved, share > 0.0, ARM_SOFT, time_s))
+        lowered = np.minimum(np.maximum.reduce(needed), DEEPEST_SHARE * leg_m)
+        self.hips = self.hips + (raised - smooth_above(lowered, time_s, SINK_S))[:, None] * UP
+
+    def plant(self, feet: Mapping[str, FootPath], shapes: Mapping[str, FootShape]) -> None:
+        """Bring legs to where the feet belong."""
+        for side, foot in feet.items():
+            leg = self.limb(f"leg.{side}")
+            if leg is None:
+                continue
+            solved = reach_for(leg, leg.start, foot.ankle, LEG_SOFT)
+            self._turn(f"thigh.{side}", solved.upper_turn)
+            self._turn(f"shin.{side}", solved.lower_turn)
+            self._turn(f"foot.{side}", foot.turn)
+            toe = toe_bends(foot.turn, shapes[side], solved.end[:, 2] - foot.ground_m)
+            self._turn(f"toe.{side}", toe)
+
+    def reach_with_hands(self) -> dict[str, HandGoal]:
+        """Bring hands to where they belong, which is returned by side."""
+        arms = self.arms()
+        goals = hand_goals(
+            self.body, self.source, self.stage, self.ground, self.places(), self.turns, self.alignment, arms
+        )
+        for side, arm in arms.items():
+            solved = reach(arm, goals[side].place_m, goals[side].share)
+            self._turn(f"upper_arm.{side}", solved.upper_turn)
+            self._turn(f"forearm.{side}", solved.lower_turn)
+            self._keep_above_floor(side, solved.end)
+        return goals
+
+    def _keep_above_floor(self, side: str, wrist: Array) -> None:
+        role = f"hand.{side}"
+        tip, floor_m = self.body.tip(role), self.stage.heights(self.ground.lowest_m)
+        if tip is not None:
+            aligned = self.alignment[role]
+            turn = self.turns[self.body.first[role]] @ aligned.T
+            along = aligned @ (tip - self.body.joint(role))
+            self._turn(role, above_floor(turn, wrist[:, 2] - floor_m, along))
+
+    def _turn(self, role: str, turn: Array) -> None:
+        if self.body.is_moved(role):
+            self.turns[self.body.first[role]] = np.asarray(turn @ self.alignment[role])
+
+    def poses(self, way: Array) -> dict[str, Array]:
+        """(F, 4, 4) by name of bone that is moved, in the armature's space, `way` (F, 3) taken off [m]."""
+        stance, character = self.body.stance, self.body.character
+        found = {}
+        for bone, turn, place in zip(self.body.bones, self.turns, self.places(), strict=True):
+            if not self.body.is_moved(bone.role):
+                continue
+            pose = np.broadcast_to(np.eye(4), (len(turn), 4, 4)).copy()
+            pose[:, :3, :3] = stance.T @ turn @ stance @ character.bone(bone.name).rest[:3, :3]
+            pose[:, :3, 3] = (place - way) @ stance / character.scale
+            found[bone.name] = pose
+        return found
+
+    def bends(self) -> dict[str, Array]:
+        """(F, 3) by limb: toward its elbow or knee, in the armature's axes."""
+        found = {}
+        for limb in LIMBS:
+            pose = self.limb(limb)
+            if pose is not None:
+                found[limb] = pose.bend @ self.body.stance
+        return found
+
+    def rests(self, feet: Mapping[str, FootPath]) -> tuple[FootRest, ...]:
+        """Rests of the planted feet."""
+        return tuple(
+            FootRest(f"leg.{SIDES[rest.point]}", rest.first, rest.last)
+            for rest in self.ground.rests
+            if SIDES[rest.point] in feet
+        )
+
+
+# --- How high the hips are
+
+
+def _needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float, time_s: Array) -> Array:
+    """(F,) how much lower a limb must begin to reach its goal (F, 3) where that is needed (F,) [m]."""
+    own = np.minimum(limb.extension_m / limb.length_m, 1.0)
+    # A knee that is straight for a moment only is not stretched to the limit for it: it would snap.
+    allowed = np.maximum(soft, np.minimum(own, smoothed(own, time_s, MOMENT_S, ends_kept=False)))
+    way = goal - limb.start
+    aside = np.sum(way[:, :2] ** 2, axis=-1)
+    below = np.sqrt(np.maximum((allowed * STRAIGHTEST * limb.length_m) ** 2 - aside, 0.0))
+    return np.where(needed, np.maximum(-way[:, 2] - below, 0.0), 0.0)
+
+
+def _raised_m(
+    legs: Sequence[LimbPose], ankles: Sequence[Array], over_m: Sequence[Array], time_s: Array, leg_m: float
+) -> Array:
+    """(F,) how much higher the hips go, or lower, for the legs that stand to keep their bend [m].
+
+    `over_m` (F,) is how much higher the ankles (F, 3) shall be than ankles on the ground.
+    """
+    # What standing legs are weighed against: a bent leg that stands has about 20, a straight one 100.
+    total, weights = np.zeros(len(time_s)), np.full(len(time_s), 1.0)
+    for leg, ankle, over in zip(legs, ankles, over_m, strict=True):
+        # Height of an ankle over its height on the ground, as a share of the leg, from which it does not
+        # stand.
+        weight = leg.straightness * (1.0 - ease(over, 0.0, 0.04 * leg_m))
+        total += weight * (ankle - leg.end)[:, 2]
+        weights += weight
+    limit = DEEPEST_SHARE * leg_m
+    return np.clip(smoothed(total / weights, time_s, CARRY_S, ends_kept=False), -limit, limit)
+
 
 WAY_S = 0.4  # standard deviation in time of what counts as the way and heading; faster changes are sway
 

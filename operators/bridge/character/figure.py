@@ -6,8 +6,7 @@ import numpy as np
 from ....core.arrays import Array, Image
 from ....core.numerics.vectors import across
 from ....core.report.canvas import LEFT, RIGHT, Color
-from ....core.report.character_sheet import character_sheet
-from ....core.report.mannequin import SKIN, CharacterFigure
+from ....core.report.mannequin import SKIN, CharacterFigure, character_sheet
 from ....core.report.overlay_sheet import evenly_spaced_frames
 from ....core.report.pictures import footage_frames
 from ....core.retarget.character import LIMBS, MIDDLE

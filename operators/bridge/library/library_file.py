@@ -6,7 +6,7 @@ import bpy
 
 from ....core.errors import InputError
 from ....core.prior.library import MOST_POSTURES, Library, read_library
-from ..assets.catalogs import write_asset_blend
+from ..asset_catalogs import write_asset_blend
 from ..blend_files import check_blend, load_blocks
 from .pose_assets import add_assets, catalog_of, library_from_assets
 

@@ -21,8 +21,8 @@ from ....core.files.json_file import parse_json
 from ....core.prior.library import Library, LibraryPosture
 from ....core.prior.texts import LONGEST_NAME, LONGEST_TAG, text_fault, unique_name
 from ....core.report.mannequin import posture_picture
-from ..assets.catalogs import catalog_identifier
-from ..assets.marking import AssetDetails, mark_asset
+from ..asset_catalogs import catalog_identifier
+from ..assets import AssetDetails, mark_asset
 from ..posture_curves import read_posture_curves, write_posture_curves
 
 HEADER, POSTURE = "keymark_library", "keymark_posture"

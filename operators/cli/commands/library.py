@@ -131,7 +131,7 @@ def blend_command(arguments: argparse.Namespace, console: Console) -> None:
     refuse_existing(file, arguments.replace)
     console.stage("Writing Blender's files")
     with blender_silence(arguments.debug):
-        from ...bridge.assets.catalogs import NAME
+        from ...bridge.asset_catalogs import NAME
         from ...bridge.library.library_file import write_library_blend
 
         write_library_blend(file, library)

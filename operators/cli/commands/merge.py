@@ -23,7 +23,7 @@ from ..console import Console, terminal_columns, wrapped
 from ..options import output
 
 if TYPE_CHECKING:
-    from ...bridge.assets.motions import MotionAsset
+    from ...bridge.assets import MotionAsset
 
 SUFFIX = ".blend"
 LONGEST_NAME_BYTES = 63
@@ -49,8 +49,8 @@ def merge_command(arguments: argparse.Namespace, console: Console) -> None:
     gathering = MotionGathering(found, read_failures(arguments.results), name, console)
     console.stage(STAGE)
     with blender_silence(arguments.debug):
-        from ...bridge.assets.catalogs import NAME
-        from ...bridge.assets.motions import write_motion_library
+        from ...bridge.asset_catalogs import NAME
+        from ...bridge.assets import write_motion_library
 
         write_motion_library(arguments.output, gathering.assets())
     files = [str(arguments.output), str(arguments.output.parent / NAME)]
@@ -75,7 +75,7 @@ class MotionGathering:
 
     def assets(self) -> "Iterator[MotionAsset]":
         """Yield the asset of every sound motion, one at a time: together they may not fit into memory."""
-        from ...bridge.assets.motions import MotionAsset
+        from ...bridge.assets import MotionAsset
 
         names: set[str] = set()
         for index, result in enumerate(self._found.sound):
@@ -107,7 +107,7 @@ class MotionGathering:
         self, result: Result, catalog: str, marks: tuple[str, ...], motion: Motion, names: set[str]
     ) -> "Iterator[MotionAsset]":
         """The asset of a result's character, where it has one; a problem of the take where it is unusable."""
-        from ...bridge.assets.motions import MotionAsset, load_character_action
+        from ...bridge.assets import MotionAsset, load_character_action
 
         made = result.record.files
         if CHARACTER_BLEND not in made:

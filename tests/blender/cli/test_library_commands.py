@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from _libraries import small_library
 from keymark.core.prior.library import write_library
-from keymark.operators.bridge.assets.catalogs import NAME
+from keymark.operators.bridge.asset_catalogs import NAME
 from keymark.operators.cli.main import main
 
 

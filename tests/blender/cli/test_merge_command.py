@@ -15,7 +15,7 @@ from keymark.core.take.conversion_record import ConversionRecord, write_record
 from keymark.core.take.motion import Motion, write_motion
 from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.assets.catalogs import NAME as CATALOGS
+from keymark.operators.bridge.asset_catalogs import NAME as CATALOGS
 from keymark.operators.cli.main import main
 
 RECORD = ConversionRecord(

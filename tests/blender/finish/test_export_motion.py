@@ -16,7 +16,7 @@ from keymark.core.take.point_files import read_points
 from keymark.core.take.take import Take
 from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.assets.catalogs import NAME, ensure_catalog
+from keymark.operators.bridge.asset_catalogs import NAME, ensure_catalog
 from keymark.operators.bridge.export_formats import FORMATS
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.shell.base_operator import warn_if_outdated

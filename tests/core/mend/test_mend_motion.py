@@ -7,8 +7,14 @@ from keymark.core.arrays import Array
 from keymark.core.body.body_volume import sole_offsets
 from keymark.core.errors import InputError
 from keymark.core.feet.place_by_feet import place_by_feet
-from keymark.core.mend.exchanged_sides import exchanged_frames, opposite_points
-from keymark.core.mend.mend_motion import Mended, MendOptions, measured_actor, mend_motion
+from keymark.core.mend.mend_motion import (
+    Mended,
+    MendOptions,
+    exchanged_frames,
+    measured_actor,
+    mend_motion,
+    opposite_points,
+)
 from keymark.core.progress import run
 
 FRAMES = slice(0, 90)

@@ -11,8 +11,7 @@ from keymark.core.feet.place_by_feet import place_by_feet
 from keymark.core.feet.planted_feet import plant_feet
 from keymark.core.feet.soles import Shins, Soles, ground_of
 from keymark.core.keys.hermite import fit_keys, refit
-from keymark.core.mend.exchanged_sides import exchanged_frames, opposite_points
-from keymark.core.mend.mend_motion import MendOptions, mend_motion
+from keymark.core.mend.mend_motion import MendOptions, exchanged_frames, mend_motion, opposite_points
 from keymark.core.progress import run
 
 FRAMES = 80

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import bpy
 
-from ....core.errors import InputError
-from ....core.files.json_file import write_atomically
-from ....core.files.output_folder import output_folder
-from ..blend_files import write_blend
+from ...core.errors import InputError
+from ...core.files.json_file import write_atomically
+from ...core.files.output_folder import output_folder
+from .blend_files import write_blend
 
 NAME = "blender_assets.cats.txt"
 VERSION = "VERSION 1"

@@ -16,8 +16,8 @@ from keymark.core.detect.pose_network import LAYOUT, MODEL, NAME
 from keymark.core.errors import InputError
 from keymark.core.markers.reading import read_clip, reading_arrays, reading_from_arrays
 from keymark.core.progress import run
-from keymark.core.take import checked_keypoints
-from keymark.core.take.checked_keypoints import checked_keypoints as check
+from keymark.core.session import see
+from keymark.core.session.see import checked_keypoints as check
 from keymark.core.take.conversion_settings import ConversionSettings
 from keymark.core.take.description import describe
 from keymark.core.take.performer_keypoints import performer_keypoints
@@ -203,7 +203,7 @@ def test_posed_keyframes_points_by_hand_and_those_just_found_need_no_network(
     synthetic: Take, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     network = FakeNetwork()
-    monkeypatch.setattr(checked_keypoints, "_network", lambda: network)
+    monkeypatch.setattr(see, "_network", lambda: network)
     reading = run(read_clip(clip_of(np.arange(FRAMES, dtype=float), tmp_path), ()))
     back = walker(np.arange(FRAMES)[::-1])
     for take in (
@@ -222,7 +222,7 @@ def test_posed_keyframes_points_by_hand_and_those_just_found_need_no_network(
 def test_without_the_network_files_are_believed(
     synthetic: Take, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(checked_keypoints, "_network", lambda: None)
+    monkeypatch.setattr(see, "_network", lambda: None)
     reading = run(read_clip(clip_of(np.arange(FRAMES, dtype=float), tmp_path), ()))
     take = replace(synthetic, keyframes=(), keypoints=(detected(0.5 * walker(np.arange(FRAMES))),))
     assert run(check(take, reading)) == take.keypoints

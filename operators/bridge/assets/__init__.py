@@ -1,1 +1,0 @@
-"""Assets: their details, .blend files and catalogs, and motions as assets."""
