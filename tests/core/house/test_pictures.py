@@ -4,11 +4,9 @@ import re
 import sys
 from pathlib import Path
 
-import pytest
-
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "tools"))
 
-from pictures.table import ALL, SCREENSHOTS, Screenshot  # noqa: E402
+from pictures.table import ALL, SCREENSHOTS  # noqa: E402
 
 SHOWN = re.compile(r"!\[[^\]]+\]\(((?:\.\./)?[\w./-]*pictures/[\w.-]+)\)")
 LARGEST_BYTES = {"filming_": 80_000, "keymark.webp": 2_500_000, "": 200_000}
@@ -47,15 +45,3 @@ def test_sessions_take_the_screenshots(repository: Path) -> None:
         taken = re.search(rf'(\.look|\.shoot|seen)\((person, )?"{screenshot.name}"', steps)
         assert taken, f"{name}: no session takes `{screenshot.name}`"
         assert f'"{screenshot.session}"' in (scripts / "test_ui.py").read_text(encoding="utf-8"), name
-
-
-def test_a_missing_screenshot_is_one_sentence(tmp_path: Path) -> None:
-    wanted = Screenshot("demo", "review")
-    with pytest.raises(
-        SystemExit, match=r"demo: the screenshot `review` is missing; `make test-ui` takes it$"
-    ):
-        wanted.file(tmp_path)
-    for name in ("03_preview.png", "04_review_side.png", "17_review.png"):
-        (tmp_path / "demo").mkdir(exist_ok=True)
-        (tmp_path / "demo" / name).touch()
-    assert wanted.file(tmp_path).name == "17_review.png"
