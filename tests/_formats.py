@@ -136,7 +136,9 @@ def _keypoints() -> dict[str, Any]:
     world = [[[0.1, -0.4, 0.01 * frame], [-0.1, None, 0.2]] for frame in range(FRAMES)]
     value = {"detector": "A detector", "layout": "own", "names": ["shoulder.L", "heel.R"], "by_hand": False}
     value |= {"size": list(SIZE), "frame_start": 1, "fps": 30.0, "note": "free text"}
-    return value | {"frames": [*frames[:-1], None], "world": [*world[:-1], None]}
+    face = [[12.0, 22.0, 0.1 * frame, -0.2, 0.0, 0.99] for frame in range(FRAMES)]
+    last: dict[str, list[Any]] = {"frames": frames, "world": world, "face": face}
+    return value | {name: [*rows[:-1], None] for name, rows in last.items()}
 
 
 def _read_keypoints(path: Path) -> object:

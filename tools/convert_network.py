@@ -174,7 +174,7 @@ class Converter:
         return (shape[0], shape[3], *shape[1:3]) if len(shape) == 4 else shape
 
     def weights(self, index: int, order: str = "") -> str:
-        """The name of constant weights; `order` OHWI, HWO or HWC, of one pixel, has an image's axes put as ONNX has them."""
+        """The name of constant weights; `order` OHWI, HWO or HWC has an image's axes put as ONNX has them."""
         tensor = self.tensors[self.widened.get(index, index)]
         kind, name = TYPES[tensor.kind], f"w{index}"
         code, _ = BYTES[kind]

@@ -1,8 +1,8 @@
 """Put the networks of body, face and hands where Keymark looks for them, once; see presets/models/NOTICE.
 
-They lie in public archives: the large network of the body in npm's @mediapipe/pose; a smaller, less exact one in
-pip's mediapipe, which is taken where there is no npm, unless --best is given; those of face and hands in pip's
-mediapipe too. `convert_network` makes ONNX of them. The checksums before and after stand in
+They lie in public archives: the large network of the body in npm's @mediapipe/pose; a smaller, less exact one
+in pip's mediapipe, which is taken where there is no npm, unless --best is given; those of face and hands in
+pip's mediapipe too. `convert_network` makes ONNX of them. The checksums before and after stand in
 presets/models/SHA256SUMS.
 """
 

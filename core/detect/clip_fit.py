@@ -14,6 +14,7 @@ from ..arrays import Array, BoolArray
 from ..errors import InputError, pluralize
 from .continuity import repeated_results
 from .detected_frames import DetectedFrames
+from .face import no_faces
 from .keypoints import People, SeenPeople, confidences
 
 
@@ -53,7 +54,10 @@ def held_against_clip(
         rows = rows[(everyone.score[rows] > 0.0).any(axis=-1)]
         index = number - aligned.first
         if len(rows) and 0 <= index < aligned.frame_count:
-            frames[index] = SeenPeople(everyone.pixel[rows], everyone.score[rows], everyone.hint_m[rows])
+            face = None if everyone.face is None else everyone.face[rows]
+            frames[index] = SeenPeople(
+                everyone.pixel[rows], everyone.score[rows], everyone.hint_m[rows], face
+            )
     if not any(len(frame.pixel) for frame in frames):
         raise InputError(f"{detected.where}: nobody is seen in any frame of the clip; it must show a person")
     again = [] if detected.by_hand else repeated_results(frames)
@@ -100,7 +104,11 @@ def _everyone(
         if person.hint_m is not None:
             hint[row] = person.hint_m[numbers]
     hint[~seen] = np.nan
-    return SeenPeople(place, score, hint), notes + score_notes
+    face = no_faces(len(persons)) if any(person.face is not None for person in persons) else None
+    for row, person in enumerate(persons):
+        if face is not None and person.face is not None:
+            face[row] = person.face * [*scale, 1.0, 1.0, 1.0, 1.0]
+    return SeenPeople(place, score, hint, face), notes + score_notes
 
 
 def _scale(

@@ -1,6 +1,6 @@
 """Keymark's own file of keypoints; see docs/keypoint_format.md."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -25,7 +25,8 @@ from .detected_frames import (
     placed,
 )
 from .detector_formats import FORMATS, is_instances, is_openpose_frame, read_frame_folder
-from .keypoints import BODY_POINTS, People, SeenPeople
+from .face import no_faces
+from .keypoints import BODY_POINTS, FACE_NUMBERS, People, SeenPeople
 from .layouts import LAYOUTS, OWN, Layout, own_layout
 
 LARGEST_SIDE_PX = 65536
@@ -67,10 +68,13 @@ class OwnFile(Record):
     world: Rows | None = None
     """A network's guess of the same points in space, in the order of frames or people; null where there is
     none."""
+    face: Rows | None = None
+    """Faces in the order of frames or people: middle [px], turn from facing the viewer [rad], and how sure it
+    is; null where none was looked for."""
 
 
-def read_own(fields: Fields, name: str) -> DetectedFrames:
-    """Read a file of our own, whose name stands for a detector that is not named."""
+def read_own(fields: Fields, name_of_source: str) -> DetectedFrames:
+    """Read a file of our own, whose own name stands for a detector that is not named."""
     own = read_record(OwnFile, fields)
     layout = LAYOUTS.get(own.layout)
     if layout is None:
@@ -84,32 +88,44 @@ def read_own(fields: Fields, name: str) -> DetectedFrames:
             "several"
         )
     rows = own.people or own.frames or ()
-    world = own.world or (None,) * len(rows)
-    if len(world) != len(rows):
-        raise InputError(
-            f"{fields.where}: world has {len(world)} entries; it must have one for each of the {len(rows)} "
-            "frames"
-        )
+    more = {name: value for name in MORE if (value := getattr(own, name)) is not None}
+    for name, entries in more.items():
+        if len(entries) != len(rows):
+            raise InputError(
+                f"{fields.where}: {name} has {len(entries)} entries; it must have one for each of the "
+                f"{len(rows)} frames"
+            )
     field = "people" if several else "frames"
     everyone = Everyone(fields.where, layout)
-    for index, (row, hints) in enumerate(zip(rows, world, strict=True)):
-        where, hint_where = f"{fields.where}: {field}[{index}]", f"{fields.where}: world[{index}]"
-        if row is None and hints is not None:
-            raise InputError(f"{hint_where} guesses depths where nobody is seen; it must be null there")
+    for index, row in enumerate(rows):
+        where = f"{fields.where}: {field}[{index}]"
+        seen = {name: (entries[index], f"{fields.where}: {name}[{index}]") for name, entries in more.items()}
+        for value, spot in seen.values():
+            if row is None and value is not None:
+                raise InputError(f"{spot} has something where nobody is seen; it must be null there")
         if not several:
-            everyone.add(index, {} if row is None else {where: (row, hints, hint_where)}, _person(layout))
+            everyone.add(index, {} if row is None else {where: (row, seen)}, _person(layout))
             continue
         if not isinstance(row, list | None):
             raise InputError(f"{where} is {shown(row)}; it must be a list of people or null")
-        if hints is not None and (not isinstance(hints, list) or len(hints) != len(row or ())):
-            raise InputError(
-                f"{hint_where} is {shown(hints)}; it must be null or have as many people as the frame"
-            )
-        pairs = zip(row or (), hints or [None] * len(row or ()), strict=True)
-        entries = [(one, hint, hint_where) for one, hint in pairs]
-        everyone.add(index, placed(entries, where), _person(layout))
+        for value, spot in seen.values():
+            if value is not None and (not isinstance(value, list) or len(value) != len(row or ())):
+                raise InputError(
+                    f"{spot} is {shown(value)}; it must be null or have as many people as the frame"
+                )
+        everyone.add(
+            index,
+            placed(
+                [
+                    (one, {name: (value and value[at], spot) for name, (value, spot) in seen.items()})
+                    for at, one in enumerate(row or ())
+                ],
+                where,
+            ),
+            _person(layout),
+        )
     return everyone.frames(
-        own.detector or name,
+        own.detector or name_of_source,
         size=(own.size[0], own.size[1]),
         fps=own.fps,
         frame_start=own.frame_start,
@@ -117,18 +133,28 @@ def read_own(fields: Fields, name: str) -> DetectedFrames:
     )
 
 
-def _person(layout: Layout) -> Callable[[tuple[Any, Any, str], str], DetectedPerson]:
-    """The reader of one person: points, the guess of them in space or None, and the place of that."""
+MORE = ("world", "face")
+"""Fields with more about the people of frames or people."""
 
-    def read(entry: tuple[Any, Any, str], where: str) -> DetectedPerson:
-        value, hint, hint_where = entry
+
+def _person(layout: Layout) -> Callable[[tuple[Any, dict[str, tuple[Any, str]]], str], DetectedPerson]:
+    """The reader of one person: points, and what there is more of it by field, with its place."""
+
+    def read(entry: tuple[Any, dict[str, tuple[Any, str]]], where: str) -> DetectedPerson:
+        value, more = entry
         points = person_array(value, (layout.count, 3), FARTHEST_PX, where)
         if np.isnan(points).any():
             raise InputError(
                 f"{where} has null or NaN among its numbers; a point that is not seen must be [0, 0, 0]"
             )
-        hint_m = None if hint is None else person_array(hint, (layout.count, 3), FARTHEST_M, hint_where)
-        return DetectedPerson(points[:, :2], points[:, 2], hint_m)
+        shapes = {"world": ((layout.count, 3), FARTHEST_M), "face": ((FACE_NUMBERS,), FARTHEST_PX)}
+        hint_m, face = (
+            person_array(more[name][0], *shapes[name], more[name][1])
+            if name in more and more[name][0] is not None
+            else None
+            for name in MORE
+        )
+        return DetectedPerson(points[:, :2], points[:, 2], hint_m, face=face)
 
     return read
 
@@ -146,31 +172,34 @@ def write_keypoints(path: Path, people: People, frame_start: int, fps: float | N
         fields["fps"] = fps
     if people.by_hand:
         fields["by_hand"] = True
-    rows = [_written(frame, several) for frame in people.frames]
-    fields["people" if several else "frames"] = [row for row, _ in rows]
-    if any(hint is not None for _, hint in rows):
-        fields["world"] = [hint for _, hint in rows]
+    rows = [[_written_points(frame), *_written_more(frame)] for frame in people.frames]
+    for name, column in zip(("people" if several else "frames", *MORE), zip(*rows, strict=True), strict=True):
+        if name in MORE and not any(own for row in column for own in row):
+            continue
+        fields[name] = [(list(row) if several else row[0]) if any(row) else None for row in column]
     write_json(path, fields)
 
 
-def _written(frame: SeenPeople, several: bool) -> tuple[Any, Any]:
-    """A frame's people and their hints as JSON, None where there are none."""
-    if not len(frame.pixel):
-        return None, None
+def _written_points(frame: SeenPeople) -> list[Any]:
+    """A frame's people as JSON."""
     seen = np.isfinite(frame.pixel).all(axis=-1) & (frame.score > 0.0)
     # A score that is rounded to 0 would say that the point is not seen.
     score = np.where(seen, np.maximum(np.round(frame.score, 4), 1e-4), 0.0)
     pixel = np.round(np.where(seen[..., None], frame.pixel, 0.0), 3)  # a thousandth of a pixel
-    rows = np.concatenate([pixel, score[..., None]], axis=-1).tolist()
-    hints = [
+    rows: list[Any] = np.concatenate([pixel, score[..., None]], axis=-1).tolist()
+    return rows
+
+
+def _written_more(frame: SeenPeople) -> Iterator[list[Any]]:
+    """What there is more of a frame's people, by field, None where there is none."""
+    yield [
         [[float(x) if np.isfinite(x) else None for x in point] for point in np.round(hint, 4)]  # 0.1 mm
         if np.isfinite(hint).any()
         else None
         for hint in frame.hint_m
     ]
-    if all(hint is None for hint in hints):
-        return (rows if several else rows[0]), None
-    return (rows, hints) if several else (rows[0], hints[0])
+    faces = no_faces(len(frame.pixel)) if frame.face is None else frame.face
+    yield [np.round(face, 4).tolist() if np.isfinite(face).all() else None for face in faces]
 
 
 LARGEST_BYTES = 128 * 2**20  # twenty minutes of two people with their hints of depth

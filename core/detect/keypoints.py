@@ -62,6 +62,9 @@ def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
     return np.minimum(scores / certain, 1.0), (note,)
 
 
+FACE_NUMBERS = 6  # of a face, as `face` explains them
+
+
 @dataclass(frozen=True, eq=False)
 class Keypoints:
     """N keypoints of one person in F frames; NaN where one is not seen."""
@@ -75,6 +78,7 @@ class Keypoints:
     between the hips; NaN where there is none."""
     notes: tuple[str, ...] = ()
     """Sentences on who of several people was taken, and on what the sources' files leave open."""
+    face: Array | None = None  # (F, 6) faces as in `face`, NaN where not looked at; None where nowhere
 
     def __post_init__(self) -> None:
         unknown = set(self.names) - set(BODY_POINTS)
@@ -84,6 +88,8 @@ class Keypoints:
             raise ValueError(f"{len(self.sources)} sources for {len(self.names)} keypoints")
         frames, count = len(self.pixel), len(self.names)
         shapes = {"pixel": (frames, count, 2), "score": (frames, count), "hint_m": (frames, count, 3)}
+        if self.face is not None:
+            shapes["face"] = (frames, FACE_NUMBERS)
         freeze(self, shapes)
 
     @classmethod
@@ -104,11 +110,13 @@ class Keypoints:
             np.concatenate([part.score for part in parts], axis=1),
             np.concatenate([part.hint_m for part in parts], axis=1),
             tuple(note for part in parts for note in part.notes),
+            next((part.face for part in parts if part.face is not None), None),
         )
 
     def frames(self, own: slice) -> "Keypoints":
         """The keypoints of some frames."""
-        return replace(self, pixel=self.pixel[own], score=self.score[own], hint_m=self.hint_m[own])
+        face = None if self.face is None else self.face[own]
+        return replace(self, pixel=self.pixel[own], score=self.score[own], hint_m=self.hint_m[own], face=face)
 
     def frame(self, index: int) -> "Keypoints":
         """The keypoints of one frame."""
@@ -152,6 +160,7 @@ class SeenPeople:
     pixel: Array  # (H, N, 2) [px] of the clip, NaN where not seen
     score: Array  # (H, N) 0 to 1, 0 where not seen
     hint_m: Array  # (H, N, 3) as in `Keypoints`
+    face: Array | None = None  # (H, 6) as in `Keypoints`
 
     @classmethod
     def nobody(cls, points: int) -> "SeenPeople":

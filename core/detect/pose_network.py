@@ -40,8 +40,12 @@ class Crop:
     @property
     def matrix(self) -> Array:
         """(2, 3) from the network's pixels to the picture's, origin at outer corners."""
-        turn = self.side / SIDE * self.turn
-        return np.column_stack([turn, self.center - turn @ np.full(2, SIDE / 2)])
+        return self.matrix_of(SIDE)
+
+    def matrix_of(self, pixels: int) -> Array:
+        """(2, 3) the same of a network that sees so many pixels a side."""
+        turn = self.side / pixels * self.turn
+        return np.column_stack([turn, self.center - turn @ np.full(2, pixels / 2)])
 
     @property
     def turn(self) -> Array:
@@ -59,6 +63,7 @@ class Pose:
     hint_m: Array  # (N, 3) as in `Keypoints`
     presence: float  # how sure it is that the crop shows anybody, 0 to 1
     crop: Crop  # about this person
+    face: Array | None = None  # (6,) as in `face`, where it was looked at
 
 
 class PoseNetwork:

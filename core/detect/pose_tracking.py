@@ -17,6 +17,8 @@ from ..arrays import Image
 from ..errors import InputError
 from ..progress import Job, Progress
 from ..video.clip import Clip
+from .closer_look import CloserLook
+from .face import no_faces, scaled_faces
 from .keypoints import People, SeenPeople
 from .pose_network import LAYOUT, NAME, Crop, Pose, PoseNetwork
 
@@ -41,8 +43,10 @@ class _Sighting:
     pose: Pose
 
 
-def find_people(clip: Clip, network: PoseNetwork) -> Job[People]:
+def find_people(clip: Clip, network: PoseNetwork, closer: CloserLook | None = None) -> Job[People]:
     """Find everyone in a clip; where it has many pictures a second, those between the looked at have nobody.
+
+    `closer` sees heads and hands too.
 
     Raises:
         InputError: It is a picture, has no frames, or nobody is in it.
@@ -57,7 +61,7 @@ def find_people(clip: Clip, network: PoseNetwork) -> Job[People]:
     for pictures, count in _stretches(clip, scale, every):  # noqa: B007 - the last count is the clip's
         for done in tracking.follow(pictures):
             yield Progress(DETECTING, min(every * (len(seen) + done) / clip.frame_count, 1.0))
-        seen += tracking.seen
+        seen += tracking.seen if closer is None else _looked_at(closer, pictures, tracking.seen)
     if not seen:
         raise InputError(f"{clip.path}: holds no frame that can be decoded; it must be a video or images")
     kept = _believed(seen)
@@ -69,6 +73,16 @@ def find_people(clip: Clip, network: PoseNetwork) -> Job[People]:
     frames = [SeenPeople.nobody(len(LAYOUT.names))] * count
     frames[::every] = [_people(frame, clip.size, scale) for frame in kept]
     return People(LAYOUT.names, NAME, clip.size, tuple(frames))
+
+
+def _looked_at(
+    closer: CloserLook, pictures: Sequence[Image], seen: Sequence[Sequence[_Sighting]]
+) -> list[list[_Sighting]]:
+    """The same people with their heads and hands."""
+    poses = iter(
+        closer([(picture, one.pose) for picture, frame in zip(pictures, seen, strict=True) for one in frame])
+    )
+    return [[_Sighting(one.track, next(poses)) for one in frame] for frame in seen]
 
 
 def refuse_picture(clip: Clip) -> None:
@@ -269,5 +283,7 @@ def _people(poses: Sequence[Pose], size: tuple[int, int], scale: float) -> SeenP
     pixel = np.array([pose.pixel for pose in poses]).reshape(-1, count, 2) / scale
     score = np.array([pose.score for pose in poses]).reshape(-1, count)
     hint = np.array([pose.hint_m for pose in poses]).reshape(-1, count, 3)
+    faces = [no_faces(1)[0] if pose.face is None else pose.face for pose in poses]
+    face = scaled_faces(faces, 1.0 / scale) if any(pose.face is not None for pose in poses) else None
     there = ((pixel >= 0.0) & (pixel <= np.array(size))).all(axis=-1)
-    return SeenPeople(np.where(there[..., None], pixel, np.nan), np.where(there, score, 0.0), hint)
+    return SeenPeople(np.where(there[..., None], pixel, np.nan), np.where(there, score, 0.0), hint, face)

@@ -13,6 +13,7 @@ from ..numerics.block_banded import BlockBanded
 from ..prior.frame_prior import REFERENCE_STEP_S, FramePrior
 from ..terms.contact import BalanceTerm, FloorTerm, GroundTerm, StillnessTerm
 from ..terms.depths import DepthHintTerm, DepthTerm, point_depths
+from ..terms.head import MEMORY_S, HeadTerm
 from ..terms.keypoints import LEAST_CONFIDENCE, KeypointModel, KeypointTerm, ObservedKeypoints
 from ..terms.motion import LimitTerm, SmoothnessTerm, belief_term
 from ..terms.reference import ReferenceTerm
@@ -55,6 +56,8 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
         points, hints = evidence.keypoints, evidence.keypoints.depths
         kept = _kept(step_s, hints.memory_s)
         terms.append(_hint_term(points, data.points[frames], hints.error_m, kept))
+    if data.heads is not None:
+        terms.append(HeadTerm(data.heads[frames], _kept(step_s, MEMORY_S)))
     if belief.pictured.any():
         terms.append(_picture_term(data, window))
     if belief.ankle_m is not None and ankles:

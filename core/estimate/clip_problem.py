@@ -8,11 +8,13 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..body.skeleton import Skeleton
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
 from ..markers.ignored_regions import IgnoredPixels
 from ..prior.frame_prior import REFERENCE_STEP_S, process_noise_factor
 from ..prior.keyframes import with_turns
+from ..terms.head import ObservedHeads
 from ..terms.keypoints import ObservedKeypoints
 from ..terms.region_model import RegionModel
 from ..terms.regions import FEATURES, ObservedRegions
@@ -20,6 +22,17 @@ from ..terms.state import ClipState
 from .belief import Belief
 from .keypoint_evidence import KeypointEvidence
 from .windows import Window
+
+LOOSE_NECK = 3.0
+"""Factor on the neck's usual accelerations, and on what found keyframes err by there, where heads are seen:
+how performers turn theirs is their own."""
+
+
+def neck_dofs(skeleton: Skeleton) -> slice:
+    """The neck's degrees of freedom."""
+    joint = skeleton.joint_index("neck")
+    first = int(skeleton.dof_starts[joint])
+    return slice(first, first + skeleton.joints[joint].dof_count)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +75,7 @@ class ClipData:
     swapped: BoolArray  # (F, N) which of them were exchanged
     time_s: Array  # (F,)
     there: BoolArray  # (F,) whether the performer is there; nothing is solved elsewhere
+    heads: ObservedHeads | None = None  # how the head turns; None where nobody looked
 
     @cached_property
     def step_s(self) -> Array:
@@ -77,7 +91,10 @@ class ClipData:
     def factor(self) -> Array:
         """(D, D) of the deviation's usual accelerations, as the keyframes have them."""
         belief = self.belief
-        return process_noise_factor(belief.postures, self.time_s[belief.frame])
+        loose = np.ones(self.body.skeleton.dof_count)
+        if self.heads is not None:
+            loose[neck_dofs(self.body.skeleton)] = LOOSE_NECK
+        return process_noise_factor(belief.postures, self.time_s[belief.frame], loose)
 
 
 @dataclass(frozen=True, eq=False)

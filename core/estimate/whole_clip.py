@@ -22,12 +22,13 @@ from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import runs
 from ..prior.frame_prior import REFERENCE_STEP_S
 from ..progress import Part, scaled
+from ..terms.head import ObservedHeads
 from ..terms.keypoints import KeypointModel, ObservedKeypoints
 from ..terms.region_model import MarkerPlacement, RegionModel
 from ..terms.regions import ObservedRegions, limb_widths
 from ..video.album import Album
 from .belief import FEWEST_POSED, Belief
-from .clip_problem import ClipData, ClipProblem, KeyframeEvidence
+from .clip_problem import LOOSE_NECK, ClipData, ClipProblem, KeyframeEvidence, neck_dofs
 from .contour_evidence import ContourEvidence, contour_rows, learn_contours
 from .contour_search import all_located, contour_schedule
 from .keyframe_evidence import SeenAtKeyframes, read_belief
@@ -106,6 +107,7 @@ def estimate_whole_clip(
         learning = learn_contours(body, camera, album, prior, known, schedule)
         contours = yield from scaled(learning, 0.0, 0.0)
     outlines = None if contours is None else partial(contour_rows, contours)
+    heads = ObservedHeads.of(keypoints, camera)
     at = SeenAtKeyframes(
         belief.frame,
         belief.postures,
@@ -116,6 +118,8 @@ def estimate_whole_clip(
         outlines,
     )
     evidence = yield from scaled(read_belief(model, at, belief), 0.0, 0.0)
+    if heads is not None:
+        evidence = _loosened(evidence, belief, heads.seen, body)
     there = np.ones(tracks.frame_count, dtype=bool) if seen.there is None else seen.there
     data = ClipData(
         body,
@@ -129,10 +133,19 @@ def estimate_whole_clip(
         swapped,
         tracks.time_s,
         there,
+        heads,
     )
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or belief.doubt.any()) else None
     return (yield from _solve(ClipProblem.begun(data, evidence), hold_rests, album, kept))
+
+
+def _loosened(evidence: KeyframeEvidence, belief: Belief, seen: BoolArray, body: Body) -> KeyframeEvidence:
+    """The evidence with less trust in how found keyframes turn heads that are seen (F,)."""
+    loose = np.ones(body.skeleton.dof_count)
+    loose[neck_dofs(body.skeleton)] = 1.0 / LOOSE_NECK
+    believed = np.where((~belief.posed & seen[belief.frame])[:, None], loose, 1.0)
+    return replace(evidence, information=evidence.information * believed[:, :, None] * believed[:, None])
 
 
 def _swaps(

@@ -22,13 +22,14 @@ NATURAL_SHARE = 0.2  # factor on every degree of freedom's natural deviation (`S
 CORRELATED_SHARE, INDEPENDENT_SHARE = 6.0, 2.5
 
 
-def process_noise_factor(keyframes: Posture, time_s: Array) -> Array:
+def process_noise_factor(keyframes: Posture, time_s: Array, loose: Array | float = 1.0) -> Array:
     """Cholesky factor L (D, D) of the covariance L Lᵀ of the deviation's second differences.
 
-    Lower triangular, zero between different limbs [m, rad per squared step of 1/30 s].
+    Lower triangular, zero between different limbs [m, rad per squared step of 1/30 s]. `loose` (D,): factors
+    on natural deviations.
     """
     skeleton = keyframes.skeleton
-    covariance = np.diag((NATURAL_SHARE * skeleton.deviations) ** 2)
+    covariance = np.diag((NATURAL_SHARE * loose * skeleton.deviations) ** 2)
     if len(time_s) > 1:
         gap = np.diff(time_s)[:, None] / REFERENCE_STEP_S
         step = keyframes[1:].minus(keyframes[:-1]) / gap**2

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+from ..detect.closer_look import CloserLook
 from ..detect.keypoints import People, SeenPeople
 from ..detect.picture_check import applied, check_by_pictures
 from ..detect.pose_network import NAME, PoseNetwork
@@ -34,7 +35,9 @@ def see(session: Session) -> Job[Sight]:
     """Detect everybody where that is wanted, and check whom others have detected."""
     inputs, take = session.inputs, session.inputs.take
     if inputs.detects:
-        job = find_people(open_footage(take.clip, take.fps, take.camera.resolution), PoseNetwork())
+        job = find_people(
+            open_footage(take.clip, take.fps, take.camera.resolution), PoseNetwork(), CloserLook()
+        )
         take = replace(take, keypoints=((yield from stretch(job, 0.0, SEEN)),))
     if inputs.evidence is not None:
         take = with_evidence(take, inputs.evidence)

@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
 from ..detect.continuity import same_person
+from ..detect.face import no_faces
 from ..detect.keypoints import FACE, Keypoints, People, SeenPeople
 from ..detect.performer import Expected, Sightings, choose_performer, person_size
 from ..errors import pluralize
@@ -98,11 +99,14 @@ def _is_somebody_else(take: Take, people: People, chosen: IndexArray) -> bool:
 def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: int) -> Keypoints:
     pixel = np.full((frames, len(people.names), 2), np.nan)
     score, hint = np.zeros(pixel.shape[:2]), np.full((*pixel.shape[:2], 3), np.nan)
+    face = no_faces(frames) if any(seen.face is not None for seen in people.frames) else None
     for index, seen in enumerate(people.frames[:frames]):
         row = chosen[index]
         if row != NOBODY and len(seen.pixel):
             pixel[index], score[index], hint[index] = seen.pixel[row], seen.score[row], seen.hint_m[row]
-    return Keypoints(people.names, (people.source,) * len(people.names), pixel, score, hint, notes)
+            if face is not None and seen.face is not None:
+                face[index] = seen.face[row]
+    return Keypoints(people.names, (people.source,) * len(people.names), pixel, score, hint, notes, face)
 
 
 def _with_middles(

@@ -101,10 +101,15 @@ def steadied_picture(image: Image, reading: Reading, frame: int) -> Image:
 
 def _people(people: People, back: Array) -> People:
     frames = tuple(
-        replace(seen, pixel=moved(own, seen.pixel)) if len(seen.pixel) else seen
+        replace(seen, pixel=moved(own, seen.pixel), face=_faces(seen.face, own)) if len(seen.pixel) else seen
         for seen, own in zip(people.frames, back, strict=False)
     )
     return replace(people, frames=(*frames, *people.frames[len(frames) :]))
+
+
+def _faces(face: Array | None, back: Array) -> Array | None:
+    """Faces whose middles are moved: they turn about the lines of sight."""
+    return None if face is None else np.column_stack([moved(back, face[:, :2]), face[:, 2:]])
 
 
 def _tracks(tracks: RegionTracks, back: Array) -> RegionTracks:

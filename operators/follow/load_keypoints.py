@@ -118,6 +118,7 @@ class Detected:
 
 def detect(scene: Scene) -> "Job[Detected]":
     """Find everybody in the active take's clip; the scene stays as it is."""
+    from ...core.detect.closer_look import CloserLook
     from ...core.detect.pose_network import PoseNetwork
     from ...core.detect.pose_tracking import find_people
     from ...core.take.clip_check import open_footage
@@ -126,7 +127,7 @@ def detect(scene: Scene) -> "Job[Detected]":
     identifier, source = take.identifier, footage_of(scene, take)
     output, first = keypoint_output(take, source.path), source.first_frame
     clip = open_footage(source.path, source.rate, (source.clip.size[0], source.clip.size[1]))
-    people = yield from find_people(clip, PoseNetwork())
+    people = yield from find_people(clip, PoseNetwork(), CloserLook())
     return Detected(identifier, output, people, clip.fps, first)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ....core.detect.closer_look import CloserLook
 from ....core.detect.keypoint_file import write_keypoints
 from ....core.detect.keypoints import People
 from ....core.detect.pose_network import PoseNetwork
@@ -135,7 +136,7 @@ def _detect(footage: Footage, network: PoseNetwork, console: Console, first: flo
     if not os.access(footage.output.parent, os.W_OK | os.X_OK):
         raise InputError(f"{footage.output}: cannot be written; its folder must exist and be writable")
     clip = open_footage(footage.clip, footage.fps)
-    job = find_people(clip, network)
+    job = find_people(clip, network, CloserLook())
     with closing(stretch(job, first, last)) as stretched:
         people = run(stretched, console.progress)
     write_keypoints(footage.output, people, footage.frame_start, clip.fps)

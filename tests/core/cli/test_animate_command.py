@@ -103,7 +103,7 @@ def test_without_keypoints_they_are_detected(
     found = read_keypoints(file, FRAMES, (160, 120), 30.0, 1)
     file.unlink()
 
-    def find(_clip: object, _network: object) -> Any:
+    def find(_clip: object, _network: object, _closer: object) -> Any:
         yield Progress("Detecting keypoints", 0.0)
         return found
 

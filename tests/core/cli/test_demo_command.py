@@ -59,7 +59,7 @@ def bare_clip(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     written = write_keypoints_of(folder / "seen.json", gliding())
     people = read_keypoints(written, 40, SIZE, 30.0, 1)
 
-    def find(_clip: object, _network: object) -> Job[People]:
+    def find(_clip: object, _network: object, _closer: object) -> Job[People]:
         yield Progress("Detecting keypoints", 0.0)
         return people
 

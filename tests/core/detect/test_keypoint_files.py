@@ -164,14 +164,16 @@ def test_own_file_is_read_back(tmp_path: Path) -> None:
         hint = np.round(generator.normal(size=(count, 2, 3)), 4)
         pixel[:1, 1], score[:1, 1], hint[:1, 1] = np.nan, 0.0, np.nan
         hint[1:2] = np.nan
-        frames.append(SeenPeople(pixel, score, hint))
+        face = np.round(generator.uniform(0.0, 1.0, (count, 6)), 4)
+        face[2:3] = np.nan
+        frames.append(SeenPeople(pixel, score, hint, face if count else None))
     people = People(("head", "heel.L"), "a detector", SIZE, tuple(frames), by_hand=True)
     write_keypoints(tmp_path / "keypoints.json", people, 7, 25.0)
     again = read(tmp_path / "keypoints.json", 5, fps=25.0, frame_start=7)
     assert (again.names, again.source, again.size, again.by_hand) == (people.names, "a detector", SIZE, True)
     assert again.notes == ()
     for one, other in zip(people.frames, again.frames, strict=True):
-        for name in ("pixel", "score", "hint_m"):
+        for name in ("pixel", "score", "hint_m", "face"):
             np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
 
 

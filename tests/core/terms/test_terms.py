@@ -8,11 +8,13 @@ import pytest
 from _scene import BODY, CAMERA, LAYOUT, MODEL, SEGMENTS, detect, exercise, film
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
+from keymark.core.body.rotations import exponential
 from keymark.core.numerics.block_banded import BlockBanded
 from keymark.core.prior.frame_prior import process_noise_factor
 from keymark.core.terms.contact import BalanceTerm, FloorTerm, GroundTerm, StillnessTerm
 from keymark.core.terms.contours import AxialTerm, ContourModel, ContourTerm, LimbAxes
 from keymark.core.terms.depths import DepthHintTerm, DepthLinks, DepthTerm, point_depths
+from keymark.core.terms.head import HeadTerm, ObservedHeads
 from keymark.core.terms.keypoints import KeypointModel, KeypointTerm, ObservedKeypoints
 from keymark.core.terms.motion import LimitTerm, SmoothnessTerm, belief_term
 from keymark.core.terms.reference import ExpectedPoints, ReferenceTerm
@@ -80,6 +82,13 @@ def assert_descends(term: Term, at: ClipState, share: float = 1e-4) -> None:
             np.testing.assert_allclose(foretold[rows.used], found, rtol=share, atol=share * typical)
 
 
+def _heads(at: ClipState) -> ObservedHeads:
+    """Heads turned by some tenths of a radian from a state's, and one that is not seen."""
+    turn = at.pose.rotation[:, HUMAN.joint_index("neck")]
+    apart = exponential(np.random.default_rng(6).normal(size=(FRAMES, 3)) * 0.3)
+    return ObservedHeads(turn @ apart, np.where(np.arange(FRAMES) == 2, np.inf, 0.2))
+
+
 def every_term() -> dict[str, tuple[Term, ClipState, float]]:
     """Each term, a state at which it pulls, and the share within which its slopes are right."""
     frame, rng, at = np.arange(FRAMES), np.random.default_rng(4), state(size=0.02)
@@ -120,6 +129,7 @@ def every_term() -> dict[str, tuple[Term, ClipState, float]]:
         "smoothness": (SmoothnessTerm(0.8), at, 1e-4),
         "keypoints": (KeypointTerm(model, points, std_m), at, 0.02),
         "keypoints that last": (KeypointTerm(model, points, std_m, KEPT), at, 0.02),
+        "head": (HeadTerm(_heads(at), KEPT), at, 1e-4),
         "hints": (DepthHintTerm(model, links, expected, np.full(expected.shape, 0.1)), at, 1e-4),
         "contours": (ContourTerm(outlines, edges.pixel, edges.normal, np.ones(edges.depth.shape)), at, 0.1),
         "axes": (AxialTerm(axes, shares, place, direction, np.full(place.shape, 4.0), KEPT), at, 1e-3),
