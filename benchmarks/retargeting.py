@@ -139,7 +139,7 @@ def _copied(make: Maker, motion: Motion, source: SegmentMotion, frames: np.ndarr
     started = time.process_time()
     action = copy_rotations(actor, armature, own.character_map, (int(frames[0]), int(frames[-1])))
     seconds = time.process_time() - started
-    found = run(measure(armature, action, frames, source, own.motion, character, own.character_map, in_fk={}))
+    found = run(measure(armature, action, frames, source, own.motion, character, own.character_map, (), {}))
     return _row(found.quality, seconds, len(frames)) | {"keys_share": 100.0}
 
 

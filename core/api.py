@@ -13,12 +13,13 @@ from .prior.library import Library
 from .prior.registry import SHIPPED, find_libraries
 from .prior.texts import EVERY_LIBRARY
 from .progress import Job, run
-from .session.described import ReadArmature, described
-from .session.session import NO_BRIDGE, Bridge, Inputs, Session
+from .session.described import described
+from .session.session import NO_BRIDGE, Bridge, Inputs, Keep, Session, keep_nothing
 from .session.stages import reach
 from .take.conversion_settings import NO_SETTINGS, ConversionSettings
 from .take.description import Description, describe
 from .take.motion import write_motion
+from .take.reference import ReadArmature
 from .take.take import Take
 
 __all__ = ["Reconstruction", "animate", "convert", "reconstruct", "run", "write_motion"]
@@ -44,17 +45,18 @@ def convert(
     libraries: Sequence[Library] = (),
     read_armature: ReadArmature | None = None,
     bridge: Bridge = NO_BRIDGE,
+    keep: Keep = keep_nothing,
 ) -> Job[Session]:
     """From a described take to its motion, and on with what only Blender can do, by the names of stages.
 
-    `read_armature` reads a reference motion that only Blender can.
+    `read_armature` reads a reference motion that only Blender can; `keep` gets each stage, see `advance`.
 
     Raises:
         InputError: The take or its clip cannot be used, or there is no library with a posture.
         ConversionError: No motion could be computed.
     """
     inputs = described(description, settings, libraries, read_armature)
-    return reach(Session(replace(inputs, bridge=bridge)), "retarget")
+    return reach(Session(replace(inputs, bridge=bridge)), "retarget", None, keep)
 
 
 def reconstruct(

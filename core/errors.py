@@ -1,5 +1,6 @@
 """Errors, and values in words for their sentences."""
 
+from collections.abc import Iterable
 from reprlib import Repr
 from typing import Any
 
@@ -12,6 +13,20 @@ _SHORT.maxlist = _SHORT.maxdict = _SHORT.maxtuple = 40
 def pluralize(count: int, one: str, many: str | None = None) -> str:
     """`1 take`, `2 takes`; `many` is the plural where it is not `one` with an s."""
     return f"{count} {one if count == 1 else many or one + 's'}"
+
+
+def frames_in_words(frames: Iterable[float], most: int = 12) -> str:
+    """Rising frames for a sentence, `frame 5` or `frames 3 to 7, 12`; of more stretches the first ones."""
+    runs: list[list[float]] = []
+    for frame in frames:
+        if runs and frame <= runs[-1][1] + 1.0:
+            runs[-1][1] = frame
+        else:
+            runs.append([frame, frame])
+    named = [f"{first:g}" if first == last else f"{first:g} to {last:g}" for first, last in runs[:most]]
+    more = f" and {pluralize(len(runs) - most, 'more time')}" if len(runs) > most else ""
+    single = len(runs) == 1 and runs[0][0] == runs[0][1]
+    return f"frame{'s' * (not single)} {', '.join(named)}{more}"
 
 
 class KeymarkError(Exception):

@@ -183,6 +183,7 @@ def _record() -> dict[str, Any]:
     }
     value |= {"doubtful": [5], "libraries": {"walking": "ef" * 16}}
     value |= {"confidence": 0.5, "weakest": 0.2, "weak_frames": [3], "notes": ["A note."]}
+    value["warnings"] = ["A warning."]
     value["evidence"] = {
         "markers": ["trunk"],
         "keypoints": [

@@ -167,6 +167,10 @@ class SeenPeople:
         """No person at all, H = 0, by a source of so many points."""
         return cls(np.zeros((0, points, 2)), np.zeros((0, points)), np.zeros((0, points, 3)))
 
+    def only(self, row: int) -> "SeenPeople":
+        """One of them alone."""
+        return SeenPeople(self.pixel[[row]], self.score[[row]], self.hint_m[[row]])
+
 
 @dataclass(frozen=True, eq=False)
 class People:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from ..arrays import BoolArray
-from ..files.fields import listed
+from ..errors import frames_in_words
 from ..markers.region_tracks import RegionTracks
 from ..prior.keyframes import Matched
 from ..take.clip_check import VARIABLE_RATE
@@ -108,10 +108,10 @@ def found_notes(take: Take) -> tuple[str, ...]:
     if doubtful:
         worst = sorted(doubtful, key=lambda one: one[1].confidence)[:MOST_NAMED]
         frames = sorted(keyframe.index + take.frame_start for keyframe, _ in worst)
-        named = listed([str(frame) for frame in frames], MOST_NAMED)
+        named, single = frames_in_words(frames, MOST_NAMED), len(doubtful) == 1
         notes.append(
-            f"{len(doubtful)} of {len(found)} found keyframes are doubtful; pose frame {named} to "
-            "set them right"
+            f"{len(doubtful)} of {len(found)} found keyframes {'is' if single else 'are'} doubtful; pose "
+            f"{named} to set {'it' if single else 'them'} right"
         )
     return tuple(notes)
 

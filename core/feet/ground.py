@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, BoolArray
+from ..errors import frames_in_words
 from ..numerics.vectors import runs
 from .contacts import Contact
 from .fading import smooth_above
@@ -138,13 +139,10 @@ def floor_notes(
         deep = runs(depth > size * IN_FLOOR_M)
         if deep:
             longest = sorted(deep, key=lambda run: -float(depth[slice(*run)].max()))[:MOST_RUNS]
-            named = [
-                f"{frames[start]:g}" if stop - start == 1 else f"{frames[start]:g} to {frames[stop - 1]:g}"
-                for start, stop in sorted(longest)
-            ]
+            named = frames_in_words([frame for run in sorted(longest) for frame in frames[slice(*run)]])
             more = f" and {len(deep) - MOST_RUNS} more times" if len(deep) > MOST_RUNS else ""
             notes.append(
                 f"The {'left' if side == 'L' else 'right'} foot{whose} is up to "
-                f"{1000.0 * float(depth.max()):.3g} mm below the floor, in frames {', '.join(named)}{more}"
+                f"{1000.0 * float(depth.max()):.3g} mm below the floor, in {named}{more}"
             )
     return tuple(notes)

@@ -76,7 +76,9 @@ def agreement(
         against.append("other postures look alike")
     probability = float(np.clip(probability, *PROBABILITY_BOUNDS))
     verdict = "usable" if probability >= USABLE else "doubtful"
-    reasons = listed(against, 4) if against else " and ".join(agree) + " agree" if agree else ""
+    # "The detector's sizes agree", but "the floor agrees".
+    verb = "agrees" if agree == ["the floor"] else "agree"
+    reasons = listed(against, 4) if against else f"{' and '.join(agree)} {verb}" if agree else ""
     return probability, f"the found poses are {verdict}, {probability:.0%} sure" + (
         f": {reasons}" if reasons else ""
     )

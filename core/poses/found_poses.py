@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..body.posture import Posture
+from ..errors import frames_in_words
 from ..estimate.performer_placement import found_ankle_m, standing_ankle_m
 from ..estimate.reference_evidence import ReferenceEvidence
-from ..files.fields import listed
 from ..prior.keyframes import Keyframe, Matched, interpolate
 from ..prior.texts import COMPOSED, REFERENCE
 from ..take.take import Take
@@ -114,8 +114,5 @@ def contradiction_notes(take: Take, found: FoundPoses) -> tuple[str, ...]:
     notes = []
     for name in sorted(frames, key=lambda name: (-len(frames[name]), name))[:MOST_NAMED]:
         kind = "marker" if name in markers else "keypoint"
-        notes.append(
-            f"frame {listed([str(frame) for frame in frames[name]], MOST_NAMED)}: no plausible pose "
-            f"explains {kind} {name}"
-        )
+        notes.append(f"{frames_in_words(frames[name], MOST_NAMED)}: no plausible pose explains {kind} {name}")
     return tuple(notes)

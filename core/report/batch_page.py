@@ -106,12 +106,14 @@ def current_record(outcome: Outcome) -> ConversionRecord | None:
 
 
 def verdict(outcome: Outcome) -> Verdict:
-    """The verdict on a take; of a result by its mean confidence and that of its weakest twentieth."""
+    """The verdict on a take; of a result by its warnings, its mean confidence and its weakest twentieth's."""
     if outcome.status is Status.FAILED:
         return Verdict.FAILED
     record = current_record(outcome)
     if record is None:
         return Verdict.WAITING
+    if record.warnings:
+        return Verdict.POOR
     if record.confidence is None:
         return Verdict.UNJUDGED
     if record.confidence >= GOOD and (record.weakest is None or record.weakest >= GOOD_WEAKEST):
@@ -273,6 +275,7 @@ def _to_do(record: ConversionRecord) -> str:
     notes = [f"<li>{isolated(note)}</li>" for note in record.notes[:MOST_NAMED]]
     if len(record.notes) > MOST_NAMED:
         notes.append(f"<li>{len(record.notes) - MOST_NAMED} more in conversion.json</li>")
+    notes = [*(f"<li><b>{isolated(warning)}</b></li>" for warning in record.warnings), *notes]
     return frames + (f"<ul>{''.join(notes)}</ul>" if notes else "")
 
 

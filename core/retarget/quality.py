@@ -13,6 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..body.skeleton import SIDES
+from ..files.fields import listed
 from .character import LONG_BONES
 from .character_motion import CharacterMotion, FootRest
 
@@ -34,6 +35,7 @@ class Quality:
     skate_worst_mm: float | None = None
     penetration_mm: float | None = None
     """Greatest depth below the ground of a foot's mesh as it is shown, or of its bones without one."""
+    lifted_mm: float | None = None  # mean height of a resting foot's lowest point over the ground
     hands_mm: float | None = None
     """Mean distance of wrists from where they belong by the body, the other hand and the floor, in reach."""
     hands_worst_mm: float | None = None
@@ -50,6 +52,27 @@ class Quality:
             for name, value in asdict(self).items()
             if value is not None
         }
+
+
+BOUNDS = {
+    "arms_deg": (10.0, "arms are {:.0f} degrees from the performer's"),
+    "legs_deg": (10.0, "legs are {:.0f} degrees from the performer's"),
+    "skate_mm": (15.0, "resting feet slide {:.0f} mm a frame"),
+    "penetration_mm": (20.0, "soles are up to {:.0f} mm below the floor"),
+    "lifted_mm": (20.0, "resting feet are {:.0f} mm above the floor"),
+}
+"""Figures beyond which a motion is not the performer's any more; lengths at the performer's size."""
+
+
+def warnings_of(figures: Mapping[str, float | None], size: float) -> tuple[str, ...]:
+    """Sentences on figures of `Quality` that are out of bounds, on a character of a size."""
+    found = []
+    for name, (most, words) in BOUNDS.items():
+        value = figures.get(name)
+        if value is not None and value > most * (size if name.endswith("_mm") else 1.0):
+            found.append(words.format(value))
+    advice = "see whether a constraint, driver or parent holds the character, or name its controls in a map"
+    return (f"The motion is not right on the character: {listed(found)}; {advice}",) if found else ()
 
 
 def direction_errors_deg(
@@ -151,6 +174,7 @@ def measured(
     skate = skate_mm(feet, motion.rests, SOLE_M * motion.size)
     depth_m = depths_m({role: points[..., 2] for role, points in under.items()}, motion.ground_m)
     deepest = max((float(depth.max()) for depth in depth_m.values()), default=None)
+    lifted = [-depth_m[one.limb][one.first : one.last + 1] for one in motion.rests if one.limb in depth_m]
     hands, floor = [], []
     for side, goal in motion.hands.items():
         if f"hand.{side}" in carried:
@@ -166,6 +190,7 @@ def measured(
         skate_mm=_mean(skate),
         skate_worst_mm=_most(skate),
         penetration_mm=None if deepest is None else 1000.0 * max(deepest, 0.0),
+        lifted_mm=None if not lifted else 1000.0 * max(float(np.concatenate(lifted).mean()), 0.0),
         hands_mm=_mean(*hands),
         hands_worst_mm=_most(*hands),
         hands_floor_mm=_most(*floor),

@@ -101,6 +101,8 @@ class RetargetRecord(Record):
         ByName("figures", MOST_FIGURES, key=Text(LONGEST_FIGURE)),
     ] = field(default_factory=dict)
     """Figures by name, units at the names' ends; None where one does not apply."""
+    warnings: Notes = ()
+    """Which figures are out of bounds, so that the motion is not right on the character."""
     doubts: Notes = ()
     """What was recognized without being sure, one sentence each."""
     notes: Notes = ()

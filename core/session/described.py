@@ -1,6 +1,6 @@
 """What a session starts from as files describe it: a take, or a clip and the performer's height."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from ..take.conversion_settings import METHODS, ConversionSettings
 from ..take.description import ASSUMED, Description, keypoint_files
 from ..take.evidence import KEYPOINTS
 from ..take.keyframe_file import FEWEST_KEYFRAMES
-from ..take.reference import ReferenceMotion
+from ..take.reference import ReadArmature
 from ..take.take import with_evidence
 from ..take.take_file import read_described
 from .lens import lens_of
@@ -23,8 +23,6 @@ from .place import Placed, camera_in_words
 from .pose import Posed
 from .see import Sight, people_in_words
 from .session import Inputs, Session
-
-ReadArmature = Callable[[Path], ReferenceMotion]
 
 
 def is_unplaced(description: Description, settings: ConversionSettings) -> bool:
@@ -72,7 +70,14 @@ def described(
             take = replace(take, keyframes=tuple(key for key in take.keyframes if key.matched is None))
         inputs = Inputs(take)
     method = settings.method or METHODS[0]
-    return replace(inputs, method=method, libraries=searched, floor_m=settings.floor_m)
+    return replace(
+        inputs,
+        method=method,
+        libraries=searched,
+        floor_m=settings.floor_m,
+        shot=settings.shot,
+        performer=settings.performer,
+    )
 
 
 def _unplaced(description: Description, settings: ConversionSettings) -> Inputs:

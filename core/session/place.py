@@ -56,7 +56,7 @@ def place(session: Session) -> Job[Placed]:
     """Find a camera that nobody has placed, take its turning back, and tell who performs when."""
     inputs, reading = session.inputs, session[Reading]
     take, found = replace(inputs.take, keypoints=session[Sight].checked), None
-    take, reading = of_one_shot(take, reading)
+    take, reading = of_one_shot(take, reading, inputs.shot)
     anyone = performer_keypoints(replace(take, keyframes=()), reading.tracks)
     if inputs.open_lens is not None:
         yield Progress("Placing the camera", 0.0)
@@ -80,7 +80,7 @@ def placed_take(session: Session) -> SeenTake:
 def _uses(inputs: Inputs) -> tuple[object, ...]:
     take = inputs.take
     posed = tuple(key for key in take.keyframes if key.matched is None)
-    return take.camera, take.body.actor.segments_m, take.fps, inputs.open_lens, posed
+    return inputs.shot, take.camera, take.body.actor.segments_m, take.fps, inputs.open_lens, posed
 
 
 STAGE = Stage("place", place, _uses, lambda _inputs: 0.3)

@@ -17,6 +17,7 @@ from ..poses.found_poses import FoundPoses, contradiction_notes
 from ..prior.library import library_digest
 from ..progress import run
 from ..retarget.retarget_record import RECORD_FILE as RETARGET
+from ..retarget.retarget_record import RetargetRecord
 from ..review.frame_evidence import used_evidence
 from ..review.review import review
 from ..take.conversion_record import (
@@ -83,6 +84,12 @@ class Conversion:
         return self.session[Posed].found
 
     @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is not right on the character by its own figures."""
+        record = self.session.made.get("retarget")
+        return record.warnings if isinstance(record, RetargetRecord) else ()
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """Everything a person should know of the result, one sentence each."""
         about: tuple[str, ...] = ()
@@ -121,6 +128,7 @@ def conversion_record(
         weakest=round(float(np.percentile(confidence, 5.0)), 4) if len(confidence) else None,
         weak_frames=tuple(frame.index + motion.frame_start for frame in reviewed.weak_frames),
         notes=conversion.notes,
+        warnings=conversion.warnings,
         files={name: stable_digests.get(name) or content_digest(folder / name) for name in names},
         evidence=used_evidence(conversion.reconstruction),
         libraries={each.identifier: library_digest(each) for each in libraries},

@@ -12,7 +12,7 @@ from ..errors import InputError, pluralize
 from ..markers.reading import Reading
 from ..progress import Job, stretch, within
 from ..take.clip_check import open_footage
-from ..take.performer_keypoints import FEWEST_KEYFRAMES
+from ..take.performer_keypoints import FEWEST_KEYFRAMES, people_of
 from ..take.take import Take, with_evidence
 from ..video.frame_checks import FrameFindings
 from .session import Inputs, Session, Stage
@@ -42,12 +42,14 @@ def see(session: Session) -> Job[Sight]:
     if inputs.evidence is not None:
         take = with_evidence(take, inputs.evidence)
     checked = yield from stretch(checked_keypoints(take, session[Reading]), SEEN, 1.0)
+    if inputs.performer is not None:
+        checked = tuple(people_of(people, inputs.performer, take.fps) for people in checked)
     return Sight(take.keypoints, checked)
 
 
 def _uses(inputs: Inputs) -> tuple[object, ...]:
     posed = sum(key.is_posed for key in inputs.take.keyframes) >= FEWEST_KEYFRAMES
-    return inputs.detects, inputs.evidence, inputs.take.keypoints, posed
+    return inputs.performer, inputs.detects, inputs.evidence, inputs.take.keypoints, posed
 
 
 STAGE = Stage("see", see, _uses, lambda inputs: 4.0 if inputs.detects else 0.2)

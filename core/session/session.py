@@ -46,6 +46,10 @@ class Inputs:
     """Height of the floor [m] where it is known."""
     floor_open: bool = False
     """Whether the poses tell where the floor is, and the world is moved so that it is there, else z = 0."""
+    shot: tuple[int, int] | None = None
+    """First and last frame of the part that is animated; None for all, or one shot of an edited clip."""
+    performer: int | None = None
+    """Who of several people performs, counted from the left; None for whom the take or its size shows."""
     frames: tuple[int, ...] | None = None
     """Frames to find keyframes at; None for those in which the performer rests or turns back."""
     keyframe_count: int | None = None
@@ -99,11 +103,18 @@ def plain(value: object) -> object:
     return str(value) if isinstance(value, Path) else value
 
 
+Keep = Callable[[str, Session], Job[object] | None]
+
+
+def keep_nothing(_stage: str, _session: Session) -> None:
+    """Nobody keeps what the stages make."""
+
+
 def advance(
     session: Session,
     stages: Sequence[Stage],
     kept: MutableMapping[str, object] | None = None,
-    keep: Callable[[str, Session], Job[object] | None] = lambda _stage, _session: None,
+    keep: Keep = keep_nothing,
 ) -> Job[Session]:
     """The session after further stages.
 

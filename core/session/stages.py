@@ -1,13 +1,13 @@
 """The way of a take, stage by stage: all that is made of a clip goes along this list, up to its stage."""
 
-from collections.abc import Callable, MutableMapping
+from collections.abc import MutableMapping
 
 from ..markers.reading import Reading
 from ..progress import Job, run
 from ..take.seen_take import SeenTake
 from ..take.take import Take
 from . import place, pose, read, reconstruct, see
-from .session import Inputs, Session, Stage, advance
+from .session import Inputs, Keep, Session, Stage, advance, keep_nothing
 
 
 def _by_bridge(name: str, work: float) -> Stage:
@@ -34,7 +34,7 @@ def reach(
     session: Session,
     last: str,
     kept: MutableMapping[str, object] | None = None,
-    keep: Callable[[str, Session], Job[object] | None] = lambda _stage, _session: None,
+    keep: Keep = keep_nothing,
 ) -> Job[Session]:
     """The session with all stages up to `last`; see `advance`.
 

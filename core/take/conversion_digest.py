@@ -74,6 +74,7 @@ def conversion_digest(
         settings.pictures is not False,
         None if character is None else ((contents, character.object, options), tuple(maps)),
         *evidence,
+        *(value for value in (settings.subject, settings.shot, settings.performer) if value is not None),
         *(() if settings.reference is None else ((settings.reference.name, _content(settings.reference)),)),
     )
 

@@ -88,6 +88,8 @@ class ConversionRecord(Record):
         default_factory=dict
     )
     """Digest of every library that took part, by its identifier; see `library_digest`."""
+    warnings: Notes = ()
+    """What is not right on the character by its own figures, one sentence each."""
     doubtful: Frames = ()
     """Scene frames of the found keyframes that are doubtful."""
 

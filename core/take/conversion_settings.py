@@ -8,11 +8,11 @@ from typing import Annotated, Any
 from ..errors import InputError, shown
 from ..files.fields import Fields, child_location
 from ..files.json_file import ENDING
-from ..files.kinds import LONGEST_PATH, Choice, Items, Kind, Number, Text, relative_path
+from ..files.kinds import LONGEST_PATH, Choice, Items, Kind, Number, Text, Whole, relative_path
 from ..files.records import Record, read_record
 from ..prior.texts import EVERY_LIBRARY
 from .character_settings import CharacterSettings, name_or_file_fault
-from .evidence import evidence_mistake, in_order
+from .evidence import FARTHEST_FRAME, evidence_mistake, in_order
 
 METHODS = ("map", "ekf", "interpolation")
 """The estimate over the whole clip, the default; the paper's Kalman filter; interpolated keyframes alone."""
@@ -26,6 +26,7 @@ KEYPOINTS_VALID = "a file or folder inside the take's folder, as in keypoints.js
 MOST_KEYPOINT_FILES = 16
 """Sources of keypoints of one take: some detectors, tracks and clicks."""
 REFERENCE_VALID = "the path of a motion inside the take's folder, as in network.bvh"
+LONGEST_SUBJECT, MOST_PEOPLE = 255, 100
 LIBRARY_VALID = (
     f"a library's name, {EVERY_LIBRARY}, or the path of a library file inside the folder, as in walking.json"
 )
@@ -66,6 +67,15 @@ class EvidenceKinds(Kind):
         return in_order(value)
 
 
+SHOT = Items(
+    "frames",
+    2,
+    2,
+    "the first and the last frame, as in [20, 86]",
+    item=Whole(-FARTHEST_FRAME, FARTHEST_FRAME),
+)
+
+
 @dataclass(frozen=True)
 class ConversionSettings(Record):
     """How a take is converted; what is None is left to the take and to Keymark."""
@@ -98,6 +108,15 @@ class ConversionSettings(Record):
     reference: Annotated[Path, relative_path(REFERENCE_VALID)] | None = None
     """A 3D motion of the same performance from elsewhere, as a neural network's, in axes, size and time of
     its own. In shoot.json a name that every take has."""
+
+    subject: Annotated[str, Text(LONGEST_SUBJECT, one_line=True)] | None = None
+    """Whose motion of several the reference holds: a prefix of points, a BVH's ROOT or an armature."""
+    shot: Annotated[tuple[int, int], SHOT] | None = None
+    """First and last frame of the part of the clip that is animated; the default is all of it, or of an
+    edited clip one shot."""
+    performer: Annotated[int, Whole(1, MOST_PEOPLE)] | None = None
+    """Who of several people performs, counted from the left where all are first seen; the default is the one
+    that is posed, or the largest who is there longest."""
 
     def with_defaults(self, defaults: "ConversionSettings") -> "ConversionSettings":
         """These settings, and the default for each that is None."""

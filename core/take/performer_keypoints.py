@@ -9,12 +9,13 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import Array, IndexArray
+from ..body.mirror import other_side
 from ..body.posture import Posture
 from ..detect.continuity import same_person
 from ..detect.face import no_faces
 from ..detect.keypoints import FACE, Keypoints, People, SeenPeople
 from ..detect.performer import Expected, Sightings, choose_performer, person_size
-from ..errors import pluralize
+from ..errors import InputError, pluralize
 from ..markers.region_tracks import RegionTracks
 from ..numerics.markov_chain import NOBODY
 from ..prior.frame_prior import SPEED_M_PER_S
@@ -29,7 +30,7 @@ FARTHEST_STD_M = 1.5
 """Far from every keyframe, in a stage's width."""
 MARKER_STD, HAND_STD = 0.15, 0.1
 """Of a marker's center from the middle of its segment, and of a click, as shares of a person's size."""
-POSED_WEIGHT, HAND_WEIGHT = 3.0, 5.0
+POSED_WEIGHT, HAND_WEIGHT, NAMED_WEIGHT = 3.0, 5.0, 10.0
 """Of the frames in which a person has said where the performer is; all others count once."""
 FEWEST_KEYFRAMES, FEWEST_FITTING = 3, 0.5
 """Posed keyframes that can tell of a whole source, and their share that must show a person who fits."""
@@ -77,6 +78,38 @@ def performer_keypoints(take: Take, tracks: RegionTracks | None = None) -> Keypo
                 notes += jumped
         parts.append(_of_one(people, chosen, notes, frames))
     return Keypoints.side_by_side(parts, frames)
+
+
+def people_of(people: People, number: int, fps: float) -> People:
+    """The people without all but one, counted from 1 at the left where most are seen for the first time.
+
+    Raises:
+        InputError: There are fewer.
+    """
+    most = people.most_people
+    if people.by_hand:
+        return people
+    if number > most:
+        raise InputError(
+            f"performer is {number}; {people.source} sees at most {pluralize(most, 'person', 'people')}"
+        )
+    at = next(index for index, frame in enumerate(people.frames) if len(frame.pixel) == most)
+    seen = people.frames[at].pixel
+    across = np.array([np.nanmean(one[..., 0]) if np.isfinite(one).any() else np.inf for one in seen])
+    row = int(np.argsort(across, kind="stable")[number - 1])
+    pixel = np.full((len(people.frames), len(people.names), 2), np.nan)
+    pixel[at] = seen[row]
+    std_px = np.full(pixel.shape[:2], HAND_STD * float(person_size(seen[row])))
+    weight = np.where(np.arange(len(pixel)) == at, NAMED_WEIGHT, 1.0)
+    sightings = Sightings(
+        tuple(frame.pixel for frame in people.frames), tuple(frame.score for frame in people.frames)
+    )
+    chosen = choose_performer(sightings, Expected(pixel, std_px, weight), fps)
+    frames = tuple(
+        SeenPeople.nobody(len(people.names)) if row == NOBODY else frame.only(int(row))
+        for frame, row in zip(people.frames, chosen, strict=True)
+    )
+    return replace(people, frames=frames)
 
 
 def _frame_count(take: Take, tracks: RegionTracks | None) -> int:
@@ -202,7 +235,10 @@ def _said_by(take: Take, tracks: RegionTracks | None, hand: list[People]) -> str
     voices += ["the markers"] if not voices and tracks is not None and take.markers else []
     if voices:
         return f"the performer is the one that {' and '.join(voices)} show"
-    return "the performer is taken to be the largest who is there longest; click on another to change it"
+    return (
+        "the performer is taken to be the largest who is there longest; click on another, or name one with "
+        "--performer, counted from the left, to change it"
+    )
 
 
 def _elsewhere(source: str) -> str:
@@ -228,15 +264,48 @@ def _of_same_person(people: People, chosen: IndexArray, fps: float) -> tuple[Peo
     return replace(people, frames=tuple(frames)), (note,)
 
 
+ALIKE = 0.06
+"""Median distance of the points of two bodies that move as one, after shift and size, in sizes of a body."""
+FEWEST_ALIKE = 10  # frames in which that is seen
+
+
+def _copies(people: People, chosen: IndexArray) -> str:
+    """That the performer is there twice, as in a split screen, and which one is taken; else nothing."""
+    both = [index for index, frame in enumerate(people.frames[: len(chosen)]) if len(frame.pixel) == 2]
+    both = [index for index in both if chosen[index] != NOBODY]
+    if len(both) < FEWEST_ALIKE:
+        return ""
+    sides = [people.names.index(other_side(name)) for name in people.names]
+    own = np.stack([people.frames[index].pixel[chosen[index]] for index in both])
+    copy = np.stack([people.frames[index].pixel[1 - chosen[index]] for index in both])
+    which = "right" if np.nanmedian(own[..., 0]) > np.nanmedian(copy[..., 0]) else "left"
+    first = _centered(own)
+    moving = float(np.nanmedian(np.linalg.norm(first - np.nanmedian(first, axis=0), axis=-1)))
+    words = {"copies": copy, "mirrored copies": copy[:, sides] * [-1.0, 1.0]}
+    apart = {
+        each: float(np.nanmedian(np.linalg.norm(first - _centered(other), axis=-1)))
+        for each, other in words.items()
+    }
+    nearest = min(apart, key=lambda each: apart[each])
+    if not apart[nearest] < min(ALIKE, 0.5 * moving):
+        return ""
+    return f", {nearest} of each other, of whom the one on the {which} is taken"
+
+
+def _centered(pixel: Array) -> Array:
+    """Points (F, N, 2) about their middle, in median sizes of the person."""
+    there = pixel - np.nanmean(pixel, axis=1, keepdims=True)
+    return np.asarray(there / np.median(person_size(pixel)))
+
+
 def _notes(people: People, chosen: IndexArray, why: str) -> tuple[str, ...]:
     counts = np.array([len(frame.pixel) for frame in people.frames[: len(chosen)]])
     several = int((counts > 1).sum())
     left_out = int(((counts > 0) & (chosen[: len(counts)] == NOBODY)).sum())
     notes = []
     if several:
-        notes.append(
-            f"{people.source}: up to {people.most_people} people in {pluralize(several, 'frame')}; {why}"
-        )
+        who = f"up to {people.most_people} people in {pluralize(several, 'frame')}"
+        notes.append(f"{people.source}: {who}{_copies(people, chosen)}; {why}")
     if left_out:
         notes.append(
             f"{people.source}: {left_out} of {int((counts > 0).sum())} frames with people show "

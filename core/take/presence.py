@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import LIMBS, limb_of
 from ..detect.keypoints import Keypoints
+from ..errors import frames_in_words
 from ..files.fields import listed
 from ..markers.reading import Reading
 from ..markers.region_tracks import RegionTracks
@@ -120,11 +121,10 @@ def absence_notes(take: Take, there: BoolArray, shot: BoolArray | None = None) -
     there = there if shot is None else there | ~shot
     if there.all():
         return ()
-    empty = [(first + take.frame_start, last - 1 + take.frame_start) for first, last in runs(~there)]
-    named = [str(first) if first == last else f"{first} to {last}" for first, last in empty]
+    named = frames_in_words(np.flatnonzero(~there) + take.frame_start, MOST_NAMED)
     count = len(runs(there))
     what = "the motion is left empty there" + (f" and has {count} stretches" if count > 1 else "")
-    notes = [f"nobody is seen in frame {listed(named, MOST_NAMED)}: {what}"]
+    notes = [f"nobody is seen in {named}: {what}"]
     lost = [k.index + take.frame_start for k in take.keyframes if k.matched is None and not there[k.index]]
     if lost:
         which = listed([str(frame) for frame in lost], MOST_NAMED)

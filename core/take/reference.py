@@ -18,6 +18,8 @@ from ..files.paths import regular_file_size
 from .motion import read_motion
 from .point_files import POINT_ENDINGS, read_points
 
+ReadArmature = Callable[[Path, str | None], "ReferenceMotion"]
+"""From a file with an animated armature, and which of several, to its motion; only Blender can."""
 REFERENCE_ENDINGS = (*POINT_ENDINGS, ENDING)
 ARMATURE_ENDINGS = (".bvh", ".fbx", ".glb", ".gltf", ".vrm", ".usd", ".usda", ".usdc", ".usdz", ".blend")
 """Of files with an animated armature, which Blender reads."""
@@ -39,7 +41,7 @@ class ReferenceMotion:
 
 
 def reference_of_take(
-    path: Path | None, read_armature: Callable[[Path], ReferenceMotion] | None
+    path: Path | None, subject: str | None, read_armature: ReadArmature | None
 ) -> ReferenceMotion | None:
     """The reference motion that a take names; None without one, and of an armature where nobody can read it.
 
@@ -47,9 +49,9 @@ def reference_of_take(
         InputError: See `read_reference`.
     """
     if path is None or path.suffix.lower() not in ARMATURE_ENDINGS:
-        return None if path is None else read_reference(path)
+        return None if path is None else read_reference(path, subject)
     regular_file_size(path, "a reference motion")
-    return None if read_armature is None else read_armature(path)
+    return None if read_armature is None else read_armature(path, subject)
 
 
 def read_reference(path: Path, subject: str | None = None) -> ReferenceMotion:

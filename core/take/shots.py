@@ -7,17 +7,29 @@ import numpy as np
 
 from ..arrays import BoolArray
 from ..detect.keypoints import SeenPeople
+from ..errors import InputError
 from ..markers.reading import Reading, without_tracks
 from .take import Take
 
 
-def shot_of(take: Take, reading: Reading) -> tuple[int, int] | None:
+def shot_of(take: Take, reading: Reading, named: tuple[int, int] | None = None) -> tuple[int, int] | None:
     """First frame of the shot that is animated and the one after its last; None where the clip is not cut.
 
-    It is the one that is posed, else the one in which somebody is seen longest. Who has posed several says
-    that they are one: None, too.
+    It is the one that is `named` by its first and last frame, or that is posed, else the one in which
+    somebody is seen longest. Who has posed several says that they are one: None, too.
+
+    Raises:
+        InputError: The named frames are not those of the clip.
     """
-    count, cuts = reading.tracks.frame_count, reading.frame_findings.cuts
+    count, cuts, start = reading.tracks.frame_count, reading.frame_findings.cuts, take.frame_start
+    if named is not None:
+        first, last = named[0] - start, named[1] - start
+        if not 0 <= first < last < count:
+            raise InputError(
+                f"frames {named[0]} to {named[1]} are not all in {take.clip.name}, whose frames are {start} "
+                f"to {start + count - 1}"
+            )
+        return first, last + 1
     if not cuts:
         return None
     shots = [*pairwise([0, *cuts, count])]
@@ -32,9 +44,9 @@ def shot_of(take: Take, reading: Reading) -> tuple[int, int] | None:
     return max(shots, key=lambda shot: (int(seen[slice(*shot)].sum()), shot[1] - shot[0]))
 
 
-def of_one_shot(take: Take, reading: Reading) -> tuple[Take, Reading]:
+def of_one_shot(take: Take, reading: Reading, named: tuple[int, int] | None = None) -> tuple[Take, Reading]:
     """The take and its reading with nothing seen but in the shot that is animated, and a sentence on it."""
-    shot, findings = shot_of(take, reading), reading.frame_findings
+    shot, findings = shot_of(take, reading, named), reading.frame_findings
     if shot is None:
         return take, reading
     first, last = shot
@@ -45,20 +57,19 @@ def of_one_shot(take: Take, reading: Reading) -> tuple[Take, Reading]:
         frames = tuple(seen if first <= index < last else nobody for index, seen in enumerate(people.frames))
         keypoints.append(replace(people, frames=frames))
     start = take.frame_start
-    cut = findings.cut_note(start)
-    animated = (
-        f"{cut}; the motion is that of frame {first + start} to {last - 1 + start} and empty elsewhere: for "
-        "another shot, cut the clip there"
-    )
+    cut = findings.cut_note(start) if findings.cuts else ""
+    whose = f"the motion is that of frames {first + start} to {last - 1 + start} and empty elsewhere"
+    animated = f"{cut}; {whose}: --frames names another shot" if named is None else whose
     own = replace(
         reading,
         tracks=without_tracks(reading.tracks, others),
         album=None if reading.album is None else reading.album.excluding(others),
         glimpses=None if reading.glimpses is None else reading.glimpses.excluding(others),
-        notes=tuple(animated if note == cut else note for note in reading.notes),
+        notes=(animated, *(note for note in reading.notes if note != cut)),
         shot=shot,
     )
-    return replace(take, keypoints=tuple(keypoints)), own
+    posed = tuple(key for key in take.keyframes if first <= key.index < last)
+    return replace(take, keypoints=tuple(keypoints), keyframes=posed), own
 
 
 def within_shot(reading: Reading) -> BoolArray:

@@ -2,7 +2,7 @@
 
 import os
 import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
@@ -36,7 +36,7 @@ from .clip_check import open_footage, picture_count
 from .conversion_settings import ConversionSettings
 from .description import KEYPOINT_FILE, Description, describe, keypoint_files
 from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
-from .reference import ReferenceMotion, reference_of_take
+from .reference import ReadArmature, reference_of_take
 from .take import Take, check_evidence, with_evidence
 
 MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
@@ -60,7 +60,7 @@ def check_height(height_m: float, name: str) -> None:
     if SHORTEST_M <= height_m <= TALLEST_M:
         return
     in_cm = SHORTEST_M <= height_m / 100.0 <= TALLEST_M
-    hint = f", and this in centimeters is {height_m / 100.0:g}" if in_cm else ", as in 1.78"
+    hint = f"; {height_m:g} centimeters are {height_m / 100.0:g}" if in_cm else ", as in 1.78"
     raise InputError(f"{name} is {height_m:g}; meters from {SHORTEST_M:g} to {TALLEST_M:g} are valid{hint}")
 
 
@@ -161,7 +161,7 @@ def read_described(
     fewest_keyframes: int = FEWEST_KEYFRAMES,
     settings: ConversionSettings | None = None,
     whole: bool = False,
-    read_armature: Callable[[Path], ReferenceMotion] | None = None,
+    read_armature: ReadArmature | None = None,
 ) -> Take:
     """Read a take from its description; see `read_take`.
 
@@ -210,7 +210,7 @@ def read_described(
         described_in=description.file,
         title=description.name,
         keypoints=_keypoints(description, settings, camera, fps, frame_start, frame_count),
-        reference=reference_of_take(settings.reference, read_armature),
+        reference=reference_of_take(settings.reference, settings.subject, read_armature),
         ignored_regions=ignored_regions(
             record.ignored_regions or (), camera.resolution, frame_start, fields.source_of(IGNORED_REGIONS)
         ),

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Image
-from ..files.fields import listed
+from ..errors import frames_in_words
 
 STEP = 8  # difference of neighboring rows where a moving edge is combed, in levels
 TEETH = 5  # alternating steps that make a comb; noise and textures seldom have as many
@@ -51,7 +51,7 @@ class FrameFindings:
         if self.blank:
             notes.append(
                 f"{len(self.blank)} of {self.frames} frames are blank "
-                f"({_ranges(self.blank, first)}): black, or lost where the file is damaged"
+                f"({self._named(self.blank, first)}): black, or lost where the file is damaged"
             )
         if self.interlaced:
             notes.append(
@@ -62,12 +62,12 @@ class FrameFindings:
         if self.repeated:
             notes.append(
                 f"{len(self.repeated)} of {self.frames} pictures repeat the one before "
-                f"({_ranges(self.repeated, first)}), as where a clip was saved at a higher frame rate; each "
+                f"({self._named(self.repeated, first)}), as where a clip was saved at a higher rate; each "
                 "counts once, and the motion goes on in between"
             )
         if self.changes:
             notes.append(
-                f"the whole picture changes at frame {_ranges(self.changes, first)}: a flash, a fade or "
+                f"the whole picture changes at {self._named(self.changes, first)}: a flash, a fade or "
                 "another light; a take must show one scene from one place"
             )
         if self.cuts:
@@ -76,7 +76,11 @@ class FrameFindings:
 
     def cut_note(self, first: int) -> str:
         """A sentence with the frame of each cut; the clip's first frame has the number `first`."""
-        return f"the clip is cut at frame {listed([str(cut + first) for cut in self.cuts], MOST_CUTS)}"
+        return f"the clip is cut at {frames_in_words((cut + first for cut in self.cuts), MOST_CUTS)}"
+
+    @staticmethod
+    def _named(frames: Sequence[int], first: int) -> str:
+        return frames_in_words((frame + first for frame in frames), 3)
 
 
 NO_FINDINGS = FrameFindings()
@@ -193,18 +197,6 @@ def _repeated(moved: Mapping[int, float]) -> tuple[int, ...]:
         else:
             run, before = [], change
     return tuple(found)
-
-
-def _ranges(frames: Sequence[int], first: int) -> str:
-    """Frame ranges as text: 3 to 7, 12, 20 to 21."""
-    runs: list[list[int]] = []
-    for frame in frames:
-        if runs and frame == runs[-1][1] + 1:
-            runs[-1][1] = frame
-        else:
-            runs.append([frame, frame])
-    named = [f"{a + first}" if a == b else f"{a + first} to {b + first}" for a, b in runs[:3]]
-    return ", ".join(named) + (f" and {len(runs) - 3} more times" if len(runs) > 3 else "")
 
 
 def is_blank(image: Image) -> bool:

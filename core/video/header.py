@@ -5,11 +5,13 @@ MP4 and QuickTime are boxes, each of which begins with its length and its type, 
 in `ilst` their values by number (QuickTime File Format, Metadata).
 """
 
+import os
 import re
 import struct
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from typing import BinaryIO
 
 import cv2
 
@@ -106,24 +108,34 @@ def stated_lens_mm(path: Path) -> float | None:
 
 def _movie(path: Path) -> bytes:
     """The content of the box `moov`; empty where the file has none."""
-    size = path.stat().st_size if path.is_file() else 0
+    if not path.is_file():
+        return b""
     with path.open("rb") as file:
-        at = 0
-        while at + 8 <= size:
-            file.seek(at)
-            head = file.read(16)
-            length, kind = struct.unpack(">I4s", head[:8])
-            begin = 8
-            if length == 1:
-                length, begin = struct.unpack(">Q", head[8:16])[0], 16
-            length = size - at if length == 0 else length
-            if length < begin:
-                break
-            if kind == b"moov":
-                file.seek(at + begin)
-                return file.read(min(length - begin, LARGEST_MOVIE_BYTES))
-            at += length
+        for begin, end in boxes_at(file, b"moov"):
+            file.seek(begin)
+            return file.read(min(end - begin, LARGEST_MOVIE_BYTES))
     return b""
+
+
+def boxes_at(
+    file: BinaryIO, kind: bytes, *inside: bytes, within: tuple[int, int] | None = None
+) -> Iterator[tuple[int, int]]:
+    """Where the contents of boxes of a kind begin and end, or of those inside them."""
+    at, stop = within or (0, file.seek(0, os.SEEK_END))
+    while at + 8 <= stop:
+        file.seek(at)
+        head = file.read(16)
+        length, found = struct.unpack(">I4s", head[:8])
+        begin = 8
+        if length == 1:
+            length, begin = struct.unpack(">Q", head[8:16])[0], 16
+        length = stop - at if length == 0 else length
+        if length < begin:
+            return
+        if found == kind:
+            own = (at + begin, min(at + length, stop))
+            yield from boxes_at(file, *inside, within=own) if inside else [own]
+        at += length
 
 
 def _boxes(data: bytes) -> Iterator[tuple[bytes, bytes]]:

@@ -18,6 +18,13 @@ class ObjectSpace:
     location: Array  # (3,) [m]
     scale: float
 
+    @property
+    def matrix(self) -> Array:
+        """(4, 4)."""
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = self.scale * self.rotation, self.location
+        return matrix
+
     def to_world(self, points: Array) -> Array:
         """World coordinates (..., 3) of points in the object's space [m]."""
         return np.asarray(self.location + self.scale * (points @ self.rotation.T))

@@ -12,10 +12,8 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.rotations import continuous_quaternions
 from ...core.body.skeleton import SIDES
-from ...core.errors import InputError
-from ...core.files.fields import listed
+from ...core.errors import InputError, frames_in_words
 from ...core.keys.rig import Rig, RigBone, RigPose, channel_count
-from ...core.numerics.vectors import runs
 from ...core.progress import run, within
 from ...core.take.motion import Motion
 from .actions import curves_of
@@ -148,10 +146,10 @@ def absence_note(armature_object: bpy.types.Object, action: bpy.types.Action, bo
     """What an export has between stretches of a motion, in which nobody is seen; empty without any."""
     frames = motion_frames(armature_object, action, body)
     there = np.isin(frames, present_frames(armature_object, action, body, rate))
-    away = [f"{frames[first]:.0f} to {frames[last - 1]:.0f}" for first, last in runs(~there)]
-    if not away:
+    if there.all():
         return ""
-    return f"nobody is seen in frame {listed(away)}: from the pose before to the one after, nothing is known"
+    away = frames_in_words(np.round(frames[~there]))
+    return f"nobody is seen in {away}: from the pose before to the one after, nothing is known"
 
 
 def read_values(

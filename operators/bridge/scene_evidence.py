@@ -230,7 +230,7 @@ class SceneEvidence:
         from ...core.take.reference import reference_of_take
         from .motions.import_motion import armature_reference
 
-        return reference_of_take(self.reference, armature_reference)
+        return reference_of_take(self.reference, None, armature_reference)
 
     def people(self, footage: Footage, frames: Array) -> tuple[People, ...]:
         """Everyone whom each source of keypoints saw, clicked points first; `frames` (F,) are the scene's."""

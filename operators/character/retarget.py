@@ -72,8 +72,8 @@ def keep_retargeted(operator: bpy.types.Operator, scene: bpy.types.Scene, result
     listed = add_result(character, SourceMotion(kind, source_action, actor, title), action, made_from)
     listed.lines.clear()
     add_lines(listed.lines, figures(retargeted.quality), "INFO")
-    add_lines(listed.lines, retargeted.notes, "ERROR")
-    for note in retargeted.notes:
+    add_lines(listed.lines, (*retargeted.warnings, *retargeted.notes), "ERROR")
+    for note in (*retargeted.warnings, *retargeted.notes):
         warn(operator, note)
     return f"'{character.armature.name}' performs '{action.name}'"
 

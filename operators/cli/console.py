@@ -4,7 +4,7 @@ import json
 import os
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from shutil import get_terminal_size
 from textwrap import wrap
 from types import TracebackType
@@ -84,6 +84,7 @@ class Console:
 
     def __init__(self, *, quiet: bool, as_json: bool, started: float | None = None) -> None:
         self.quiet, self.as_json = quiet, as_json
+        self.warned = False  # whether a result is there whose own figures are out of bounds
         self.seconds: dict[str, float] = {}
         """Time spent in each stage so far [s]."""
         self._stage = "Starting"
@@ -155,6 +156,12 @@ class Console:
             self._write(json.dumps({**result, "seconds": seconds}, allow_nan=False))
         elif not self.quiet:
             self._write(text)
+
+    def warn(self, sentences: Sequence[str]) -> None:
+        """Write what is not right with a result that is there, each on a line of standard error."""
+        for sentence in sentences:
+            self.warned = True
+            print_error(sentence)
 
     def _stop(self) -> None:
         now = time.perf_counter()

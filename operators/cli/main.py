@@ -1,6 +1,7 @@
 """The command line: `keymark ...`, `python -m keymark ...` and `blender --command keymark ...`.
 
-Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable, 130 interrupted.
+Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable, 3 with --strict a
+result's own figures are out of bounds, 130 interrupted.
 On all but 0, one line on standard error says why, and the output is as it was before.
 """
 
@@ -26,7 +27,7 @@ from .console import Console
 
 BLENDER_PREFIX = ["--command", "keymark"]
 """What Blender needs before a command; accepted here too, so that farms call both programs alike."""
-DONE, FAILED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
+DONE, FAILED, UNUSABLE, OUT_OF_BOUNDS, INTERRUPTED = 0, 1, 2, 3, 130
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """The matrices here are small: a second thread of linear algebra doubles the work and saves no time."""
 GLTF = "io_scene_gltf2.blender."
@@ -62,7 +63,7 @@ def _run(words: list[str]) -> int:
             arguments = build_parser(chosen).parse_args(words)
             with Console(quiet=arguments.quiet, as_json=arguments.json, started=started) as console:
                 arguments.run(arguments, console)
-        return DONE
+        return OUT_OF_BOUNDS if console.warned and arguments.strict else DONE
     except SystemExit as stop:  # --help and --version
         return stop.code if isinstance(stop.code, int) else DONE
     except KeyboardInterrupt as stop:
@@ -159,7 +160,8 @@ examples:
 
 A take is a folder with take.json, the clip and keyframes.json, or a clip below a shoot.json, which tells of
 many; a library takes the place of keyframes.
-Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable."""
+Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable, 3 with --strict a
+result whose own figures are out of bounds."""
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -211,6 +213,7 @@ def _add_command(added: Any, command: Command | CommandGroup, summary: str, prog
         return
     one.add_argument("--quiet", "-q", action="store_true", help="write nothing but errors")
     one.add_argument("--json", action="store_true", help="write one JSON object instead of text")
+    one.add_argument("--strict", action="store_true", help="exit with 3 where a result's own figures are bad")
     one.add_argument("--debug", action="store_true", help="on errors, show where in the program")
     for names, settings in command.arguments:
         one.add_argument(*names, **settings)

@@ -1,6 +1,7 @@
 """Options that several commands share; those of a record follow from its declaration."""
 
 import argparse
+import re
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -10,7 +11,7 @@ from ...core.files.kinds import Choice, Flag, Nullable, Number, Whole, relative_
 from ...core.files.records import Record, declared, descriptions
 from ...core.prior.texts import EVERY_LIBRARY
 from ...core.take.character_settings import CharacterFile, CharacterSettings, LimbKeys, RetargetOptions
-from ...core.take.conversion_settings import ConversionSettings, EvidenceKinds
+from ...core.take.conversion_settings import SHOT, ConversionSettings, EvidenceKinds
 from ...core.take.evidence import EVIDENCE
 from .command import Argument, UsageError, argument
 
@@ -51,7 +52,7 @@ def field_option(
         settings |= {"choices": kind.names}
     elif isinstance(kind, Flag):
         settings |= {"action": argparse.BooleanOptionalAction}
-    elif isinstance(kind, Number):
+    elif isinstance(kind, Number | Whole):
         settings |= {"type": checked(kind, option)}
     return argument(option, **settings)
 
@@ -86,6 +87,14 @@ def _name_in_take(text: str) -> Path | None:
     return name
 
 
+def _frames(text: str) -> tuple[int, int]:
+    """The first and last frame of FIRST-LAST."""
+    found = re.fullmatch(r"(-?\d{1,9})-(-?\d{1,9})", text.strip(), re.ASCII)
+    value: Any = text if found is None else [int(number) for number in found.groups()]
+    read: tuple[int, int] = SHOT.read(value, WHERE, "--frames")
+    return read
+
+
 def setting_options(*names: str, condition: str = "", **changes: dict[str, Any]) -> tuple[Argument, ...]:
     """The options of settings of a conversion; `changes` are those of an option."""
     made = []
@@ -100,6 +109,9 @@ SETTINGS: dict[str, tuple[str, dict[str, Any]]] = {
     "keyframes": ("--keyframes", {"metavar": "FILE|auto"}),
     "keypoints": ("--keypoints", {"metavar": "FILE", "type": Path, "action": "append"}),
     "reference": ("--reference", {"metavar": "FILE", "type": Path}),
+    "subject": ("--subject", {"metavar": "NAME"}),
+    "shot": ("--frames", {"metavar": "FIRST-LAST", "type": _frames}),
+    "performer": ("--performer", {"metavar": "N"}),
     "evidence": ("--evidence", {"metavar": ",".join(EVIDENCE), "type": _kinds}),
     "library": ("--library", {"metavar": "NAME|FILE|auto"}),
     "floor_m": ("--floor", {"metavar": "HEIGHT"}),

@@ -13,10 +13,9 @@ from ....core.retarget.controls.control_channels import Control
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl
 from ....core.retarget.controls.control_plan import ControlKind
 from ..rotation_modes import bone_path, rotation_path
-from .controls import active_constraints, drivers
+from .controls import CARRYING, active_constraints, drivers
+from .held_controls import Releases
 
-CARRYING = ("CHILD_OF", "ARMATURE")
-"""Constraints that carry a bone as a parent does: its own channels still count."""
 MOST_NAMES = 3  # bones that a sentence names; more are counted
 ASTRAY = 0.003  # distance of a control from its place that is worth a note, in sizes of the character
 LEFT_BEHIND = 0.03  # the same of hips that is no longer the performer's motion
@@ -40,7 +39,8 @@ def channel_notes(
     armature_object: bpy.types.Object,
     keyed: Sequence[KeyedControl],
     motion: ControlMotion,
-    scaled: Sequence[str] = (),
+    scaled: Sequence[str],
+    releases: Releases,
 ) -> tuple[str, ...]:
     """Sentences on what keeps the keyed controls from their poses, and on bones that were scaled."""
     driven = driven_channels(armature_object)
@@ -51,7 +51,9 @@ def channel_notes(
         channels = {(path, i) for path, held in keyed_paths(one) for i in range(values_of(held).shape[1])}
         turned = one.rotation is not None and any(bone.lock_rotation)
         moved = one.location is not None and any(bone.lock_location)
-        constrained = any(constraint.type not in CARRYING for constraint in active_constraints(bone))
+        constrained = name not in releases.bones and any(
+            constraint.type not in CARRYING for constraint in active_constraints(bone)
+        )
         for why, so in (
             ("driven", driven & channels),
             ("constrained", constrained),
@@ -62,6 +64,7 @@ def channel_notes(
         "Drivers win over the keys of bone {}; mute them to let the motion through": astray["driven"],
         "Constraints change the keyed pose of bone {}; mute them where it goes astray": astray["constrained"],
         "Locked and keyed all the same: bone {}; unlock it to change it by hand": astray["locked"],
+        "Constraints hold bone {}; the motion keys their influence at 0": releases.bones,
         "Scaled in its pose: bone {}; the motion keys its scale at 1": scaled,
         "Connected to its parent or not to be moved: bone {} stays off its place; disconnect it": [
             control.name

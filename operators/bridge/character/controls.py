@@ -39,6 +39,7 @@ def posing(
     with_strips, bones = data.use_nla, armature_object.pose.bones
     values = {(bone, name): bones[bone][name] for bone, name in properties}
     channels = {name: tuple(getattr(armature_object, name)) for name in OBJECT_CHANNELS}
+    influences = [(each, each.influence) for bone in bones for each in bone.constraints]
     try:
         with showing_action(armature_object, action):
             data.use_nla = False
@@ -48,6 +49,9 @@ def posing(
             bones[bone][name] = value
         for name, channel in channels.items():
             setattr(armature_object, name, channel)
+        for constraint, influence in influences:
+            if constraint.influence != influence:
+                constraint.influence = influence
         data.use_nla = with_strips
         if not had_data:
             armature_object.animation_data_clear()
@@ -93,6 +97,10 @@ def switch_values(
 
 BONE_PATH = re.compile(r'^pose\.bones\["((?:[^"\\]|\\.)*)"\]')
 CONSTRAINT_PATH = re.compile(BONE_PATH.pattern + r'\.constraints\["((?:[^"\\]|\\.)*)"\]')
+
+
+CARRYING = ("CHILD_OF", "ARMATURE")
+"""Constraints that carry a bone as a parent does: its own channels still count."""
 
 
 def active_constraints(bone: bpy.types.PoseBone) -> list[bpy.types.Constraint]:

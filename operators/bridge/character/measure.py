@@ -16,7 +16,7 @@ from ....core.retarget.controls.control_spaces import unscaled
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.quality import Measured, farthest_mm, measured
 from ..actions import existing_channelbag
-from ..object_space import evaluated, object_space
+from ..object_space import ObjectSpace, evaluated, object_space
 from ..scene_frames import at_scene_frame
 from .controls import Property, Value, posing, property_path
 from .mesh_soles import FootVertices, foot_rows, foot_vertices, leading_roles, mesh_soles
@@ -32,18 +32,21 @@ def measure(
     motion: CharacterMotion,
     character: Character,
     character_map: CharacterMap,
+    properties: Sequence[Property],
     in_fk: Mapping[Property, Value],
+    rides: bool = False,
 ) -> Part[Measured]:
     """Measure the motion that an Action, assigned or not, gives a character in scene frames (F,).
 
-    Feet are those of the meshes, where these show feet, else the soles fixed to the bones. `in_fk` are the
-    switches' values with which its limbs show FK; none where nothing can be switched.
+    One that `rides` on something that moves is measured as if that stood still. Feet are those of the meshes,
+    where these show feet, else the soles fixed to the bones. `properties` are those that the Action keys,
+    `in_fk` the switches' values with which limbs show FK; none where nothing can be switched.
     """
     bones = {role: str(character_map.bone(role)) for role in character_map.roles}
-    settings = [(setting.bone, setting.property) for setting in character_map.settings]
-    properties = [*settings, *(key for key in in_fk if key not in settings)]
     feet = ShownFeet.of(armature_object, character, character_map)
-    showing = _show(armature_object, action, frames, bones, properties, {}, feet)
+    stands = motion.to_world
+    still = ObjectSpace(stands.rotation, stands.location, stands.scale) if rides else None
+    showing = _show(armature_object, action, frames, bones, properties, {}, feet, still)
     poses = yield from scaled(showing, 0.0, 0.5 if in_fk else 1.0)
     shown = {role: poses[role][:, :3, 3] for role in bones}
     soles = {}
@@ -57,7 +60,7 @@ def measure(
     found = measured(source.start, motion, shown, soles)
     if not in_fk:
         return found
-    showing = _show(armature_object, action, frames, bones, properties, in_fk)
+    showing = _show(armature_object, action, frames, bones, properties, in_fk, None, still)
     switched = yield from scaled(showing, 0.5, 1.0)
     ends = [joint_roles(limb)[2] for limb in LIMBS if limb in character_map.ik]
     other = {role: switched[role][:, :3, 3] for role in bones}
@@ -88,8 +91,8 @@ class ShownFeet:
         ]
         return cls([foot for foot in feet if foot.rows], leading_roles(armature_object, character_map))
 
-    def read(self) -> None:
-        """Read them in the scene's current frame."""
+    def read(self, carried: Array) -> None:
+        """Read them in the scene's current frame, moved by a matrix (4, 4)."""
         places: dict[str, list[Array]] = {}
         for number, foot in enumerate(self._feet):
             shown = evaluated(foot.mesh_object)
@@ -98,7 +101,7 @@ class ShownFeet:
             points = flat.reshape(-1, 3).astype(np.float64)
             if number not in self._rows:
                 self._rows[number] = self._chosen(foot, shown.data, points)
-            matrix = np.array(shown.matrix_world, dtype=np.float64)
+            matrix = carried @ np.array(shown.matrix_world, dtype=np.float64)
             for role, rows in self._rows[number].items():
                 places.setdefault(role, []).append(points[rows] @ matrix[:3, :3].T + matrix[:3, 3])
         for role, found in places.items():
@@ -141,9 +144,10 @@ def _show(
     action: bpy.types.Action,
     frames: Array,
     bones: Mapping[str, str],
-    properties: list[Property],
+    properties: Sequence[Property],
     switched: Mapping[Property, Value],
     feet: ShownFeet | None = None,
+    still: ObjectSpace | None = None,
 ) -> Part[dict[str, Array]]:
     """(F, 4, 4) by role the pose of its first bone in the world [m], as Blender shows it; feet are read."""
     scene = next(iter(armature_object.users_scene), bpy.context.scene)
@@ -156,13 +160,14 @@ def _show(
         ):
             for frame in frames[first : first + FRAMES_A_YIELD]:
                 go_to(frame)
-                space, shown = object_space(armature_object), evaluated(armature_object).pose.bones
+                moving, shown = object_space(armature_object), evaluated(armature_object).pose.bones
+                space = moving if still is None else still
                 matrices = np.array([shown[name].matrix for name in bones.values()], dtype=np.float64)
                 matrices[:, :3, :3] = space.rotation @ unscaled(matrices[:, :3, :3])
                 matrices[:, :3, 3] = space.to_world(matrices[:, :3, 3])
                 found.append(matrices)
                 if feet is not None:
-                    feet.read()
+                    feet.read(space.matrix @ np.linalg.inv(moving.matrix))
         yield min(first + FRAMES_A_YIELD, len(frames)) / len(frames)
     paths = np.array(found)  # (F, roles, 4, 4)
     return {role: paths[:, number] for number, role in enumerate(bones)}

@@ -31,6 +31,7 @@ from .controls import (
     setting_values,
     switch_values,
 )
+from .held_controls import Releases, find_releases, release
 from .write_retargeted import ONE, scaled_bones
 
 STILL, MOVED = 3, 4  # poses at random, without and with locations
@@ -51,6 +52,7 @@ class ProbedControls:
     poles: Mapping[str, PoleSetting]  # by pole where it belongs
     size: float  # the character's, in the armature's units
     notes: tuple[str, ...]
+    releases: Releases  # what lets the controls follow their keys
 
 
 def probe_controls(
@@ -66,6 +68,10 @@ def probe_controls(
     displaced = {plan.name for plan in planned if bones[plan.name].location.length > 1e-5 * size}
     with posing(armature_object, list(in_fk)):
         set_properties(armature_object, in_fk)
+        releases = find_releases(armature_object, character_map, planned)
+    with posing(armature_object, [*in_fk, *releases.switches]):
+        set_properties(armature_object, in_fk)
+        release(armature_object, releases)
         for name in scaled_bones(armature_object, [plan.name for plan in planned]):
             bones[name].scale = ONE
         posed, followed = _posed_at_random(armature_object, planned, size)
@@ -91,7 +97,7 @@ def probe_controls(
         if plan.kind is ControlKind.POLE
     }
     placed = tuple(_placed(armature_object, control, controls, size) for control in controls)
-    return ProbedControls(placed, offsets, poles, size, tuple(notes))
+    return ProbedControls(placed, offsets, poles, size, tuple(notes), releases)
 
 
 def _posed_at_random(

@@ -19,7 +19,7 @@ from ....core.retarget.controls.point_tolerances import ToleranceRules
 from ....core.retarget.controls.reduction import reduce_controls
 from ....core.retarget.maps.character_map import CharacterMap, Setting, Switch
 from ....core.retarget.maps.map_registry import check_map
-from ....core.retarget.quality import Measured, Quality
+from ....core.retarget.quality import Measured, Quality, warnings_of
 from ....core.retarget.recognition.facing import find_root
 from ....core.retarget.solve.feet import floor_lifts
 from ....core.retarget.solve.solve_motion import solve_motion
@@ -29,11 +29,19 @@ from ..object_space import object_space
 from ..rotation_modes import rotation_values
 from .channel_notes import channel_notes, require_placed_hips
 from .controls import Value, setting_values, switch_values
+from .held_controls import require_released
 from .measure import measure
 from .mesh_soles import mesh_soles
 from .probe_controls import ProbedControls, probe_controls
 from .read_character import read_character
-from .write_retargeted import RetargetedKeys, placement_keys, require_placeable, scaled_bones, write_keys
+from .write_retargeted import (
+    RetargetedKeys,
+    carriers,
+    placement_keys,
+    require_placeable,
+    scaled_bones,
+    write_keys,
+)
 
 
 def complete_map(
@@ -91,6 +99,11 @@ class Retargeted:
     keys: RetargetedKeys
     quality: Quality  # what was measured of the character as Blender shows it
     notes: tuple[str, ...]  # what a person should know, in sentences without a full stop
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Which figures are out of bounds, in sentences without a full stop."""
+        return warnings_of(self.quality.to_dict(), self.size)
 
     @property
     def size(self) -> float:
@@ -154,7 +167,10 @@ def retarget(
         ),
     )
     probed = replace(probed, notes=(*lacking, *probed.notes))
-    performance = _Performance(armature_object, character, character_map, source, scene_frames, options)
+    above = carriers(armature_object, scene_frames)
+    performance = _Performance(
+        armature_object, character, character_map, source, scene_frames, options, above
+    )
     keys, controls, found = yield from stretch(performance.keyed(motion, probed), PROBED, FIRST)
     lifts: dict[str, Array] = {}
     for start, end in LIFTINGS:
@@ -165,6 +181,8 @@ def retarget(
         yield Progress("Lifting the feet out of the floor", start)
         motion = run(solve_motion(character, character_map, source, options, there, lifts))
         keys, controls, found = yield from stretch(performance.keyed(motion, probed), start, end)
+    warnings = warnings_of(found.quality.to_dict(), motion.size)
+    require_released(armature_object, probed.releases, warnings)
     sides = {limb[-1]: depth for limb, depth in found.depth_m.items()}
     return Retargeted(
         armature_object.session_uid,
@@ -177,7 +195,8 @@ def retarget(
         (
             *motion.notes,
             *probed.notes,
-            *channel_notes(armature_object, keys.controls, controls, keys.scaled),
+            *channel_notes(armature_object, keys.controls, controls, keys.scaled, probed.releases),
+            *_carried_note(armature_object, above, placed),
             *floor_notes(sides, scene_frames, f" of '{character.name}'", motion.size),
         ),
     )
@@ -193,6 +212,7 @@ class _Performance:
     source: SegmentMotion
     scene_frames: Array
     options: RetargetOptions
+    above: Array  # (F, 4, 4) what carries the armature, (1, 4, 4) if it is still
 
     def keyed(
         self, motion: CharacterMotion, probed: ProbedControls
@@ -216,9 +236,12 @@ class _Performance:
         keys = RetargetedKeys(
             self.scene_frames,
             keyed,
-            setting_values(self.character_map) | switch_values(self.character_map, self._shown),
-            placement_keys(armature_object, motion.to_world) if placed else (),
+            setting_values(self.character_map)
+            | switch_values(self.character_map, self._shown)
+            | dict(probed.releases.switches),
+            placement_keys(armature_object, self.above, motion.to_world) if placed else (),
             scaled_bones(armature_object, (one.control.name for one in keyed)),
+            probed.releases.constraints,
         )
         yield Progress("Measuring the character", REDUCED)
         action = bpy.data.actions.new("Keymark Measuring")
@@ -232,7 +255,9 @@ class _Performance:
                 motion,
                 self.character,
                 self.character_map,
+                list(keys.properties),
                 switch_values(self.character_map, self._in_fk),
+                rides=not placed and len(self.above) > 1,
             )
             measured = yield from within("Measuring the character", measuring, REDUCED, 1.0)
         finally:
@@ -264,6 +289,14 @@ class _Performance:
             )
             for limb, depth in depth_m.items()
         }
+
+
+def _carried_note(armature_object: bpy.types.Object, above: Array, placed: bool) -> tuple[str, ...]:
+    if len(above) == 1:
+        return ()
+    parent = armature_object.parent.name
+    how = "its place is keyed against it on every frame" if placed else "the motion rides on it"
+    return (f"'{armature_object.name}' hangs on '{parent}', which moves: {how}",)
 
 
 def _keyed(

@@ -17,8 +17,10 @@ from ..actions import channelbag_for
 from ..keys import ensure_fcurve, write_column, write_linear_keys
 from ..object_space import evaluated
 from ..rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
+from ..scene_frames import at_scene_frame
 from .channel_notes import driven_channels, keyed_paths
 from .controls import Property, Value, drivers, property_path
+from .held_controls import Held, influence_path
 
 ONE = (1.0, 1.0, 1.0)
 
@@ -37,23 +39,48 @@ def scaled_bones(armature_object: bpy.types.Object, names: Iterable[str]) -> tup
 # --- Where an armature object stands, as channels that an Action may hold
 
 
-PlacementKeys = tuple[tuple[str, Array], ...]  # data paths of the object's channels with their values
+PlacementKeys = tuple[tuple[str, Array], ...]
+"""Data paths of the object's channels with their values (1, C), or (F, C) where what carries it moves."""
 
 
-def placement_keys(armature_object: bpy.types.Object, to_world: Similarity) -> PlacementKeys:
-    """The object's location and rotation, in its rotation mode and under any parent, to stand somewhere."""
+def carriers(armature_object: bpy.types.Object, frames: Array) -> Array:
+    """(F, 4, 4) what carries an object at scene frames (F,), its parents in motion; (1, 4, 4) if still.
+
+    Raises:
+        InputError: Its parent changes its scale meanwhile, or shears it.
+    """
+    parent = armature_object.parent
+    if parent is None:
+        return np.eye(4)[None]
+    scene, found = next(iter(armature_object.users_scene), bpy.context.scene), []
+    with at_scene_frame(scene) as go_to:
+        for frame in frames:
+            go_to(frame)
+            shown = evaluated(armature_object)
+            found.append(np.array(shown.matrix_world) @ np.linalg.inv(np.array(shown.matrix_basis)))
+    above = np.array(found, dtype=np.float64)
+    squared = np.swapaxes(above[:, :3, :3], -1, -2) @ above[:, :3, :3]
+    if np.ptp(squared, axis=0).max() > 1e-4 * squared.max():
+        raise InputError(
+            f"armature '{armature_object.name}' hangs on '{parent.name}', whose scale changes meanwhile; "
+            "clear its parent (Alt P), or give that one scale"
+        )
+    moves = np.ptp(above, axis=0).max() > 1e-6 * max(1.0, float(np.abs(above).max()))
+    return above if moves else above[:1]
+
+
+def placement_keys(armature_object: bpy.types.Object, above: Array, to_world: Similarity) -> PlacementKeys:
+    """The object's location and rotation, in its rotation mode and on its `carriers`, to stand somewhere."""
     world, mode = np.eye(4), armature_object.rotation_mode
     world[:3, :3], world[:3, 3] = to_world.rotation, to_world.location
-    shown = evaluated(armature_object)
-    above = np.array(shown.matrix_world) @ np.linalg.inv(np.array(shown.matrix_basis, dtype=np.float64))
     basis = np.linalg.inv(above) @ world
-    turn = basis[:3, :3] / np.linalg.norm(basis[:3, :3], axis=0)
+    turn = basis[:, :3, :3] / np.linalg.norm(basis[:, :3, :3], axis=1, keepdims=True)
     if mode == "QUATERNION":
         turn = _matrix(armature_object.delta_rotation_quaternion).T @ turn
     elif mode != "AXIS_ANGLE":  # whose own delta nobody can set
         turn = _matrix(armature_object.delta_rotation_euler.to_quaternion()).T @ turn
-    location = basis[:3, 3] - np.array(armature_object.delta_location)
-    return (("location", location), (rotation_path(mode), rotation_values(turn[None], mode)[0]))
+    location = basis[:, :3, 3] - np.array(armature_object.delta_location)
+    return (("location", location), (rotation_path(mode), rotation_values(turn, mode)))
 
 
 def _matrix(turn: Quaternion) -> Array:
@@ -93,9 +120,11 @@ class RetargetedKeys:
     frames: Array  # (F,) scene frames
     controls: tuple[KeyedControl, ...]
     properties: Mapping[Property, Value]  # custom properties that are keyed at the first frame
-    placement: PlacementKeys  # the object's channels that are keyed at the first frame
+    placement: PlacementKeys
     scaled: tuple[str, ...] = ()
     """Bones whose scale is keyed at one, but where curves or drivers give them a scale."""
+    released: tuple[Held, ...] = ()
+    """Constraints whose influence is keyed at zero at the first frame."""
 
     @property
     def key_count(self) -> int:
@@ -136,9 +165,14 @@ def write_keys(keys: RetargetedKeys, armature_object: bpy.types.Object, action: 
         for index, value in enumerate(ONE):
             if (path, index) not in driven and channelbag.fcurves.find(path, index=index) is None:
                 made.append(_write_first(channelbag, path, index, name, frames, value))
+    for constraint in keys.released:
+        path = influence_path(armature_object, constraint)
+        made.append(_write_first(channelbag, path, 0, constraint[0], frames, 0.0))
     for path, values in keys.placement:
-        for index, value in enumerate(values):
-            made.append(_write_first(channelbag, path, index, OBJECT_GROUP, frames, float(value)))
+        for index, column in enumerate(values.T):
+            fcurve = ensure_fcurve(channelbag, path, index, OBJECT_GROUP)
+            write_linear_keys(fcurve, frames[: len(column)], column)
+            made.append((path, index))
     action[MADE_BY_KEYMARK] = json.dumps(before | {channelbag.slot.identifier: made})
     action.use_frame_range = True
     action.frame_start, action.frame_end = float(frames[0]), float(frames[-1])

@@ -130,14 +130,14 @@ def load_motion(
     return armature, imported.notes
 
 
-def armature_reference(path: Path, maps: Sequence[Path] = ()) -> ReferenceMotion:
+def armature_reference(path: Path, subject: str | None, maps: Sequence[Path] = ()) -> ReferenceMotion:
     """The joints of a file's animated armature as a reference motion; the scene is as before afterwards.
 
     Raises:
         InputError: See `import_motion`.
     """
     with own_scene("Motion") as scene, showing_scene(scene):
-        imported, chosen = import_motion(CharacterFile(path), scene, maps)
+        imported, chosen = import_motion(CharacterFile(path, subject), scene, maps)
         armature = imported.armature
         points = ArmaturePoints.of(RestBody.of(read_character(armature), chosen.character_map))
         action = animated_action(armature)

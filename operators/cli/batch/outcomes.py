@@ -31,7 +31,7 @@ from .worker_process import FAILED, Done, Job, Step
 
 LINES, PAGE = "summary.jsonl", "summary.html"
 RECORDED = (
-    *("notes", "confidence", "weakest", "weak_frames", "frames", "frame_start", "fps"),
+    *("warnings", "notes", "confidence", "weakest", "weak_frames", "frames", "frame_start", "fps"),
     *("method", "library", "keyframes", "matched", "doubtful"),
 )
 """Fields of a take's record that its line of the summary has."""

@@ -2,10 +2,16 @@
 
 import argparse
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from ....core.errors import InputError
+from ....core.files.paths import absolute_path
+from ....core.session.result import Conversion
+from ....core.session.session import Keep, keep_nothing
+from ....core.session.upright import PictureTurnedError, require_upright
 from ....core.take.description import ASSUMED, describe
 from ....core.take.take_file import USUAL_HEIGHT_M, check_height
+from ....core.video.turned import TURNS, can_turn, write_turned
 from ..command import Command, UsageError, argument
 from ..console import Console
 from ..conversion.character_result import FORMAT, check_exporters, export_formats
@@ -38,12 +44,33 @@ def animate_command(arguments: argparse.Namespace, console: Console) -> None:
     clip: Path = arguments.clip
     if clip.is_dir() and (clip / "take.json").is_file():
         raise InputError(f"{clip}: is a take, which keymark convert is for; name a clip")
-    description = describe(clip, said, ASSUMED if height_m is None else HEIGHT)
-    settings = given_settings(arguments).with_defaults(description.settings)
     if arguments.character is not None:
         check_exporters(formats)
-    done = convert_take(description, arguments.output, console, settings, arguments.debug, formats)
+
+    def convert(footage: Path, notes: tuple[str, ...] = (), keep: Keep = keep_nothing) -> Conversion:
+        description = describe(footage, said, ASSUMED if height_m is None else HEIGHT)
+        settings = given_settings(arguments).with_defaults(description.settings)
+        debug: bool = arguments.debug
+        return convert_take(description, arguments.output, console, settings, debug, formats, keep, notes)
+
+    turn_deg: int | None = arguments.rotate
+    how = "as --rotate says"
+    if turn_deg is None:
+        how = "in which people are upright; --rotate 0 leaves it as it is"
+        try:
+            done = convert(clip, keep=require_upright if can_turn(clip) else keep_nothing)
+        except PictureTurnedError as turned:
+            turn_deg = turned.turn_deg
+    elif turn_deg == 0:
+        done = convert(clip)
+    if turn_deg:
+        note = f"the picture is turned by {turn_deg} degrees clockwise, {how}"
+        parents = absolute_path(arguments.output).parents  # on the disk of OUT, whose clip it becomes
+        with TemporaryDirectory(dir=next(one for one in parents if one.is_dir())) as folder:
+            write_turned(clip, turn_deg, Path(folder) / clip.name)
+            done = convert(Path(folder) / clip.name, (note,))
     console.finish(conversion_summary(done), conversion_text(done))
+    console.warn(done.warnings)
 
 
 ANIMATE = Command(
@@ -55,7 +82,13 @@ ANIMATE = Command(
             type=float,
             help=f"the performer's height, as in 1.78; {USUAL_HEIGHT_M:g} is assumed without it",
         ),
-        *setting_options("keypoints"),
+        *setting_options("keypoints", "shot", "performer"),
+        argument(
+            "--rotate",
+            type=int,
+            choices=TURNS,
+            help="turn the picture clockwise (MP4 and QuickTime); by default so that people are upright",
+        ),
         *output("OUT", "folder for the result, new or old"),
         FORMAT,
         *character_options(),

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ....core.errors import ConversionError, InputError
 from ....core.files.fields import listed
+from ....core.report.batch_page import current_record
 from ....core.shoot.discovery import Shoot, ShootTake, check_output, open_shoot, part_of
 from ....core.take.conversion_settings import ConversionSettings
 from ..batch.machine_resources import available_memory_bytes, processor_count
@@ -67,6 +68,9 @@ def batch_command(arguments: argparse.Namespace, console: Console) -> None:
         outcomes.finish()
         raise
     console.finish(outcomes.to_dict(), outcomes.text())
+    for outcome in outcomes.own_outcomes:
+        record = current_record(outcome)
+        console.warn([f"{outcome.take}: {warning}" for warning in (record.warnings if record else ())])
     failed = [outcome.take for outcome in outcomes.own_outcomes if outcome.error is not None]
     if failed and arguments.failed_takes == "fail":
         where = f"; {outcomes.files[-1]} says why" if outcomes.files else ""

@@ -26,6 +26,7 @@ def convert_command(arguments: argparse.Namespace, console: Console) -> None:
     settings = _settings(arguments, description)
     conversion = convert_take(description, arguments.output, console, settings, arguments.debug)
     console.finish(conversion_summary(conversion), conversion_text(conversion))
+    console.warn(conversion.warnings)
 
 
 def _settings(arguments: argparse.Namespace, description: Description) -> ConversionSettings:

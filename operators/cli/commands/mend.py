@@ -55,6 +55,7 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
         raise InputError(f"{folder}: holds the result of a conversion; name another folder for the motion")
     kept: dict[str, str] = {}
     notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     with output_folder(folder, (*FILES, AS_MADE), MOTION, kept) as staging:
         if file.path.suffix.lower() in REFERENCE_ENDINGS:
             mended, notes = _mend_points(file, posed, arguments, console)
@@ -81,7 +82,7 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
                 picture=False,
             )
             record = run(job, console.progress)
-            notes = (*notes, *record.doubts, *record.notes)
+            notes, warnings = (*notes, *record.doubts, *record.notes), record.warnings
         made = [name for name in FILES if (staging / name).exists()]
         write_made_digests(staging, made)
         before = {MOTION: ""} if (folder / AS_MADE).exists() else {}
@@ -96,6 +97,7 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
         "exchanged": int(mended.exchanged.sum()),
         "rests": len(mended.contacts),
         "notes": list(notes),
+        "warnings": list(warnings),
         "files": files,
     }
     lines = [f"Note: {note.rstrip('.')}." for note in notes]
@@ -103,6 +105,7 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
         f"{len(motion.time_s)} frames at {motion.fps:g} a second, {len(mended.contacts)} rests of feet:"
     )
     console.finish(summary, "\n".join([*lines, *(f"  {name}" for name in files)]))
+    console.warn(warnings)
 
 
 def _mend_points(

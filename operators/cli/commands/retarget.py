@@ -33,6 +33,7 @@ FIGURES = {
     "legs_deg": "legs are {:.1f} degrees from the performer's on average",
     "skate_mm": "resting feet slide {:.2f} mm a frame",
     "penetration_mm": "soles are at most {:.1f} mm below the floor",
+    "lifted_mm": "resting feet are {:.1f} mm above the floor on average",
     "hands_mm": "hands are {:.0f} mm from what they reach on average",
     "ik_fk_mm": "FK and IK are at most {:.1f} mm apart",
 }
@@ -59,6 +60,7 @@ def retarget_command(arguments: argparse.Namespace, console: Console) -> None:
     )
     result = {**record.to_json(), "notes": list(notes), "files": [str(file) for file in files]}
     console.finish(result, _text(record, notes, files))
+    console.warn(record.warnings)
 
 
 def _retarget(

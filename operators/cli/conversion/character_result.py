@@ -20,6 +20,7 @@ from ....core.report.canvas import write_png
 from ....core.retarget.character import LIMBS, Character
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.maps.map_registry import ChosenMap, choose_map, map_digests
+from ....core.retarget.quality import warnings_of
 from ....core.retarget.retarget_record import RetargetRecord, UsedCharacter, UsedMap, write_retarget_record
 from ....core.shoot.discovery import Shoot
 from ....core.take.character_settings import CharacterFile, CharacterSettings
@@ -162,6 +163,7 @@ def write_character_result(
             action_name, rate = action.name, scene.render.fps / scene.render.fps_base
         if picture:
             _draw(scene, armature, retargeted, staging_folder / CHARACTER_PICTURE)
+        quality = {**retargeted.quality.to_dict(), **dict.fromkeys(_unmeasured(motion.unseen))}
         record = RetargetRecord(
             keymark=version(),
             take=take,
@@ -175,7 +177,8 @@ def write_character_result(
             options=options,
             roles=character_map.roles,
             limbs=keyed_limbs(retargeted.character_map, settings),
-            quality={**retargeted.quality.to_dict(), **dict.fromkeys(_unmeasured(motion.unseen))},
+            quality=quality,
+            warnings=warnings_of(quality, retargeted.size),
             doubts=opened.chosen.doubts,
             notes=(*opened.imported.notes, *note, *retargeted.notes),
             files={CHARACTER_BLEND: curves},

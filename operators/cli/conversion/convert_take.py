@@ -1,6 +1,7 @@
 """Conversion of one take into one complete folder of results."""
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ from ....core.session.result import (
     write_motion_files,
     write_take_files,
 )
-from ....core.session.session import Session
+from ....core.session.session import Keep, Session, keep_nothing
 from ....core.take.conversion_digest import conversion_digest
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, RECORD_FILE, REPORT, is_up_to_date
 from ....core.take.conversion_settings import ConversionSettings
@@ -49,13 +50,16 @@ def convert_take(
     settings: ConversionSettings,
     debug: bool = False,
     formats: tuple[str, ...] = (),
+    keep: Keep = keep_nothing,
+    notes: tuple[str, ...] = (),
 ) -> Conversion:
     """Convert a take; `output` changes only when all results are complete.
 
     Where keyframes are found, only posed ones that the settings name count beside them. `debug` lets
-    Blender's messages through; `formats` are words of `EXPORTS`, further files of the character.
+    Blender's messages through; `formats` are words of `EXPORTS`, further files of the character. `keep` gets
+    each stage (`advance`); `notes` are sentences on how the clip was read.
     """
-    made = convert_if_changed(description, output, console, settings, debug, True, formats)
+    made = convert_if_changed(description, output, console, settings, debug, True, formats, keep, notes)
     assert made is not None
     return made
 
@@ -68,6 +72,8 @@ def convert_if_changed(
     debug: bool = False,
     again: bool = False,
     formats: tuple[str, ...] = (),
+    keep: Keep = keep_nothing,
+    notes: tuple[str, ...] = (),
 ) -> Conversion | None:
     """Convert a take as `convert_take` does, but return None where `output` holds the result already.
 
@@ -110,7 +116,7 @@ def convert_if_changed(
             )
 
         bridge = {} if character is None else {"retarget": retarget}
-        way = convert(description, settings, libraries, lambda file: _reference(file, debug), bridge)
+        way = convert(description, settings, libraries, partial(_reference, debug), bridge, keep)
         session = run(way, console.progress)
         take, result = session[Posed].seen.take, session[Reconstruction]
         console.stage("Writing the motion")
@@ -118,7 +124,6 @@ def convert_if_changed(
         if session.inputs.open_lens is not None:
             write_take_files(staging_folder, session, description, settings.evidence)
         console.stage("Writing Blender's files")
-        notes: tuple[str, ...] = ()
         filmed = _filmed(session)
         beside = staging_folder / filmed.clip.name
         if beside.is_file() and staging_folder.parent == real_output.parent:
@@ -126,7 +131,8 @@ def convert_if_changed(
         curves = {BLEND: write_blender_files(filmed, result.motion, staging_folder, real_output, debug)}
         if character is not None:
             record = session[RetargetRecord]
-            curves[CHARACTER_BLEND], notes = record.files[CHARACTER_BLEND], (*record.doubts, *record.notes)
+            curves[CHARACTER_BLEND] = record.files[CHARACTER_BLEND]
+            notes = (*notes, *record.doubts, *record.notes)
         write_made_digests(staging_folder, curves)
         if settings.pictures is not False:
             console.stage("Drawing the pictures")
@@ -143,12 +149,12 @@ def _filmed(session: Session) -> Take:
     return replace(seen.take, camera=followed_camera(seen.take, seen.reading))
 
 
-def _reference(file: Path, debug: bool) -> ReferenceMotion:
+def _reference(debug: bool, file: Path, subject: str | None) -> ReferenceMotion:
     """A motion of an armature's file, which only Blender reads."""
     from ...bridge.motions.import_motion import armature_reference
 
     with blender_silence(debug):
-        return armature_reference(file, library_folders())
+        return armature_reference(file, subject, library_folders())
 
 
 def conversion_summary(conversion: Conversion) -> dict[str, Any]:
@@ -162,6 +168,7 @@ def conversion_summary(conversion: Conversion) -> dict[str, Any]:
         "fps": motion.fps,
         "keyframes": [index + motion.frame_start for index in motion.keyframe_indices],
         "notes": list(conversion.notes),
+        "warnings": list(conversion.warnings),
         **({} if conversion.found is None else _found_summary(conversion.take, conversion.found)),
     }
 

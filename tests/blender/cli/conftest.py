@@ -40,6 +40,7 @@ def cast(tmp_path_factory: pytest.TempPathFactory, result: Path) -> Path:
     _save(folder / "half.blend", lambda: build_character(half))
     _save(folder / "flat.blend", lambda: _scaled(build_character(plain), (1.0, 0.0, 1.0)))
     _save(folder / "nan.blend", lambda: _scaled(build_character(plain), (float("nan"),) * 3))
+    _save(folder / "stiff.blend", lambda: _stiff(build_character(plain)))
     shutil.copyfile(result / "motion.blend", folder / "motion.blend")
     (folder / "damaged.blend").write_bytes((folder / "anna.blend").read_bytes()[:3000])
     (folder / "damaged.glb").write_bytes(b"no model")
@@ -69,6 +70,16 @@ def _anna(character: Character) -> bpy.types.Object:
 
 def _named(armature: bpy.types.Object, name: str) -> bpy.types.Object:
     armature.name = name
+    return armature
+
+
+def _stiff(armature: bpy.types.Object) -> bpy.types.Object:
+    """An armature whose thighs cannot go where they are keyed."""
+    for side in "LR":
+        limit = armature.pose.bones[f"thigh.{side}"].constraints.new("LIMIT_ROTATION")
+        limit.use_limit_x = True
+        limit.min_x = limit.max_x = 1.0
+        limit.owner_space = "LOCAL"
     return armature
 
 

@@ -259,3 +259,17 @@ def test_a_result_that_was_moved_finds_the_clip_beside_it_or_goes_on_without(
     else:
         shown = Path(bpy.path.abspath(scene.active_clip.filepath)).resolve()
         assert shown == (place / filmed.name).resolve()
+
+
+def test_a_result_reads_its_own_figures(
+    retarget: Retarget, output: Path, cast: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert retarget("--strict") == 0 and read_retarget_record(output).warnings == ()
+    capfd.readouterr()
+    stiff = str(cast / "stiff.blend")
+    assert retarget(character=stiff) == 0
+    (warning,) = read_retarget_record(output).warnings
+    assert "legs are" in warning and "arms" not in warning
+    assert warning in one_line(capfd.readouterr().err)
+    assert retarget("--strict", character=stiff) == 3
+    assert sorted(tree(output)) == MADE

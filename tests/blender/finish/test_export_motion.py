@@ -293,7 +293,7 @@ def test_where_nobody_is_seen_is_said_and_left_empty(
             curve.keyframe_points.remove(point)
     path = tmp_path / "wave.json"
     bpy.ops.keymark.export_motion(filepath=str(path), format="KEYMARK")
-    assert "Nobody is seen in frame 6 to 9" in capfd.readouterr().out
+    assert "Nobody is seen in frames 6 to 9" in capfd.readouterr().out
     assert read_motion(path).empty == (5, 6, 7, 8)
     bpy.ops.keymark.bake_motion()
-    assert "obody is seen in frame 6 to 9" in " ".join(entry.text for entry in take.notices)
+    assert "obody is seen in frames 6 to 9" in " ".join(entry.text for entry in take.notices)

@@ -118,7 +118,7 @@ def test_without_keypoints_they_are_detected(
 @pytest.mark.parametrize(
     ("height", "sentence"),
     [
-        ("178", "178; meters from 0.5 to 3 are valid, and this in centimeters is 1.78"),
+        ("178", "178; meters from 0.5 to 3 are valid; 178 centimeters are 1.78"),
         ("0", "is 0; meters"),
         ("nan", "is nan"),
     ],

@@ -145,9 +145,9 @@ def test_found_keyframes_are_said_to_be_doubtful_and_contradictions_are_named(
     assert said["notes"] == list(read_record(tmp_path / "out").notes)
     assert set(said["notes"]) >= {
         "two frames are in doubt",
-        f"frame {first + 12}, {first + 23}: no plausible pose explains keypoint wrist.L",
+        f"frames {first + 12}, {first + 23}: no plausible pose explains keypoint wrist.L",
         f"frame {first + 12}: no plausible pose explains marker {marker}",
-        f"2 of 3 found keyframes are doubtful; pose frame {first + 12}, {first + 23} to set them right",
+        f"2 of 3 found keyframes are doubtful; pose frames {first + 12}, {first + 23} to set them right",
     }
     assert said["contradictions"][0] == {"frame": first + 12, "evidence": [marker, "wrist.L"]}
     assert [one["doubtful"] for one in said["matches"]] == [False, True, True]

@@ -172,6 +172,8 @@ def test_words_stand_out_from_what_is_below_them(colors: dict[str, str]) -> None
 def test_confidence_in_a_word(confidence: float | None, weakest: float | None, expected: Verdict) -> None:
     outcome = converted(OUTPUT, "walk", confidence=confidence, weakest=weakest)
     assert verdict(outcome) is expected
+    warned = converted(OUTPUT, "walk", confidence=confidence, weakest=weakest, warnings=("Legs are off",))
+    assert verdict(warned) is Verdict.POOR and "Legs are off" in page(warned).rows()[0].text
     (row,) = page(outcome).rows()
     assert expected.value in row.text
     if confidence is not None:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from _characters import plain_character, plain_map
 from _performances import joints, quality, soles, solved, source_joints, steps
 from keymark.core.feet.ground import floor_notes
@@ -14,6 +15,7 @@ from keymark.core.retarget.quality import (
     farthest_mm,
     measured,
     skate_mm,
+    warnings_of,
 )
 
 
@@ -95,7 +97,18 @@ def test_a_spoiled_motion_has_worse_figures() -> None:
     assert good.penetration_mm is not None and bad.penetration_mm is not None
     assert 9.9 < bad.penetration_mm < 10.2 and good.penetration_mm < 0.1
     assert good.legs_deg is not None and bad.legs_deg is not None and bad.legs_deg > good.legs_deg + 1.0
+    raised = {role: points + [0.0, 0.0, 0.05] for role, points in sunk.items()}
+    lifted = measured(source_joints(steps()), motion, shown, raised).quality.lifted_mm
+    assert good.lifted_mm is not None and good.lifted_mm < 1.0 and lifted == pytest.approx(40.0, abs=0.5)
 
 
 def test_figures_that_are_not_there_are_left_out() -> None:
     assert Quality(skate_mm=0.123456, keys=12).to_dict() == {"skate_mm": 0.123, "keys": 12}
+
+
+def test_figures_out_of_bounds_are_warned_of_at_the_characters_size() -> None:
+    good = {"arms_deg": 9.0, "legs_deg": None, "skate_mm": 14.0, "penetration_mm": 19.0, "keys": 1000}
+    assert warnings_of(good, 1.0) == ()
+    assert warnings_of({**good, "skate_mm": 16.0}, 2.0) == () != warnings_of({**good, "skate_mm": 16.0}, 1.0)
+    (words,) = warnings_of({**good, "legs_deg": 38.6, "lifted_mm": 1002.0}, 1.0)
+    assert "legs are 39 degrees from the performer's, resting feet are 1002 mm above the floor;" in words

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 from _synthetic_take import write_synthetic_take
 from keymark.core.arrays import Array
+from keymark.core.body.mirror import other_side
 from keymark.core.detect.keypoints import Keypoints, People, SeenPeople
+from keymark.core.errors import InputError
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Matched, interpolate
-from keymark.core.take.performer_keypoints import performer_keypoints
+from keymark.core.take.performer_keypoints import people_of, performer_keypoints
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 
@@ -56,7 +58,8 @@ def test_keyframes_say_who_the_performer_is(take: Take) -> None:
     assert_shows(found, people, truth)
     (note,) = found.notes
     assert note == (
-        f"detector: up to 2 people in {FRAMES} frames; the performer is the one that the keyframes show"
+        f"detector: up to 2 people in {FRAMES} frames, copies of each other, of whom the one on the left is "
+        "taken; the performer is the one that the keyframes show"
     )
 
 
@@ -68,6 +71,30 @@ def test_keyframes_count_in_their_own_frames_before_there_is_a_prior(take: Take)
     assert "the keyframes show" in found.notes[0]
     matched = replace(one.keyframes[0], matched=Matched("walking", "Left foot lands", False, 0.9))
     assert "click on another" in performer_keypoints(replace(one, keyframes=(matched,))).notes[0]
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("number", [1, 2])
+def test_the_performer_is_named_from_the_left_and_copies_are_said(
+    take: Take, number: int, mirrored: bool
+) -> None:
+    people, truth = two_people(take)
+    if mirrored:
+        sides = [people.names.index(other_side(name)) for name in people.names]
+        frames = []
+        for frame, row in zip(people.frames, truth, strict=True):
+            pixel = frame.pixel.copy()
+            pixel[1 - row] = 2.0 * SHIFT + pixel[row][sides] * [-1.0, 1.0] + [people.size[0], 0.0]
+            frames.append(replace(frame, pixel=pixel))
+        people = replace(people, frames=tuple(frames))
+    one = people_of(people, number, take.fps)
+    for index, (frame, row) in enumerate(zip(people.frames, truth, strict=True)):
+        wanted = row if number == 1 else 1 - row
+        np.testing.assert_array_equal(one.frames[index].pixel, frame.pixel[[wanted]])
+    (note,) = performer_keypoints(replace(take, keyframes=(), keypoints=(people,))).notes
+    assert ("mirrored copies" in note) == mirrored and "copies of each other" in note
+    with pytest.raises(InputError, match="performer is 3; detector sees at most 2 people"):
+        people_of(people, 3, take.fps)
 
 
 @pytest.mark.parametrize("twin", [False, True])

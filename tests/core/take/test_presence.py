@@ -110,7 +110,7 @@ def test_between_posed_keyframes_the_pictures_tell_absence_from_a_detector_that_
     said = absence_notes(take, there)
     assert len(said) == (2 if empty else 0)
     if empty:
-        assert "frame 31 to 60" in said[0] and "2 stretches" in said[0]
+        assert "frames 31 to 60" in said[0] and "2 stretches" in said[0]
         assert "keyframe 46 is posed where" in said[1]
 
 
@@ -157,7 +157,7 @@ def test_a_motion_is_empty_where_its_performer_is_not_there(tmp_path: Path) -> N
     assert 20 <= first <= 26
     assert motion.there[first:].all()
     assert np.isnan(motion.points[:first]).all() and np.isfinite(motion.sigma_m[first:]).all()
-    assert any("nobody is seen in frame 1 to" in note for note in result.notes)
+    assert any("nobody is seen in frames 1 to" in note for note in result.notes)
     judged = run(review(late, result, np.arange(60.0)))
     assert np.isnan(judged.confidence[:first]).all() and np.isfinite(judged.confidence[first:]).all()
     assert all(weak.index >= first for weak in judged.weak_frames)

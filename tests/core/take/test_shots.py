@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from keymark.core.body.posture import Posture
 from keymark.core.detect.keypoints import Keypoints, People, SeenPeople
+from keymark.core.errors import InputError
 from keymark.core.markers.reading import Reading, reading_arrays, reading_from_arrays
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe
@@ -123,14 +124,25 @@ def test_nothing_is_seen_outside_of_the_shot_and_one_sentence_says_so(take: Take
     assert seen == [*range(20, 30), *range(31, 60)]
     assert one.album is not None and [i for i in range(FRAMES) if i in one.album] == [*range(20, 60)]
     assert one.notes == (
-        "the clip is cut at frame 21, 61; the motion is that of frame 21 to 60 and empty elsewhere: for "
-        "another shot, cut the clip there",
+        "the clip is cut at frames 21, 61; the motion is that of frames 21 to 60 and empty elsewhere: "
+        "--frames names another shot",
         "another note",
     )
     there = presence(take, one, Keypoints.none(FRAMES))
     np.testing.assert_array_equal(there, within_shot(one))
     assert np.flatnonzero(there).tolist() == [*range(20, 60)]
     assert absence_notes(take, there, within_shot(one)) == ()
+
+
+def test_frames_that_are_named_are_animated(take: Take) -> None:
+    rest = Posture.rest(BODY.skeleton)
+    take = replace(take, keyframes=(Keyframe(5, rest), Keyframe(70, rest)))
+    own, one = of_one_shot(take, cut_reading(), (65, 80))
+    assert [key.index for key in own.keyframes] == [70] and one.shot == (64, 80)
+    assert one.notes[0] == "the motion is that of frames 65 to 80 and empty elsewhere"
+    assert not [note for note in one.notes if "cut" in note]
+    with pytest.raises(InputError, match=r"frames 65 to 91 are not all in .*, whose frames are 1 to 90"):
+        of_one_shot(take, cut_reading(), (65, 91))
 
 
 def test_a_clip_of_one_shot_is_left_as_it_is(take: Take) -> None:

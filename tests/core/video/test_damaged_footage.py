@@ -220,7 +220,7 @@ def test_oblong_pixels_turn_with_the_picture(video: Callable[..., Path], tmp_pat
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (("-vf", "drawbox=c=black:t=fill:enable='gte(n,12)'"), "12 of 24 frames are blank (13 to 24)"),
+        (("-vf", "drawbox=c=black:t=fill:enable='gte(n,12)'"), "12 of 24 frames are blank (frames 13 to 24)"),
         (("-vf", "tinterlace=interleave_top,fieldorder=tff", "-flags", "+ilme+ildct"), "interlaced"),
         (("-vf", "negate=enable='gte(n,10)'"), "cut at frame 11"),
     ],

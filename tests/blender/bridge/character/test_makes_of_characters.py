@@ -252,7 +252,11 @@ def imported(name: str) -> Made:
 
 
 @pytest.mark.parametrize(
-    "name", ["11-hips-connected-to-a-root", "12-feet-without-a-parent", "13-rigid-parts"]
+    "name",
+    [
+        *("11-hips-connected-to-a-root", "12-feet-without-a-parent", "13-rigid-parts"),
+        *("turn4_mmd_legs_by_ik", "turn4_character_on_a_moving_platform"),
+    ],
 )
 def test_characters_that_once_failed_perform(source: SegmentMotion, name: str) -> None:
     character, known = imported(name)
@@ -260,7 +264,9 @@ def test_characters_that_once_failed_perform(source: SegmentMotion, name: str) -
     quality = made.quality
     assert quality.arms_worst_deg is not None and quality.arms_worst_deg < 8.0
     assert quality.legs_worst_deg is not None and quality.legs_worst_deg < 12.0
+    assert not [note for note in made.notes if "below" in note or "off its place" in note]
+    if "mmd" in name:  # whose mesh shows its targets, too
+        return
     low = lowest_mm(character, made)
     assert low.min() > -2.0 and abs(np.median(low)) < 3.0
     assert quality.penetration_mm == pytest.approx(max(-low.min(), 0.0), abs=0.05)
-    assert not [note for note in made.notes if "below" in note or "off its place" in note]
