@@ -25,8 +25,8 @@ STAGES = (
     place.STAGE,
     pose.STAGE,
     reconstruct.STAGE,
-    _by_bridge("finish", 0.5),
-    _by_bridge("retarget", 0.7),
+    _by_bridge("finish", 0.8),
+    _by_bridge("retarget", 2.5),
 )
 
 

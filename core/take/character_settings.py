@@ -60,10 +60,10 @@ class RetargetOptions(Record):
     place: Placement = Placement.PERFORMER
     """Where the character performs: where the performer stood and faced, which is the default, or where it
     stands itself."""
-    arms: LimbKeys = LimbKeys.BOTH
-    """Controls of the arms that are keyed; the default is both, showing IK."""
-    legs: LimbKeys = LimbKeys.BOTH
-    """Controls of the legs that are keyed; the default is both, showing IK."""
+    arms: LimbKeys = LimbKeys.IK
+    """Controls of the arms that are keyed; the default is ik."""
+    legs: LimbKeys = LimbKeys.IK
+    """Controls of the legs that are keyed; the default is ik."""
     plant_feet: bool = True
     """Hold resting feet at one place, flat on the floor; the legs follow."""
     reach_hands: bool = True

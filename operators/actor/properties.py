@@ -6,6 +6,8 @@ from ..shell.fields import Number, Switch
 
 SIDED = ("upper_arm", "forearm", "hand", "thigh", "shin", "foot")
 MIDDLE = ("trunk", "neck_head", "shoulder_width", "hip_width")
+LEAST_CM, MOST_CM = 50.0, 300.0
+"""Heights that somebody has in centimeters, and nobody in meters."""
 DESCRIPTIONS = {
     "upper_arm": ("Upper Arm", "From the shoulder joint to the elbow"),
     "forearm": ("Forearm", "From the elbow to the wrist"),
@@ -64,6 +66,12 @@ def _length(name: str) -> "bpy.types.AnyType":
     )
 
 
+def in_meters(owner: bpy.types.PropertyGroup, _context: bpy.types.Context | None = None) -> None:
+    """Take a height that was typed in centimeters as meters."""
+    if LEAST_CM <= owner.stature <= MOST_CM:
+        owner.stature /= 100.0
+
+
 class Stature:
     """Mixin of operators that make an actor: the performer's body height."""
 
@@ -75,12 +83,14 @@ class Stature:
         default=1.75,
         soft_min=0.5,
         soft_max=3.0,
+        update=in_meters,
     )
 
     def given_stature(self) -> float:
         """The height [m]; refuses what nobody has, which Blender's limits would change without a word."""
         from ...core.take.take_file import check_height
 
+        in_meters(self)
         check_height(round(self.stature, 4), "Height")
         return float(self.stature)
 

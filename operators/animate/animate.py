@@ -6,16 +6,18 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.errors import InputError
 from ..actor.properties import Stature
 from ..character.characters import candidates
 from ..footage.load_footage import PATTERNS, load_into_take
-from ..shell.base_operator import chosen_file
+from ..shell.base_operator import call, chosen_file, reported
 from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
-from ..shell.job_operator import JobOperator
+from ..shell.panel import draw_sentence
 from ..shell.requirements import bones_editable, idle
 from ..shell.results import EXTENSION
 from ..shell.takes import find_take
 from . import FILE, NOTHING, RIGIFY
+from .update import StagedOperator
 
 if TYPE_CHECKING:
     from ...core.progress import Job
@@ -43,7 +45,7 @@ def _characters(
     return _items
 
 
-class KEYMARK_OT_animate(Stature, JobOperator, bpy.types.Operator):
+class KEYMARK_OT_animate(Stature, StagedOperator, bpy.types.Operator):
     """From a clip and the performer's height to a moving character; every step can be corrected afterwards"""
 
     bl_label = "Animate"
@@ -60,6 +62,7 @@ class KEYMARK_OT_animate(Stature, JobOperator, bpy.types.Operator):
     )
     asking: Text(options={"SKIP_SAVE", "HIDDEN"})
     clip: Text(options={"SKIP_SAVE", "HIDDEN"})
+    problem: Text("Problem", "Why what was chosen last cannot be animated", options={"SKIP_SAVE", "HIDDEN"})
     filter_glob: Text(default=PATTERNS, options={"HIDDEN", "SKIP_SAVE"})
     filter_folder: Switch(default=True, options=HIDDEN)
 
@@ -67,9 +70,12 @@ class KEYMARK_OT_animate(Stature, JobOperator, bpy.types.Operator):
         """Ask for what is missing, the clip first; then run as a job."""
         if self.filepath and (self.character != FILE or self.character_file):
             return super().invoke(context, event)
-        self.asking, self.clip = (CHARACTER, self.filepath) if self.filepath else (CLIP, "")
-        self.filter_glob = CHARACTER_PATTERNS if self.filepath else PATTERNS
-        self.filepath = str(_last_folder() / "_").removesuffix("_") if self.asking == CLIP else ""
+        wrong, self.asking = self.clip, CHARACTER if self.filepath else CLIP
+        self.clip, self.filter_glob = self.filepath, CHARACTER_PATTERNS if self.filepath else PATTERNS
+        if self.asking == CLIP:
+            self.filepath = wrong or str(_last_folder() / "_").removesuffix("_")
+        else:
+            self.filepath = ""
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
@@ -80,13 +86,14 @@ class KEYMARK_OT_animate(Stature, JobOperator, bpy.types.Operator):
         clip, file = (
             (self.filepath, self.character_file) if self.asking == CLIP else (self.clip, self.filepath)
         )
-        bpy.ops.keymark.animate(
-            "INVOKE_DEFAULT",
-            filepath=clip,
-            stature=self.stature,
-            character=self.character,
-            character_file=file,
-        )
+        typed = {"stature": self.stature, "character": self.character}
+        with reported(self):
+            try:
+                call(bpy.ops.keymark.animate, "INVOKE_DEFAULT", filepath=clip, character_file=file, **typed)
+            except InputError as error:  # once more, with what was typed, and why it cannot be
+                call(
+                    bpy.ops.keymark.animate, "INVOKE_DEFAULT", clip=self.filepath, problem=str(error), **typed
+                )
         return {"CANCELLED"}  # the job is a step of its own
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -97,6 +104,8 @@ class KEYMARK_OT_animate(Stature, JobOperator, bpy.types.Operator):
         layout.prop(self, "stature")
         if not self.properties.is_property_set("stature"):
             layout.label(text="Assumed; enter the performer's", icon="INFO")
+        if self.problem:
+            draw_sentence(layout, context, self.problem, "ERROR")
         layout.prop(self, "character")
 
     def start(self, scene: bpy.types.Scene) -> "Job[list[str]]":
@@ -110,18 +119,6 @@ class KEYMARK_OT_animate(Stature, JobOperator, bpy.types.Operator):
         _keep_folder(path.parent)
         follow_found_file(take, path)
         return animate(self, scene, stature, self.character, self.character_file)
-
-    def finish(self, scene: bpy.types.Scene, result: list[str]) -> None:
-        for line in result:
-            self.report({"INFO"}, line)
-
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """An early end is a step that can be undone as well: complete stages stay."""
-        done = super().modal(context, event)
-        if done != {"CANCELLED"}:
-            return done
-        self.report({"INFO"}, "The stages that were complete are kept")
-        return {"FINISHED"}
 
 
 def _folder_file() -> Path | None:

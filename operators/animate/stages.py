@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 SEEN_SHARES = np.linspace(0.0, 1.0, 9)
 """Moments of the clip at which nothing may stand before the performer."""
 MOST_HIDDEN = 1000
+VIEWED = 0.96
+"""Share of the job at which all is made, and the performer is to be seen."""
 
 
 def animate(
@@ -63,9 +65,13 @@ def animate(
             said.append(KEPT[stage](operator, scene, made))
         return None
 
-    yield from stretch(reach(started.session, "retarget", None, keep), 0.02, 1.0)
-    _hide_what_stands_before(bpy.context, active_take(scene))
+    yield from stretch(reach(started.session, "retarget", None, keep), 0.02, VIEWED)
+    yield from stretch(_hide_what_stands_before(bpy.context, active_take(scene)), VIEWED, 1.0)
     scene.frame_set(scene.frame_start)
+    overlays = scene.keymark.overlays
+    overlays.only_character = bool(TakeState(active_take(scene)).results)
+    for evidence in ("observed", "predicted", "keypoints"):  # whoever doubts shows it
+        setattr(overlays, f"show_{evidence}", False)
     return said
 
 
@@ -206,12 +212,13 @@ def _opened(context: bpy.types.Context, file: str) -> bpy.types.Object:
     return imported.armature
 
 
-def _hide_what_stands_before(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+def _hide_what_stands_before(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> "Job[None]":
     """Hide, in the view layer, objects of others between the camera and the performer; Alt H shows them."""
     scene, layer = context.scene, context.view_layer
     own = set(_of_performers(take))
     actor = take.armature
     for share in SEEN_SHARES:
+        yield Progress("Clearing the view", float(share))
         scene.frame_set(round(scene.frame_start + share * (scene.frame_end - scene.frame_start)))
         eye = take.camera.matrix_world.translation
         for bone in actor.pose.bones:

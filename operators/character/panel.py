@@ -145,7 +145,7 @@ class KEYMARK_UL_characters(RowList, bpy.types.UIList):
         name = item.armature.name if item.armature is not None else "No Armature"
         row.label(text=name, icon="ACTION" if done else "ARMATURE_DATA", translate=False)
         state = TakeState(active_take(context.scene))
-        if item.problem or item.armature is None or any(map(state.is_outdated, item.results)):
+        if item.problem or item.armature is None or any(map(state.of_earlier, item.results)):
             row.label(text="", icon="ERROR")
 
 
@@ -171,14 +171,11 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
         if len(state.take.characters) or state.take.motion_action is None:
             return "keymark.retarget", "Retarget"
         free = any(may_be_character(each) for each in bpy.context.view_layer.objects)
-        return ("keymark.add_character", "Add") if free else ("keymark.add_rigify_human", "Add Human")
+        return ("keymark.add_character", "Add") if free else ("keymark.add_rigify_human", "Add Rigify Human")
 
     def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         take = state.take
         character = find_character(context.scene)
-        elsewhere = body.row(align=True)
-        elsewhere.operator("keymark.load_motion", icon="IMPORT")
-        elsewhere.operator("keymark.mend_motion", icon="MOD_SMOOTH")
         if character is None:
             buttons = body.column()
             buttons.scale_y = 1.2
@@ -232,7 +229,7 @@ def _draw_results(column: UILayout, context: Context, state: TakeState, characte
         if result.action is None:
             row.label(text="Deleted", icon="ACTION")
         else:
-            icon = "ERROR" if state.is_outdated(result) else "ACTION"
+            icon = "ERROR" if state.of_earlier(result) else "ACTION"
             text, shown = result.action.name, is_shown(character, result)
             show = row.operator("keymark.show_result", text=text, icon=icon, depress=shown, translate=False)
             show.index = index
@@ -241,7 +238,7 @@ def _draw_results(column: UILayout, context: Context, state: TakeState, characte
     if chosen is None or chosen.action is None:
         return
     lines = column.column(align=True)
-    if state.is_outdated(chosen):
+    if state.of_earlier(chosen):
         draw_sentence(lines, context, "Motion is newer: retarget again", "ERROR")
     for line in chosen.lines:
         draw_sentence(lines, context, line.text, "ERROR" if line.level == "ERROR" else "DOT")

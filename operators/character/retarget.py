@@ -163,7 +163,7 @@ class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
         if made is None or made.action is None:
             raise InputError("the result's Action has been deleted; retarget the motion again")
         mark_motion_asset(context, take, made.action, made.source_action, made.source_actor)
-        if TakeState(take).is_outdated(made):
+        if TakeState(take).of_earlier(made):
             self.report(
                 {"WARNING"}, "The character's motion is of an earlier one; retarget it for the newest"
             )

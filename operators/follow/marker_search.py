@@ -11,7 +11,7 @@ from ...core.errors import InputError
 from ...core.progress import within
 from ..bridge.footage import Footage
 from ..footage.take_footage import update_clip_digest
-from ..shell.base_operator import BaseOperator, Unchanged, capitalized, remove_active, warn
+from ..shell.base_operator import BaseOperator, Unchanged, call, capitalized, remove_active, warn
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import footage, idle, markers, of_take, picked_color
 from ..shell.takes import active_take, ensure_take, footage_of, redraw_footage, take_by_identifier
@@ -245,15 +245,7 @@ class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
         manager = context.window_manager
         if not manager.keymark_show_masks:
             if preview_of(active_take(context.scene)) is None:
-                _check_markers()
+                call(bpy.ops.keymark.check_markers, "INVOKE_DEFAULT")
             update_masks(context.scene)
         manager.keymark_show_masks = not manager.keymark_show_masks
         redraw_footage(context)
-
-
-def _check_markers() -> None:
-    """Run the check of the markers, on a timer in the user interface."""
-    try:
-        bpy.ops.keymark.check_markers("INVOKE_DEFAULT")
-    except RuntimeError as error:
-        raise InputError(str(error).removeprefix("Error: ").strip()) from error

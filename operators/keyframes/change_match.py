@@ -14,11 +14,11 @@ from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.contradictions import note_contradictions
 from ..shell.fields import Choice, Integer, Switch
 from ..shell.keyed_frames import show_keyframes
-from ..shell.requirements import actor, idle, matches
+from ..shell.requirements import actor, idle, matches, of_take
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take
 from .corrections import LIMBS
-from .found_keyframes import chosen_match, undecided_matches
+from .found_keyframes import match_here, undecided_matches
 from .store_keyframe import improve_neighbors
 
 
@@ -65,17 +65,23 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
         take.matching.shown_match = wanted
 
 
+here = of_take(
+    lambda state: state.match_at(state.take.id_data.frame_current_final) >= 0,
+    "This frame holds no found keyframe; choose one in the list",
+)
+
+
 class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
     """Count this pose as right in the picture: finding again leaves it alone, its depth stays as found"""
 
     bl_label = "Accept"
-    requirements = (actor, matches, idle)
+    requirements = (actor, matches, here, idle)
 
     def run(self, context: Context) -> None:
         from ..bridge.keyframes import take_over
 
         take = active_take(context.scene)
-        match = chosen_match(take)
+        match = match_here(take)
         if TakeState(take).of_match(match) != "FOUND":
             raise Unchanged(f"frame {match.frame:g} is no found keyframe any more")
         frame = round(match.frame, 3)
@@ -88,18 +94,18 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
     """Remove this found keyframe and its keys; a pose of your own at its frame stays"""
 
     bl_label = "Remove"
-    requirements = (actor, matches, idle)
+    requirements = (actor, matches, here, idle)
 
     def run(self, context: Context) -> None:
         from ..bridge.keyframes import remove_keyframes
 
         take = active_take(context.scene)
-        matching, match = take.matching, chosen_match(take)
+        matching, match = take.matching, match_here(take)
         frame = round(match.frame, 3)
         if TakeState(take).of_match(match) == "FOUND":
             remove_keyframes(take.armature, take.keyframe_action, HUMAN, (frame,))
         note_contradictions(take, frame, ())
-        removed = matching.shown_match
+        removed = TakeState(take).match_at(frame)
         matching.matches.remove(removed)
         matching.shown_match = max(0, min(removed, len(matching.matches) - 1))
         self.report({"INFO"}, f"Removed the found keyframe at frame {frame:g}")
@@ -137,14 +143,14 @@ def candidate_title(match: PropertyGroup, candidate: PropertyGroup) -> str:
     turn = _turn(degrees(candidate.turned))
     if match.library != COMPOSED:
         named = str(candidate.name)
-        return f"{turn}: {named}" if turn else named[:1].upper() + named[1:]
+        return f"{turn}, {named}" if turn else named[:1].upper() + named[1:]
     elsewhere, words = candidate.limbs.split(), []
     for pair, both in PAIRS.items():
         there = [LIMBS[name] for name in pair if name in elsewhere]
         words += [both] if len(there) == len(pair) else there
     limbs = ", ".join(words)
     if turn:
-        return f"{turn}: {limbs}" if limbs else turn
+        return f"{turn}, other {limbs}" if limbs else turn
     if limbs:
         return f"Other {limbs}"
     return "As found" if candidate == match.candidates[0] else "Nearly as found"
@@ -156,7 +162,7 @@ def _turn(angle_deg: float) -> str:
         return ""
     if abs(angle_deg) > 180.0 - NOTICEABLE_TURN_DEG:
         return "Turned round"
-    return f"{abs(angle_deg):.0f}° {'left' if angle_deg > 0.0 else 'right'}"
+    return f"Turned {abs(angle_deg):.0f}° {'left' if angle_deg > 0.0 else 'right'}"
 
 
 class CandidateOperator(BaseOperator):
@@ -195,9 +201,9 @@ class KEYMARK_OT_replace_match(CandidateOperator, bpy.types.Operator):
     """Key this posture instead; what is keyed at the frame is replaced"""
 
     bl_label = "Take Candidate"
-    requirements = (actor, matches, idle)
+    requirements = (actor, matches, here, idle)
 
-    source = staticmethod(chosen_match)
+    source = staticmethod(match_here)
 
     def run(self, context: Context) -> None:
         from .match_edits import key_candidate

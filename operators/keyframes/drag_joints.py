@@ -14,7 +14,7 @@ from ..bridge.object_space import joint_places
 from ..follow.marker_properties import segment_title
 from ..overlays.marks import window
 from ..overlays.tools import Handles, show_handles, show_keys
-from ..shell.base_operator import BaseOperator, reported
+from ..shell.base_operator import BaseOperator, call, reported
 from ..shell.fields import Choice, Switch, Vector
 from ..shell.footage_clicks import NAVIGATION, WorldInRegion, view_under
 from ..shell.job_progress import job_is_running
@@ -168,6 +168,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         return all_met(cls, context, actor, idle, not_dragging)
 
     def invoke(self, context: Context, event: Event) -> set[str]:
+        context.scene.keymark.overlays.only_character = False
         self._handles = Handles()
         show_handles(self._handles)
         context.window_manager.modal_handler_add(self)
@@ -213,7 +214,8 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             self._show(context)
         elif pressed == "F" and self._handles.hovered and not self._done:
             limb = limb_of(self._handles.hovered)
-            bpy.ops.keymark.flip_depth("EXEC_DEFAULT", True, limb=limb)
+            with reported(self):
+                call(bpy.ops.keymark.flip_depth, "EXEC_DEFAULT", True, limb=limb)
         else:
             # What goes to another frame or changes the keyframes waits until the pose is stored.
             free = (undo or event.type in NAVIGATION) if not self._done else event.type in LOOKING

@@ -26,13 +26,14 @@ def _untouched(take: bpy.types.PropertyGroup) -> list[bpy.types.PropertyGroup]:
     return [match for match in take.matching.matches if round(match.frame, 3) in untouched]
 
 
-def chosen_match(take: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
-    """The found keyframe that is chosen in the list: the current frame's, or else the last one chosen.
+def match_here(take: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
+    """The found keyframe of the current frame.
 
     Raises:
         InputError: There is none.
     """
-    matching = take.matching
-    if not 0 <= matching.shown_match < len(matching.matches):
-        raise InputError("no found keyframe is chosen; pose all first, and choose a frame in the list")
-    return matching.matches[matching.shown_match]
+    frame = take.id_data.frame_current_final
+    index = TakeState(take).match_at(frame)
+    if index < 0:
+        raise InputError(f"frame {frame:g} holds no found keyframe; choose one in the list")
+    return take.matching.matches[index]

@@ -112,9 +112,10 @@ def _draw_found(column: UILayout, context: Context, state: TakeState) -> None:
     _draw_side_view(row, context)
     if state.sure_by_poses:
         draw_sentence(column, context, matching.reason, "INFO")
-    if matching.shown_match >= len(matching.matches):
+    index = state.match_at(steady_frame(context))
+    if index < 0:
         return
-    match = matching.matches[matching.shown_match]
+    match = matching.matches[index]
     box = column.column(align=True)
     is_found = state.of_match(match) == "FOUND"
     _draw_candidates(box, match, "keymark.replace_match", is_found)

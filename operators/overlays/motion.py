@@ -8,9 +8,11 @@ import numpy as np
 from bpy.types import Context, PropertyGroup, Scene
 
 from ...core.arrays import Array
+from ..bridge.object_space import joint_places
 from ..follow.frame_keypoints import FrameKeypoints, keypoints_at
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.results import review_of
+from ..shell.take_state import TakeState
 from ..shell.takes import find_take
 from .drawing import (
     CORE,
@@ -124,6 +126,9 @@ def _marker_colors(what: Shown) -> list[tuple[float, float, float]]:
 def _skeleton(what: Shown, view: MotionView, style: Style) -> Part:
     review, index = what.review, what.index
     (positions,) = view.point_positions(review, np.array([index]))
+    state = TakeState(what.take)
+    if state.keyed.all and state.actor is not None and state.shows_keyframes:
+        positions = view.project(joint_places(state.actor))  # of what is stored, not of the earlier motion
     rows = [(Sample.LEFT, "Performer's left"), (Sample.RIGHT, "Performer's right")]
     rows += [(Sample.RING, "Uncertain point")] if (review.sigma_m[index] > UNCERTAIN_M).any() else []
     return skeleton(review, index, positions, view.pixels_per_meter(review, index), style), rows

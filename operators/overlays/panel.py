@@ -19,6 +19,7 @@ class KEYMARK_PT_overlays(Popover, bpy.types.Panel):
             layout.label(text=name)
             layout.label(text=sentence)
         column = layout.column()
+        column.prop(settings, "only_character")
         for each in settings.bl_rna.properties:
             if each.identifier.startswith("show_"):
                 column.prop(settings, each.identifier)

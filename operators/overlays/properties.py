@@ -13,6 +13,13 @@ def _changed(_settings: PropertyGroup, context: Context) -> None:
     registry.redraw(context)
 
 
+def _only_character(settings: PropertyGroup, context: Context) -> None:
+    for take in settings.id_data.keymark.takes:
+        if take.armature is not None and take.armature.name in context.view_layer.objects:
+            take.armature.hide_set(settings.only_character, view_layer=context.view_layer)
+    _changed(settings, context)
+
+
 def _switch(name: str, description: str, default: bool = True) -> bool:
     return Switch(name, description, default=default, update=_changed)
 
@@ -20,6 +27,11 @@ def _switch(name: str, description: str, default: bool = True) -> bool:
 class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     """The overlays' switches and looks."""
 
+    only_character: Switch(
+        "Just My Character",
+        "Show the footage and the characters alone, without actors and what is drawn of them",
+        update=_only_character,
+    )
     show_observed: _switch(
         "Observed Markers", "Outline each marker's region as it was found in the footage: a solid line"
     )

@@ -29,21 +29,24 @@ class Overlay:
     draw: DrawFunction
     space: str  # of the editor, a class of `bpy.types`
     correcting: bool = True  # whether it is drawn while joints are dragged, too
+    of_performer: bool = False  # whether *Just My Character* hides it
 
 
-def _in_both(name: str, draw: DrawFunction, correcting: bool = True) -> tuple[Overlay, Overlay]:
+def _in_both(
+    name: str, draw: DrawFunction, correcting: bool = True, of_performer: bool = False
+) -> tuple[Overlay, Overlay]:
     return (
-        Overlay(f"{name} in the Viewport", draw, "SpaceView3D", correcting),
-        Overlay(f"{name} in the Clip Editor", draw, "SpaceClipEditor", correcting),
+        Overlay(f"{name} in the Viewport", draw, "SpaceView3D", correcting, of_performer),
+        Overlay(f"{name} in the Clip Editor", draw, "SpaceClipEditor", correcting, of_performer),
     )
 
 
 OVERLAYS = (
     *_in_both("Masks", mask.draw),
     *_in_both("Ignored Regions", mask.draw_ignored),
-    *_in_both("Keypoints", motion.draw_keypoints, correcting=False),
-    *_in_both("Candidates", candidates.draw, correcting=False),
-    *_in_both("Motion", motion.draw),
+    *_in_both("Keypoints", motion.draw_keypoints, correcting=False, of_performer=True),
+    *_in_both("Candidates", candidates.draw, correcting=False, of_performer=True),
+    *_in_both("Motion", motion.draw, of_performer=True),
     *_in_both("Floor Grid", tools.draw_floor_grid),
     *_in_both("Camera's Lines", tools.draw_camera_lines),
     *_in_both("Requests", tools.draw_request),
@@ -64,6 +67,8 @@ def guarded(overlay: Overlay) -> Callable[[], None]:
 
     def handler() -> None:
         if overlay in _failures or (not overlay.correcting and job_is_running(bpy.context, DRAGGING)):
+            return
+        if overlay.of_performer and bpy.context.scene.keymark.overlays.only_character:
             return
         gpu.state.blend_set("ALPHA")
         try:

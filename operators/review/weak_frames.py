@@ -2,7 +2,7 @@
 
 import bpy
 import numpy as np
-from bpy.types import Context, OperatorProperties, PropertyGroup, UILayout
+from bpy.types import Context, Event, OperatorProperties, PropertyGroup, UILayout
 from mathutils import Matrix, Vector
 
 from ...core.body.human import HUMAN
@@ -10,9 +10,8 @@ from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..bridge.object_space import evaluated
 from ..bridge.scene_frames import at_scene_frame, show_frame, showing_action
-from ..follow.marker_properties import segment_title
 from ..footage.camera_view import look_through, viewports
-from ..shell.base_operator import BaseOperator, Unchanged
+from ..shell.base_operator import BaseOperator, Unchanged, call, capitalized, reported
 from ..shell.fields import Choice
 from ..shell.keyed_frames import new_keyframe_action, straighten_unposed
 from ..shell.panel import RowList, draw_sentence
@@ -37,9 +36,18 @@ class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
 
 def reason_words(item: PropertyGroup) -> str:
     """The reason of a weak frame, with the marker or the body point that it lies with."""
-    words = item.bl_rna.properties["reason"].enum_items[item.reason].name
-    what = "" if item.reason == "FAR" else item.marker or (item.point and segment_title(item.point))
-    return f"{words}: {what}" if what else words
+    name = "" if item.reason == "FAR" else item.marker or item.point
+    stem, _, side = name.partition(".")
+    sided = {"L": f"left {stem}", "R": f"right {stem}"}.get(side, name).replace("_", " ")
+    return capitalized(REASONS_IN_WORDS[item.reason].format(what=sided or "the performer"))
+
+
+REASONS_IN_WORDS = {
+    "HIDDEN": "{what} is hidden",
+    "FAST": "{what} moves fast",
+    "FAR": "the next keyframe is far",
+    "FOOTAGE": "{what} misses the footage",
+}
 
 
 def draw_review(column: UILayout, context: Context, state: TakeState) -> None:
@@ -106,7 +114,7 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
 
 
 class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
-    """Store the reconstructed pose as a keyframe and show the keyframes, so that it only needs correcting"""
+    """Store the reconstructed pose as a keyframe, and correct it at once by dragging its joints"""
 
     bl_label = "Add Keyframe Here"
     requirements = (actor, motion, idle)
@@ -120,6 +128,14 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         ],
     )
 
+    def invoke(self, context: Context, event: Event) -> set[str]:
+        """Store the pose, and let its joints be dragged at once."""
+        done = self.execute(context)
+        if done == {"FINISHED"}:
+            with reported(self):
+                call(bpy.ops.keymark.drag_joints, "INVOKE_DEFAULT")
+        return done
+
     def run(self, context: Context) -> None:
         """Key the motion's pose in the keyframe Action, and let that animate the actor."""
         from ..bridge.keyframes import store_pose
@@ -130,6 +146,9 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         if self.where == "WEAK":
             if not 0 <= review.active_weak_frame < len(review.weak_frames):
                 raise InputError("no weak frame is chosen; reconstruct the motion first")
+            left = TakeState(take).open_weak
+            if left and review.active_weak_frame not in left:
+                review.active_weak_frame = left[0]
             frame = float(review.weak_frames[review.active_weak_frame].frame)
         action = take.keyframe_action or new_keyframe_action(take.armature)
         with showing_action(take.armature, take.motion_action), at_scene_frame(scene) as go_to:

@@ -59,6 +59,18 @@ def reported(operator: bpy.types.Operator) -> Iterator[None]:
         operator.report({"ERROR"}, "An object or a take of this job was removed while it ran; run it again")
 
 
+def call(operator: Callable[..., set[str]], *how: object, **settings: object) -> set[str]:
+    """Call another operator of `bpy.ops`; what it reports as an error becomes a sentence of the caller's.
+
+    Raises:
+        InputError: It could not run.
+    """
+    try:
+        return set(operator(*how, **settings))
+    except RuntimeError as error:
+        raise InputError(str(error).removeprefix("Error: ").strip()) from error
+
+
 class Unchanged(KeymarkError):  # noqa: N818
     """Raised by an operator that has nothing to do; the sentence is reported, and there is no undo step."""
 

@@ -263,7 +263,7 @@ class TakeState:
         """The Action that a character's result is to be made from now."""
         return result.source_action if result.source == "ACTION" else self.newest[1]
 
-    def is_outdated(self, result: PropertyGroup) -> bool:
+    def of_earlier(self, result: PropertyGroup) -> bool:
         """Whether the motion that a character's result was made from has changed since."""
         source = self.source_of(result)
         return None not in (result.action, source) and result.made_from != digest_of(source)
@@ -276,7 +276,7 @@ class TakeState:
     @cached_property
     def has_outdated_result(self) -> bool:
         """Whether a character performs an earlier motion."""
-        return any(self.is_outdated(result) for result in self.results)
+        return any(self.of_earlier(result) for result in self.results)
 
     @cached_property
     def performers(self) -> list[tuple[Object, Action]]:
@@ -291,6 +291,17 @@ class TakeState:
         if self.actor is not None and take.motion_action is not None:
             found.append((self.actor, take.finish.action or take.motion_action))
         return found
+
+    @cached_property
+    def is_outdated(self) -> bool:
+        """Whether anything was made of what has changed since."""
+        return self.motion_is_outdated or self.final_is_outdated or self.has_outdated_result
+
+    @cached_property
+    def open_weak(self) -> list[int]:
+        """Places in the list of the weak frames that nobody has posed."""
+        weak = enumerate(self.take.review.weak_frames)
+        return [index for index, each in weak if not self.is_posed(each.frame)]
 
     # --- What is to be known, and to be done
 
@@ -340,11 +351,13 @@ class TakeState:
 
     def _of_motion(self) -> tuple[str, str]:
         review, final = self.take.review, self.take.finish.action
+        if self.motion_is_outdated:
+            return "keyframes", "correct more, or update"
         sure = self.take.matching.fit if self.sure_by_poses else review.confidence
         if (final is None or self.final_is_outdated) and 0.0 <= sure < DOUBTFUL:
             if self.doubtful:
                 return "reconstruct", "check the doubtful poses"
-            if not all(self.is_posed(weak.frame) for weak in review.weak_frames):
+            if self.open_weak:
                 return "reconstruct", "pose the weak frames"
             return "reconstruct", "reconstruct again" if review.weak_frames else "pose more keyframes"
         if self.final_is_outdated:

@@ -7,7 +7,7 @@ import bpy
 from ...core.errors import InputError
 from ...core.files.json_file import read_json_value
 from ..footage.take_footage import IMAGES, VIDEOS
-from ..shell.base_operator import BaseOperator, browse, chosen_path, reported
+from ..shell.base_operator import BaseOperator, browse, call, chosen_path, reported
 from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
 from ..shell.requirements import idle, object_mode_possible
 
@@ -170,10 +170,7 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
                 f"{path}: is neither a take's take.json nor a keyframe library; keypoints need the "
                 "footage that they are of, so load that first"
             )
-        try:
-            return set(operator(execution_context, filepath=str(path)))
-        except RuntimeError as error:  # the operator's own error report
-            raise InputError(str(error).removeprefix("Error: ").strip()) from error
+        return call(operator, execution_context, filepath=str(path))
 
 
 def _over_an_editor(context: bpy.types.Context) -> bool:

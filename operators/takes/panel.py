@@ -2,13 +2,16 @@
 
 import bpy
 
+from ...core.errors import pluralize
 from ..footage.camera_view import keep_beside_sidebar
 from ..library import registry
 from ..shell.panel import Popover, RowList, SidebarPanel, draw_progress, draw_sentence, sentence_height
-from ..shell.take_state import TakeState
+from ..shell.take_state import DOUBTFUL, TakeState
 from ..shell.takes import find_take
 from .upgrade import is_newer
 
+GOOD = 0.8
+"""Share of joints near their true places beyond which a motion is good as it is."""
 STEPS = (
     ("FILE_MOVIE", "Clip: load it, say where the camera stood"),
     ("OUTLINER_OB_ARMATURE", "Performer: height, and what is followed"),
@@ -46,6 +49,8 @@ class KEYMARK_MT_take(bpy.types.Menu):
         layout.menu("KEYMARK_MT_clips", icon="TRACKER")
         layout.operator("keymark.open_take", icon="FILE_FOLDER")
         layout.operator("keymark.open_example", icon="PLAY")
+        layout.operator("keymark.load_motion", icon="IMPORT")
+        layout.operator("keymark.mend_motion", icon="MOD_SMOOTH")
         layout.separator()
         layout.operator("keymark.remove_take", icon="REMOVE")
         entry = layout.operator("keymark.remove_take", text="Remove Take and Its Data", icon="TRASH")
@@ -73,7 +78,9 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
         if find_take(context.scene) is not None:
-            self.layout.popover("KEYMARK_PT_overlays", text="", icon="OVERLAY")
+            row = self.layout.row(align=True)
+            row.prop(context.scene.keymark.overlays, "only_character", text="", icon="COMMUNITY")
+            row.popover("KEYMARK_PT_overlays", text="", icon="OVERLAY")
 
     def draw(self, context: bpy.types.Context) -> None:
         registry.refresh_if_empty()
@@ -85,32 +92,50 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
             box.label(text="Update Keymark before editing", icon="BLANK1")
         if take is None:
             if not draw_progress(layout, context):
-                _draw_beginning(layout)
+                _draw_beginning(layout, context)
             return
         _draw_takes(layout, context.scene.keymark)
         # As high as the sentence, so that nothing moves when a job begins or ends.
-        sentence = f"Next: {TakeState(take).next[1]}"
+        state = TakeState(take)
+        sentence = f"Next: {state.next[1]}"
         row = layout.row()
         row.scale_y = sentence_height(context, sentence)
         if not draw_progress(row, context):
             row.scale_y = 1.0
             draw_sentence(row, context, sentence, "FORWARD")
+            if state.is_outdated:
+                row.operator("keymark.update", icon="FILE_REFRESH")
+            elif take.motion_action is not None and take.review.confidence >= 0.0:
+                _draw_verdict(layout, context, state)
 
 
-def _draw_beginning(layout: bpy.types.UILayout) -> None:
-    """Draw what to begin with in an empty scene."""
+def _draw_verdict(layout: bpy.types.UILayout, context: bpy.types.Context, state: TakeState) -> None:
+    """Draw how good the motion is, and the button that begins to correct the weakest frame."""
+    confidence, count = state.take.review.confidence, len(state.open_weak)
+    good = "Good" if confidence >= GOOD else "Good for blocking" if confidence >= DOUBTFUL else "Doubtful"
+    frames = pluralize(count, "frame is", "frames are") if count else "no frame is"
+    row = layout.row(align=True)
+    draw_sentence(row, context, f"{good}; {frames} worth correcting", "INFO")
+    if count:
+        row.operator("keymark.pose_from_motion", text="Start", icon="PLAY").where = "WEAK"
+
+
+def _draw_beginning(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what Keymark does and what to begin with in an empty scene."""
+    draw_sentence(layout, context, "A video of a person becomes animation on your character", "INFO")
     row = layout.row()
     row.scale_y = 2.4
-    row.operator("keymark.animate", icon="PLAY")
+    row.operator("keymark.animate", icon="RENDER_ANIMATION")
+    draw_sentence(layout, context, "Or step by step, or mend a motion of another program:", "BLANK1")
     column = layout.column()
-    column.scale_y = 1.6
+    column.scale_y = 1.4
     column.operator("keymark.load_footage", icon="FILE_MOVIE")
     column.operator("keymark.open_take", icon="FILE_FOLDER")
     column.operator("keymark.open_example", icon="PLAY")
-    column.popover("KEYMARK_PT_guide", icon="HELP")
-    elsewhere = layout.row(align=True)
+    elsewhere = column.row(align=True)
     elsewhere.operator("keymark.load_motion", icon="IMPORT")
     elsewhere.operator("keymark.mend_motion", icon="MOD_SMOOTH")
+    column.popover("KEYMARK_PT_guide", icon="HELP")
     if bpy.data.movieclips:
         layout.menu("KEYMARK_MT_clips", icon="TRACKER")
 

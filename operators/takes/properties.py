@@ -7,7 +7,7 @@ import bpy
 
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
-from ..actor.properties import KEYMARK_PG_lengths
+from ..actor.properties import KEYMARK_PG_lengths, in_meters
 from ..bridge.actor_bones import is_actor
 from ..character.properties import KEYMARK_PG_character
 from ..finish.properties import KEYMARK_PG_finish
@@ -45,6 +45,12 @@ def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) 
 
         reattach(take)
         show_lengths(take, read_body(take.armature, HUMAN))
+
+
+def _height_typed(take: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    in_meters(take)
+    if take.stature > 3.0:
+        take.stature = 3.0
 
 
 def _renamed(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -146,7 +152,9 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         precision=4,
         default=1.75,
         min=0.5,
-        max=3.0,
+        soft_max=3.0,
+        max=300.0,
+        update=_height_typed,
     )
     lengths: Group(type=KEYMARK_PG_lengths)
     rest_hips: Vector(

@@ -54,7 +54,7 @@ def test_the_documented_session_leads_to_an_asset_and_a_file(
     result = take.characters[0].results[0]
     child = take.characters[0].armature
     assert child.animation_data.action == result.action and result.action.asset_data is not None
-    assert result.action.name == "aerobic Child" and not TakeState(take).is_outdated(result)
+    assert result.action.name == "aerobic Child" and not TakeState(take).of_earlier(result)
     assert (tmp_path / "session.blend").is_file()
     assert (tmp_path / "motion.bvh").read_text().startswith("HIERARCHY")
 

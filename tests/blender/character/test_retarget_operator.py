@@ -109,11 +109,11 @@ def test_a_newer_motion_marks_the_result(opened: Scene) -> None:
     character = active_take(opened).characters[0]
     for newer in (lambda: move_a_key(take.motion_action), bpy.ops.keymark.bake_motion):
         bpy.ops.keymark.retarget()
-        assert not TakeState(take).is_outdated(character.results[0])
+        assert not TakeState(take).of_earlier(character.results[0])
         newer()
-        assert TakeState(take).is_outdated(character.results[0])
+        assert TakeState(take).of_earlier(character.results[0])
     bpy.ops.keymark.retarget()
-    assert not TakeState(take).is_outdated(character.results[0]) and len(character.results) == 1
+    assert not TakeState(take).of_earlier(character.results[0]) and len(character.results) == 1
 
 
 def turned(armature: bpy.types.Object, frames: range) -> np.ndarray:
@@ -155,6 +155,27 @@ def test_a_file_has_whom_one_sees(character: PropertyGroup, take: PropertyGroup,
         bpy.ops.keymark.export_motion(format="BVH", who="Nobody", filepath=str(tmp_path / "who.bvh"))
 
 
+def test_one_button_makes_all_of_a_correction(opened: Scene) -> None:
+    take = active_take(opened)
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    bpy.ops.keymark.bake_motion()
+    bpy.ops.keymark.add_character(armature=build_character(plain_character()).name)
+    bpy.ops.keymark.retarget()
+    with pytest.raises(RuntimeError, match="Everything is up to date"):
+        bpy.ops.keymark.update()
+    rig = take.characters[0].armature
+    before = [curve_digest(each) for each in (take.armature, rig)]
+    move_a_key(take.keyframe_action)
+    assert TakeState(take).next == ("keyframes", "correct more, or update")
+    assert_undoable([("updating", bpy.ops.keymark.update)])
+    take = active_take(bpy.context.scene)
+    rig = take.characters[0].armature
+    assert not TakeState(take).is_outdated and len(take.characters[0].results) == 1
+    assert take.armature.animation_data.action == take.finish.action
+    assert not {curve_digest(take.armature), curve_digest(rig)} & set(before)
+
+
 def test_any_action_of_an_actor_is_performed(character: PropertyGroup, take: PropertyGroup) -> None:
     bpy.ops.keymark.retarget()
     other = take.motion_action.copy()
@@ -168,7 +189,7 @@ def test_any_action_of_an_actor_is_performed(character: PropertyGroup, take: Pro
     assert [each.action.name for each in character.results] == ["Walk Character", "Jump Character"]
     assert character.results[1].source_actor == take.armature
     bpy.ops.keymark.bake_motion()
-    assert [TakeState(take).is_outdated(each) for each in character.results] == [True, False]
+    assert [TakeState(take).of_earlier(each) for each in character.results] == [True, False]
     bpy.ops.keymark.retarget()
     assert len(character.results) == 2
     character.source_actor = character.armature

@@ -38,7 +38,10 @@ def session(take: Path, folder: Path, camera: Camera) -> Steps[None]:
     yield from seen(person, "character", "character")
     bpy.ops.keymark.bake_motion()
     yield from seen(person, "export", "finish")
-    for step in keymark("operators.shell.steps").STEPS:
+    bpy.ops.keymark.add_rigify_human()
+    bpy.ops.keymark.retarget()
+    yield from seen(person, "two_characters", "character")
+    for step in keymark("operators.shell.take_state").STEPS:
         yield from fits(person, step)
 
 
@@ -68,7 +71,7 @@ def seen(person: Person, name: str, step: str) -> Steps[None]:
 
 def fits(person: Person, step: str) -> Steps[None]:
     """Open a step: but for the lines of later ones, the sidebar shows all without scrolling."""
-    steps = list(keymark("operators.shell.steps").STEPS)
+    steps = list(keymark("operators.shell.take_state").STEPS)
     setattr(bpy.context.window_manager.keymark_steps, step, True)
     yield from person.hands.scroll("VIEW_3D", "WHEELUPMOUSE", 40)
     yield from still(person)

@@ -94,14 +94,14 @@ def _again(person: Person) -> Steps[None]:
     first, count = person.take.characters[0].results[0].action.name, len(bpy.data.actions)
     yield from job(person, "keymark.bake_motion")
     expect(
-        person.state.is_outdated(person.take.characters[0].results[0]), "the result is not marked as outdated"
+        person.state.of_earlier(person.take.characters[0].results[0]), "the result is not marked as outdated"
     )
     yield from person.hands.move_over("VIEW_3D")
     yield from person.look("character_outdated")
     yield from job(person, RETARGET)
     result = person.take.characters[0].results[0]
     expect(
-        not person.state.is_outdated(result) and result.action.name == first,
+        not person.state.of_earlier(result) and result.action.name == first,
         "the result was not made again",
     )
     expect(len(bpy.data.actions) == count, "retargeting again left another Action")

@@ -52,6 +52,8 @@ def review(person: Person) -> Steps[None]:
 
 def _pose_weak_frame(person: Person) -> Steps[None]:
     yield from person.hands.invoke("keymark.pose_from_motion", where="WEAK")
+    yield from person.hands.move_over("VIEW_3D")
+    yield from person.hands.press("RET")  # joints can be dragged at once
 
 
 def in_the_clip_editor(person: Person) -> Steps[None]:

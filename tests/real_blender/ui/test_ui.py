@@ -38,7 +38,18 @@ CORRECTED_MOST = 11, 6
 """With a joint dragged in two poses, and the motion made and given to the character anew; played once."""
 MOST_CLICKS = 40
 """From the clip to the motion: a button, five sleeves, a few buttons more, and four doubtful keyframes."""
-STATES = ("empty", "clip", "performer", "poses", "candidate", "correcting", "motion", "character", "export")
+STATES = (
+    "empty",
+    "clip",
+    "performer",
+    "poses",
+    "candidate",
+    "correcting",
+    "motion",
+    "character",
+    "export",
+    "two_characters",
+)
 SHELF_STEPS = ("libraries", "assets")
 MARKER_STEPS = ("asked", "masks_while_picking", "one_row", "warned", "brushing", "brushed", "still_area")
 HARM_MM = 4.0  # What feet that rest elsewhere by a few pixels make of a motion, twice
