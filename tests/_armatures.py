@@ -171,7 +171,7 @@ def add_rig(file: Path, name: str = "Human", link: bool = False) -> bpy.types.Ob
 
 def move_a_key(action: bpy.types.Action) -> None:
     """Move a key of an Action, as an animator does."""
-    curve = next(iter(curves_of(action).values()))
+    curve = next(curve for (path, _), curve in curves_of(action).items() if path.endswith("location"))
     curve.keyframe_points[0].co[1] += 0.1
     curve.update()
     keys_changed()

@@ -114,10 +114,9 @@ def _draw_verdict(layout: bpy.types.UILayout, context: bpy.types.Context, state:
     confidence, count = state.take.review.confidence, len(state.open_weak)
     good = "Good" if confidence >= GOOD else "Good for blocking" if confidence >= DOUBTFUL else "Doubtful"
     frames = pluralize(count, "frame is", "frames are") if count else "no frame is"
-    row = layout.row(align=True)
-    draw_sentence(row, context, f"{good}; {frames} worth correcting", "INFO")
+    draw_sentence(layout, context, f"{good}; {frames} worth correcting", "INFO")
     if count:
-        row.operator("keymark.pose_from_motion", text="Start", icon="PLAY").where = "WEAK"
+        layout.operator("keymark.pose_from_motion", text="Start Correcting", icon="PLAY").where = "WEAK"
 
 
 def _draw_beginning(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

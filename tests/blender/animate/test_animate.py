@@ -47,7 +47,7 @@ def only_take() -> PropertyGroup:
 
 
 @pytest.mark.parametrize(
-    ("height", "sentence"), [(178.0, "178 centimeters are 1.78"), (0.0, "Height is 0; meters")]
+    ("height", "sentence"), [(17.8, "Height is 17.8; meters"), (0.0, "Height is 0; meters")]
 )
 def test_a_height_that_is_none_is_a_sentence(clip: Path, height: float, sentence: str) -> None:
     with pytest.raises(RuntimeError, match=sentence):

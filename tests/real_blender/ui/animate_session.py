@@ -21,7 +21,8 @@ from person import EXTENSION, Person  # noqa: E402
 from steps_prepare import choose_file  # noqa: E402
 from steps_reconstruct import job  # noqa: E402
 
-HEIGHT_M = 1.71
+HEIGHT_M, TYPED = 1.71, 171.0
+"""The performer's height, and as a beginner types it."""
 MOST_KEYS = 30  # Those that undo everything among them
 
 
@@ -36,8 +37,20 @@ def animate(person: Person, clip: Path) -> Steps[None]:
         yield from turns(20)
         operator = person.hands.area("FILE_BROWSER").spaces.active.active_operator
         expect(operator.character == "RIGIFY", f"the character is {operator.character}")
-        operator.stature = HEIGHT_M
+        operator.stature = TYPED
 
+    wrong, done = person.folder / "words.mp4", (person.hands.clicks, person.hands.keys)
+    wrong.write_text("no video", encoding="utf-8")
+    yield from choose_file(person, answer, wrong, "RET", closes=False)
+    yield from turns(20)
+    again = person.hands.area("FILE_BROWSER").spaces.active.active_operator
+    expect("words.mp4" in again.problem, f"of a file that is no video it says '{again.problem}'")
+    expect(abs(again.stature - HEIGHT_M) < 1e-3, f"the height that was typed became {again.stature}")
+    expect(not len(person.scene.keymark.takes), "a mistake left a take")
+    yield from person.look("mistaken")
+    yield from person.hands.press("ESC")
+    yield from turns(10)
+    person.hands.clicks, person.hands.keys = done  # of whoever makes no mistake
     yield from choose_file(person, answer, clip, "RET")
     yield from turns(10)
     yield from person.look("running")

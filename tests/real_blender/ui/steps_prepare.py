@@ -151,8 +151,10 @@ def browse(person: Person, command: str, file: Path, key: str) -> Steps[None]:
     yield from choose_file(person, lambda: person.hands.click_button(command), file, key)
 
 
-def choose_file(person: Person, ask: Callable[[], Steps[None]], file: Path, key: str) -> Steps[None]:
-    """Do what opens the file browser, go to a file, or a folder, and press a key there."""
+def choose_file(
+    person: Person, ask: Callable[[], Steps[None]], file: Path, key: str, closes: bool = True
+) -> Steps[None]:
+    """Do what opens the file browser, go to a file, or a folder, and press a key there, which closes it."""
     bpy.context.preferences.view.filebrowser_display_type = "SCREEN"
     yield from ask()
     kinds = {"FILE_BROWSER"}
@@ -167,7 +169,10 @@ def choose_file(person: Person, ask: Callable[[], Steps[None]], file: Path, key:
     if key == "RET":
         yield from person.look("file_browser")
     yield from person.hands.press(key)
-    yield from until(lambda: not kinds & {a.type for a in person.hands.window.screen.areas}, "the viewport")
+    if closes:
+        yield from until(
+            lambda: not kinds & {a.type for a in person.hands.window.screen.areas}, "the viewport"
+        )
     yield from turns(3)
 
 

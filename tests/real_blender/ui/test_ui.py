@@ -31,7 +31,7 @@ FIRST_STEPS = (
 )
 FIRST_CLICKS, FIRST_KEYS = 6, 6
 """Tab, example (button and entry), Reconstruct, Add Rigify Human, Retarget; N, Space four times, Enter."""
-ANIMATE_STEPS = ("panel", "file_browser", "running", "animated", "played", "put_right")
+ANIMATE_STEPS = ("panel", "file_browser", "mistaken", "running", "animated", "played", "put_right")
 ANIMATE_MOST = 2, 2
 """Clicks and keys: tab, Animate; N, Enter. Choosing a file and entering the height take three clicks more."""
 CORRECTED_MOST = 11, 6

@@ -43,11 +43,11 @@ def names(known: CharacterMap, **options: object) -> set[str]:
 
 
 def test_limbs_are_keyed_as_chosen(known: CharacterMap) -> None:
-    both = names(known)
+    both = names(known, arms=LimbKeys.BOTH, legs=LimbKeys.BOTH)
     assert {"hips", "chest", "thigh.L", "foot.R", "toe.L", "ik_foot.L", "pole_arm.R"} <= both
     fk = names(known, arms=LimbKeys.FK, legs=LimbKeys.FK)
     assert not any(name.startswith(("ik_", "pole_")) for name in fk)
-    ik = names(known, arms=LimbKeys.IK, legs=LimbKeys.IK)
+    ik = names(known)
     assert not {"upper_arm.L", "forearm.L", "hand.L", "thigh.L", "shin.L", "foot.L"} & ik
     assert {"shoulder.L", "toe.L", "ik_hand.L"} <= ik
     rooted = replace(known, root="root")
