@@ -185,6 +185,8 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
         column = _draw_choice(body, take, character)
         if character.armature is None:
             draw_sentence(column, context, "Choose the armature that is to move", "FORWARD")
+            if len(take.characters) > 1:
+                column.prop(character, "armature")
             column.operator("keymark.add_rigify_human", icon="ARMATURE_DATA")
             return
         if needs_override(character.armature):
@@ -215,10 +217,7 @@ def _draw_choice(body: UILayout, take: PropertyGroup, character: PropertyGroup) 
         buttons = row.column(align=True)
     buttons.operator("keymark.add_character", text="", icon="ADD")
     buttons.operator("keymark.remove_character", text="", icon="REMOVE")
-    column = body.column()
-    if not single:
-        column.prop(character, "armature")
-    return column
+    return body.column()
 
 
 def _draw_results(column: UILayout, context: Context, state: TakeState, character: PropertyGroup) -> None:
@@ -242,7 +241,6 @@ def _draw_results(column: UILayout, context: Context, state: TakeState, characte
         draw_sentence(lines, context, "Motion is newer: retarget again", "ERROR")
     for line in chosen.lines:
         draw_sentence(lines, context, line.text, "ERROR" if line.level == "ERROR" else "DOT")
-    column.operator("keymark.mark_result_asset", icon="ASSET_MANAGER")
 
 
 class KEYMARK_PT_retarget_options(Popover, bpy.types.Panel):
@@ -266,6 +264,8 @@ class KEYMARK_PT_retarget_options(Popover, bpy.types.Panel):
         few = column.column()
         few.active = options.keys == "TOLERANCE"
         few.prop(options, "tolerance_mm")
+        column.prop(character, "armature")
+        column.operator("keymark.mark_result_asset", icon="ASSET_MANAGER")
 
 
 class KEYMARK_PT_character_map(TakePanel, bpy.types.Panel):

@@ -125,23 +125,31 @@ def unscaled_width(context: Context) -> float:
 
 
 def draw_sentence(
-    layout: UILayout, context: Context, sentence: str, icon: str = "DOT", most_lines: int | None = None
+    layout: UILayout,
+    context: Context,
+    sentence: str,
+    icon: str = "DOT",
+    most_lines: int | None = None,
+    beside_px: float = 0.0,
 ) -> None:
-    """Draw a translated sentence, wrapped to the width of the sidebar; further lines end in dots."""
+    """Draw a translated sentence, wrapped to the width of the sidebar, less what stands beside it.
+
+    Further lines than the most end in dots.
+    """
     column = layout.column(align=True)
     column.scale_y = LINE_HEIGHT
-    lines = _lines(context, sentence, most_lines)
+    lines = _lines(context, sentence, most_lines, beside_px)
     for number, line in enumerate(lines):
         column.label(text=line, icon=icon if number == 0 else "BLANK1", translate=False)
 
 
-def sentence_height(context: Context, sentence: str) -> float:
+def sentence_height(context: Context, sentence: str, beside_px: float = 0.0) -> float:
     """Height of what `draw_sentence` draws, in rows."""
-    return LINE_HEIGHT * len(_lines(context, sentence))
+    return LINE_HEIGHT * len(_lines(context, sentence, None, beside_px))
 
 
-def _lines(context: Context, sentence: str, most_lines: int | None = None) -> list[str]:
-    letters = max(16, int((unscaled_width(context) - MARGIN_PX) / LETTER_PX))
+def _lines(context: Context, sentence: str, most_lines: int | None, beside_px: float) -> list[str]:
+    letters = max(16, int((unscaled_width(context) - MARGIN_PX - beside_px) / LETTER_PX))
     kept = sentence.replace(" %", "\N{NO-BREAK SPACE}%")
     return wrap(kept, letters, max_lines=most_lines, placeholder=" ...")
 

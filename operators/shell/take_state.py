@@ -154,6 +154,11 @@ class TakeState:
         """Whether how sure the motion is follows from its poses, all of which were found."""
         return bool(self.matched) and not self.posed and bool(self.take.matching.reason)
 
+    @property
+    def confidence(self) -> float:
+        """How sure the motion is, from 0 to 1; negative where nothing tells."""
+        return float(self.take.matching.fit if self.sure_by_poses else self.take.review.confidence)
+
     def is_posed(self, frame: float) -> bool:
         """Whether the animator posed a frame; a clip's frame may lie between whole scene frames."""
         return has_frame(self.posed, frame)
@@ -353,8 +358,7 @@ class TakeState:
         review, final = self.take.review, self.take.finish.action
         if self.motion_is_outdated:
             return "keyframes", "correct more, or update"
-        sure = self.take.matching.fit if self.sure_by_poses else review.confidence
-        if (final is None or self.final_is_outdated) and 0.0 <= sure < DOUBTFUL:
+        if (final is None or self.final_is_outdated) and 0.0 <= self.confidence < DOUBTFUL:
             if self.doubtful:
                 return "reconstruct", "check the doubtful poses"
             if self.open_weak:

@@ -10,6 +10,8 @@ from ..shell.take_state import DOUBTFUL, TakeState
 from ..shell.takes import find_take
 from .upgrade import is_newer
 
+BUTTON_PX = 70.0
+"""Width of the button beside the headline, at a UI scale of 1."""
 GOOD = 0.8
 """Share of joints near their true places beyond which a motion is good as it is."""
 STEPS = (
@@ -96,27 +98,35 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
             return
         _draw_takes(layout, context.scene.keymark)
         # As high as the sentence, so that nothing moves when a job begins or ends.
-        state = TakeState(take)
-        sentence = f"Next: {state.next[1]}"
-        row = layout.row()
-        row.scale_y = sentence_height(context, sentence)
+        sentence, action, text = _headline(TakeState(take))
+        beside_px = BUTTON_PX if action else 0.0
+        row = layout.row(align=True)
+        row.scale_y = sentence_height(context, sentence, beside_px)
         if not draw_progress(row, context):
             row.scale_y = 1.0
-            draw_sentence(row, context, sentence, "FORWARD")
-            if state.is_outdated:
-                row.operator("keymark.update", icon="FILE_REFRESH")
-            elif take.motion_action is not None and take.review.confidence >= 0.0:
-                _draw_verdict(layout, context, state)
+            draw_sentence(row, context, sentence, "FORWARD", beside_px=beside_px)
+            if action == "keymark.update":
+                row.operator(action, text=text)
+            elif action:
+                row.operator(action, text=text).where = "WEAK"
 
 
-def _draw_verdict(layout: bpy.types.UILayout, context: bpy.types.Context, state: TakeState) -> None:
-    """Draw how good the motion is, and the button that begins to correct the weakest frame."""
-    confidence, count = state.take.review.confidence, len(state.open_weak)
-    good = "Good" if confidence >= GOOD else "Good for blocking" if confidence >= DOUBTFUL else "Doubtful"
-    frames = pluralize(count, "frame is", "frames are") if count else "no frame is"
-    draw_sentence(layout, context, f"{good}; {frames} worth correcting", "INFO")
-    if count:
-        layout.operator("keymark.pose_from_motion", text="Start Correcting", icon="PLAY").where = "WEAK"
+def _headline(state: TakeState) -> tuple[str, str, str]:
+    """What is next, or how good the motion is; and the operator and the text of a button for it, if any."""
+    step, words = state.next
+    if state.is_outdated:
+        return f"Next: {words}", "keymark.update", "Update"
+    sure, count = state.confidence, len(state.open_weak)
+    if (
+        state.take.motion_action is None
+        or sure < 0.0
+        or not count
+        or (sure < DOUBTFUL and step == "reconstruct")
+    ):
+        return f"Next: {words}", "", ""
+    good = "Good" if sure >= GOOD else "Good for blocking" if sure >= DOUBTFUL else "Doubtful"
+    frames = pluralize(count, "frame is", "frames are")
+    return f"{good}; {frames} worth correcting", "keymark.pose_from_motion", "Start"
 
 
 def _draw_beginning(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
