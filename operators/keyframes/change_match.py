@@ -162,7 +162,7 @@ def _turn(angle_deg: float) -> str:
         return ""
     if abs(angle_deg) > 180.0 - NOTICEABLE_TURN_DEG:
         return "Turned round"
-    return f"Turned {abs(angle_deg):.0f}° {'left' if angle_deg > 0.0 else 'right'}"
+    return f"{abs(angle_deg):.0f}° {'left' if angle_deg > 0.0 else 'right'}"
 
 
 class CandidateOperator(BaseOperator):

@@ -110,10 +110,10 @@ def _draw_found(column: UILayout, context: Context, state: TakeState) -> None:
     jump = going.operator("keymark.jump_to_match", text=words, translate=False, icon="NEXT_KEYFRAME")
     jump.direction, jump.only_doubtful = "NEXT", True
     _draw_side_view(row, context)
-    if state.sure_by_poses:
-        draw_sentence(column, context, matching.reason, "INFO")
     index = state.match_at(steady_frame(context))
     if index < 0:
+        if state.sure_by_poses:
+            draw_sentence(column, context, matching.reason, "INFO")
         return
     match = matching.matches[index]
     box = column.column(align=True)

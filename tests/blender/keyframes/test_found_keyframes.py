@@ -153,7 +153,7 @@ def test_a_candidate_is_named_by_what_tells_it_from_the_first(found: Group, wave
     assert candidate_title(last, first) == "As found"
     assert candidate_title(last, other) == "Other arms"
     other.turned = 0.8
-    assert candidate_title(last, other) == "Turned 46° left, other arms"
+    assert candidate_title(last, other) == "46° left, other arms"
     other.turned = -3.1
     assert candidate_title(last, other) == "Turned round, other arms"
     other.limbs, other.turned = "arm.R leg.L leg.R", 0.0
