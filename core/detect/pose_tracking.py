@@ -1,37 +1,42 @@
 """Everyone in a clip, found by the landmark network and followed from picture to picture.
 
-The clip is decoded once, a stretch at a time. People are looked for at the end of every stretch, by crops of
-several sizes and places; from there they are followed backward until they are lost or met, and forward into
-the next stretches. Who of them is the performer is chosen later, as among any detector's people
+The network looks at some fifteen pictures a second, in a thread of its own while the clip goes on being
+decoded; a cubic goes through what it sees. People are looked for at the end of every stretch of pictures, by
+crops of several sizes and places; from there they are followed backward until they are lost or met, and
+forward into the next stretches. Who of them is the performer is chosen later, as among any detector's people
 (`keypoints/performer`).
 """
 
-from collections.abc import Iterator, Sequence
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import chain
 
-import cv2
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
-from ..arrays import Image
+from ..arrays import Array, Image, IndexArray
 from ..errors import InputError
 from ..progress import Job, Progress
 from ..video.clip import Clip
+from ..video.working_image import measuring_image
 from .closer_look import CloserLook
 from .face import no_faces, scaled_faces
 from .keypoints import People, SeenPeople
 from .pose_network import LAYOUT, NAME, Crop, Pose, PoseNetwork
 
 DETECTING = "Detecting keypoints"
-STRETCH = 60  # pictures kept at a time, 170 MB
-LOOKS_A_SECOND = 30.0  # the usual rate of video, from which on pictures are left out
-LARGEST_SIDE_PX = 1280  # pictures are made as small; the network sees 256 pixels of a person
+STRETCH = 30  # pictures kept at a time, 190 MB
+AHEAD = 6  # pictures that may be decoded before the network has seen the one before them
+LOOKS_A_SECOND = 15.0
+"""Twice as many are no more exact: 2.26 % of a body's height on seven takes, 2.24 with a cubic in between."""
+LARGEST_SIDE_PX = 1920  # larger pictures are halved; the network sees 256 pixels of a person
 HEIGHTS = (1.15, 0.75, 0.5, 0.33)  # sides of the crops that are looked into, by the height of the picture
 SIZES = (0.75,)  # the same by the largest person who is followed already
 STEP = 0.5  # between crops, by their side
 APART = 0.3  # share of a crop's side within which two crops show the same person
 MOST_OTHER = 1.6  # ratio of sizes beyond which a later person is another
-OVERLOOKED = 0.1  # shift, turn and growth of a crop for which the network's training makes up
 SMALLEST = 0.35  # others are followed from this share of the largest one's size on
 
 
@@ -44,45 +49,76 @@ class _Sighting:
 
 
 def find_people(clip: Clip, network: PoseNetwork, closer: CloserLook | None = None) -> Job[People]:
-    """Find everyone in a clip; where it has many pictures a second, those between the looked at have nobody.
-
-    `closer` sees heads and hands too.
+    """Find everyone in a clip; `closer` sees heads and hands too.
 
     Raises:
         InputError: It is a picture, has no frames, or nobody is in it.
     """
-    refuse_picture(clip)
-    scale = min(1.0, LARGEST_SIDE_PX / max(clip.size))
-    every = max(1, round(clip.fps / LOOKS_A_SECOND))
-    tracking = _Tracking(network)
-    seen: list[list[_Sighting]] = []
-    count = 0
     yield Progress(DETECTING, 0.0)
-    for pictures, count in _stretches(clip, scale, every):  # noqa: B007 - the last count is the clip's
-        for done in tracking.follow(pictures):
-            yield Progress(DETECTING, min(every * (len(seen) + done) / clip.frame_count, 1.0))
-        seen += tracking.seen if closer is None else _looked_at(closer, pictures, tracking.seen)
-    if not seen:
-        raise InputError(f"{clip.path}: holds no frame that can be decoded; it must be a video or images")
-    kept = _believed(seen)
-    if not any(kept):
-        raise InputError(
-            f"{clip.path}: nobody is seen in any of its {count} frames; it must show a person, at "
-            "least from the head to the hips and not too small"
-        )
-    frames = [SeenPeople.nobody(len(LAYOUT.names))] * count
-    frames[::every] = [_people(frame, clip.size, scale) for frame in kept]
-    return People(LAYOUT.names, NAME, clip.size, tuple(frames))
+    with PeopleFinder(clip, network, closer) as finder:
+        for index, _, picture in clip.frames():
+            finder.add(index, picture)
+            yield Progress(DETECTING, min((index + 1) / clip.frame_count, 1.0))
+        return finder.people()
 
 
-def _looked_at(
-    closer: CloserLook, pictures: Sequence[Image], seen: Sequence[Sequence[_Sighting]]
-) -> list[list[_Sighting]]:
-    """The same people with their heads and hands."""
-    poses = iter(
-        closer([(picture, one.pose) for picture, frame in zip(pictures, seen, strict=True) for one in frame])
-    )
-    return [[_Sighting(one.track, next(poses)) for one in frame] for frame in seen]
+class PeopleFinder:
+    """Looks for everyone in the pictures of a clip while these are read one after the other."""
+
+    def __init__(self, clip: Clip, network: PoseNetwork, closer: CloserLook | None = None) -> None:
+        refuse_picture(clip)
+        self.count = 0
+        """Frames so far."""
+        self._clip = clip
+        self._every = max(1, round(clip.fps / LOOKS_A_SECOND))
+        self._halvings = max(0, (max(clip.size) - 1) // LARGEST_SIDE_PX).bit_length()
+        self._tracking = _Tracking(network, closer)
+        self._looked: list[int] = []  # frames that are looked at
+        self._last: Image | None = None  # the last picture, where it is not
+        self._pool = ThreadPoolExecutor(1)
+        self._waiting: deque[Future[None]] = deque()
+
+    def __enter__(self) -> "PeopleFinder":
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._pool.shutdown(cancel_futures=True)
+
+    def add(self, index: int, picture: Image) -> None:
+        """Take the next frame; it waits where the network has fallen behind."""
+        self.count, self._last = index + 1, picture
+        if index % self._every == 0:
+            self._look(picture)
+
+    def _look(self, picture: Image) -> None:
+        self._looked.append(self.count - 1)
+        self._last = None
+        small = measuring_image(picture, self._halvings)
+        self._waiting.append(self._pool.submit(self._tracking.add, small))
+        if len(self._waiting) > AHEAD:
+            self._waiting.popleft().result()
+
+    def people(self) -> People:
+        """Everyone, once all frames were taken."""
+        path, size = self._clip.path, self._clip.size
+        if self._last is not None:
+            self._look(self._last)
+        self._waiting.append(self._pool.submit(self._tracking.end_stretch))
+        while self._waiting:
+            self._waiting.popleft().result()
+        if not self._looked:
+            raise InputError(f"{path}: holds no frame that can be decoded; it must be a video or images")
+        tracks = _believed(self._tracking.seen)
+        if not tracks:
+            raise InputError(
+                f"{path}: nobody is seen in any of its {self.count} frames; it must show a person, at "
+                "least from the head to the hips and not too small"
+            )
+        frames = [SeenPeople.nobody(len(LAYOUT.names))] * self.count
+        looked = np.array(self._looked)
+        for track in tracks:
+            _fill(frames, looked, track, size, 0.5**self._halvings)
+        return People(LAYOUT.names, NAME, size, tuple(frames))
 
 
 def refuse_picture(clip: Clip) -> None:
@@ -93,90 +129,74 @@ def refuse_picture(clip: Clip) -> None:
         )
 
 
-def _stretches(clip: Clip, scale: float, every: int) -> Iterator[tuple[list[Image], int]]:
-    """Stretches of every so manieth picture, with the number of frames up to the end of each."""
-    pictures: list[Image] = []
-    count = 0
-    for index, _, picture in clip.frames():
-        count = index + 1
-        if index % every:
-            continue
-        if len(pictures) == STRETCH:
-            yield pictures, index
-            pictures = []
-        if scale < 1.0:
-            size = (round(scale * clip.size[0]), round(scale * clip.size[1]))
-            way = (
-                cv2.INTER_LINEAR if scale > 0.5 else cv2.INTER_AREA
-            )  # as exact there, in a third of the time
-            picture = np.asarray(cv2.resize(picture, size, interpolation=way), dtype=np.uint8)
-        pictures.append(picture)
-    if pictures:
-        yield pictures, count
-
-
 class _Tracking:
-    """Whom the pictures of one stretch after another show."""
+    """Whom pictures show that come one after the other."""
 
-    def __init__(self, network: PoseNetwork) -> None:
-        self._network = network
+    def __init__(self, network: PoseNetwork, closer: CloserLook | None) -> None:
+        self._network, self._closer = network, closer
         self._tracks = 0
+        self._pictures: list[Image] = []  # of the stretch at hand
+        self._seen: list[list[_Sighting]] = []
+        self._people: list[_Sighting] = []  # who is followed on, in the last picture
         self.seen: list[list[_Sighting]] = []
-        """Of each picture of the last stretch."""
+        """Of each picture of the stretches that are complete."""
 
-    def follow(self, pictures: Sequence[Image]) -> Iterator[int]:
-        """Follow everyone through the next stretch; yields the number of pictures that are done."""
-        before, self.seen = self.seen, [[] for _ in pictures]
-        if before:
-            yield from self._go(pictures, before[-1], range(len(pictures)))
-        else:
-            yield from self._look(pictures, 0)
-        last = len(pictures) - 1
-        yield from self._look(pictures, last)
-        if not any(self.seen):
-            yield from self._look(pictures, last // 2)
+    def add(self, picture: Image) -> None:
+        """Follow everyone into the next picture."""
+        self._pictures.append(picture)
+        self._seen.append([])
+        last = len(self._pictures) - 1
+        is_first = not self.seen and last == 0
+        self._people = self._new(0) if is_first else self._go(self._people, range(last, last + 1))
+        if len(self._pictures) == STRETCH:
+            self.end_stretch()
 
-    def _look(self, pictures: Sequence[Image], index: int) -> Iterator[int]:
+    def end_stretch(self) -> None:
+        """Look for others at the end of the stretch, and follow them back."""
+        if not self._pictures:
+            return
+        last = len(self._pictures) - 1
+        self._look(last)
+        if not any(self._seen):
+            self._look(last // 2)
+        self._people = self._seen[last]
+        self.seen += self._seen if self._closer is None else self._looked_at(self._closer)
+        self._pictures, self._seen = [], []
+
+    def _looked_at(self, closer: CloserLook) -> list[list[_Sighting]]:
+        """The stretch's people with their heads and hands."""
+        seen = zip(self._pictures, self._seen, strict=True)
+        poses = iter(closer([(picture, one.pose) for picture, frame in seen for one in frame]))
+        return [[_Sighting(one.track, next(poses)) for one in frame] for frame in self._seen]
+
+    def _look(self, index: int) -> None:
         """Look for new people in a picture, and follow them both ways."""
-        known = [one.pose for one in self.seen[index]]
-        poses = _scan(self._network, pictures[index], known)
+        new = self._new(index)
+        self._go(new, range(index - 1, -1, -1))
+        self._go(new, range(index + 1, len(self._pictures)))
+
+    def _new(self, index: int) -> list[_Sighting]:
+        """New people in a picture."""
+        poses = _scan(self._network, self._pictures[index], [one.pose for one in self._seen[index]])
         new = [_Sighting(track, pose) for track, pose in enumerate(poses, self._tracks)]
         self._tracks += len(new)
-        self.seen[index] += new
-        yield from self._go(pictures, new, range(index - 1, -1, -1))
-        yield from self._go(pictures, new, range(index + 1, len(pictures)))
+        self._seen[index] += new
+        return new
 
-    def _go(self, pictures: Sequence[Image], people: Sequence[_Sighting], way: range) -> Iterator[int]:
-        """Follow people until they are lost, or met by others who are followed already.
-
-        Two pictures are looked at at once, in the same crops; the second anew where somebody has left theirs.
-        """
-        for pair in (way[at : at + 2] for at in range(0, len(way), 2)):
+    def _go(self, people: list[_Sighting], way: range) -> list[_Sighting]:
+        """Follow people until they are lost, or met by others who are followed already; who is left."""
+        for index in way:
             if not people:
-                return
-            crops = {one.track: one.pose.crop for one in people}
-            looks_at = [(index, one.track) for index in pair for one in people]
-            looks = self._network.each([(pictures[index], crops[track]) for index, track in looks_at])
-            poses = dict(zip(looks_at, looks, strict=True))
-            for index in pair:
-                now = []
-                for one in people:
-                    pose = poses[index, one.track]
-                    if not _is_near(one.pose.crop, crops[one.track]):
-                        pose = self._network(pictures[index], one.pose.crop)
-                    known = [other.pose for other in self.seen[index]]
-                    if _is_followed(one.pose, pose, pictures[index]) and not _is_among(pose, known):
-                        now.append(_Sighting(one.track, pose))
-                        self.seen[index].append(now[-1])
-                people = now
-                yield sum(map(bool, self.seen))
-
-
-def _is_near(crop: Crop, other: Crop) -> bool:
-    """Whether the network sees the same in two crops, but for what it has learned to overlook."""
-    turned = abs(np.angle(np.exp(1j * (crop.angle - other.angle))))
-    moved = np.hypot(*(crop.center - other.center)) / other.side
-    return bool(max(moved, turned, abs(crop.side / other.side - 1.0)) < OVERLOOKED)
+                break
+            picture, known = self._pictures[index], [other.pose for other in self._seen[index]]
+            poses = self._network.each([(picture, one.pose.crop) for one in people])
+            people = [
+                _Sighting(one.track, pose)
+                for one, pose in zip(people, poses, strict=True)
+                if _is_followed(one.pose, pose, picture) and not _is_among(pose, known)
+            ]
+            self._seen[index] += people
+        return people
 
 
 def _is_followed(before: Pose, now: Pose, picture: Image) -> bool:
@@ -263,27 +283,57 @@ def _is_among(pose: Pose, known: Sequence[Pose]) -> bool:
     )
 
 
-def _believed(seen: Sequence[Sequence[_Sighting]]) -> list[list[Pose]]:
-    """The people of each picture but those of a moment; where nobody meets another, those of one size."""
-    sides: dict[int, list[float]] = {}
-    for one in chain.from_iterable(seen):
-        sides.setdefault(one.track, []).append(one.pose.crop.side)
-    longest = max(map(len, sides.values()), default=0)
-    kept = {track for track, own in sides.items() if len(own) >= min(longest, 4)}
+def _believed(seen: Sequence[Sequence[_Sighting]]) -> list[dict[int, Pose]]:
+    """Everyone's poses by the picture, but of those of a moment; where nobody meets another, of one size."""
+    tracks: dict[int, dict[int, Pose]] = {}
+    for index, frame in enumerate(seen):
+        for one in frame:
+            tracks.setdefault(one.track, {})[index] = one.pose
+    longest = max(map(len, tracks.values()), default=0)
+    kept = [own for own in tracks.values() if len(own) >= min(longest, 4)]
     if all(len(frame) < 2 for frame in seen) and kept:
-        usual = float(np.median(max(sides.values(), key=len)))
+        sides = [float(np.median([pose.crop.side for pose in own.values()])) for own in kept]
+        usual = sides[int(np.argmax([len(own) for own in kept]))]
         alike = (usual / MOST_OTHER, usual * MOST_OTHER)
-        kept = {track for track in kept if alike[0] < float(np.median(sides[track])) < alike[1]}
-    return [[one.pose for one in frame if one.track in kept] for frame in seen]
+        kept = [own for own, side in zip(kept, sides, strict=True) if alike[0] < side < alike[1]]
+    return kept
 
 
-def _people(poses: Sequence[Pose], size: tuple[int, int], scale: float) -> SeenPeople:
-    """The people of a frame in the clip's own pixels; points beyond its edges are not seen."""
-    count = len(LAYOUT.names)
-    pixel = np.array([pose.pixel for pose in poses]).reshape(-1, count, 2) / scale
-    score = np.array([pose.score for pose in poses]).reshape(-1, count)
-    hint = np.array([pose.hint_m for pose in poses]).reshape(-1, count, 3)
-    faces = [no_faces(1)[0] if pose.face is None else pose.face for pose in poses]
-    face = scaled_faces(faces, 1.0 / scale) if any(pose.face is not None for pose in poses) else None
+def _fill(
+    frames: list[SeenPeople],
+    looked: IndexArray,
+    track: Mapping[int, Pose],
+    size: tuple[int, int],
+    scale: float,
+) -> None:
+    """Add a person to the frames from the first to the last look at them, in the clip's own pixels.
+
+    Between looks all is on the cubic through them whose slopes are those of their neighbors (Catmull and Rom
+    1974), but for faces, which are those of looks. Points beyond the picture's edges are not seen.
+    """
+    at = looked[sorted(track)]
+    poses = [track[index] for index in sorted(track)]
+    face: Array | None = None
+    if any(one.face is not None for one in poses):
+        face = no_faces(int(at[-1] - at[0]) + 1)
+        known = [no_faces(1)[0] if one.face is None else one.face for one in poses]
+        face[at - at[0]] = scaled_faces(known, 1.0 / scale)
+    seen = np.stack([np.column_stack([one.pixel / scale, one.score, one.hint_m]) for one in poses])
+    if len(at) > 1:
+        between = np.arange(at[0], at[-1] + 1)
+        seen, at = CubicHermiteSpline(at, seen, np.gradient(seen, at, axis=0))(between), between
+    pixel, score = seen[..., :2], np.clip(seen[..., 2], 0.0, 1.0)
     there = ((pixel >= 0.0) & (pixel <= np.array(size))).all(axis=-1)
-    return SeenPeople(np.where(there[..., None], pixel, np.nan), np.where(there, score, 0.0), hint, face)
+    pixel, score = np.where(there[..., None], pixel, np.nan), np.where(there, score, 0.0)
+    for row, frame in enumerate(at):
+        others = frames[frame]
+        frames[frame] = SeenPeople(
+            np.concatenate([others.pixel, pixel[row][None]]),
+            np.concatenate([others.score, score[row][None]]),
+            np.concatenate([others.hint_m, seen[row, None, :, 3:]]),
+            None if face is None else np.concatenate([_faces(others), face[row, None]]),
+        )
+
+
+def _faces(people: SeenPeople) -> Array:
+    return no_faces(len(people.pixel)) if people.face is None else people.face

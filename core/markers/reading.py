@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..errors import InputError
 from ..files.digest import digest, file_fingerprint
-from ..video.album import Album, Glimpses, watch_clip
+from ..video.album import Album, Glimpses, Watch, watch_clip
 from ..video.clip import Clip
 from ..video.frame_checks import NO_FINDINGS, FrameChecks, FrameFindings
 from ..video.image_sequence import find_images
@@ -172,12 +172,14 @@ def read_clip(
     with_album: bool = True,
     kept: Reading | None = None,
     ignored: Sequence[IgnoredRegion] = (),
+    watch: Watch | None = None,
 ) -> Generator[float, None, Reading]:
     """Track the markers through a clip, check its frames and keep a small picture of each.
 
     A cached reading of any clip may be `kept`: it is returned without decoding the clip if its key is the
     same; if only the expected regions differ and the colors would be learned alike, its detections are
-    assigned to the markers anew. The result is the same to the last digit. Yields the fraction done.
+    assigned to the markers anew. The result is the same to the last digit. Whoever is to `watch` sees each
+    frame if the clip is decoded. Yields the fraction done.
 
     Raises:
         InputError: The clip shows nothing, a marker's color matches nothing, or a frame cannot be read.
@@ -196,7 +198,7 @@ def read_clip(
             tracks = _each_once(assign_detections(seen, styles, expected), kept.frame_findings)
             return replace(kept, tracks=tracks, key=key)
     album, checks, glimpses = Album() if with_album else None, FrameChecks(), Glimpses.of(clip)
-    watched = watch_clip(clip, checks, album, glimpses)
+    watched = watch_clip(clip, checks, album, glimpses, watch)
     if not styles:
         time_s: list[float] = []
         for _, stamp, _ in watched.frames():

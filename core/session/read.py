@@ -1,16 +1,38 @@
-"""Read: one pass over the clip, for all later stages."""
+"""Read: one pass over the clip for all later stages, in which the pose network may look at it, too."""
 
+from dataclasses import dataclass
+
+from ..detect.closer_look import CloserLook
+from ..detect.keypoints import People
+from ..detect.pose_network import PoseNetwork
+from ..detect.pose_tracking import DETECTING, PeopleFinder
 from ..estimate.reconstruct import check_method
 from ..markers.reading import Reading, reading_key
 from ..progress import Job
+from ..take.clip_check import open_footage
 from ..take.read_footage import read_footage
 from .session import Inputs, Session, Stage
 
 
+@dataclass(frozen=True, eq=False)
+class WatchedReading(Reading):
+    """A reading, and everybody whom the pose network saw in the same pass."""
+
+    people: People | None = None
+
+
 def read(session: Session) -> Job[Reading]:
     """Read the clip, or what is still known of it; the method is checked before this takes its time."""
-    check_method(session.inputs.take, session.inputs.method)
-    return (yield from read_footage(session.inputs.take, session.inputs.kept))
+    take, kept = session.inputs.take, session.inputs.kept
+    check_method(take, session.inputs.method)
+    if not session.inputs.detects:
+        return (yield from read_footage(take, kept))
+    clip = open_footage(take.clip, take.fps, take.camera.resolution)
+    with PeopleFinder(clip, PoseNetwork(), CloserLook()) as finder:
+        reading = yield from read_footage(take, kept, finder.add, DETECTING)
+        if not finder.count:  # it is known already, and was not decoded
+            return reading
+        return WatchedReading(**vars(reading), people=finder.people())
 
 
 def _uses(inputs: Inputs) -> tuple[object, ...]:

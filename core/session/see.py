@@ -15,6 +15,7 @@ from ..take.clip_check import open_footage
 from ..take.performer_keypoints import FEWEST_KEYFRAMES, people_of
 from ..take.take import Take, with_evidence
 from ..video.frame_checks import FrameFindings
+from .read import WatchedReading
 from .session import Inputs, Session, Stage
 
 SEEN = 0.95
@@ -33,15 +34,17 @@ class Sight:
 
 def see(session: Session) -> Job[Sight]:
     """Detect everybody where that is wanted, and check whom others have detected."""
-    inputs, take = session.inputs, session.inputs.take
+    inputs, take, reading = session.inputs, session.inputs.take, session[Reading]
     if inputs.detects:
-        job = find_people(
-            open_footage(take.clip, take.fps, take.camera.resolution), PoseNetwork(), CloserLook()
-        )
-        take = replace(take, keypoints=((yield from stretch(job, 0.0, SEEN)),))
+        people = reading.people if isinstance(reading, WatchedReading) else None
+        if people is None:
+            clip = open_footage(take.clip, take.fps, take.camera.resolution)
+            job = find_people(clip, PoseNetwork(), CloserLook())
+            people = yield from stretch(job, 0.0, SEEN)
+        take = replace(take, keypoints=(people,))
     if inputs.evidence is not None:
         take = with_evidence(take, inputs.evidence)
-    checked = yield from stretch(checked_keypoints(take, session[Reading]), SEEN, 1.0)
+    checked = yield from stretch(checked_keypoints(take, reading), SEEN, 1.0)
     if inputs.performer is not None:
         checked = tuple(people_of(people, inputs.performer, take.fps) for people in checked)
     return Sight(take.keypoints, checked)

@@ -10,6 +10,7 @@ from ..markers.region_tracks import ExpectedRegions
 from ..prior.keyframes import interpolate
 from ..progress import Job, Progress, within
 from ..terms.region_model import MarkerPlacement, RegionModel
+from ..video.album import Watch
 from .clip_check import check_frame_count, check_in_front, clip_notes, open_clip
 from .take import Take
 
@@ -23,8 +24,13 @@ KNOWN_S = 0.2
 the posture is only held [s]."""
 
 
-def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
-    """Read a take's clip: tracks of its markers, notes, and an album where the camera stands still."""
+def read_footage(
+    take: Take, kept: Reading | None = None, watch: Watch | None = None, stage: str = READING
+) -> Job[Reading]:
+    """Read a take's clip: tracks of its markers, notes, and an album where the camera stands still.
+
+    `kept` and `watch` are as in `read_clip`; `stage` is shown meanwhile where no markers are followed.
+    """
     yield Progress("Opening the clip", 0.0)
     clip = open_clip(take)
     check_in_front(take)
@@ -33,9 +39,8 @@ def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
     )
     # Before a camera that moves, no background stands still to tell the performer from.
     with_album = take.contours and not take.camera.is_moving
-    stage = FOLLOWING if take.markers else READING
-    job = read_clip(clip, take.markers, expected, with_album, kept, take.ignored_regions)
-    reading = yield from within(stage, job, 0.0, 1.0)
+    job = read_clip(clip, take.markers, expected, with_album, kept, take.ignored_regions, watch)
+    reading = yield from within(FOLLOWING if take.markers else stage, job, 0.0, 1.0)
     check_frame_count(take, reading.tracks.frame_count, clip.frame_count)
     return replace(reading, notes=clip_notes(take, clip, reading))
 

@@ -4,7 +4,7 @@ The estimate needs the pictures only after it knows roughly where the performer 
 Compressed pictures of that grid take some kilobytes each: ten minutes fit in memory.
 """
 
-from collections.abc import Collection, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -107,6 +107,9 @@ class Album:
         return image
 
 
+Watch = Callable[[int, Image], None]
+"""Sees index and picture of every frame of a clip that is read, one after the other."""
+
 GLIMPSES, GLIMPSE_SIDE_PX = 8, 640
 """Pictures that are kept, and their longer side: the pose network sees 256 pixels of a person."""
 
@@ -190,11 +193,12 @@ def unpacked(arrays: Mapping[str, NDArray[Any]]) -> dict[int, Image]:
 
 @dataclass(frozen=True, kw_only=True)
 class _WatchedClip(Clip):
-    """A clip that passes every frame to checks, album and glimpses before yielding it."""
+    """A clip that passes every frame to checks, album, glimpses and `watch` before yielding it."""
 
     checks: FrameChecks
     album: Album | None
     glimpses: Glimpses
+    watch: Watch | None
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
         """See `Clip.frames`; blank ones are not kept in the album."""
@@ -203,12 +207,16 @@ class _WatchedClip(Clip):
                 self.glimpses.add(index, image)
                 if self.album is not None:
                     self.album.add(index, image)
+            if self.watch is not None:
+                self.watch(index, image)
             yield index, time_s, image
 
 
-def watch_clip(clip: Clip, checks: FrameChecks, album: Album | None, glimpses: Glimpses) -> Clip:
-    """The clip with checks, an album and glimpses to fill, that run while its frames are read in order."""
-    return _WatchedClip(clip.path, clip.source, checks=checks, album=album, glimpses=glimpses)
+def watch_clip(
+    clip: Clip, checks: FrameChecks, album: Album | None, glimpses: Glimpses, watch: Watch | None = None
+) -> Clip:
+    """The clip with what is to see its frames while they are read in order."""
+    return _WatchedClip(clip.path, clip.source, checks=checks, album=album, glimpses=glimpses, watch=watch)
 
 
 TAIL_PERCENT = 2.0  # share of the changes at either edge that are not the performer's

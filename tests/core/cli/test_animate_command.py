@@ -5,10 +5,10 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
+from _drawn_clip import KnownPeople
 from _synthetic_take import (
     BODY,
     drawn_frames,
@@ -22,8 +22,7 @@ from _synthetic_take import (
 from keymark.core.detect.keypoint_file import read_keypoints
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.prior.library import write_library
-from keymark.core.progress import Progress
-from keymark.core.session import see
+from keymark.core.session import read
 from keymark.core.shoot.discovery import find_takes
 from keymark.core.take import clip_check
 from keymark.core.take.motion import read_motion
@@ -103,12 +102,8 @@ def test_without_keypoints_they_are_detected(
     found = read_keypoints(file, FRAMES, (160, 120), 30.0, 1)
     file.unlink()
 
-    def find(_clip: object, _network: object, _closer: object) -> Any:
-        yield Progress("Detecting keypoints", 0.0)
-        return found
-
-    monkeypatch.setattr(see, "PoseNetwork", SimpleNamespace)
-    monkeypatch.setattr(see, "find_people", find)
+    monkeypatch.setattr(read, "PoseNetwork", SimpleNamespace)
+    monkeypatch.setattr(read, "PeopleFinder", lambda *_given: KnownPeople(found))
     assert animate(clip, tmp_path / "out", "--height", 1.75, "--quiet") == 0
     fields = json.loads((tmp_path / "out" / "take.json").read_text(encoding="utf-8"))
     assert fields["//found"][0] == f"Keypoints: somebody in {FRAMES} of {FRAMES} frames, by drawn"
@@ -134,8 +129,8 @@ def test_a_height_that_is_none_is_refused(
 def damaged(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     model = folder / "model.onnx"
     model.write_bytes(b"ONNX")
-    network = see.PoseNetwork
-    monkeypatch.setattr(see, "PoseNetwork", lambda: network(model))
+    network = read.PoseNetwork
+    monkeypatch.setattr(read, "PoseNetwork", lambda: network(model))
     write_frames(folder / "clip.mp4", list(drawn_frames(true_postures(5))))
     return folder / "clip.mp4"
 
@@ -156,7 +151,7 @@ def of_one_frame(folder: Path, _monkeypatch: pytest.MonkeyPatch) -> Path:
 def too_long(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     write_frames(folder / "clip.mp4", list(drawn_frames(true_postures(8))))
     monkeypatch.setattr(clip_check, "LONGEST_FRAMES", 6)
-    monkeypatch.setattr(see, "PoseNetwork", lambda: pytest.fail("the network was read"))
+    monkeypatch.setattr(read, "PoseNetwork", lambda: pytest.fail("the network was read"))
     return folder / "clip.mp4"
 
 

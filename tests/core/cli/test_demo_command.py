@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 from _characters import plain_character
+from _drawn_clip import KnownPeople
 from _synthetic_take import BODY, SIZE, gliding, true_postures, write_synthetic_take, write_video
 from _synthetic_take import write_keypoints as write_keypoints_of
 from keymark.core.detect.keypoint_file import read_keypoints, write_keypoints
 from keymark.core.detect.keypoints import People, SeenPeople
 from keymark.core.errors import ConversionError
 from keymark.core.prior.learning import LibraryMetadata, learn_library
-from keymark.core.progress import Job, Progress
 from keymark.core.review.score import read_truth, score_points
-from keymark.core.session import see
+from keymark.core.session import read
 from keymark.core.take import examples
 from keymark.core.take.motion import read_motion
 from keymark.core.take.take_file import read_take
@@ -59,14 +59,10 @@ def bare_clip(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     written = write_keypoints_of(folder / "seen.json", gliding())
     people = read_keypoints(written, 40, SIZE, 30.0, 1)
 
-    def find(_clip: object, _network: object, _closer: object) -> Job[People]:
-        yield Progress("Detecting keypoints", 0.0)
-        return people
-
     posture, metadata = true_postures(24), LibraryMetadata("Swaying", "Nobody")
     library = learn_library(BODY, posture, np.arange(24) / 30.0, metadata)
-    monkeypatch.setattr(see, "PoseNetwork", SimpleNamespace)
-    monkeypatch.setattr(see, "find_people", find)
+    monkeypatch.setattr(read, "PoseNetwork", SimpleNamespace)
+    monkeypatch.setattr(read, "PeopleFinder", lambda *_given: KnownPeople(people))
     monkeypatch.setattr(convert_take, "requested_libraries", lambda _name: (library,))
 
 

@@ -2,17 +2,25 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from _synthetic_take import BODY, gliding, true_postures, write_shaken, write_synthetic_take
+from _drawn_clip import KnownPeople
+from _synthetic_take import BODY, SIZE, gliding, true_postures, write_shaken, write_synthetic_take
 from keymark.core import api
 from keymark.core.api import run
+from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
+from keymark.core.detect.keypoints import People, SeenPeople
 from keymark.core.estimate.reconstruct import Reconstruction
+from keymark.core.markers.reading import Reading
 from keymark.core.prior.learning import LibraryMetadata, learn_library
+from keymark.core.progress import Progress
+from keymark.core.session import read, see
 from keymark.core.session.place import Placed
+from keymark.core.session.see import Sight
 from keymark.core.session.session import Inputs, Session, Stage, advance
 from keymark.core.session.stages import STAGES, reach
 from keymark.core.take.motion import read_motion
@@ -45,6 +53,28 @@ def test_a_stage_is_made_again_where_anything_that_it_depends_on_has_changed(inp
     first = replace(first, posture=first.posture.lowered(0.1))
     moved = replace(unmarked, take=replace(unmarked.take, keyframes=(first, *others)))
     assert stages_made(moved, kept) == ["place", "pose", "reconstruct"]
+
+
+@pytest.mark.parametrize("is_kept", [False, True])
+def test_the_network_looks_while_the_clip_is_read_or_by_itself_where_that_is_known(
+    inputs: Inputs, monkeypatch: pytest.MonkeyPatch, is_kept: bool
+) -> None:
+    known = run(reach(Session(inputs), "see"))
+    nobody = SeenPeople.nobody(13)
+    people = People(HUMAN.point_names, "drawn", SIZE, (nobody,) * 16)
+    finder, found = KnownPeople(people), [Progress("Detecting keypoints", 1.0)]
+
+    def find(*_given: object) -> Any:
+        yield found.pop()
+        return people
+
+    monkeypatch.setattr(read, "PoseNetwork", SimpleNamespace)
+    monkeypatch.setattr(see, "PoseNetwork", SimpleNamespace)
+    monkeypatch.setattr(read, "PeopleFinder", lambda *_given: finder)
+    monkeypatch.setattr(see, "find_people", find)
+    asked = replace(inputs, detects=True, kept=known[Reading] if is_kept else None)
+    assert run(reach(Session(asked), "see"))[Sight].people == (people,)
+    assert (finder.count, len(found)) == ((0, 0) if is_kept else (16, 1))
 
 
 def test_stages_of_blender_are_done_by_its_bridge_and_told_as_they_are_complete(inputs: Inputs) -> None:
