@@ -75,6 +75,9 @@ def room_of(lines: Array, camera: Camera) -> RoomView | None:
         return float(np.exp(-((offsets(x) / kernel) ** 2)).max(axis=1) @ weight)
 
     def cost(x: Array, kernel: float) -> float:
+        # With another direction taken for the plumb one a camera that lies on its side fits as well.
+        if np.any(np.abs(x[:2]) > [WIDEST_TILT + COARSE_STEP, WIDEST_ROLL + COARSE_STEP]):
+            return np.inf
         return LENS_COST * (x[3] / LENS_STD) ** 2 - agreement(x, kernel)
 
     def refined(x: Array) -> Array:

@@ -10,7 +10,7 @@ from keymark.core.camera.camera import Camera
 from keymark.core.camera.camera_evidence import CameraEvidence, Uprights
 from keymark.core.camera.camera_fields import CameraPlacement
 from keymark.core.camera.camera_fit import HEIGHT, fit_camera
-from keymark.core.camera.room_lines import find_room, find_segments
+from keymark.core.camera.room_lines import find_room, find_segments, room_of
 
 SIZE = (640, 480)
 EYE = 1.4
@@ -84,6 +84,17 @@ def clutter() -> Image:
 @pytest.mark.parametrize("picture", [clutter(), np.full((480, 640, 3), 90, dtype=np.uint8)])
 def test_edges_that_run_anywhere_and_empty_pictures_tell_nothing(picture: Image) -> None:
     assert find_room(picture, 1.0, camera_at(0.0, 0.0, 35.0)) is None
+
+
+def test_the_plumb_direction_is_none_that_a_camera_on_its_side_would_see() -> None:
+    ends = [
+        *((32, 15, 39, 203), (264, 184, 123, 191), (122, 201, 248, 194), (36, 181, 32, 64)),
+        *((398, 186, 479, 181), (479, 173, 399, 178), (317, 168, 397, 165), (37, 18, 113, 21)),
+        *((38, 37, 113, 40), (39, 57, 113, 58), (40, 76, 114, 77), (42, 133, 115, 131)),
+    ]  # of a rendered room, whose camera is tilted by -4.5 degrees
+    view = room_of(np.array(ends, dtype=float).reshape(-1, 2, 2), Camera(35.0, 36.0, (480, 270), np.eye(4)))
+    assert view is not None
+    assert np.degrees([view.tilt_rad, view.roll_rad]) == pytest.approx([-4.5, 0.0], abs=3.0)
 
 
 def test_segments_are_where_they_are_drawn() -> None:
