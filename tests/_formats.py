@@ -134,8 +134,9 @@ def _keypoints() -> dict[str, Any]:
     """Two points of one person in all frames but the last, one of them not seen in the first, with hints."""
     frames = [[[10.0 + frame, 20.5, 0.9], [30.0, 40.0, 0.1 * frame]] for frame in range(FRAMES)]
     world = [[[0.1, -0.4, 0.01 * frame], [-0.1, None, 0.2]] for frame in range(FRAMES)]
-    value = {"detector": "A detector", "layout": "own", "names": ["shoulder.L", "heel.R"], "by_hand": False}
+    value = {"detector": "A detector", "layout": "own", "names": ["shoulder.L"], "by_hand": False}
     value |= {"size": list(SIZE), "frame_start": 1, "fps": 30.0, "note": "free text"}
+    value |= {"second": {"detector": "Another", "names": ["heel.R"], "digest": "0a", "motion": False}}
     face = [[12.0, 22.0, 0.1 * frame, -0.2, 0.0, 0.99] for frame in range(FRAMES)]
     last: dict[str, list[Any]] = {"frames": frames, "world": world, "face": face}
     return value | {name: [*rows[:-1], None] for name, rows in last.items()}

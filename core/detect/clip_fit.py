@@ -78,7 +78,8 @@ def held_against_clip(
     name = Path(detected.where).name or detected.where
     notes = tuple(note.replace(detected.where, name) for note in aligned.notes + notes)
     seen = (detected.layout.names, detected.source, size, tuple(frames))
-    return People(*seen, file=detected.where, by_hand=detected.by_hand, notes=notes)
+    by_hand, second = detected.by_hand, detected.second
+    return People(*seen, file=detected.where, by_hand=by_hand, notes=notes, second=second)
 
 
 def _everyone(
@@ -103,7 +104,9 @@ def _everyone(
     for row, person in enumerate(persons):
         if person.hint_m is not None:
             hint[row] = person.hint_m[numbers]
-    hint[~seen] = np.nan
+    # What a network guesses of a motion beyond the picture is none of a point that is seen.
+    beyond = len(numbers) - (len(detected.second.names) if detected.second and detected.second.motion else 0)
+    hint[:, :beyond][~seen[:, :beyond]] = np.nan
     face = no_faces(len(persons)) if any(person.face is not None for person in persons) else None
     for row, person in enumerate(persons):
         if face is not None and person.face is not None:

@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InputError, shown
 from ..files.kinds import number_array
+from .keypoints import SecondSource
 from .layouts import Layout, layout_of, layout_words, with_hands
 
 MOST_PEOPLE = 100  # people of one frame; the performer among more is nobody's take
@@ -47,6 +48,7 @@ class DetectedFrames:
     time_s: Array | None = None  # (E,) times of the entries from the clip's first frame, where the file says
     frame_start: int | None = None  # scene frame of the first entry, where the file says
     by_hand: bool = False  # as in `People`
+    second: SecondSource | None = None
 
 
 @dataclass(eq=False)

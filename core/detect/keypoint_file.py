@@ -11,7 +11,7 @@ from .. import FRAME_STARTS, MOST_FRAMES
 from ..errors import InputError, shown
 from ..files.fields import Fields
 from ..files.json_file import read_json_value, write_json
-from ..files.kinds import Anything, Choice, Items, Number, Text, Whole
+from ..files.kinds import Anything, Choice, Items, Number, Whole
 from ..files.paths import is_control_character
 from ..files.records import Record, read_record
 from .clip_fit import held_against_clip
@@ -26,14 +26,18 @@ from .detected_frames import (
 )
 from .detector_formats import FORMATS, is_instances, is_openpose_frame, read_frame_folder
 from .face import no_faces
-from .keypoints import BODY_POINTS, FACE_NUMBERS, People, SeenPeople
+from .keypoints import (
+    FACE_NUMBERS,
+    LONGEST_DETECTOR,
+    NAMES,
+    Detector,
+    People,
+    SecondSource,
+    SeenPeople,
+)
 from .layouts import LAYOUTS, OWN, Layout, own_layout
 
 LARGEST_SIDE_PX = 65536
-LONGEST_DETECTOR = 200  # characters
-NAMES = Items("body points", 1, len(BODY_POINTS), unique="point", item=Choice(BODY_POINTS))
-VISIBLE = f"one line of at most {LONGEST_DETECTOR} visible characters"
-Detector = Annotated[str, Text(LONGEST_DETECTOR, VISIBLE, one_line=True)]
 Rows = Annotated[tuple[Any, ...], Items("entries, one a frame", 1, MOST_FRAMES, item=Anything("an entry"))]
 
 
@@ -71,6 +75,8 @@ class OwnFile(Record):
     face: Rows | None = None
     """Faces in the order of frames or people: middle [px], turn from facing the viewer [rad], and how sure it
     is; null where none was looked for."""
+    second: SecondSource | None = None
+    """A network of somebody's own that looked at the same people; with the layout own."""
 
 
 def read_own(fields: Fields, name_of_source: str) -> DetectedFrames:
@@ -79,7 +85,10 @@ def read_own(fields: Fields, name_of_source: str) -> DetectedFrames:
     layout = LAYOUTS.get(own.layout)
     if layout is None:
         fields.required("names", NAMES.valid)
-        layout = own_layout(NAMES.read(own.names, fields.where, "names"))
+        names = NAMES.read(own.names, fields.where, "names")
+        layout = own_layout((*names, *(() if own.second is None else own.second.names)))
+    elif own.second is not None:
+        raise InputError(f"{fields.where}: has second with the layout {own.layout}; it must be {OWN}")
     several = own.people is not None
     if several == (own.frames is not None):
         found = "both frames and people" if several else "neither frames nor people"
@@ -130,6 +139,7 @@ def read_own(fields: Fields, name_of_source: str) -> DetectedFrames:
         fps=own.fps,
         frame_start=own.frame_start,
         by_hand=bool(own.by_hand),
+        second=own.second,
     )
 
 
@@ -172,6 +182,9 @@ def write_keypoints(path: Path, people: People, frame_start: int, fps: float | N
         fields["fps"] = fps
     if people.by_hand:
         fields["by_hand"] = True
+    if people.second is not None:
+        fields["names"] = list(people.names[: -len(people.second.names)])
+        fields["second"] = people.second.to_json()
     rows = [[_written_points(frame), *_written_more(frame)] for frame in people.frames]
     for name, column in zip(("people" if several else "frames", *MORE), zip(*rows, strict=True), strict=True):
         if name in MORE and not any(own for row in column for own in row):

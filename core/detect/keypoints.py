@@ -6,12 +6,15 @@ the performer's own.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Annotated
 
 import numpy as np
 
 from ..arrays import Array, BoolArray, freeze
 from ..body.human import HUMAN
 from ..body.skeleton import SIDES
+from ..files.kinds import Choice, Items, Text
+from ..files.records import Record
 
 FACE = ("nose", *(f"{part}.{side}" for part in ("eye", "ear") for side in SIDES))
 SPINE = ("crown", "neck", "pelvis")
@@ -172,6 +175,26 @@ class SeenPeople:
         return SeenPeople(self.pixel[[row]], self.score[[row]], self.hint_m[[row]])
 
 
+NAMES = Items("body points", 1, len(BODY_POINTS), unique="point", item=Choice(BODY_POINTS))
+LONGEST_DETECTOR = 200  # characters
+VISIBLE = f"one line of at most {LONGEST_DETECTOR} visible characters"
+Detector = Annotated[str, Text(LONGEST_DETECTOR, VISIBLE, one_line=True)]
+
+
+@dataclass(frozen=True)
+class SecondSource(Record):
+    """A network of somebody's own that looked at the same people; its points follow those of the first."""
+
+    detector: Detector
+    """What it is, with the number of its points and the size of its pictures."""
+    names: Annotated[tuple[str, ...], NAMES]
+    """Body points that it sees, each once; they follow the first source's."""
+    digest: Annotated[str, Text(64, "a checksum, SHA-256", one_line=True)] = ""
+    """Checksum of its file, SHA-256."""
+    motion: bool = False
+    """Whether its points in world are followed as a reference motion, and are no hints of depth."""
+
+
 @dataclass(frozen=True, eq=False)
 class People:
     """Everyone whom a source saw in F frames, with N body points each."""
@@ -188,6 +211,14 @@ class People:
     """Frames in which the picture was asked, and whether it shows somebody where these people are."""
     in_pictures: Mapping[int, Array] = field(default_factory=dict)
     """(N, 2) where the pose network sees the points of the largest there [px]; NaN where it does not."""
+    second: SecondSource | None = None
+    """Who else saw these people; None where `source` saw all points."""
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """(N,) what saw each point."""
+        also = () if self.second is None else (self.second.detector,) * len(self.second.names)
+        return (self.source,) * (len(self.names) - len(also)) + also
 
     @property
     def most_people(self) -> int:

@@ -55,6 +55,16 @@ class Crop:
 
 
 @dataclass(frozen=True, eq=False)
+class Look:
+    """A person as another network sees one, N points of its layout."""
+
+    pixel: Array  # (N, 2) [px]
+    score: Array | None  # (N,) the network's own; None where it has none
+    hint_m: Array | None = None  # (N, 3) as in `Keypoints`, NaN where there is none
+    depth_m: Array | None = None  # (N,) depths alone, as those of hints, where it guesses these
+
+
+@dataclass(frozen=True, eq=False)
 class Pose:
     """A person as the network sees one, N points of `LAYOUT`."""
 

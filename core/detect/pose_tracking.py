@@ -72,7 +72,7 @@ class PeopleFinder:
         self._clip = clip
         self._every = max(1, round(clip.fps / LOOKS_A_SECOND))
         self._halvings = max(0, (max(clip.size) - 1) // LARGEST_SIDE_PX).bit_length()
-        self._tracking = _Tracking(network, closer)
+        self._closer, self._tracking = closer, _Tracking(network, closer)
         self._looked: list[int] = []  # frames that are looked at
         self._last: Image | None = None  # the last picture, where it is not
         self._pool = ThreadPoolExecutor(1)
@@ -114,11 +114,13 @@ class PeopleFinder:
                 f"{path}: nobody is seen in any of its {self.count} frames; it must show a person, at "
                 "least from the head to the hips and not too small"
             )
-        frames = [SeenPeople.nobody(len(LAYOUT.names))] * self.count
+        (first, *_), beside = tracks[0].values(), None if self._closer is None else self._closer.beside
+        frames = [SeenPeople.nobody(len(first.pixel))] * self.count
         looked = np.array(self._looked)
         for track in tracks:
             _fill(frames, looked, track, size, 0.5**self._halvings)
-        return People(LAYOUT.names, NAME, size, tuple(frames))
+        people = People(LAYOUT.names, NAME, size, tuple(frames))
+        return people if beside is None else beside.people(people)
 
 
 def refuse_picture(clip: Clip) -> None:

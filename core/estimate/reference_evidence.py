@@ -5,7 +5,6 @@ sight, and a posed keyframe tells it nearby.
 """
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -94,7 +93,7 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
     """What a take's reference motion tells; its posed keyframes correct it."""
     take, tracks, keypoints = seen_take.take, seen_take.reading.tracks, seen_take.keypoints
     assert take.reference is not None
-    name = Path(take.reference.file).name or "the reference motion"
+    name = take.reference.name
     posed = tuple(key for key in take.keyframes if key.matched is None)
     if _is_own_guess(take.reference, keypoints):
         return NoReference(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ..camera.camera import Camera
 from ..camera.camera_fields import MATRICES
+from ..detect.families.table import open_network
 from ..detect.pose_tracking import refuse_picture
 from ..errors import pluralize
 from ..files.fields import PLACED, Fields, InheritedFields, listed
@@ -90,7 +91,9 @@ def _unplaced(description: Description, settings: ConversionSettings) -> Inputs:
     take = read_described(with_lens, fewest_keyframes=0, keyframes_required=False, settings=whole)
     if settings.evidence is not None:
         take = with_evidence(take, settings.evidence)
-    return Inputs(take, evidence=settings.evidence, detects=not files, open_lens=lens, floor_open=True)
+    detects, evidence = not files, settings.evidence
+    network = open_network(settings.network) if detects and settings.network is not None else None
+    return Inputs(take, evidence=evidence, detects=detects, network=network, open_lens=lens, floor_open=True)
 
 
 def _with_camera(description: Description, camera: Camera) -> Description:

@@ -74,7 +74,8 @@ def place(session: Session) -> Job[Placed]:
 def placed_take(session: Session) -> SeenTake:
     """The session's take as it was placed: what it is to be posed with may have changed since."""
     seen, take = session[Placed].seen, session.inputs.take
-    return replace(seen, take=replace(take, camera=seen.take.camera, keypoints=seen.take.keypoints))
+    take = replace(take, camera=seen.take.camera, keypoints=seen.take.keypoints)
+    return replace(seen, take=replace(take, reference=take.reference or seen.take.reference))
 
 
 def _uses(inputs: Inputs) -> tuple[object, ...]:

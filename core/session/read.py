@@ -28,7 +28,7 @@ def read(session: Session) -> Job[Reading]:
     if not session.inputs.detects:
         return (yield from read_footage(take, kept))
     clip = open_footage(take.clip, take.fps, take.camera.resolution)
-    with PeopleFinder(clip, PoseNetwork(), CloserLook()) as finder:
+    with PeopleFinder(clip, PoseNetwork(), CloserLook(session.inputs.network)) as finder:
         reading = yield from read_footage(take, kept, finder.add, DETECTING)
         if not finder.count:  # it is known already, and was not decoded
             return reading
@@ -40,7 +40,8 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
     expected = (take.keyframes, take.body.actor.segments_m, take.camera) if take.markers else ()
     key = reading_key(take.clip, take.fps, take.markers, None, take.ignored_regions)
     clip = take.fps, take.frame_start, take.frame_count, take.camera.resolution, take.camera.is_moving
-    return key, clip, take.contours, expected
+    network = None if inputs.network is None else inputs.network.file.digest
+    return key, clip, take.contours, expected, network
 
 
 STAGE = Stage("read", read, _uses, lambda _inputs: 2.0)

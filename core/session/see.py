@@ -39,7 +39,7 @@ def see(session: Session) -> Job[Sight]:
         people = reading.people if isinstance(reading, WatchedReading) else None
         if people is None:
             clip = open_footage(take.clip, take.fps, take.camera.resolution)
-            job = find_people(clip, PoseNetwork(), CloserLook())
+            job = find_people(clip, PoseNetwork(), CloserLook(inputs.network))
             people = yield from stretch(job, 0.0, SEEN)
         take = replace(take, keypoints=(people,))
     if inputs.evidence is not None:
@@ -52,7 +52,8 @@ def see(session: Session) -> Job[Sight]:
 
 def _uses(inputs: Inputs) -> tuple[object, ...]:
     posed = sum(key.is_posed for key in inputs.take.keyframes) >= FEWEST_KEYFRAMES
-    return inputs.performer, inputs.detects, inputs.evidence, inputs.take.keypoints, posed
+    network = None if inputs.network is None else inputs.network.file.digest
+    return inputs.performer, inputs.detects, network, inputs.evidence, inputs.take.keypoints, posed
 
 
 STAGE = Stage("see", see, _uses, lambda inputs: 4.0 if inputs.detects else 0.2)
@@ -61,7 +62,8 @@ STAGE = Stage("see", see, _uses, lambda inputs: 4.0 if inputs.detects else 0.2)
 def people_in_words(people: People) -> str:
     """In how many frames somebody is seen."""
     who = "somebody" if people.most_people == 1 else f"up to {people.most_people} people"
-    return f"{who} in {people.seen_frames} of {pluralize(len(people.frames), 'frame')}, by {people.source}"
+    by = " and ".join(dict.fromkeys(people.sources))
+    return f"{who} in {people.seen_frames} of {pluralize(len(people.frames), 'frame')}, by {by}"
 
 
 # --- Keypoints held against the pictures of their clip, before anything is made of them

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..body.posture import Posture
+from ..detect.families.network import Network
 from ..files.digest import digest
 from ..markers.reading import Reading
 from ..prior.library import Library
@@ -36,6 +37,8 @@ class Inputs:
     method: str = METHODS[0]
     detects: bool = False
     """Whether the pose network is to see the performer, in place of the take's keypoints."""
+    network: Network | None = None
+    """One of somebody's own that looks beside it."""
     evidence: tuple[str, ...] | None = None
     """Kinds of evidence that are used, also of what is detected; None for all there are."""
     open_lens: Lens | None = None

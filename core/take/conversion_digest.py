@@ -75,15 +75,19 @@ def conversion_digest(
         None if character is None else ((contents, character.object, options), tuple(maps)),
         *evidence,
         *(value for value in (settings.subject, settings.shot, settings.performer) if value is not None),
-        *(() if settings.reference is None else ((settings.reference.name, _content(settings.reference)),)),
+        *_named(settings.reference, "reference motion"),
+        *_named(None if keypoints else settings.network, "network"),
     )
 
 
-def _content(path: Path) -> str:
+def _named(path: Path | None, what: str) -> tuple[object, ...]:
+    """The name and the content of a file, where there is one."""
+    if path is None:
+        return ()
     try:
-        return content_digest(path)
+        return ((path.name, content_digest(path)),)
     except OSError as error:
-        raise InputError(f"{path}: the reference motion cannot be read ({error.strerror})") from error
+        raise InputError(f"{path}: the {what} cannot be read ({error.strerror})") from error
 
 
 def _keypoints(path: Path) -> tuple[object, ...]:

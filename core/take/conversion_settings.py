@@ -25,6 +25,7 @@ KEYFRAMES_VALID = (
 KEYPOINTS_VALID = "a file or folder inside the take's folder, as in keypoints.json, or a list of several"
 MOST_KEYPOINT_FILES = 16
 """Sources of keypoints of one take: some detectors, tracks and clicks."""
+NETWORK_VALID = "the path of a network's file, inside the folder, as in rtmw.onnx"
 REFERENCE_VALID = "the path of a motion inside the take's folder, as in network.bvh"
 LONGEST_SUBJECT, MOST_PEOPLE = 255, 100
 LIBRARY_VALID = (
@@ -102,6 +103,9 @@ class ConversionSettings(Record):
     """Keypoints seen in the clip: a file of Keymark's or of a detector, the folder of a detector that writes
     a file a frame, or several of them. In shoot.json a name that every take has. The default is
     keypoints.json if it exists."""
+    network: Annotated[Path, relative_path(NETWORK_VALID)] | None = None
+    """A network's file, .onnx, that looks for points of the body beside Keymark's own where keypoints are
+    detected."""
     evidence: Annotated[tuple[str, ...], EvidenceKinds()] | None = None
     """What the motion is held against; the default is whatever the take has. Hints of depth come with
     keypoints."""
@@ -149,7 +153,7 @@ def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSe
     """The settings in a take's description, with paths in the folders of the files that say them."""
     read = read_record(ConversionSettings, description)
     found: dict[str, Any] = {}
-    for name in ("keyframes", "reference", "keypoints", "library", "character"):
+    for name in ("keyframes", "reference", "keypoints", "network", "library", "character"):
         value = getattr(read, name)
         if value is None:
             continue

@@ -150,7 +150,7 @@ def describe(
     if settings.reference is not None and said_in in shared:
         own_reference = _own_name(folder, bare, settings.reference.relative_to(said_in.parent))
         settings = replace(settings, reference=own_reference)
-    used = [*files, clip, keyframes, *keypoints, *filter(None, [settings.reference])]
+    used = [*files, clip, keyframes, *keypoints, *filter(None, [settings.reference, settings.network])]
     used += [link for within in (clip, *keypoints) for link in _links(within)]
     if settings.library is not None and settings.library.endswith(".json"):
         used.append(Path(settings.library))

@@ -139,7 +139,7 @@ def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: 
             pixel[index], score[index], hint[index] = seen.pixel[row], seen.score[row], seen.hint_m[row]
             if face is not None and seen.face is not None:
                 face[index] = seen.face[row]
-    return Keypoints(people.names, (people.source,) * len(people.names), pixel, score, hint, notes, face)
+    return Keypoints(people.names, people.sources, pixel, score, hint, notes, face)
 
 
 def _with_middles(

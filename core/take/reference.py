@@ -3,26 +3,29 @@
 Axes, scale, place and time are its own (`estimate/reference_alignment` finds them); here everything has Z up.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from ..arrays import Array
 from ..body.human import HUMAN
+from ..detect.keypoints import Keypoints, People
 from ..errors import InputError, shown
 from ..files.fields import listed
 from ..files.json_file import ENDING
 from ..files.paths import regular_file_size
 from .motion import read_motion
-from .point_files import POINT_ENDINGS, read_points
+from .named_points import MHR_UP, PointTable, principal_points
+from .point_files import POINT_ENDINGS, UPRIGHT, read_points
 
 ReadArmature = Callable[[Path, str | None], "ReferenceMotion"]
 """From a file with an animated armature, and which of several, to its motion; only Blender can."""
 REFERENCE_ENDINGS = (*POINT_ENDINGS, ENDING)
 ARMATURE_ENDINGS = (".bvh", ".fbx", ".glb", ".gltf", ".vrm", ".usd", ".usda", ".usdc", ".usdz", ".blend")
 """Of files with an animated armature, which Blender reads."""
+FEWEST_FRAMES = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,12 @@ class ReferenceMotion:
     fps: float | None = None  # frames a second; None where the file does not say, for the clip's own
     file: str = ""  # for sentences
     notes: tuple[str, ...] = ()  # which of several subjects it is
+    source: str = ""  # what saw it, where no file has it
+
+    @property
+    def name(self) -> str:
+        """What it is called in sentences."""
+        return Path(self.file).name or self.source or "the reference motion"
 
     def __post_init__(self) -> None:
         shape = self.points_m.shape
@@ -52,6 +61,25 @@ def reference_of_take(
         return None if path is None else read_reference(path, subject)
     regular_file_size(path, "a reference motion")
     return None if read_armature is None else read_armature(path, subject)
+
+
+def seen_reference(
+    keypoints: Keypoints, people: Sequence[People]
+) -> tuple[ReferenceMotion | None, Keypoints]:
+    """What a network of somebody's own saw of the performer in space, and the keypoints without that.
+
+    None where no source's points in space are a motion.
+    """
+    found = None
+    for second in (one.second for one in people if one.second is not None and one.second.motion):
+        own = np.array([source == second.detector for source in keypoints.sources])
+        names = tuple(name for name, is_own in zip(keypoints.names, own, strict=True) if is_own)
+        table = PointTable(names, keypoints.hint_m[:, own], up=MHR_UP)
+        if found is None and np.isfinite(table.values).all(axis=(1, 2)).sum() >= FEWEST_FRAMES:
+            points = principal_points(table, Path(second.detector))
+            found = ReferenceMotion(points @ np.array(UPRIGHT[MHR_UP]).T, source=second.detector)
+        keypoints = replace(keypoints, hint_m=np.where(own[:, None], np.nan, keypoints.hint_m))
+    return found, keypoints
 
 
 def read_reference(path: Path, subject: str | None = None) -> ReferenceMotion:
@@ -76,6 +104,8 @@ def read_reference(path: Path, subject: str | None = None) -> ReferenceMotion:
         points, rate, notes = read_points(path, subject)
         reference = ReferenceMotion(points, rate, str(path), notes)
     known = np.isfinite(reference.points_m).all(axis=(1, 2))
-    if known.sum() < 2:
-        raise InputError(f"{path}: a performer is in {int(known.sum())} of its frames; at least 2 are needed")
+    if known.sum() < FEWEST_FRAMES:
+        raise InputError(
+            f"{path}: a performer is in {int(known.sum())} of its frames; at least {FEWEST_FRAMES} are needed"
+        )
     return reference

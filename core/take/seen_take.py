@@ -1,12 +1,13 @@
 """A take as its footage shows it: what poses and motions are made of, told once for all of them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..arrays import BoolArray
 from ..detect.keypoints import Keypoints
 from ..markers.reading import Reading
 from .performer_keypoints import performer_keypoints
 from .presence import presence, unseen_limbs
+from .reference import seen_reference
 from .take import Take
 
 
@@ -31,6 +32,8 @@ class SeenTake:
 def seen_take(take: Take, reading: Reading, camera_notes: tuple[str, ...] = ()) -> SeenTake:
     """Tell the performer from everybody else, and when which of his limbs are seen."""
     keypoints = performer_keypoints(take, reading.tracks)
+    reference, keypoints = seen_reference(keypoints, take.keypoints)
+    take = replace(take, reference=take.reference or reference)
     there = presence(take, reading, keypoints)
     unseen = unseen_limbs(take, reading.tracks, keypoints, there)
     return SeenTake(take, reading, keypoints, there, unseen, camera_notes)

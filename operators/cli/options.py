@@ -108,6 +108,7 @@ def setting_options(*names: str, condition: str = "", **changes: dict[str, Any])
 SETTINGS: dict[str, tuple[str, dict[str, Any]]] = {
     "keyframes": ("--keyframes", {"metavar": "FILE|auto"}),
     "keypoints": ("--keypoints", {"metavar": "FILE", "type": Path, "action": "append"}),
+    "network": ("--network", {"metavar": "FILE.onnx", "type": Path}),
     "reference": ("--reference", {"metavar": "FILE", "type": Path}),
     "subject": ("--subject", {"metavar": "NAME"}),
     "shot": ("--frames", {"metavar": "FIRST-LAST", "type": _frames}),
@@ -122,7 +123,7 @@ PICTURES = argument(
     "--no-report", dest="pictures", action="store_const", const=False, help="draw no pictures"
 )
 SHOOT_OPTIONS = setting_options(
-    *("keypoints", "evidence", "keyframes", "library", "floor_m", "method"),
+    *("keypoints", "network", "evidence", "keyframes", "library", "floor_m", "method"),
     condition="; counts where nothing in SHOOT says it",
     keypoints={"metavar": "NAME", "type": _name_in_take},
     keyframes={"metavar": EVERY_LIBRARY, "choices": (EVERY_LIBRARY, "")},

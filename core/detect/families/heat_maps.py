@@ -10,7 +10,8 @@ import numpy as np
 
 from ...arrays import Array
 from ..layouts import LAYOUTS
-from .network import Look, Network, Signature, Window, vertex
+from ..pose_network import Look
+from .network import Network, Signature, Window, vertex
 
 CELL = 4  # pixels
 LAYOUT_OF = {LAYOUTS[name].count: LAYOUTS[name] for name in ("coco17", "wholebody133")}

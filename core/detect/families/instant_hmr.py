@@ -10,7 +10,8 @@ import numpy as np
 
 from ...arrays import Array, Image, SingleArray
 from ..layouts import Layout
-from .network import Box, Look, Network, Signature, Window
+from ..pose_network import Look
+from .network import Box, Network, Signature, Window
 
 DIAGONALS = 1.05  # focal length that later files take for granted, in diagonals of the picture
 _FACE = ("nose", "eye.L", "eye.R", "ear.L", "ear.R")

@@ -18,7 +18,7 @@ from ...errors import InputError, describe_unexpected
 from ..layouts import Layout
 from ..network_file import network_input
 from ..onnx_file import HALF, KINDS, OnnxFile, Tensor
-from ..pose_network import MOST_AT_ONCE
+from ..pose_network import MOST_AT_ONCE, Look
 
 MEAN = np.array([0.485, 0.456, 0.406]).reshape(3, 1, 1)
 STD = np.array([0.229, 0.224, 0.225]).reshape(3, 1, 1)
@@ -65,16 +65,6 @@ class Window:
         matrix = np.column_stack([self.scale * np.eye(2), self.corner])
         seen = network_input(picture, matrix, *size, cv2.BORDER_CONSTANT)
         return np.asarray((seen - MEAN) / STD, dtype=np.float32)
-
-
-@dataclass(frozen=True, eq=False)
-class Look:
-    """A person as a network sees one, N points of its layout that are used."""
-
-    pixel: Array  # (N, 2) [px]
-    score: Array | None  # (N,) the network's own; None where it has none
-    hint_m: Array | None = None  # (N, 3) as in `Keypoints`, NaN where there is none
-    depth_m: Array | None = None  # (N,) depths alone, as those of hints, where it guesses these
 
 
 @dataclass(frozen=True, eq=False)

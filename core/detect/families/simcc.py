@@ -10,7 +10,8 @@ import numpy as np
 
 from ...arrays import Array
 from ..layouts import LAYOUTS, layout_of
-from .network import Look, Network, Signature, Window, peaks
+from ..pose_network import Look
+from .network import Network, Signature, Window, peaks
 
 BINS = 2  # of a pixel
 DEPTH_RANGE_M = 2.1744869  # of the first and of the last bin of depths from the hips

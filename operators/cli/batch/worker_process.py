@@ -46,6 +46,7 @@ class Job:
         take, defaults = value["take"], value["defaults"]
         defaults["keyframes"] = defaults["keyframes"] and Path(defaults["keyframes"])
         defaults["keypoints"] = defaults["keypoints"] and tuple(map(Path, defaults["keypoints"]))
+        defaults["network"] = defaults["network"] and Path(defaults["network"])
         defaults["evidence"] = defaults["evidence"] and tuple(defaults["evidence"])
         return cls(
             take=ShootTake(**{**take, "path": Path(take["path"])}),

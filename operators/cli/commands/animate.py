@@ -82,7 +82,7 @@ ANIMATE = Command(
             type=float,
             help=f"the performer's height, as in 1.78; {USUAL_HEIGHT_M:g} is assumed without it",
         ),
-        *setting_options("keypoints", "shot", "performer"),
+        *setting_options("keypoints", "network", "shot", "performer"),
         argument(
             "--rotate",
             type=int,

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ....core.detect.closer_look import CloserLook
+from ....core.detect.families.table import open_network
 from ....core.detect.keypoint_file import write_keypoints
 from ....core.detect.keypoints import People
 from ....core.detect.pose_network import PoseNetwork
@@ -23,7 +24,7 @@ from ....core.take.take_file import FRAME_RATE, FRAME_START
 from ....core.video.image_sequence import find_images
 from ..command import Command, UsageError, argument, refuse_existing
 from ..console import Console
-from ..options import output
+from ..options import output, setting_options
 
 MOST_NAMED = 5
 
@@ -70,12 +71,13 @@ def detect_command(arguments: argparse.Namespace, console: Console) -> None:
     It does so by the network that comes with Keymark, and keeps them beside the clip, where converting uses
     them.
     """
-    network = PoseNetwork()
+    own = None if arguments.network is None else open_network(arguments.network)
+    networks = PoseNetwork(), CloserLook(own)
     one = _single(arguments.target)
     if one is not None:
         footage = one if arguments.output is None else replace(one, output=arguments.output)
         refuse_existing(footage.output, arguments.replace)
-        people = _detect(footage, network, console, 0.0, 1.0)
+        people = _detect(footage, networks, console, 0.0, 1.0)
         result = {"keypoints": str(footage.output), **_summary(people)}
         console.finish(result, f"{_found_text(people)}: {footage.output}")
         return
@@ -95,7 +97,8 @@ def detect_command(arguments: argparse.Namespace, console: Console) -> None:
             outcome = Outcome(take.name, output)
             if arguments.replace or not os.path.lexists(output):
                 share = 1.0 / len(shoot.takes)
-                people = _detect(footage, network, console, index * share, (index + 1) * share)
+                part = (index * share, (index + 1) * share)
+                people = _detect(footage, networks, console, *part)
                 outcome = Outcome(take.name, output, people)
         except KeymarkError as error:
             outcome = Outcome(take.name, output, error=str(error))
@@ -119,12 +122,14 @@ def detect_command(arguments: argparse.Namespace, console: Console) -> None:
 
 def _found_text(people: People) -> str:
     who = "a person" if people.most_people == 1 else f"up to {people.most_people} people"
-    return f"{who} in {people.seen_frames} of {pluralize(len(people.frames), 'frame')}"
+    notes = "".join(f"; {note}" for note in people.notes)
+    return f"{who} in {people.seen_frames} of {pluralize(len(people.frames), 'frame')}{notes}"
 
 
 def _summary(people: People) -> dict[str, Any]:
     return {
         "detector": people.source,
+        **({} if people.second is None else {"second": people.second.to_json()}),
         "frames": len(people.frames),
         "seen_frames": people.seen_frames,
         "most_people": people.most_people,
@@ -132,11 +137,17 @@ def _summary(people: People) -> dict[str, Any]:
     }
 
 
-def _detect(footage: Footage, network: PoseNetwork, console: Console, first: float, last: float) -> People:
+def _detect(
+    footage: Footage,
+    networks: tuple[PoseNetwork, CloserLook],
+    console: Console,
+    first: float,
+    last: float,
+) -> People:
     if not os.access(footage.output.parent, os.W_OK | os.X_OK):
         raise InputError(f"{footage.output}: cannot be written; its folder must exist and be writable")
     clip = open_footage(footage.clip, footage.fps)
-    job = find_people(clip, network, CloserLook())
+    job = find_people(clip, *networks)
     with closing(stretch(job, first, last)) as stretched:
         people = run(stretched, console.progress)
     write_keypoints(footage.output, people, footage.frame_start, clip.fps)
@@ -179,6 +190,7 @@ DETECT = Command(
             type=Path,
             help="a clip, a take, a folder of takes, or a list of them (JSON Lines, .jsonl)",
         ),
+        *setting_options("network"),
         *output(
             "FILE",
             "keypoint file of a single clip or take; by default keypoints.json in the take, or "

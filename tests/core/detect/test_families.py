@@ -10,10 +10,11 @@ import pytest
 from _networks import METERS, Builder, draw_dots, heat_maps, instant_hmr, simcc
 from keymark.core.arrays import Array
 from keymark.core.detect.families.instant_hmr import LAYOUT as MHR
-from keymark.core.detect.families.network import Box, Look
+from keymark.core.detect.families.network import Box
 from keymark.core.detect.families.table import open_network
 from keymark.core.detect.layouts import LAYOUTS
 from keymark.core.detect.onnx_file import LARGEST_BYTES, read_onnx
+from keymark.core.detect.pose_network import Look
 from keymark.core.errors import InputError
 from onnx import TensorProto, helper, numpy_helper
 

@@ -238,7 +238,7 @@ MISTAKES: list[tuple[str, Change]] = [
     ("keypoints", lambda v: v.pop("layout")),
     ("keypoints", at("layout", to="coco")),
     ("keypoints", at("names", to=["shoulder.L", "shoulder.L"])),
-    ("keypoints", at("names", 1, to="tail")),
+    ("keypoints", at("names", 0, to="tail")),
     ("keypoints", at("size", to=[320.5, 240])),
     ("keypoints", at("people", to=[None])),
     ("keypoints", lambda v: v.pop("frames")),
