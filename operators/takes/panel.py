@@ -10,8 +10,8 @@ from ..shell.take_state import DOUBTFUL, TakeState
 from ..shell.takes import find_take
 from .upgrade import is_newer
 
-BUTTON_PX = 70.0
-"""Width of the button beside the headline, at a UI scale of 1."""
+BUTTON_PX, BUTTON_UNITS = 70.0, 3.5
+"""Width of the button beside the headline, at a UI scale of 1 and in Blender's units."""
 GOOD = 0.8
 """Share of joints near their true places beyond which a motion is good as it is."""
 STEPS = (
@@ -105,10 +105,12 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
         if not draw_progress(row, context):
             row.scale_y = 1.0
             draw_sentence(row, context, sentence, "FORWARD", beside_px=beside_px)
-            if action == "keymark.update":
-                row.operator(action, text=text)
-            elif action:
-                row.operator(action, text=text).where = "WEAK"
+            if action:
+                button = row.row()
+                button.ui_units_x = BUTTON_UNITS  # else it takes half of the row
+                drawn = button.operator(action, text=text)
+                if action == "keymark.pose_from_motion":
+                    drawn.where = "WEAK"
 
 
 def _headline(state: TakeState) -> tuple[str, str, str]:

@@ -7,7 +7,7 @@ import bpy
 import pytest
 from _panel import calls, controls, drawn_panels
 from keymark.core.take.take import Take
-from keymark.operators.shell.steps import STEPS
+from keymark.operators.shell.take_state import STEPS, TakeState
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -51,6 +51,32 @@ def test_few_controls_are_shown_in_every_state(tiny_take: Take) -> None:
     bpy.ops.keymark.store_keyframe()
     take.clip_state.missing = True
     assert max(every_step().values()) <= MOST
+
+
+def test_the_top_line_says_how_good_a_motion_is_and_what_to_do(opened: bpy.types.Scene) -> None:
+    def said() -> str:
+        return " ".join(words for kind, _, words in drawn_panels() if kind == "label")
+
+    take = active_take(opened)
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    take.review.confidence, start, update = 0.6, "keymark.pose_from_motion", "keymark.update"
+    for frame in (4, 8):
+        take.review.weak_frames.add().frame = frame
+    assert "Good for blocking; 2 frames are worth correcting" in said() and start in controls()
+    for left, frame in ((1, 4), (0, 8)):  # the one that is chosen, then the one that is left
+        bpy.ops.keymark.pose_from_motion(where="WEAK")
+        assert opened.frame_current == frame and len(TakeState(take).open_weak) == left
+        assert "correct more, or update" in said() and update in controls() and start not in controls()
+    bpy.ops.keymark.update()
+    assert "review, then a character" in said() and update not in controls()
+
+
+def test_just_the_character_hides_the_actor(opened: bpy.types.Scene) -> None:
+    actor, overlays = active_take(opened).armature, opened.keymark.overlays
+    for only in (True, False):
+        overlays.only_character = only
+        assert actor.hide_get() is only
 
 
 @pytest.mark.parametrize("editor", ["VIEW_3D", "CLIP_EDITOR"])

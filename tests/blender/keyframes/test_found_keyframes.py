@@ -48,6 +48,9 @@ def test_found_keyframes_are_accepted_and_removed(found: Group) -> None:
     bpy.ops.keymark.remove_match()
     assert TakeState(found).keyed.all == (1.0, 7.0)
     assert [match.frame for match in found.matching.matches] == [1.0]
+    bpy.context.scene.frame_set(5)
+    with pytest.raises(RuntimeError, match="This frame holds no found keyframe"):
+        bpy.ops.keymark.remove_match()
 
 
 def test_all_found_are_removed_but_what_the_animator_decided_on(found: Group) -> None:
