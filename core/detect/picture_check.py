@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 
 from ..arrays import Array, Image
-from ..errors import InputError
+from ..errors import InputError, pluralize
 from ..progress import Part
 from ..video.album import Glimpses
 from .keypoints import People, SeenPeople, mirrored_point
@@ -44,6 +44,7 @@ class PictureFinding:
     """Frames that were looked at, and whether the network sees somebody there whom the file has."""
     seen: Mapping[int, Array] = field(default_factory=dict, compare=False)
     """(N, 2) where the network sees the points of a file that is right [px]; NaN where it does not."""
+    shift: int = 0  # by how many frames it is late
     refusal: str = ""  # why it cannot be used, to follow the file's name
 
     @property
@@ -189,14 +190,15 @@ class _Check:
         if now < LEAST_OFF:
             return None
         wanted = min(FITS, BETTER * now)
+        # Of somebody who walks across, another time looks like another size, and the other way around.
+        best, late = self._late(looks, wanted)
         costs = [cost(partial(np.multiply, scale)) for scale in SCALES]
         near = SCALES[int(np.argmin(costs))]
         if min(costs) < FARTHEST / 2:
             scale = self._fitted_scale(looks, np.full(2, near))
-            if cost(partial(np.multiply, scale)) < wanted and abs(np.log(scale)).max() > LEAST_SCALE:
+            if cost(partial(np.multiply, scale)) < best and abs(np.log(scale)).max() > LEAST_SCALE:
                 return PictureFinding((float(scale[0]), float(scale[1])), looked=there)
-        late = self._late(looks, wanted)
-        return PictureFinding(refusal=late) if late else None
+        return late
 
     def _fitted_scale(self, looks: Sequence[_Look], scale: Array) -> Array:
         """(2,) scales of both axes by all points that are near the network's at a scale."""
@@ -215,8 +217,8 @@ class _Check:
             scale = np.full(2, both)
         return np.array([_rounded(float(one)) for one in scale])
 
-    def _late(self, looks: Sequence[_Look], wanted: float) -> str:
-        """Why the file is of the same clip at another time; empty if it is not."""
+    def _late(self, looks: Sequence[_Look], wanted: float) -> tuple[float, PictureFinding | None]:
+        """Whether the file is of the clip at another time or rate, and its distance then, else the wanted."""
         frames = self.people.frames
         reach = min(round(LONGEST_SHIFT_S * self.fps), len(frames) // 2)
         best, shift, rate = wanted, 0, 1.0
@@ -230,17 +232,11 @@ class _Check:
                 if now < (best if other == 1.0 else 0.8 * best):
                     best, shift, rate = now, offset, other
         if rate != 1.0:
-            return (
-                f"it runs through the motion {1.0 / rate:.3g} times as fast as the clip; it must be of this "
-                "clip, frame by frame"
+            return best, PictureFinding(
+                refusal=f"it runs through the motion {1.0 / rate:.3g} times as fast as the clip; it must be "
+                "of this clip, frame by frame"
             )
-        if abs(shift) < 2:
-            return ""
-        when = "late" if shift > 0 else "early"
-        return (
-            f"its points are where the person in the clip's pictures is about {abs(shift)} frames "
-            f"{'before' if shift > 0 else 'after'}: it is {when}, and must be of this clip, frame by frame"
-        )
+        return (best, PictureFinding(shift=shift)) if abs(shift) >= 2 else (wanted, None)
 
 
 def applied(people: People, finding: PictureFinding) -> People:
@@ -264,16 +260,24 @@ def applied(people: People, finding: PictureFinding) -> People:
     if finding.mirrored:
         names = tuple(mirrored_point(name) for name in names)
         notes.append(f"{people.source}: is of a mirrored copy of the clip; left and right were exchanged")
+    if finding.shift:
+        when, way = ("late", "before") if finding.shift > 0 else ("early", "after")
+        notes.append(
+            f"{people.source}: its points are where the person in the clip's pictures is about "
+            f"{pluralize(abs(finding.shift), 'frame')} {way}: it is {when}, and was shifted"
+        )
     people = replace(people, looked=finding.looked, in_pictures=finding.seen)
     if not notes:
         return people
-    frames = []
-    for frame in people.frames:
+    nobody = SeenPeople.nobody(len(names))
+    frames = [nobody] * max(-finding.shift, 0)
+    for frame in people.frames[max(finding.shift, 0) : len(people.frames) + min(finding.shift, 0)]:
         pixel = scale * frame.pixel
         hint = frame.hint_m
         if finding.mirrored:
             pixel, hint = size * [1.0, 0.0] + pixel * [-1.0, 1.0], hint * [-1.0, 1.0, 1.0]
         frames.append(SeenPeople(pixel, frame.score, hint))
+    frames += [nobody] * max(finding.shift, 0)
     return replace(people, names=names, frames=tuple(frames), notes=(*people.notes, *notes))
 
 

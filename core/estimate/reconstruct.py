@@ -23,7 +23,7 @@ from ..progress import Job, Progress, within
 from ..take.clip_check import check_frame_count, check_in_front
 from ..take.conversion_settings import METHODS
 from ..take.motion import Motion
-from ..take.presence import absence_notes, unseen_notes
+from ..take.presence import absence_notes, unseen_ends, unseen_notes
 from ..take.read_footage import average_model
 from ..take.seen_take import SeenTake
 from ..take.shots import within_shot
@@ -158,7 +158,8 @@ def _reconstruct(
         if not shaken:  # else the camera is what does not fit
             notes += evidence_notes(take, solution.evidence)
         notes += keypoint_notes(solution.keypoints)
-        notes += contour_notes(take, solution.contours is not None) + unseen_notes(unseen)
+        notes += contour_notes(take, solution.contours is not None)
+        notes += unseen_notes(unseen, unseen_ends(keypoints, there, unseen))
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior)
         notes += filter_notes(take)

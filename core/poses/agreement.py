@@ -86,7 +86,10 @@ def agreement(
 
 def _relative_size(given: PosingInput, points: Array) -> float | None:
     """How tall the performer is by the network's guess, over points (T, P, 3); None without one."""
-    hints, names = given.evidence.keypoints.hint_m[given.sampled], given.evidence.keypoints.names
+    keypoints = given.evidence.keypoints
+    # Of points beyond the picture's edge a network guesses even the place.
+    hints = np.where(keypoints.seen[..., None], keypoints.hint_m, np.nan)[given.sampled]
+    names = keypoints.names
     ratios = []
     for pair in BONES:
         if set(pair) <= set(names):

@@ -274,7 +274,7 @@ def write_made_digests(staging_folder: Path, names: Iterable[str]) -> None:
 
 def kept_note(name: str, other: str) -> str:
     """The note on a file that is kept under another name."""
-    return f"{name} was changed after Keymark had made it and is kept as {other}"
+    return f"{name} is not as Keymark had made it here and is kept as {other}"
 
 
 def _unused_keyframes_note(description: Description, settings: ConversionSettings) -> tuple[str, ...]:

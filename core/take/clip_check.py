@@ -174,7 +174,7 @@ def clip_notes(take: Take, clip: Clip, reading: Reading) -> tuple[str, ...]:
             f"{clip.path.name} claims {clip.frame_count} frames, of which {tracks.frame_count} can "
             "be decoded; it may be cut off or damaged"
         )
-    return (*notes, *reading.frame_findings.notes(take.frame_start), *_gap_notes(take, tracks))
+    return (*notes, *reading.frame_findings.notes(take.frame_start, clip.fps), *_gap_notes(take, tracks))
 
 
 def rate_note(take: Take, clip: Clip) -> str | None:

@@ -143,9 +143,15 @@ def _point_of(name: str) -> tuple[str, bool]:
 
 
 def chosen_subject(
-    path: Path, names: Sequence[str], completeness: Sequence[float], wanted: str | None
+    path: Path,
+    names: Sequence[str],
+    completeness: Sequence[float],
+    wanted: str | None,
+    kind: str = "subject",
 ) -> tuple[int, tuple[str, ...]]:
     """The index of the wanted subject, or else of the most complete, the first of equals; and notes.
+
+    `kind` is what they are, and the option of `mend` that names one.
 
     Raises:
         InputError: Nobody is called so; the sentence lists all.
@@ -153,11 +159,11 @@ def chosen_subject(
     every = listed([shown(name) for name in names], 10)
     if wanted is not None:
         if wanted not in names:
-            raise InputError(f"{path}: has no subject {shown(wanted)}; its subjects are {every}")
+            raise InputError(f"{path}: has no {kind} {shown(wanted)}; its {kind}s are {every}")
         return names.index(wanted), ()
     index = int(np.argmax(completeness))
     note = (
-        f"{path.name} has {len(names)} subjects, {every}; the motion is that of {shown(names[index])}, and "
-        "mend --subject names another"
+        f"{path.name} has {len(names)} {kind}s, {every}; the motion is that of {shown(names[index])}, and "
+        f"mend --{kind.lower()} names another"
     )
     return index, (note,) if len(names) > 1 else ()

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import LIMBS, limb_of
+from ..body.skeleton import SIDES
 from ..detect.keypoints import Keypoints
 from ..errors import frames_in_words
 from ..files.fields import listed
@@ -80,6 +81,18 @@ def unseen_limbs(take: Take, tracks: RegionTracks, keypoints: Keypoints, there: 
     return tuple(limb for limb in LIMBS if seen[:, own[limb]].any(axis=1).mean() < SELDOM)
 
 
+def unseen_ends(keypoints: Keypoints, there: BoolArray, unseen: tuple[str, ...]) -> tuple[str, ...]:
+    """Hands and feet whose wrist or ankle is seldom seen, of limbs that are not all `unseen`."""
+    seen, names = (keypoints.seen & (keypoints.score > LEAST_SCORE))[there], np.array(keypoints.names)
+    found = []
+    for end, joint, limb in (("hand", "wrist", "arm"), ("foot", "ankle", "leg")):
+        for side in SIDES:
+            own = names == f"{joint}.{side}"
+            if own.any() and f"{limb}.{side}" not in unseen and seen[:, own].any(axis=1).mean() < SELDOM:
+                found.append(f"{end}.{side}")
+    return tuple(found)
+
+
 def is_empty(album: Album, tracks: RegionTracks, keypoints: Keypoints, run: tuple[int, int]) -> bool:
     """Whether the pictures of a run of frames without evidence show nobody.
 
@@ -133,11 +146,18 @@ def absence_notes(take: Take, there: BoolArray, shot: BoolArray | None = None) -
     return tuple(notes)
 
 
-def unseen_notes(limbs: tuple[str, ...]) -> tuple[str, ...]:
-    """A note on limbs that are never seen."""
-    if not limbs:
-        return ()
-    return (f"{named_limbs(limbs)} never seen and stay at rest; pose keyframes where that is wrong",)
+def unseen_notes(limbs: tuple[str, ...], ends: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """Notes on limbs that are never seen, and on hands and feet of which the same is so (`unseen_ends`)."""
+    notes = []
+    if limbs:
+        notes.append(f"{named_limbs(limbs)} never seen and stay at rest; pose keyframes where that is wrong")
+    if ends:
+        is_one = len(ends) == 1
+        notes.append(
+            f"{named_limbs(ends)} never seen, as beyond the picture's edge, and "
+            f"where {'it is' if is_one else 'they are'} likely to be; pose keyframes where that is wrong"
+        )
+    return tuple(notes)
 
 
 def unseen_line(empty: int, limbs: tuple[str, ...]) -> str:
@@ -150,10 +170,13 @@ def unseen_line(empty: int, limbs: tuple[str, ...]) -> str:
 
 def named_limbs(limbs: tuple[str, ...]) -> str:
     """Some limbs as the beginning of a sentence, with its verb: `the legs are`."""
-    kinds = {kind: [limb for limb in limbs if limb.startswith(kind)] for kind in ("arm", "leg")}
+    every = ("arm", "leg", "hand", "foot")
+    kinds = {kind: [limb for limb in limbs if limb.startswith(kind)] for kind in every}
     sides = {"L": "left", "R": "right"}
     words = [
-        f"the {kind}s" if len(own) == 2 else f"the {sides[own[0][-1]]} {kind}"
+        f"the {'feet' if kind == 'foot' else f'{kind}s'}"
+        if len(own) == 2
+        else f"the {sides[own[0][-1]]} {kind}"
         for kind, own in kinds.items()
         if own
     ]

@@ -45,8 +45,8 @@ class FrameFindings:
     interlaced: bool = False  # whether each picture consists of two fields
     repeated: tuple[int, ...] = ()  # indices of frames whose picture is that of the frame before
 
-    def notes(self, first: int) -> tuple[str, ...]:
-        """The findings as sentences; the clip's first frame has the number `first`."""
+    def notes(self, first: int, fps: float | None = None) -> tuple[str, ...]:
+        """The findings as sentences; the clip's first frame has the number `first`, `fps` is its rate."""
         notes = []
         if self.blank:
             notes.append(
@@ -62,8 +62,8 @@ class FrameFindings:
         if self.repeated:
             notes.append(
                 f"{len(self.repeated)} of {self.frames} pictures repeat the one before "
-                f"({self._named(self.repeated, first)}), as where a clip was saved at a higher rate; each "
-                "counts once, and the motion goes on in between"
+                f"({self._named(self.repeated, first)}), as where a clip{self._own_rate(fps)} was saved at a "
+                "higher rate; each counts once, and the motion goes on in between"
             )
         if self.changes:
             notes.append(
@@ -77,6 +77,13 @@ class FrameFindings:
     def cut_note(self, first: int) -> str:
         """A sentence with the frame of each cut; the clip's first frame has the number `first`."""
         return f"the clip is cut at {frames_in_words((cut + first for cut in self.cuts), MOST_CUTS)}"
+
+    def _own_rate(self, fps: float | None) -> str:
+        """How many pictures a second show another moment, as far as some are repeated."""
+        if fps is None:
+            return ""
+        span = self.repeated[-1] - self.repeated[0] + 2
+        return f" of {fps * (1.0 - len(self.repeated) / span):.0f} pictures a second"
 
     @staticmethod
     def _named(frames: Sequence[int], first: int) -> str:

@@ -49,6 +49,7 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
     object: Text(
         "Armature", "Name of its armature, ROOT or subject, where the file has several", options=SKIP_SAVE
     )
+    action: Text("Action", "Name of its Action, where the armature has several", options=SKIP_SAVE)
     filter_glob: Text(default=FILTER, options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -72,7 +73,8 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
             loaded = add_actor(scene, mended.motion, path.stem, scene.frame_start)
             notes = (*reference.notes, *mended.notes)
         else:
-            loaded, notes = load_motion(CharacterFile(path, self.object or None), scene, map_folders())
+            file = CharacterFile(path, self.object or None)
+            loaded, notes = load_motion(file, scene, map_folders(), self.action or None)
         for note in notes:
             warn(self, note)
         _select(context, loaded)

@@ -51,7 +51,7 @@ def import_character(
     regular_file_size(file.path, "a character file")
     suffix = file.path.suffix.lower()
     if suffix == BLEND:
-        found, texts = _appended(file)
+        found, texts = _appended(file, animated)
     else:
         found, texts = _imported(file, scene, animated, text), ()
     armature = _chosen(file, found)
@@ -67,7 +67,10 @@ def import_character(
     return ImportedCharacter(file, armature, tuple(members), texts, notes)
 
 
-def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[bpy.types.Text, ...]]:
+Appended = tuple[dict[str, bpy.types.Object], tuple[bpy.types.Text, ...]]
+
+
+def _appended(file: CharacterFile, animated: bool) -> Appended:
     check_blend(file.path, "a character")
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == file.path.resolve():
         raise InputError(
@@ -79,6 +82,7 @@ def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[b
             names = list(inside.objects)
             wanted.objects = list(names)
             wanted.texts = list(inside.texts)
+            wanted.actions = list(inside.actions) if animated else []
     except (OSError, RuntimeError, UnicodeDecodeError) as error:
         raise _unreadable(file.path, error) from error
     objects = {name: one for name, one in zip(names, wanted.objects, strict=True) if one is not None}

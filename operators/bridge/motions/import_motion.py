@@ -20,9 +20,11 @@ from ....core.retarget.mended_armature import ArmaturePoints
 from ....core.retarget.solve.rest_body import RestBody
 from ....core.take.bvh_file import FASTEST, SLOWEST, read_bvh
 from ....core.take.character_settings import CharacterFile
+from ....core.take.named_points import chosen_subject
 from ....core.take.reference import ARMATURE_ENDINGS, ReferenceMotion
 from ..actions import assign_action, curves_of, existing_channelbag
 from ..blend_files import own_scene, showing_scene
+from ..character.controls import BONE_PATH
 from ..character.import_character import ImportedCharacter, import_character
 from ..character.read_character import read_character
 from ..keys import mark_generated
@@ -35,12 +37,13 @@ SHORTEST_LEG_M, LONGEST_LEG_M = 0.35, 1.5  # of a child and of a giant
 
 
 def import_motion(
-    file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = ()
+    file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = (), action_name: str | None = None
 ) -> tuple[ImportedCharacter, ChosenMap]:
     """Import an animated armature into a scene, which gets the motion's rate, and recognize its bones.
 
-    A BVH's object is one of its ROOTs. The motion's keys count as Keymark's own, so that those that a person
-    sets later are known. An armature in other units is scaled to a person's size.
+    A BVH's object is one of its ROOTs; `action_name` is one of several Actions. The motion's keys count as
+    Keymark's own, so that those that a person sets later are known. An armature in other units is scaled to a
+    person's size.
 
     Raises:
         InputError: Blender cannot read it, it has no armature of a person, no Action, or no usable rate.
@@ -57,11 +60,12 @@ def import_motion(
         file = CharacterFile(file.path)  # its one armature
     elif suffix.startswith(".usd") and not bpy.app.build_options.usd:
         raise InputError(f"{file.path}: this Blender is built without USD; export the motion as BVH or FBX")
+    before = {one.session_uid for one in bpy.data.actions}
     imported = import_character(file, scene, animated=True, text=text)
     armature = imported.armature
-    action = _action(armature)
-    if action is None:
-        raise InputError(f"{file.path}: its armature '{armature.name}' has no Action, so it has no motion")
+    added = [one for one in bpy.data.actions if one.session_uid not in before]
+    action, which = _action(file.path, armature, added, action_name)
+    notes = (*notes, *which)
     if suffix.startswith(".usd"):
         _set_rate(scene, _usd_rate(file.path))
     elif suffix == ".blend":
@@ -101,7 +105,7 @@ def _stand_up(armature: bpy.types.Object, body: RestBody) -> None:
 
 
 def load_motion(
-    file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = ()
+    file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = (), action_name: str | None = None
 ) -> tuple[bpy.types.Object, tuple[str, ...]]:
     """Bring an animated armature into a scene, which keeps its rate and range; its object, and notes.
 
@@ -113,7 +117,7 @@ def load_motion(
     before = {block.as_pointer() for block in bpy.data.user_map()}
     meanwhile = bpy.data.scenes.new("Motion")
     try:
-        imported, _ = import_motion(file, meanwhile, maps)
+        imported, _ = import_motion(file, meanwhile, maps, action_name)
         armature = imported.armature
         action = armature.animation_data.action
         factor = scene.render.fps / scene.render.fps_base
@@ -155,19 +159,41 @@ def _retime(curves: Curves, first: float, factor: float, start: float) -> None:
         curve.update()
 
 
-def _action(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """The Action of an armature, or else of the first strip of its NLA, which is assigned then."""
-    data = armature.animation_data
-    if data is None:
-        return None
-    if data.action is None:
-        strips = [strip for track in data.nla_tracks for strip in track.strips if strip.action is not None]
-        if not strips:
-            return None
-        assign_action(armature, strips[0].action)
+def _action(
+    path: Path, armature: bpy.types.Object, added: Sequence[bpy.types.Action], wanted: str | None
+) -> tuple[bpy.types.Action, tuple[str, ...]]:
+    """The wanted Action of an armature, or else its own, that of its first strip or the file's first; notes.
+
+    It is assigned, and strips are muted.
+    """
+    data = armature.animation_data_create()
+    strips = (strip.action for track in data.nla_tracks for strip in track.strips)
+    moving = [one for one in added if _moves(one, armature)]
+    actions = [one for one in dict.fromkeys([data.action, *strips, *moving]) if one is not None]
+    if not actions:
+        raise InputError(f"{path}: its armature '{armature.name}' has no Action, so it has no motion")
+    names = [_own_name(one, added) for one in actions]
+    index, notes = chosen_subject(path, names, [1.0] * len(names), wanted, "Action")
     for track in data.nla_tracks:
         track.mute = True
-    return data.action
+    if data.action != actions[index]:
+        assign_action(armature, actions[index])
+    return actions[index], notes
+
+
+def _moves(action: bpy.types.Action, armature: bpy.types.Object) -> bool:
+    """Whether an Action has curves of an armature's bones."""
+    curves = [path for path, _ in curves_of(action, armature)]
+    found = [match for match in map(BONE_PATH.match, curves) if match]
+    bones = armature.pose.bones
+    return any(bpy.utils.unescape_identifier(match[1]) in bones for match in found)
+
+
+def _own_name(action: bpy.types.Action, added: Sequence[bpy.types.Action]) -> str:
+    """An Action's name in its file, without the number that it got where the name was taken."""
+    stem, _, number = action.name.rpartition(".")
+    taken = any(one.name == stem and one not in added for one in bpy.data.actions)
+    return str(stem if number.isdigit() and taken else action.name)
 
 
 def _usd_rate(path: Path) -> float:

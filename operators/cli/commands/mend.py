@@ -86,7 +86,7 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
         made = [name for name in FILES if (staging / name).exists()]
         write_made_digests(staging, made)
         before = {MOTION: ""} if (folder / AS_MADE).exists() else {}
-        kept.update(changed_files(folder, staging, FILES, (CHARACTER_BLEND,), before))
+        kept.update(changed_files(folder, staging, FILES, (MOTION, BVH, CHARACTER_BLEND), before))
     notes = (*mended.notes, *notes, *(kept_note(*names) for names in kept.items()))
     files = [str(folder / name) for name in made]
     summary = {
@@ -112,6 +112,8 @@ def _mend_points(
     file: CharacterFile, posed: tuple[int, ...], arguments: argparse.Namespace, console: Console
 ) -> tuple[Mended, tuple[str, ...]]:
     console.stage("Reading the motion")
+    if arguments.action is not None:
+        raise UsageError(f"--action is {arguments.action}; {file.path} holds points, which have no Actions")
     reference = read_reference(file.path, file.object)
     rate = arguments.fps or reference.fps or USUAL_RATE
     options = MendOptions(
@@ -141,7 +143,7 @@ def _mend_armature(
     check_exporters(own[2] if own is not None else ())
     with own_scene("Motion") as scene, showing_scene(scene):
         with blender_silence(debug):
-            imported, chosen = import_motion(file, scene, library_folders())
+            imported, chosen = import_motion(file, scene, library_folders(), arguments.action)
         plant, floor = arguments.plant_feet is not False, not arguments.no_floor
         job = mend_action(imported.armature, chosen.character_map, posed, plant, floor)
         try:
@@ -182,6 +184,12 @@ MEND = Command(
             metavar="NAME",
             help="whose motion of several in the file: the prefix of points, a BVH's ROOT, or an armature "
             "(default: the most complete, which a note names)",
+        ),
+        argument(
+            "--action",
+            metavar="NAME",
+            help="the Action of an armature that has several, as glTF, FBX and .blend files may "
+            "(default: its own or the first, which a note names)",
         ),
         argument(
             "--posed",

@@ -176,3 +176,28 @@ def test_a_bvh_of_another_system_is_the_same_motion(
         assert mend(file=folder / file) == 0
         found.append(read_motion(output / "motion.json").points)
     np.testing.assert_allclose(found[0], found[1], atol=1e-4)
+
+
+def test_of_a_file_of_several_actions_one_is_named(
+    mend: Mend, output: Path, repository: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = repository.parent / "shared" / "failing" / "turn4_several_actions_in_one_file" / "two_actions.glb"
+    if not file.exists():
+        pytest.skip("no shared/failing")
+    assert mend("--json", file=file) == 0
+    assert "2 Actions, 'A_Idle', 'Walk'; the motion is that of 'A_Idle'" in capfd.readouterr().out
+    assert mend("--action", "Walk", file=file) == 0
+    assert len(read_motion(output / "motion.json").time_s) == 86
+
+
+def test_a_motion_that_mend_did_not_make_is_kept(mend: Mend, output: Path, network: Path) -> None:
+    output.mkdir(parents=True)
+    (output / "motion.json").write_text("mine")
+    assert mend() == 0
+    assert [(output / name).read_text() for name in tree(output) if "motion (" in name] == ["mine"]
+    before = tree(output)
+    assert mend() == 0 and tree(output) == before
+    (output / ".as_made.json").unlink()
+    assert mend("--fps", "25") == 0
+    assert len(tree(output)) == len(before) + 2
+    assert mend("--action", "Walk", file=network) == 2

@@ -21,7 +21,14 @@ from keymark.core.progress import run
 from keymark.core.review.review import review
 from keymark.core.review.score import score_points
 from keymark.core.take.motion import read_motion, write_motion
-from keymark.core.take.presence import absence_notes, presence, unseen_limbs, unseen_line, unseen_notes
+from keymark.core.take.presence import (
+    absence_notes,
+    presence,
+    unseen_ends,
+    unseen_limbs,
+    unseen_line,
+    unseen_notes,
+)
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 from keymark.core.video.album import Album
@@ -131,6 +138,19 @@ def test_limbs_that_are_never_seen_are_named_unless_something_is_posed(take: Tak
     assert unseen_notes(("arm.L", "leg.R"))[0].startswith("the left arm and the right leg are")
     posed = replace(take, keyframes=(Keyframe(0, Posture.rest(BODY.skeleton)),))
     assert unseen_limbs(posed, unmarked().tracks, keypoints, gone()) == ()
+
+
+def test_hands_and_feet_beyond_the_edge_are_named_where_their_limbs_are_seen() -> None:
+    whole = seen_in(gone())
+    cut = np.where((np.array(whole.names) == "ankle.L")[:, None], np.nan, whole.pixel)
+    assert unseen_ends(whole, gone(), ()) == ()
+    assert unseen_ends(replace(whole, pixel=cut), gone(), ()) == ("foot.L",)
+    assert unseen_ends(replace(whole, pixel=cut), gone(), ("leg.L",)) == ()
+    (note,) = unseen_notes((), ("foot.L",))
+    assert note.startswith(
+        "the left foot is never seen, as beyond the picture's edge, and where it is likely"
+    )
+    assert "the feet are never seen" in unseen_notes((), ("foot.L", "foot.R"))[0]
 
 
 def test_resting_legs_hang_down_whatever_the_pelvis_does() -> None:

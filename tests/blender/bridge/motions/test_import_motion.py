@@ -45,6 +45,26 @@ def test_rate_size_and_joints_are_the_files(exported: Path, shaken: bpy.types.Ob
     assert "Motion" not in bpy.data.scenes
 
 
+def test_one_of_several_actions_is_taken_said_and_named(shaken: bpy.types.Object, tmp_path: Path) -> None:
+    own, file = shaken.animation_data.action, CharacterFile(tmp_path / "motion.blend")
+    walk, loose = own.copy(), own.copy()
+    walk.name, loose.name, loose.use_fake_user = "Walk", "Loose", True
+    shaken.animation_data.nla_tracks.new().strips.new("Walk", 1, walk)
+    bpy.data.actions.new("Camera").use_fake_user = True
+    bpy.ops.wm.save_as_mainfile(filepath=str(file.path), copy=True)
+    every = f"'{own.name}', 'Walk', 'Loose'"
+    for wanted in (None, "Walk", "Loose"):
+        with own_scene("Motion") as scene, showing_scene(scene):
+            imported, _ = import_motion(file, scene, (), wanted)
+            taken = imported.armature.animation_data.action.name
+            assert taken.startswith(wanted or own.name)
+            assert all(track.mute for track in imported.armature.animation_data.nla_tracks)
+        said = f"has 3 Actions, {every}; the motion is that of '{own.name}', and mend --action names another"
+        assert [note for note in imported.notes if said in note] == list(imported.notes)[: wanted is None]
+    with pytest.raises(InputError, match=f"has no Action 'Run'; its Actions are {every}"):
+        load_motion(file, bpy.context.scene, (), "Run")
+
+
 def test_a_loaded_motion_takes_as_long_as_in_its_file_and_the_scene_stays(exported: Path) -> None:
     scene = bpy.context.scene
     scene.render.fps, scene.frame_start, scene.frame_end = 24, 10, 200
@@ -84,7 +104,7 @@ def test_what_is_no_moving_person_is_refused(exported: Path, shaken: bpy.types.O
     with pytest.raises(InputError, match="is no motion of an armature"):
         load_motion(CharacterFile(exported / "motion.txt"), bpy.context.scene)
     bpy.ops.object.select_all(action="DESELECT")
-    shaken.animation_data_clear()
+    bpy.data.batch_remove(list(bpy.data.actions))
     bpy.ops.wm.save_as_mainfile(filepath=str(exported / "still.blend"), copy=True)
     with pytest.raises(InputError, match="has no Action, so it has no motion"):
         load_motion(CharacterFile(exported / "still.blend"), bpy.context.scene)
