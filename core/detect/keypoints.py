@@ -209,6 +209,8 @@ class People:
     notes: tuple[str, ...] = ()  # sentences on what was taken for granted or mended
     looked: Mapping[int, bool] = field(default_factory=dict)
     """Frames in which the picture was asked, and whether it shows somebody where these people are."""
+    silent: tuple[int, ...] = ()
+    """Frames that it says nothing of, not even that nobody is there: it was shifted."""
     in_pictures: Mapping[int, Array] = field(default_factory=dict)
     """(N, 2) where the pose network sees the points of the largest there [px]; NaN where it does not."""
     second: SecondSource | None = None

@@ -278,7 +278,9 @@ def applied(people: People, finding: PictureFinding) -> People:
             pixel, hint = size * [1.0, 0.0] + pixel * [-1.0, 1.0], hint * [-1.0, 1.0, 1.0]
         frames.append(SeenPeople(pixel, frame.score, hint))
     frames += [nobody] * max(finding.shift, 0)
-    return replace(people, names=names, frames=tuple(frames), notes=(*people.notes, *notes))
+    ends = (max(-finding.shift, 0), len(frames) - max(finding.shift, 0))
+    silent = (*range(ends[0]), *range(ends[1], len(frames)))
+    return replace(people, names=names, frames=tuple(frames), silent=silent, notes=(*people.notes, *notes))
 
 
 def _crop(pixel: Array, names: Sequence[str]) -> Crop:

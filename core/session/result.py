@@ -181,7 +181,10 @@ def write_take_files(
             os.link(take.clip, clip)
     take = replace(take, clip=clip) if clip.exists() else take
     floor_m = session[Posed].floor_m or 0.0
-    write_take(take, folder, evidence, {"//found": list(findings(session, description)), "floor_m": floor_m})
+    fields: dict[str, object] = {"//found": list(findings(session, description)), "floor_m": floor_m}
+    fields |= {} if session.inputs.shot is None else {"shot": list(session.inputs.shot)}
+    fields |= {} if session.inputs.performer is None else {"performer": session.inputs.performer}
+    write_take(take, folder, evidence, fields)
 
 
 def finish_result(

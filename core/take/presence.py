@@ -54,9 +54,12 @@ def presence(take: Take, reading: Reading, keypoints: Keypoints) -> BoolArray:
     if len(posed):
         vouched = (frames >= posed.min()) & (frames <= posed.max())
     step_s = usual_step(tracks.time_s)
+    silent = {index for people in take.keypoints for index in people.silent}
     for first, last in runs(~seen):
         at_end = first == 0 or last == tracks.frame_count
         if (last - first) * step_s <= (LATE_S if at_end else BRIDGED_S):
+            continue
+        if (last - first) * step_s <= BRIDGED_S and silent.issuperset(range(first, last)):
             continue
         own = slice(first, last)
         if not vouched[own].any():

@@ -108,7 +108,8 @@ def test_another_time_is_shifted_back(glimpses: Glimpses, late: int, words: str)
     inside = range(max(-late, 0), FRAMES - max(late, 0))
     for index in inside:
         np.testing.assert_array_equal(mended.frames[index].pixel, shifted.frames[index + late].pixel)
-    assert not any(len(mended.frames[index].pixel) for index in range(FRAMES) if index not in inside)
+    silent = tuple(index for index in range(FRAMES) if index not in inside)
+    assert mended.silent == silent and not any(len(mended.frames[index].pixel) for index in silent)
 
 
 def test_another_rate_is_refused(glimpses: Glimpses) -> None:

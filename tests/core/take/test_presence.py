@@ -10,7 +10,7 @@ import pytest
 from keymark.core.api import reconstruct
 from keymark.core.body.body_volume import rested
 from keymark.core.body.posture import Posture
-from keymark.core.detect.keypoints import Keypoints
+from keymark.core.detect.keypoints import Keypoints, People, SeenPeople
 from keymark.core.errors import InputError
 from keymark.core.markers.reading import Reading
 from keymark.core.markers.region_tracks import RegionTracks
@@ -138,6 +138,16 @@ def test_limbs_that_are_never_seen_are_named_unless_something_is_posed(take: Tak
     assert unseen_notes(("arm.L", "leg.R"))[0].startswith("the left arm and the right leg are")
     posed = replace(take, keyframes=(Keyframe(0, Posture.rest(BODY.skeleton)),))
     assert unseen_limbs(posed, unmarked().tracks, keypoints, gone()) == ()
+
+
+def test_frames_that_a_shifted_file_says_nothing_of_are_not_empty(take: Take) -> None:
+    nobody = (SeenPeople.nobody(len(NAMES)),) * FRAMES
+    people = People(NAMES, "any", (160, 120), nobody, silent=tuple(range(80, FRAMES)))
+    there = presence(replace(take, keypoints=(people,)), unmarked(), seen_in(gone((0, 10), (80, FRAMES))))
+    np.testing.assert_array_equal(there, gone((0, 10)))
+    long = replace(people, silent=tuple(range(60, FRAMES)))
+    there = presence(replace(take, keypoints=(long,)), unmarked(), seen_in(gone((60, FRAMES))))
+    np.testing.assert_array_equal(there, gone((60, FRAMES)))
 
 
 def test_hands_and_feet_beyond_the_edge_are_named_where_their_limbs_are_seen() -> None:
