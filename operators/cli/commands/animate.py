@@ -54,6 +54,8 @@ def animate_command(arguments: argparse.Namespace, console: Console) -> None:
         return convert_take(description, arguments.output, console, settings, debug, formats, keep, notes)
 
     turn_deg: int | None = arguments.rotate
+    if turn_deg and arguments.keypoints:
+        raise UsageError("--rotate turns the picture and not the keypoints of --keypoints; give one of them")
     how = "as --rotate says"
     if turn_deg is None:
         how = "in which people are upright; --rotate 0 leaves it as it is"
