@@ -69,7 +69,7 @@ def composed_candidates(
     for rank in map(int, kept):
         near = np.linalg.norm(shape - shape[rank], axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
         own = torso if rank == 0 else int(some.stance[rank - 1]) // HEADINGS
-        name, flipped = pools.motions.names[pools.torsos.source[own]]
+        name, flipped = pools.names[pools.torsos.source[own]]
         shares = log_odds(float(weight[near].sum())), log_odds(explained)
         found.append(Candidate(everyone[rank], name, flipped, confidence(OTHER if rank else CHOSEN, *shares)))
     return by_confidence(found)

@@ -25,7 +25,6 @@ from .clip_input import PosingInput, tempering
 from .composed_path import ComposedPath, best_path
 from .composed_states import LEGS, FrameCosts, FrameStates, PosedCosts
 from .frame_likelihood import frame_likelihoods
-from .library_motion import PartBelief, part_beliefs
 from .match_evidence import MatchEvidence
 from .part_features import StanceFeatures, stance_features
 from .part_pools import TORSO, part_dofs, part_pools
@@ -92,9 +91,6 @@ def compose_frames(
     `floor_open` as in `floor_height_m`.
 
     At least one library has a posture.
-
-    Whole motions of the libraries are believed in as far as the clip shows them; they are not asked between
-    posed frames that are near each other.
     """
     evidence, camera = given.evidence, given.camera
     stances = stance_features(part_pools(libraries, given.body), evidence)
@@ -112,34 +108,30 @@ def compose_frames(
         floor_m = floor_height_m(given, stances, rough, floor_open)
     floor_seen_m = None if set(LEGS) <= set(given.unseen) else floor_m  # feet never seen tell no place
     yield 0.1
-    beliefs: Sequence[PartBelief | None] = [None] * len(sampled)
     for turn, shares in enumerate(rounds):
         begun, ended = (0.1 + 0.9 * (turn + end) / len(rounds) for end in (0, 1))
-        searched, led = (begun + part * (ended - begun) for part in (0.6, 0.7))
+        searched = begun + 0.85 * (ended - begun)
         is_last = turn == len(rounds) - 1
-        # The first round is for the place and the library; exchanged sides are tried where they are known.
+        # The first round is for the place; exchanged sides are tried where it is known.
         rows = np.unique(np.append(np.arange(0, len(sampled), 1 if is_last else 2), len(sampled) - 1))
         weight, posed = tempering(time_s[rows]), given.posed
-        believed = [beliefs[row] for row in rows]
-        costs = frame_costs(camera, evidence, stances, sampled[rows], floor_seen_m, believed)
+        costs = frame_costs(camera, evidence, stances, sampled[rows], floor_seen_m)
         for index, frame in enumerate(posed.frames):
             for row in np.flatnonzero(sampled[rows] == frame):
                 hips, points = posed.hips[index], posed.points[index]
                 costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, weight)
         others: list[FrameCosts] = []
         if is_last and evidence.keypoints.names:
-            others = frame_costs(camera, evidence.exchanged(), stances, sampled[rows], floor_seen_m, believed)
+            others = frame_costs(camera, evidence.exchanged(), stances, sampled[rows], floor_seen_m)
         states = yield from scaled(_states(costs, others, rough[rows], shares), begun, searched)
         step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
         leading = best_path(stances, states, costs, others, time_s[rows], weight, step_m)
-        path = yield from scaled(leading, searched, led)
-        posture = mean_postures(stances, states, path)
+        path = yield from scaled(leading, searched, ended)
         if not is_last:
             hips = np.stack([np.interp(time_s, time_s[rows], column) for column in path.hips.T], axis=-1)
             hips = np.stack([_smoothed(column, time_s) for column in hips.T], axis=-1)
             rough = np.array([camera.depth(at, int(frame)) for at, frame in zip(hips, sampled, strict=True)])
-            telling = part_beliefs(given, stances, posture, hips, floor_m)
-            beliefs = yield from scaled(telling, led, ended)
+    posture = mean_postures(stances, states, path)
     if floor_seen_m is not None and not len(given.posed.frames):
         posture = _on_floor(given, posture, floor_seen_m)
     return Composition(stances, path, states, rested(given.body, posture, given.unseen), floor_m)
@@ -189,13 +181,11 @@ def frame_costs(
     stances: StanceFeatures,
     frames: IndexArray,
     floor_m: float | None,
-    beliefs: Sequence[PartBelief | None] = (),
 ) -> list[FrameCosts]:
-    """What some frames say of stances and limbs, and what is believed of them in each."""
+    """What some frames say of stances and limbs."""
     # Deviation of a composed body, relative to that of another performer's posture.
     likelihoods = frame_likelihoods(camera, evidence, frames, 0.4)
-    every = beliefs or [None] * len(likelihoods)
-    return [FrameCosts(each, stances, floor_m, own) for each, own in zip(likelihoods, every, strict=True)]
+    return [FrameCosts(each, stances, floor_m) for each in likelihoods]
 
 
 def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array, floor_open: bool) -> float:

@@ -16,7 +16,6 @@ from ..estimate.single_frame import EXCHANGED_COST
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..terms.contact import STEP_M
 from .frame_likelihood import FrameLikelihood, image_moments, lowest, squared_distances
-from .library_motion import PartBelief
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
 from .part_pools import ARM
 
@@ -74,10 +73,8 @@ class FrameCosts:
         likelihood: FrameLikelihood,
         stances: StanceFeatures,
         floor_m: float | None,
-        belief: PartBelief | None = None,
     ) -> None:
         self.likelihood, self.stances, self.floor_m = likelihood, stances, floor_m
-        self.belief = belief
         self.seen = likelihood.weight > 0.0
 
     def states(self, depths_m: Array) -> FrameStates:
@@ -141,8 +138,6 @@ class FrameCosts:
         """(N,) cost of stances at places from the camera, without limbs."""
         seen, features = self.likelihood, self.stances.features
         cost = np.array(features.cost[stance])
-        if self.belief is not None:
-            cost += self.belief.stance[stance]
         for column, point in features.columns(self.seen):
             local = features.place[stance, column]
             at = local + places
@@ -161,8 +156,6 @@ class FrameCosts:
         seen, features = self.likelihood, self.stances.limbs[limb]
         turn, origin = self.stances.frame_of(limb, stance)
         cost = self.stances.limb_cost[limb][stance // HEADINGS]
-        if self.belief is not None:
-            cost = cost + self.belief.limbs[limb]
         for column, point in features.columns(self.seen):
             local = features.place[:, column].T  # (3, L)
             squared = np.zeros_like(cost)

@@ -16,11 +16,12 @@ from ..arrays import Array, IndexArray
 from ..body.human import HUMAN, LIMBS
 from ..body.kinematics import Body
 from ..body.mirror import mirrored
-from ..body.posture import Posture, yawed_at
+from ..body.posture import Posture, headings_rad, yawed_at
 from ..body.skeleton import Skeleton
 from ..numerics.robust import multivariate_cost
-from ..prior.library import Library
-from .known_motions import KnownMotions, known_motions
+from ..prior.library import Library, LibraryMotion
+from ..prior.motion_playback import sample_motion
+from ..prior.transfer import transferred
 
 Learned = TypeVar("Learned")
 ARM, LEG, TORSO = "arm", "leg", "torso"
@@ -48,7 +49,7 @@ class PartPool:
     kind: str
     posture: Posture  # (N,) that have the part, the left one of limbs; torsos face -Y, hips at 0
     cost: Array  # (N,) negative log of how usual each is, 0 for a known one
-    source: IndexArray  # (N,) the posture among all libraries' that is nearest
+    source: IndexArray  # (N,) the nearest posture of `known_motions`
 
     def __len__(self) -> int:
         return len(self.cost)
@@ -62,7 +63,7 @@ class PartPools:
     torsos: PartPool
     arms: PartPool
     legs: PartPool
-    motions: KnownMotions  # what the parts are of, see `PartPool.source`
+    names: tuple[tuple[str, bool], ...]  # what the parts are of, see `known_motions`
     limb_cost: Mapping[str, Array]  # (T, L) -log of how usual limbs are with torsos
 
     def composed(
@@ -122,8 +123,7 @@ def kept(
 
 
 def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
-    motions = known_motions(libraries, body)
-    facing, names = motions.posture, motions.names
+    facing, names = known_motions(libraries, body)
     samples = _samples(np.random.default_rng(0))
     torsos, arms, legs = (_pool(body, kind, facing, samples) for kind in (TORSO, ARM, LEG))
     # Sources are postures and then their mirror images: the right limb of one is the left limb of the other.
@@ -141,7 +141,7 @@ def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
         alone = np.exp(-pool.cost)
         # Half is for the parts that libraries show together, the rest for any other combination.
         limb_cost[limb] = -np.log(0.5 * alone + 0.5 * together)
-    return PartPools(body, torsos, arms, legs, motions, limb_cost)
+    return PartPools(body, torsos, arms, legs, names, limb_cost)
 
 
 def _nearness(body: Body, pool: PartPool, known: Posture) -> Array:
@@ -228,3 +228,58 @@ def _distance(first: Array, second: Array) -> Array:
     x, y, z = np.moveaxis(apart * apart, -1, 0)
     apart = np.sqrt(x + y + z)
     return np.asarray(sum(np.moveaxis(apart, -1, 0)) / apart.shape[-1])
+
+
+# --- All motions of some libraries and their mirror images as postures at small steps of time
+
+
+STEP_M = 0.045  # mean distance of points between postures: well below performers' differences
+MOST_RATE = 25.0  # postures per second of a motion; the least are 8
+MOST_POSTURES = 450  # postures of a library, without mirror images; with more the steps are widened
+
+
+def known_motions(libraries: Sequence[Library], body: Body) -> tuple[Posture, tuple[tuple[str, bool], ...]]:
+    """Postures (S,) facing -Y, the hips at the origin, the second half the mirror images of the first.
+
+    Beside them the library's posture nearest in time to each, and whether it is mirrored. At least one
+    library has a posture.
+    """
+    every = [each for library in libraries for each in _motions(library, body)]
+    plain = Posture.concatenate([posture for posture, _ in every])
+    posture = Posture.concatenate([plain, mirrored(plain)])
+    names = [name for _, own in every for name in own]
+    facing = yawed_at(posture, -headings_rad(posture), np.zeros((2 * len(names), 3)))
+    return facing, (*((name, False) for name in names), *((name, True) for name in names))
+
+
+def _motions(library: Library, body: Body) -> list[tuple[Posture, list[str]]]:
+    found = [_sampled(library, motion, body, 1.0) for motion in library.motions]
+    total = sum(len(names) for _, names in found)
+    if total > MOST_POSTURES:
+        found = [_sampled(library, motion, body, total / MOST_POSTURES) for motion in library.motions]
+    used = {step.posture for motion in library.motions for step in motion.steps}
+    for loose in library.postures:
+        if loose.name not in used:
+            posture = Posture.stack([transferred(loose.posture, library.actor, body)])
+            found.append((posture, [loose.name]))
+    return found
+
+
+def _sampled(
+    library: Library, motion: LibraryMotion, body: Body, spacing: float
+) -> tuple[Posture, list[str]]:
+    """A motion at steps of time in which its points move about `STEP_M` times `spacing`."""
+    whole = motion.duration_s if motion.cyclic else motion.steps[-1].time_s
+    fine = np.linspace(0.0, whole, int(np.clip(np.ceil(whole * MOST_RATE) + 1, 3, MOST_POSTURES)))
+    posture = sample_motion(library, motion, body, fine)
+    points = body.points(body.pose(posture)) - posture.translation[:, None]
+    length = float(np.linalg.norm(np.diff(points, axis=0), axis=-1).mean(axis=1).sum())
+    rate = np.clip(length / STEP_M / max(whole, 1e-6), 8.0, MOST_RATE) / spacing
+    count = int(np.clip(np.ceil(whole * rate), 3, MOST_POSTURES))
+    step = whole / count if motion.cyclic else whole / (count - 1)
+    time = step * np.arange(count)
+    away = np.abs(time[:, None] - np.array([entry.time_s for entry in motion.steps]))
+    if motion.cyclic:
+        away = np.minimum(away, whole - away)
+    names = [motion.steps[int(i)].posture for i in away.argmin(axis=1)]
+    return sample_motion(library, motion, body, time), names

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from ..arrays import Array, BoolArray, IndexArray
-from ..body.human import LIMBS, TRUNK
+from ..body.human import LIMBS, TRUNK, limb_of
 from ..body.kinematics import Body, Pose
 from ..body.mirror import mirrored
 from ..body.posture import Posture, headings_rad, yaw_rotation, yawed_at
@@ -20,10 +20,10 @@ from ..errors import InputError
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..prior.library import Library
 from ..prior.transfer import transferred
-from .known_motions import limb_places
 from .part_pools import TORSO, part_dofs
 
 PARTS = (TRUNK, *LIMBS)
+CARRIERS = {"arm": "waist", "leg": "pelvis"}  # joint that carries a limb, by its kind
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,8 +120,16 @@ def part_shapes(body: Body, pose: Pose) -> dict[str, Array]:
     upper: Array = points[:, trunk] - pose.posture.translation[:, None]
     shapes[TRUNK] = _flat(np.einsum("nki,nij->nkj", upper, yaw_rotation(headings_rad(pose.posture))))
     for limb in LIMBS:
-        shapes[limb] = _flat(limb_places(body, pose, limb))
+        shapes[limb] = _flat(_limb_places(body, pose, limb))
     return shapes
+
+
+def _limb_places(body: Body, pose: Pose, limb: str) -> Array:
+    """(N, 2, 3) places of a limb's two farther points in the frame of the joint that carries it [m]."""
+    joint = body.skeleton.joint_index(CARRIERS[limb.partition(".")[0]])
+    own = [index for index, name in enumerate(body.skeleton.point_names) if limb_of(name) == limb]
+    away = body.points(pose)[:, own] - pose.origin[:, None, joint]
+    return np.asarray(away @ pose.rotation[:, joint])
 
 
 def _flat(points: Array) -> Array:

@@ -9,7 +9,8 @@ import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.body_volume import lower_sole_m
 from keymark.core.body.kinematics import Body
-from keymark.core.body.posture import Posture, yawed_at
+from keymark.core.body.mirror import mirrored
+from keymark.core.body.posture import Posture, headings_rad, yawed_at
 from keymark.core.detect.keypoints import Keypoints
 from keymark.core.errors import InputError
 from keymark.core.estimate.clip_problem import uncalibrated
@@ -168,3 +169,14 @@ def test_known_postures_are_plausible_and_bent_ones_are_not(libraries: Libraries
     step[BODY.skeleton.dof_names.index("knee.L.flexion")] = -1.2
     straight = Posture.rest(BODY.skeleton, (1,))
     assert known.contorted(BODY.pose(straight.plus(step)))[0].any()
+
+
+def test_known_postures_face_ahead_with_their_mirror_images_behind_them(libraries: Libraries) -> None:
+    known = knowledge(BODY, libraries).postures
+    count = sum(len(library.postures) for library in libraries)
+    np.testing.assert_allclose(headings_rad(known.posture), 0.0, atol=1e-9)
+    np.testing.assert_allclose(known.posture.translation[:, :2], 0.0, atol=1e-12)
+    points = BODY.points(BODY.pose(known.posture))
+    other = BODY.points(BODY.pose(mirrored(known.posture[np.arange(count)])))
+    np.testing.assert_allclose(points[count:], other, atol=1e-9)
+    assert list(known.mirrored) == [False] * count + [True] * count
