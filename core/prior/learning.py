@@ -6,10 +6,10 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body
-from ..body.posture import Posture, headings_rad, turned_and_shifted, yaw_rotation
+from ..body.posture import Posture, headings_rad, turned_and_shifted
 from ..errors import InputError
-from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
-from .motion_playback import ankle_heights, average_cycle, find_period_s, shape_vectors
+from .library import Library, LibraryMotion, LibraryPosture, MotionStep
+from .motion_playback import ankle_heights, shape_vectors
 from .texts import LONGEST_NAME, identifier_from
 
 FEWEST, MOST = 10, 40  # default bounds of the number of postures
@@ -31,8 +31,6 @@ def learn_library(
 ) -> Library:
     """Turn a finished motion into a library of one motion.
 
-    A periodic motion becomes one cycle, the average of all its cycles; any other stays whole.
-
     `count` of postures: by default as many as are distinct, from 10 to 40.
 
     Raises:
@@ -48,23 +46,14 @@ def learn_library(
     if np.linalg.norm(shape - shape[0], axis=1).max() < 0.01:  # [m]
         raise InputError("the motion stands still; a library needs postures that differ")
     posture = on_floor(body, posture, time_s)
-    period_s = find_period_s(shape, time_s)
-    travel: Travel = (0.0, 0.0, 0.0)
-    if period_s is None:
-        duration_s = float(time_s[-1] - time_s[0])
-        time_s = time_s - time_s[0]
-    else:
-        cycle = average_cycle(body, posture, time_s, period_s)
-        posture, time_s, duration_s, travel = cycle.posture, cycle.time_s, cycle.duration_s, cycle.travel
+    duration_s, time_s = float(time_s[-1] - time_s[0]), time_s - time_s[0]
     # The mean heading counts as straight ahead, or the first where headings go all round.
     heading = headings_rad(posture)
     x, y = np.sin(heading).mean(), np.cos(heading).mean()
     turn = -float(np.arctan2(x, y)) if np.hypot(x, y) > 0.5 else -float(heading[0])
     shift = turned_and_shifted(posture[:1], turn, np.zeros(3)).translation[0] * [-1.0, -1.0, 0.0]
     posture = turned_and_shifted(posture, turn, shift)
-    chosen = spread_frames(
-        shape_vectors(body, posture), time_s, duration_s, count, cyclic=period_s is not None
-    )
+    chosen = spread_frames(shape_vectors(body, posture), time_s, duration_s, count)
     names = numbered_names(about.title, len(chosen))
     tags = _tags(body, posture[chosen])
     motion = LibraryMotion(
@@ -74,8 +63,6 @@ def learn_library(
             for name, frame in zip(names, chosen, strict=True)
         ),
         duration_s=round(duration_s, DECIMALS_S),
-        cyclic=period_s is not None,
-        travel=_turned_travel(travel, turn, shift),
     )
     return Library(
         identifier=about.identifier or identifier_from(about.title),
@@ -100,13 +87,10 @@ def on_floor(body: Body, posture: Posture, time_s: Array) -> Posture:
     return turned_and_shifted(posture, 0.0, np.array([0.0, 0.0, -floor_m]))
 
 
-def spread_frames(
-    shape: Array, time_s: Array, duration_s: float, count: int | None, *, cyclic: bool
-) -> IndexArray:
-    """Frames spread over shape and time by farthest point sampling.
+def spread_frames(shape: Array, time_s: Array, duration_s: float, count: int | None) -> IndexArray:
+    """Frames spread over shape and time by farthest point sampling, the first and the last among them.
 
-    `shape` (F, N) [m] at times (F,) from 0; `count`: by default as many as are distinct, from 10 to 40;
-    `cyclic`: the first frame follows the last; else both are chosen.
+    `shape` (F, N) [m] at times (F,) from 0; `count`: by default as many as are distinct, from 10 to 40.
     """
     wanted = min(len(shape), MOST if count is None else count)
     tenth = max(1, round(0.1 * duration_s * (len(time_s) - 1) / max(time_s[-1] - time_s[0], 1e-9)))
@@ -122,30 +106,17 @@ def spread_frames(
         chosen.append(frame)
         apart = np.linalg.norm(shape - shape[frame], axis=1)
         later = np.abs(time_s - time_s[frame])
-        if cyclic:
-            later = np.minimum(later, duration_s - later)
         in_time = 0.5 * pace * later / (0.1 * duration_s)  # even coverage in time counts half as much
         np.minimum(nearest, np.hypot(apart, in_time), out=nearest)
         np.minimum(nearest_shape, apart, out=nearest_shape)
 
     choose(0)
-    if not cyclic:
-        choose(len(shape) - 1)
+    choose(len(shape) - 1)
     while len(chosen) < wanted:
         if count is None and len(chosen) >= FEWEST and nearest_shape.max() < 0.06:
             break  # every frame is this near [m] to a chosen one in shape
         choose(int(nearest.argmax()))
     return np.array(sorted(chosen), dtype=np.intp)
-
-
-def _turned_travel(
-    travel: tuple[float, float, float], turn: float, shift: Array
-) -> tuple[float, float, float]:
-    """A cycle's travel in the world, converted for postures that were turned and shifted."""
-    x, y, heading = travel
-    step = yaw_rotation(turn) @ np.array([x, y, 0.0])
-    onward = step + shift - yaw_rotation(heading) @ shift
-    return float(onward[0]), float(onward[1]), heading
 
 
 def numbered_names(title: str, count: int) -> list[str]:

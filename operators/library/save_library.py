@@ -142,10 +142,6 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
         return library_of_keyframes(context.scene, armature, take.keyframe_action, about)
 
 
-ONCE = "Learned '{title}': {count} postures over {seconds:.1f} s"
-A_CYCLE = "Learned '{title}': {count} postures of a cycle of {seconds:.2f} s, which comes again and again"
-
-
 class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
     """Make a keyframe library of the motion, so that the next take of its kind needs fewer keyframes"""
 
@@ -201,6 +197,5 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
         refresh(library.identifier)
         warn_if_outdated(self, take)
         (learned,) = library.motions
-        count, seconds = len(library.postures), learned.duration_s
-        sentence = A_CYCLE if learned.cyclic else ONCE
-        self.report({"INFO"}, sentence.format(title=title, count=count, seconds=seconds))
+        count = len(library.postures)
+        self.report({"INFO"}, f"Learned '{title}': {count} postures over {learned.duration_s:.1f} s")
