@@ -117,27 +117,6 @@ def test_a_killed_worker_costs_nothing(
     assert len(alike[0]) == len(NAMES) * len(REPEATED) and alike[0] == alike[1]
 
 
-def test_again_nothing_is_done_and_nothing_lost(blender: Blender, shoot: Path, undisturbed: Path) -> None:
-    before = results(undisturbed)
-    done = blender.run("--command", "keymark", "batch", shoot, "--output", undisturbed, "--jobs", "2")
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert done.stdout.count("unchanged") > len(NAMES) and "Traceback" not in done.stderr
-    assert results(undisturbed) == before
-
-
-def test_a_failure_is_said_and_no_shoot_refused(blender: Blender, tmp_path: Path) -> None:
-    shoot = write_shoot(tmp_path / "shoot", takes=2)
-    (shoot / "day1" / "take01.mp4").write_bytes(b"no film")
-    output = tmp_path / "out"
-    done = blender.run("--command", "keymark", "batch", shoot, "--output", output, "--jobs", "1")
-    assert done.returncode == 1, done.stdout + done.stderr
-    assert "take01" in done.stderr.strip().splitlines()[-1] and "Traceback" not in done.stderr
-    assert not (output / NAMES[0]).exists() and (output / NAMES[1] / "motion.json").is_file()
-    done = blender.run("--command", "keymark", "batch", tmp_path / "nowhere", "--output", tmp_path / "none")
-    assert done.returncode == 2, done.stdout + done.stderr
-    assert "nowhere" in done.stderr and not (tmp_path / "none").exists()
-
-
 def test_motions_are_gathered(blender: Blender, undisturbed: Path, tmp_path: Path) -> None:
     library = tmp_path / "library.blend"
     done = blender.run("--command", "keymark", "merge", undisturbed, "--output", library, "--name", "Shoot")

@@ -15,7 +15,7 @@ from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.quality import Quality
-from keymark.operators.bridge.actions import assign_action, curve_digest, existing_channelbag
+from keymark.operators.bridge.actions import curve_digest
 from keymark.operators.bridge.actor_bones import moves_an_actor
 from keymark.operators.character.characters import source_of
 from keymark.operators.character.retarget import figures
@@ -225,13 +225,6 @@ def test_each_of_several_characters_has_results_of_its_own(
     assert [each.results[0].action for each in take.characters] == actions
 
 
-def test_what_was_measured_is_said_in_few_lines(character: PropertyGroup) -> None:
-    bpy.ops.keymark.retarget()
-    said = [line.text for line in character.results[0].lines if line.level == "INFO"]
-    assert 3 <= len(said) <= 4
-    assert any("keys" in line for line in said) and not any(line[0].islower() for line in said)
-
-
 def test_a_cancelled_job_leaves_no_trace(character: PropertyGroup) -> None:
     from keymark.operators.character.retarget import KEYMARK_OT_retarget
 
@@ -284,14 +277,6 @@ def test_the_result_is_an_asset_like_the_actors(character: PropertyGroup, take: 
     assert sorted(tag.name for tag in data.tags) == ["calm", "walk"] and data.author == "Ann"
     assert tuple(shown(character).preview.image_size) == (256, 256)
     assert take.motion_action.asset_data is None
-
-
-def test_the_actor_is_still_animated_by_its_own(character: PropertyGroup, take: PropertyGroup) -> None:
-    keyframes = bpy.data.actions.new("Keyframes")
-    assign_action(take.armature, keyframes)
-    bpy.ops.keymark.retarget()
-    assert take.armature.animation_data.action == keyframes
-    assert existing_channelbag(shown(character), character.armature) is not None
 
 
 def test_removing_a_take_with_its_data_keeps_the_character(character: PropertyGroup, rig: Object) -> None:

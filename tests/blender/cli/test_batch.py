@@ -173,34 +173,6 @@ def test_keyframes_are_found_and_found_again_where_a_library_changes(
     assert "small_steps" in read_record(tmp_path / "out" / GOOD[0]).libraries
 
 
-@pytest.mark.skipif(os.name == "nt", reason="Windows has no such signal")
-@pytest.mark.slow
-def test_a_worker_killed_in_the_middle_costs_its_take_one_retry(
-    shoot: Path,
-    results: Path,
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    for death in ("take01-1", "take02-1", "take02-2"):
-        (tmp_path / death).touch()
-    words = [sys.executable, str(TESTS / "_dying_worker.py"), str(tmp_path)]
-    monkeypatch.setattr(command, "worker_command_line", lambda: words)
-    out = shoot.parent / "killed"
-    chosen = [word for name in GOOD for word in ("--take", name)]
-    status, said = batch(shoot, out, capsys, "--jobs", "2", *chosen)
-    assert status == 1 and list(tmp_path.iterdir()) == []
-    assert statuses(said) == dict(zip(GOOD, ("converted", "failed", "converted"), strict=True))
-    assert "was killed by SIGKILL" in said["takes"][1]["error"]
-    status, said = batch(shoot, out, capsys, "--jobs", "1")
-    assert statuses(said) == {
-        **dict(zip(GOOD, ("unchanged", "converted", "unchanged"), strict=True)),
-        "day1/text": "failed",
-        "day2/cut off": "failed",
-    }
-    assert tree(out) == tree(results) and not leftovers(out)
-
-
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no signal to one process")
 @pytest.mark.slow
 def test_an_interrupted_batch_is_whole_and_goes_on(

@@ -1,7 +1,6 @@
 """`keymark character`: what is recognized, maps written and checked, and bad input in one sentence."""
 
 import json
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -126,17 +125,3 @@ def test_a_map_for_other_bones_is_refused(
     sentence = one_line(said(capfd)[1])
     assert f"keymark: {given} " in sentence and expected in sentence
     assert not output.exists()
-
-
-def test_a_map_that_is_none_is_refused(cast: Path, tmp_path: Path, capfd: Out) -> None:
-    character = str(cast / "anna.blend")
-    shutil.copyfile(Path(__file__), tmp_path / "code.json")
-    (tmp_path / "take.json").write_text('{"fps": 30}', encoding="utf-8")
-    for given, expected in (
-        (str(tmp_path / "missing.json"), "no such file"),
-        (str(tmp_path / "code.json"), "no valid JSON"),
-        (str(tmp_path / "take.json"), 'a character map has "keymark-character" there'),
-        ("nobody", "there is no character map 'nobody'"),
-    ):
-        assert main(["character", character, "--map", given]) == 2
-        assert expected in one_line(said(capfd)[1])

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _command_line import tree
 from _synthetic_take import write_synthetic_take
 from keymark.operators.cli.main import main
 
@@ -71,51 +70,3 @@ def test_standard_output_is_json_alone(take: Path, tmp_path: Path, repository: P
     assert said["frames"] == FRAMES and said["method"] == "map"
     assert all(Path(file).is_file() for file in said["files"])
     assert done.stderr == ""
-
-
-def test_a_scene_that_cannot_be_written_leaves_nothing_behind(
-    take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
-    from keymark.core.errors import ConversionError
-    from keymark.operators.bridge import result_files
-
-    def fail(_armature_object: object, path: Path) -> None:
-        os.write(1, b"chatter\n")
-        raise ConversionError(f"{path.name}: the exporter failed")
-
-    monkeypatch.setattr(result_files, "write_bvh", fail)
-    assert main(["convert", str(take), "--output", str(tmp_path / "out"), *QUICKLY]) == 1
-    said = capfd.readouterr()
-    assert said.out == "" and "the exporter failed" in said.err and len(said.err.splitlines()) == 1
-    assert not (tmp_path / "out").exists()
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["takes"]
-
-
-@pytest.mark.parametrize("within", [False, True], ids=["staged beside", "staged within"])
-@pytest.mark.parametrize("writer", ["write_blend", "write_bvh"])
-def test_a_failure_leaves_the_old_files_and_nothing_else(
-    take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, writer: str, within: bool
-) -> None:
-    from keymark.core.errors import ConversionError
-    from keymark.core.files import output_folder
-    from keymark.operators.bridge import result_files
-
-    out = tmp_path / "results" / "out"
-    words = ["convert", str(take), "--output", str(out), *QUICKLY]
-    assert main(words) == 0
-    before = tree(out.parent)
-    if within:
-        monkeypatch.setattr(output_folder.os, "access", lambda path, mode: Path(path) == out)
-    written: list[Path] = []
-
-    def fail(first: object, second: object, **_options: object) -> None:
-        path = first if isinstance(first, Path) else second
-        assert isinstance(path, Path)
-        path.write_bytes(b"half")
-        written.append(path)
-        raise ConversionError("the disk is full")
-
-    monkeypatch.setattr(result_files, writer, fail)
-    assert main(words) == 1
-    assert len(written) == 1 and (written[0].parent == out) == within
-    assert tree(out.parent) == before

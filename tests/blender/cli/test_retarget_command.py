@@ -227,12 +227,6 @@ def test_the_character_of_the_open_file_is_refused(
     assert "is open in this Blender" in one_line(capfd.readouterr().err) and not output.parent.exists()
 
 
-def test_feet_need_not_be_planted(retarget: Retarget, output: Path) -> None:
-    assert retarget("--no-plant-feet", "--no-reach-hands") == 0
-    assert sorted(tree(output)) == MADE
-    assert "skate_mm" not in read_retarget_record(output).quality
-
-
 @pytest.mark.parametrize("clip", ["inside", "beside", "nowhere"])
 def test_a_result_that_was_moved_finds_the_clip_beside_it_or_goes_on_without(
     retarget: Retarget,

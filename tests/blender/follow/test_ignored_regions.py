@@ -155,15 +155,6 @@ def test_a_scenes_take_has_its_regions_while_markers_are_followed(opened: bpy.ty
     assert read().ignored_regions == ()
 
 
-def test_proposals_read_the_clip_anew_where_something_is_ignored(cluttered: bpy.types.Scene) -> None:
-    take = active_take(cluttered)
-    bpy.ops.keymark.propose_keyframes()
-    first = take.reading_key
-    bpy.ops.keymark.ignore_still_areas()
-    bpy.ops.keymark.propose_keyframes()
-    assert take.reading_key != first
-
-
 def test_a_brush_keeps_what_can_be_seen_of_a_path(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("keymark.core.markers.ignored_regions.MOST_POINTS", 20)
     tool = Brush(200)

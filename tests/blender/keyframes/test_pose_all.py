@@ -170,18 +170,6 @@ def test_without_an_actor_nothing_can_be_posed(tiny_take: Take) -> None:
         bpy.ops.keymark.pose_all()
 
 
-def test_the_drawn_clip_is_posed(
-    unposed: Group, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
-) -> None:
-    assert bpy.ops.keymark.pose_all() == {"FINISHED"}
-    take = active_take(bpy.context.scene)
-    assert TakeState(take).matched == (1.0, 7.0, 13.0)
-    for frame in (1, 13):
-        bpy.context.scene.frame_set(frame)
-        apart = np.linalg.norm(shown_points(take.armature) - wave_motion.points[frame - 1], axis=-1)
-        assert apart.mean() < 0.3
-
-
 def test_a_named_library_alone_is_asked(
     unposed: Group, given: SimpleNamespace, wave_motion: Motion, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -237,17 +225,3 @@ def test_poses_are_found_with_a_library_file(
         words = " ".join(words for kind, _, words in drawn_panels() if kind == "label")
         assert f"{take.matching.fit:.0%} sure" in words.replace("\N{NO-BREAK SPACE}", " ")
     assert TakeState(take).next[1] != "pose the weak frames"
-
-
-@pytest.mark.parametrize("mode", ["QUATERNION", "AXIS_ANGLE", "ZYX"])
-def test_postures_are_keyed_in_any_rotation_mode(
-    unposed: Group, given: SimpleNamespace, mode: str, wave_motion: Motion
-) -> None:
-    for bone in unposed.armature.pose.bones:
-        bone.rotation_mode = mode
-    unposed.armature.scale = (1.5, 1.5, 1.5)
-    bpy.context.view_layer.update()
-    assert bpy.ops.keymark.pose_all() == {"FINISHED"}
-    take = active_take(bpy.context.scene)
-    assert len(TakeState(take).matched) == 3 and not TakeState(take).posed
-    assert np.abs(shown(take, 7).minus(wave_motion.posture[6])[6:]).max() < 1e-4

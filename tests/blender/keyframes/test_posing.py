@@ -130,18 +130,6 @@ def test_posed_proposals_are_counted_wherever_keys_are_moved(opened: bpy.types.S
     assert TakeState(take).unposed == [7, 10]
 
 
-def test_undo_takes_a_stored_keyframe_back(opened: bpy.types.Scene) -> None:
-    take = active_take(opened)
-    opened.frame_set(4)
-    bpy.ops.ed.undo_push(message="before")
-    bpy.ops.keymark.store_keyframe()
-    bpy.ops.ed.undo_push(message="stored")
-    assert 4.0 in TakeState(take).posed
-    bpy.ops.ed.undo()
-    take = active_take(bpy.context.scene)
-    assert 4.0 not in TakeState(take).posed
-
-
 def test_a_moving_camera_sees_the_pose_from_where_it_is(opened: bpy.types.Scene, wave_motion: Motion) -> None:
     take = active_take(opened)
     camera = take.camera

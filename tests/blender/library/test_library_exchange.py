@@ -123,12 +123,6 @@ def test_an_older_version_that_shall_replace_does(own: Path, library: Library, t
     assert titles(own) == [("small", "Small", 2, 2)]
 
 
-def test_a_title_does_not_stand_for_another_librarys_name(own: Path, library: Library) -> None:
-    write_library(own / "a.json", replace(library, identifier="zzz", title="small"))
-    write_library(own / "small.json", replace(library, title="Zoo"))
-    assert load_registered("small").title == "Zoo"
-
-
 def test_libraries_are_the_same_objects_until_a_file_changes(
     own: Path, library: Library, tmp_path: Path
 ) -> None:

@@ -44,34 +44,6 @@ def test_any_clothes_convert(pristine: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("no_blender")
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        (["--method", "ekf"], "method is ekf"),
-        (["--method", "ekf", "--library", "waving"], "method is ekf"),
-        (["--evidence", "markers"], "names markers, which this take has not got"),
-        (["--evidence", "keypoints"], "names keypoints, which this take has not got"),
-        (["--evidence", "sound"], "--evidence is ['sound']; it must be a list of one or more of markers"),
-        (["--evidence", "depth-hints"], "need keypoints beside them"),
-        (["--keypoints", "{take}/none.json"], "none.json"),
-        (["--keypoints", "{take}/take.json"], "take.json"),
-        (["--keypoints", "{take}/frames"], "frames"),
-        (
-            ["--keypoints", "{take}/pose.json", "--evidence", "contours"],
-            "--keypoints is given, but the evidence",
-        ),
-    ],
-)
-def test_a_mistake_in_the_evidence_is_one_line(
-    pristine: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], sentence: str
-) -> None:
-    said = [word.format(take=pristine) for word in words]
-    assert main(["convert", str(pristine), "--output", str(tmp_path / "out"), "--quiet", *said]) == 2
-    assert sentence in one_line(capsys.readouterr().err)
-    assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.usefixtures("no_blender")
 def test_keypoints_that_are_wrong_change_nothing(
     take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
