@@ -152,6 +152,8 @@ def _by_size(
     distance, offset = _usual_distance(body, camera), np.zeros(3)
     for _ in range(6):
         shown, ratio = shown_from(_at(standing, location + distance * direction))
+        if not np.isfinite([*shown, ratio]).all():  # so near that the camera is within the body
+            break
         # What is seen has its middle off the hips, by the same offset there as here.
         _, ray = camera.rays(shown, frame)
         offset = (ray - direction) * distance
@@ -239,7 +241,7 @@ def _relative_size(
     seen: Array,
     seen_area: Array,
 ) -> float:
-    """Ratio of the body's predicted size in the picture to its observed size.
+    """Ratio of the body's predicted size in the picture to its observed size; NaN where none is predicted.
 
     Each region's area gives a ratio, and a better one, where they are seen, the distance of the shins below
     the trunk: sleeves and clothes do not change that. Occlusion, bending or turning away makes a size
@@ -247,7 +249,9 @@ def _relative_size(
     their errors are left out.
     """
     shins = np.isfinite(seen_area) & _bound(segments, "shin")
-    measured = known | shins
+    measured = (known | shins) & (shown_area > 0.0)
+    if not measured.any():
+        return np.nan
     logarithms = 0.5 * np.log(shown_area[measured] / seen_area[measured])
     # 0.12: The same by a region's area (bodies turn, sleeves differ), by the trunk's height over the shins
     # (knees bend).

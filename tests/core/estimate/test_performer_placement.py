@@ -37,6 +37,13 @@ def test_a_body_stands_where_its_regions_are(place: tuple[float, float, float]) 
     assert np.linalg.norm(found.translation - true.translation) < 0.05
 
 
+def test_regions_larger_than_any_body_leave_it_in_sight() -> None:
+    tracks = seen(standing_posture(BODY))
+    for factor in (1e2, 1e4, 1e6):
+        found = place_standing(BODY, CAMERA, 0, replace(tracks, area=factor * tracks.area), SEGMENTS)
+        assert np.isfinite(found.translation).all() and CAMERA.depth(found.translation) > 0.0
+
+
 def test_the_floor_helps_where_the_camera_looks_down_on_it() -> None:
     camera = looking_down(0.5, (0.0, -3.5, 2.9))
     true = standing_posture(BODY)
