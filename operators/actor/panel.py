@@ -3,6 +3,7 @@
 import bpy
 
 from ..bridge.actor_bones import is_actor
+from ..follow.network import draw_network
 from ..follow.panel import draw_evidence, followed
 from ..shell.panel import Popover, StepPanel, draw_sentence
 from ..shell.take_state import TakeState
@@ -70,6 +71,7 @@ class KEYMARK_PT_actor_options(Popover, bpy.types.Panel):
         take, column = active_take(context.scene), self.column()
         column.operator("keymark.measure_actor", text="Measure in This Frame", icon="ARROW_LEFTRIGHT")
         column.prop(take.follow, "use_depth_hints")
+        draw_network(column)
         column.prop(take, "armature")
         if take.armature is None:
             return

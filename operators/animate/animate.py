@@ -9,6 +9,7 @@ import bpy
 from ...core.errors import InputError
 from ..actor.properties import Stature
 from ..character.characters import candidates
+from ..follow.network import draw_network
 from ..footage.load_footage import PATTERNS, load_into_take
 from ..shell.base_operator import call, chosen_file, reported
 from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
@@ -107,6 +108,7 @@ class KEYMARK_OT_animate(Stature, StagedOperator, bpy.types.Operator):
         if self.problem:
             draw_sentence(layout, context, self.problem, "ERROR")
         layout.prop(self, "character")
+        draw_network(layout)
 
     def start(self, scene: bpy.types.Scene) -> "Job[list[str]]":
         """Load the clip, and go on; what is complete stays in the scene where the job ends early."""

@@ -23,6 +23,7 @@ from ..character.retarget import keep_retargeted, retarget_take
 from ..finish.bake_motion import bake, keep_baked
 from ..follow.evidence import keypoint_path
 from ..follow.load_keypoints import Detected, follow_file, keep_detected, keypoint_output
+from ..follow.network import chosen_network
 from ..footage.found_camera import is_found, write_fit
 from ..footage.take_footage import lens_is_guess
 from ..keyframes.pose_all import keep_poses
@@ -103,6 +104,7 @@ def _clip_session(
         take,
         camera,
         detects=not TakeState(take).has_keypoints,
+        network=None if TakeState(take).has_keypoints else chosen_network(),
         open_lens=lens,
         floor_open=True,
         libraries=named_libraries(matching.library_name),

@@ -1,6 +1,6 @@
 """What is followed, in step 2: colored markers, keypoints, tracks, clicked points, contours."""
 
-PROPERTIES = ("marker_properties", "keypoint_properties")
+PROPERTIES = ("marker_properties", "keypoint_properties", "network")
 MODULES = (
     "marker_search",
     "pick_marker_color",

@@ -18,6 +18,7 @@ from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of, redraw_footage, take_by_identifier
 from .evidence import add_keypoint_file, keypoint_path, scene_evidence
 from .frame_keypoints import clear_readings
+from .network import chosen_network
 
 if TYPE_CHECKING:
     from ...core.detect.keypoints import People
@@ -127,7 +128,7 @@ def detect(scene: Scene) -> "Job[Detected]":
     identifier, source = take.identifier, footage_of(scene, take)
     output, first = keypoint_output(take, source.path), source.first_frame
     clip = open_footage(source.path, source.rate, (source.clip.size[0], source.clip.size[1]))
-    people = yield from find_people(clip, PoseNetwork(), CloserLook())
+    people = yield from find_people(clip, PoseNetwork(), CloserLook(chosen_network()))
     return Detected(identifier, output, people, clip.fps, first)
 
 
@@ -139,7 +140,8 @@ def keep_detected(scene: Scene, found: Detected) -> str:
     write_keypoints(found.output, people, found.frame_start, found.fps)
     follow_file(take, found.output)
     seen = f"Somebody is seen in {people.seen_frames} of {len(people.frames)} frames"
-    return f"{seen}; the keypoints are in {found.output.name}"
+    notes = "".join(f"; {note}" for note in people.notes)
+    return f"{seen}; the keypoints are in {found.output.name}{notes}"
 
 
 class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
