@@ -39,15 +39,16 @@ def reason_words(item: PropertyGroup) -> str:
     name = "" if item.reason == "FAR" else item.marker or item.point
     stem, _, side = name.partition(".")
     sided = {"L": f"left {stem}", "R": f"right {stem}"}.get(side, name).replace("_", " ")
-    return capitalized(REASONS_IN_WORDS[item.reason].format(what=sided or "the performer"))
+    return capitalized(REASONS_IN_WORDS[item.reason].format(what=sided or "the motion"))
 
 
 REASONS_IN_WORDS = {
     "HIDDEN": "{what} is hidden",
-    "FAST": "{what} moves fast",
-    "FAR": "the next keyframe is far",
-    "FOOTAGE": "{what} misses the footage",
+    "FAST": "{what} is fast",
+    "FAR": "keyframes are far",
+    "FOOTAGE": "{what} is off",
 }
+"""Short enough for a row of a narrow sidebar."""
 
 
 def draw_review(column: UILayout, context: Context, state: TakeState) -> None:

@@ -70,7 +70,7 @@ def test_a_body_point_is_a_reason_by_its_name(take: bpy.types.PropertyGroup) -> 
     weak = (WeakFrame(6, Reason.FOOTAGE, 1.0, point="wrist.L"), WeakFrame(3, Reason.HIDDEN, 0.5, marker=1))
     show_review(take, replace(made_up_review(), weak_frames=weak))
     assert [reason_words(item) for item in take.review.weak_frames] == [
-        "Left wrist misses the footage",
+        "Left wrist is off",
         "Ärmel is hidden",
     ]
 
