@@ -1,4 +1,4 @@
-"""Time and memory of everything that people wait for, in one table.
+"""Processor time and memory of everything that people wait for, in one table.
 
 Usage: waiting.py [CLIP ...] [--page]; clips are `small`, `ten` and `sixty`, by default
 all, made of the demonstration. Each cell is a process of its own, so that its peak of memory is its own too.
@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -50,8 +50,9 @@ CLIPS = {
     "sixty": Clip("60 s at 1920 × 1080", 1800, 0),
 }
 SIZE = (1920, 1080)
-CONVERT, BATCH, DETECT, BY_HAND = "convert", "batch", "detect", "by_hand"
+CONVERT, BATCH, DETECT, BY_HAND, ANIMATE = "convert", "batch", "detect", "by_hand", "animate"
 ROWS = {
+    ANIMATE: "**from a bare clip to its motion**, found keypoints and poses",
     "decode": "decoding alone, without Keymark",
     "start": "start Blender with Keymark",
     "open_take": "**open the take**",
@@ -78,11 +79,13 @@ class Cell:
     processor_s: float
     peak_mb: float
     takes: int = 1
+    stages: Mapping[str, float] = field(default_factory=dict)
+    """Processor seconds of each of its stages, where they are known."""
 
     @property
     def text(self) -> str:
-        """The cell as Markdown."""
-        seconds = self.seconds / self.takes
+        """The cell as Markdown: processor time, which other load changes least."""
+        seconds = self.processor_s / self.takes
         shown = f"{seconds:.1f} s" if seconds < 99.5 else f"{int(seconds // 60)} min {seconds % 60:02.0f} s"
         return f"{shown}, {self.peak_mb:.0f} MB"
 
@@ -112,7 +115,10 @@ def measured(step: str, clip: Clip, take: Path) -> Cell | str:
         if step == BY_HAND:
             return "0 s"
         if step == DETECT:
-            spent = cost(1, ["detect", str(take), "--output", str(Path(temporary, "seen.json")), "--quiet"])
+            spent = cost(
+                1,
+                ["detect", str(take / "clip.mp4"), "--output", str(Path(temporary, "seen.json")), "--quiet"],
+            )
         elif step == CONVERT:
             spent = cost(1, ["convert", str(take), "--output", str(output), "--quiet"])
         elif step == BATCH:
@@ -157,7 +163,13 @@ def table(found: Found, said: str) -> str:
     hourly = [
         cell if isinstance(cell, str) else f"{3600 * cell.takes / cell.seconds:.0f}" for cell in batches
     ]
-    lines.append("| clips an hour by that batch | " + " | ".join(hourly) + " |")
+    lines.append("| clips an hour by that batch, by the clock | " + " | ".join(hourly) + " |")
+    for name in found:
+        cell = found[name][ANIMATE]
+        if isinstance(cell, Cell):
+            ranked = sorted(cell.stages.items(), key=lambda one: -one[1])
+            shares = [f"{stage.lower()} {100 * own / cell.processor_s:.0f} %" for stage, own in ranked]
+            lines += ["", f"Of a bare clip of {CLIPS[name].title}: {', '.join(shares[:6])}."]
     return "\n".join(lines)
 
 
@@ -209,8 +221,8 @@ def to_json(found: Found) -> Mapping[str, Any]:
 def report(found: Found, others: str, on_page: bool) -> None:
     """Print and write what is known, and put it into the page if that is wanted."""
     said = (
-        f"Seconds by the clock and the most memory that the process held, on {machine()}, in Blender as a "
-        f"module.{others}"
+        f"Processor seconds of all cores and the most memory that the process held, on {machine()}, in "
+        f"Blender as a module.{others}"
     )
     text = table(found, said)
     write_results("waiting", text, json.dumps(to_json(found), indent=1))

@@ -9,10 +9,12 @@ seconds, processor seconds and the process's peak memory, which includes Blender
 
 import json
 import os
+import shutil
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from clock import peak_memory_mb
@@ -35,6 +37,21 @@ def decode(folder: Path) -> Callable[[], object]:
         capture = cv2.VideoCapture(str(folder / CLIP))
         while capture.read()[0]:
             pass
+
+    return work
+
+
+def animate(folder: Path) -> Callable[[], object]:
+    """From a bare clip and a height to the motion, as `core/api` goes; what each stage takes."""
+    load_project()
+    from animate import timed
+    from keymark.core.api import animate as from_clip
+
+    def work() -> dict[str, float]:
+        with TemporaryDirectory() as place:
+            clip = Path(place) / CLIP
+            shutil.copy(folder / CLIP, clip)  # away from the keypoints beside it
+            return timed(from_clip(clip, 1.7))[1]
 
     return work
 
@@ -124,6 +141,7 @@ STEPS: dict[str, Step] = {
     step.__name__: step
     for step in (
         decode,
+        animate,
         start,
         open_take,
         read,
@@ -194,17 +212,19 @@ def _keep_reading(bpy: Any, folder: Path) -> None:
     ArrayCache(folder / READ).save(READ, reading_arrays(reading))
 
 
-def measure(step: str, folder: Path) -> dict[str, float]:
+def measure(step: str, folder: Path) -> dict[str, Any]:
     """Measure a step of a take, and keep what later steps need."""
     work = STEPS[step](folder)
     began, spent = time.perf_counter(), time.process_time()
     ended = work()
+    stages = ended if isinstance(ended, dict) else {}
     if isinstance(ended, set) and ended != {"FINISHED"}:
         raise SystemExit(f"{step} ended with {ended}")
     found = {
         "seconds": time.perf_counter() - began,
         "processor_s": time.process_time() - spent,
         "peak_mb": peak_memory_mb(),
+        "stages": stages,
     }
     if step == read.__name__ or step in KEPT:
         import bpy

@@ -6,7 +6,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from ..arrays import Array, Image
+from ..arrays import Array, BoolArray, Image
 from ..camera.camera import Camera
 from ..errors import InputError
 from ..markers.reading import Reading
@@ -23,12 +23,18 @@ from .overlay_sheet import CELL_WIDTH, LABEL, MARGIN, evenly_spaced_frames, fram
 from .stick_figure import draw_figure, legend, stick_figure
 
 
-def footage_frames(clip: Clip, frames: Sequence[int], reading: Reading | None = None) -> dict[int, Image]:
-    """Frames of a clip by their index, rising, as a steady camera shows them, but unreadable ones."""
-    shown = clip.source.at(list(frames))
-    if reading is None or reading.steady is None:
-        return {frame: _reduced(image) for frame, image in shown}
-    return {frame: _reduced(steadied_picture(image, reading, frame)) for frame, image in shown}
+def footage_frames(clip: Clip, frames: Sequence[int]) -> dict[int, Image]:
+    """Frames of a clip by their index, rising, but unreadable ones."""
+    return {frame: _reduced(image) for frame, image in clip.source.at(list(frames))}
+
+
+def glimpsed_frames(reading: Reading, there: BoolArray) -> dict[int, Image]:
+    """What is kept of the clip's pictures, of the frames (F,) that count, as a steady camera shows them."""
+    glimpses = reading.glimpses
+    if glimpses is None:
+        return {}
+    kept = [frame for frame in glimpses.frames if there[frame]]
+    return {frame: steadied_picture(*glimpses.picture(frame), reading, frame) for frame in kept}
 
 
 def _reduced(image: Image) -> Image:
@@ -87,16 +93,15 @@ def write_pictures(
     contours: ContourModel | None = None,
     reading: Reading | None = None,
 ) -> tuple[Path, ...]:
-    """Write the pictures; the frames that they show are decoded in one more pass over the clip.
-
-    `reading`: that of the motion, which knows how the camera moved.
-    """
+    """Write the pictures of the frames that the motion's reading has kept, else of some that are decoded."""
     folder.mkdir(parents=True, exist_ok=True)
-    known = np.flatnonzero(motion.there)
-    frames = tuple(int(known[frame]) for frame in evenly_spaced_frames(len(known)))
-    shown = footage_frames(Clip.open(take.clip, take.fps, take.camera.resolution), frames, reading)
+    shown = {} if reading is None else glimpsed_frames(reading, motion.there)
+    if not shown:
+        known = np.flatnonzero(motion.there)
+        frames = [int(known[frame]) for frame in evenly_spaced_frames(len(known))]
+        shown = footage_frames(Clip.open(take.clip, take.fps, take.camera.resolution), frames)
     if not shown:
         raise InputError(f"{take.clip}: can no longer be read; the pictures need it once more")
     write_png(str(folder / PICTURES[0]), overlay_sheet(take, motion, tracks, shown, keypoints, contours))
-    write_png(str(folder / PICTURES[1]), side_sheet(motion, take.camera, frames))
+    write_png(str(folder / PICTURES[1]), side_sheet(motion, take.camera, tuple(shown)))
     return tuple(folder / name for name in PICTURES)

@@ -84,7 +84,7 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
     return inputs.shot, take.camera, take.body.actor.segments_m, take.fps, inputs.open_lens, posed
 
 
-STAGE = Stage("place", place, _uses, lambda _inputs: 0.3)
+STAGE = Stage("place", place, _uses, lambda _inputs: 0.2)
 
 
 def find_camera(

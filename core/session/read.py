@@ -44,4 +44,4 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
     return key, clip, take.contours, expected, network
 
 
-STAGE = Stage("read", read, _uses, lambda _inputs: 2.0)
+STAGE = Stage("read", read, _uses, lambda inputs: 6.0 if inputs.detects and inputs.kept is None else 1.5)

@@ -12,4 +12,4 @@ def make_motion(session: Session) -> Job[Reconstruction]:
     return (yield from reconstruct(posed.seen, inputs.method, posed.referred, floor_m=posed.floor_m))
 
 
-STAGE = Stage("reconstruct", make_motion, lambda inputs: (inputs.method,), lambda _inputs: 2.0)
+STAGE = Stage("reconstruct", make_motion, lambda inputs: (inputs.method,), lambda _inputs: 2.5)

@@ -56,7 +56,7 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
     return inputs.performer, inputs.detects, network, inputs.evidence, inputs.take.keypoints, posed
 
 
-STAGE = Stage("see", see, _uses, lambda inputs: 4.0 if inputs.detects else 0.2)
+STAGE = Stage("see", see, _uses, lambda inputs: 4.5 if inputs.detects and inputs.kept is not None else 0.1)
 
 
 def people_in_words(people: People) -> str:

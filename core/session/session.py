@@ -88,7 +88,7 @@ class Stage:
     uses: Callable[[Inputs], tuple[object, ...]] | None
     """What of the inputs its result depends on beside the stage before; None where that is not known."""
     work: Callable[[Inputs], float]
-    """Its usual share of all the work."""
+    """About how much work it is: seconds of a processor for three of a clip."""
 
 
 def plain(value: object) -> object:

@@ -91,12 +91,13 @@ def followed_camera(take: Take, reading: Reading) -> Camera:
     return replace(camera, matrix_world=pose)
 
 
-def steadied_picture(image: Image, reading: Reading, frame: int) -> Image:
-    """A picture of the clip as the steady camera would show it."""
+def steadied_picture(image: Image, factor: float, reading: Reading, frame: int) -> Image:
+    """A picture of the clip, `factor` times smaller, as the steady camera would show it."""
     if reading.steady is None:
         return image
-    size = image.shape[1], image.shape[0]
-    return np.asarray(cv2.warpPerspective(image, np.linalg.inv(reading.steady[frame]), size), dtype=np.uint8)
+    size, scale = (image.shape[1], image.shape[0]), np.diag([factor, factor, 1.0])
+    back = np.linalg.inv(reading.steady[frame] @ scale)
+    return np.asarray(cv2.warpPerspective(image, back @ scale, size), dtype=np.uint8)
 
 
 def _people(people: People, back: Array) -> People:

@@ -9,6 +9,7 @@ import pytest
 from _performances import made_up_keypoints
 from _synthetic_take import BODY, CAMERA, SIZE, true_postures, write_synthetic_take
 from keymark.core.camera.camera import Camera
+from keymark.core.markers.reading import Reading
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.report.canvas import INK, LEFT, RIGHT, Canvas, write_png
 from keymark.core.report.overlay_sheet import (
@@ -25,6 +26,7 @@ from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 from keymark.core.terms.contours import ContourModel
+from keymark.core.video.album import Glimpses
 
 FRAMES = 20
 CAMERA_AHEAD = Camera.from_dict(CAMERA)
@@ -83,6 +85,34 @@ def test_large_frames_are_kept_no_larger_than_drawn(
     monkeypatch.setattr("keymark.core.report.pictures.overlay_sheet", sheet)
     write_pictures(tmp_path / "report", replace(take, clip=images), motion, tracks)
     assert sizes and set(sizes) == {(450, 800)}
+
+
+def test_what_was_kept_of_the_clip_is_shown_without_decoding_it_again(
+    take: Take, motion: Motion, tracks: RegionTracks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    glimpses = Glimpses(2 * SIZE[0], {frame: np.zeros(0, dtype=np.uint8) for frame in (3, 9)})
+    picture = np.zeros((2 * SIZE[1], 2 * SIZE[0], 3), dtype=np.uint8)
+    picture[:, 200:] = 250
+    for frame in (3, 9):
+        glimpses.add(frame, picture)
+    turned = np.tile(np.eye(3), (FRAMES, 1, 1))
+    turned[9, 0, 2] = 40.0  # what the steady camera shows lies so far to the right in the clip [px]
+    given: list[dict[int, np.ndarray]] = []
+
+    def drawn(*arguments: object) -> np.ndarray:
+        given.append(arguments[3])  # type: ignore[arg-type]
+        return np.zeros((8, 8, 3), dtype=np.uint8)
+
+    monkeypatch.setattr("keymark.core.report.pictures.overlay_sheet", drawn)
+    reading = Reading(tracks, glimpses=glimpses, steady=turned)
+    missing = replace(take, clip=tmp_path / "gone.mp4")
+    write_pictures(tmp_path / "report", missing, motion, tracks, reading=reading)
+    (shown,) = given
+    edges = {
+        frame: int((image[50, :, 0] < 128).sum()) * 640 / image.shape[1] for frame, image in shown.items()
+    }
+    assert list(shown) == [3, 9]
+    assert edges[3] - edges[9] == pytest.approx(40.0 * 640 / (2 * SIZE[0]), abs=2.0)
 
 
 def test_the_skeleton_lies_on_the_projected_joints(take: Take, motion: Motion, tracks: RegionTracks) -> None:
