@@ -100,7 +100,7 @@ def _said(take: Path) -> dict[str, Any]:
         {"stroke": [[5, 5], [9.5, 7]], "radius_px": 4, "frames": [1, 3]},
     ]
     said["actor"]["height_m"] = 1.75
-    said |= {"library": "walking", "floor_m": 0.0, "method": "map", "pictures": True}
+    said |= {"library": "walking", "floor_m": 0.0, "method": "map", "pictures": True, "hands": True}
     said["character"] = dict(CHARACTER)
     said |= {"keypoints": ["keypoints.json"], "evidence": ["markers", "keypoints", "contours"]}
     return said | {"keyframes": "keyframes.json", "note": "of no meaning"}
@@ -115,7 +115,7 @@ def _keyframes(take: Path) -> dict[str, Any]:
 
 
 def _shoot(said: dict[str, Any]) -> dict[str, Any]:
-    settings = {"method": "ekf", "library": "mine.json", "pictures": False, "floor_m": 1.0}
+    settings = {"method": "ekf", "library": "mine.json", "pictures": False, "hands": False, "floor_m": 1.0}
     settings["keyframes"] = None  # auto beside a library is refused
     settings |= {"character": {"file": "anna.VRM"}, "keypoints": "keypoints.json", "evidence": ["markers"]}
     shared = {name: said[name] for name in SHARED}
@@ -138,7 +138,9 @@ def _keypoints() -> dict[str, Any]:
     value |= {"size": list(SIZE), "frame_start": 1, "fps": 30.0, "note": "free text"}
     value |= {"second": {"detector": "Another", "names": ["heel.R"], "digest": "0a", "motion": False}}
     face = [[12.0, 22.0, 0.1 * frame, -0.2, 0.0, 0.99] for frame in range(FRAMES)]
-    last: dict[str, list[Any]] = {"frames": frames, "world": world, "face": face}
+    look = [0.1, -0.2, 0.3, 0.98, 0.9]
+    hands = [[[40.0, 22.0, *look, *look], [None] * 12] for _ in range(FRAMES)]
+    last: dict[str, list[Any]] = {"frames": frames, "world": world, "face": face, "hands": hands}
     return value | {name: [*rows[:-1], None] for name, rows in last.items()}
 
 

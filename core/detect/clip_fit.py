@@ -15,6 +15,7 @@ from ..errors import InputError, pluralize
 from .continuity import repeated_results
 from .detected_frames import DetectedFrames
 from .face import no_faces
+from .hands import no_hands
 from .keypoints import People, SeenPeople, confidences
 
 
@@ -54,9 +55,9 @@ def held_against_clip(
         rows = rows[(everyone.score[rows] > 0.0).any(axis=-1)]
         index = number - aligned.first
         if len(rows) and 0 <= index < aligned.frame_count:
-            face = None if everyone.face is None else everyone.face[rows]
+            face, hands = (None if own is None else own[rows] for own in (everyone.face, everyone.hands))
             frames[index] = SeenPeople(
-                everyone.pixel[rows], everyone.score[rows], everyone.hint_m[rows], face
+                everyone.pixel[rows], everyone.score[rows], everyone.hint_m[rows], face, hands
             )
     if not any(len(frame.pixel) for frame in frames):
         raise InputError(f"{detected.where}: nobody is seen in any frame of the clip; it must show a person")
@@ -111,7 +112,12 @@ def _everyone(
     for row, person in enumerate(persons):
         if face is not None and person.face is not None:
             face[row] = person.face * [*scale, 1.0, 1.0, 1.0, 1.0]
-    return SeenPeople(place, score, hint, face), notes + score_notes
+    hands = no_hands(len(persons)) if any(person.hands is not None for person in persons) else None
+    for row, person in enumerate(persons):
+        if hands is not None and person.hands is not None:
+            hands[row] = person.hands
+            hands[row, :, :2] *= scale
+    return SeenPeople(place, score, hint, face, hands), notes + score_notes
 
 
 def _scale(

@@ -1,8 +1,9 @@
-"""A closer look at the people of a clip: how heads turn, by networks that see a part of the body alone."""
+"""A closer look at the people of a clip: how heads and hands turn, by networks that see these alone."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from typing import TypeVar
 
 import cv2
 
@@ -11,28 +12,43 @@ from ..errors import InputError
 from .face import FaceNetwork
 from .families.beside import Beside
 from .families.network import Network
+from .hands import HandNetwork
 from .pose_network import MOST_AT_ONCE, Pose
+
+Part = TypeVar("Part")
 
 
 class CloserLook:
     """The networks, as far as they are there."""
 
-    def __init__(self, network: Network | None = None) -> None:
+    def __init__(self, network: Network | None = None, hands: bool = True) -> None:
         self.beside = None if network is None else Beside(network)
         """One of somebody's own, which looks at all of them."""
-        try:
-            self._face: FaceNetwork | None = FaceNetwork()
-        except InputError:  # all else works without it
-            self._face = None
+        self._face = _there(FaceNetwork)
+        self._hands = _there(HandNetwork) if hands else None
 
-    def __call__(self, looks: Sequence[tuple[Image, Pose]]) -> list[Pose]:
-        """The poses of people in pictures with their faces, and behind their points another network's."""
-        poses = [pose for _, pose in looks]
-        face = self._face
-        if face is not None:
-            with ThreadPoolExecutor(max(1, min(cv2.getNumThreads(), MOST_AT_ONCE))) as pool:
-                faces = pool.map(lambda look: face(*look), looks)
-                poses = [replace(pose, face=own) for pose, own in zip(poses, faces, strict=True)]
+    def __call__(self, looks: Sequence[tuple[Image, Pose, bool]]) -> list[Pose]:
+        """The poses of people in pictures with their faces, where it is wanted with their hands.
+
+        Behind their points are another network's.
+        """
+        with ThreadPoolExecutor(max(1, min(cv2.getNumThreads(), MOST_AT_ONCE))) as pool:
+            poses = list(pool.map(lambda look: self._seen(*look), looks))
         if self.beside is not None:
-            poses = self.beside([picture for picture, _ in looks], poses)
+            poses = self.beside([picture for picture, *_ in looks], poses)
         return poses
+
+    def _seen(self, picture: Image, pose: Pose, wanted: bool) -> Pose:
+        if self._face is not None:
+            pose = replace(pose, face=self._face(picture, pose))
+        if self._hands is not None and wanted:
+            pose = replace(pose, hands=self._hands(picture, pose))
+        return pose
+
+
+def _there(network: Callable[[], Part]) -> Part | None:
+    """A network; None where it cannot be had, and all else works."""
+    try:
+        return network()
+    except InputError:
+        return None

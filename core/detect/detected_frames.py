@@ -28,6 +28,7 @@ class DetectedPerson:
     hint_m: Array | None = None  # (N, 3) as in `Keypoints`, where the detector guesses it
     body: int = 0  # number of the body's points, which hands follow; 0 where all are the body's
     face: Array | None = None  # (6,) as in `Keypoints`, where it was looked at
+    hands: Array | None = None  # (2, 12) likewise
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,8 @@ from typing import Annotated, Any
 import numpy as np
 
 from .. import FRAME_STARTS, MOST_FRAMES
+from ..arrays import Array
+from ..body.skeleton import SIDES
 from ..errors import InputError, shown
 from ..files.fields import Fields
 from ..files.json_file import read_json_value, write_json
@@ -26,8 +28,10 @@ from .detected_frames import (
 )
 from .detector_formats import FORMATS, is_instances, is_openpose_frame, read_frame_folder
 from .face import no_faces
+from .hands import no_hands
 from .keypoints import (
     FACE_NUMBERS,
+    HAND_NUMBERS,
     LONGEST_DETECTOR,
     NAMES,
     Detector,
@@ -75,6 +79,9 @@ class OwnFile(Record):
     face: Rows | None = None
     """Faces in the order of frames or people: middle [px], turn from facing the viewer [rad], and how sure it
     is; null where none was looked for."""
+    hands: Rows | None = None
+    """Left and right hand in the order of frames or people: wrist [px], and of two looks turn from rest
+    [rad], how sure there is a hand, and its side; null where none was looked for."""
     second: SecondSource | None = None
     """A network of somebody's own that looked at the same people; with the layout own."""
 
@@ -143,7 +150,7 @@ def read_own(fields: Fields, name_of_source: str) -> DetectedFrames:
     )
 
 
-MORE = ("world", "face")
+MORE = ("world", "face", "hands")
 """Fields with more about the people of frames or people."""
 
 
@@ -157,14 +164,18 @@ def _person(layout: Layout) -> Callable[[tuple[Any, dict[str, tuple[Any, str]]],
             raise InputError(
                 f"{where} has null or NaN among its numbers; a point that is not seen must be [0, 0, 0]"
             )
-        shapes = {"world": ((layout.count, 3), FARTHEST_M), "face": ((FACE_NUMBERS,), FARTHEST_PX)}
-        hint_m, face = (
+        shapes = {
+            "world": ((layout.count, 3), FARTHEST_M),
+            "face": ((FACE_NUMBERS,), FARTHEST_PX),
+            "hands": ((len(SIDES), HAND_NUMBERS), FARTHEST_PX),
+        }
+        hint_m, face, hands = (
             person_array(more[name][0], *shapes[name], more[name][1])
             if name in more and more[name][0] is not None
             else None
             for name in MORE
         )
-        return DetectedPerson(points[:, :2], points[:, 2], hint_m, face=face)
+        return DetectedPerson(points[:, :2], points[:, 2], hint_m, face=face, hands=hands)
 
     return read
 
@@ -206,13 +217,17 @@ def _written_points(frame: SeenPeople) -> list[Any]:
 def _written_more(frame: SeenPeople) -> Iterator[list[Any]]:
     """What there is more of a frame's people, by field, None where there is none."""
     yield [
-        [[float(x) if np.isfinite(x) else None for x in point] for point in np.round(hint, 4)]  # 0.1 mm
-        if np.isfinite(hint).any()
-        else None
-        for hint in frame.hint_m
-    ]
+        _numbers(np.round(hint, 4)) if np.isfinite(hint).any() else None for hint in frame.hint_m
+    ]  # 0.1 mm
     faces = no_faces(len(frame.pixel)) if frame.face is None else frame.face
     yield [np.round(face, 4).tolist() if np.isfinite(face).all() else None for face in faces]
+    hands = no_hands(len(frame.pixel)) if frame.hands is None else frame.hands
+    yield [_numbers(np.round(own, 4)) if np.isfinite(own).any() else None for own in hands]
+
+
+def _numbers(rows: Array) -> list[list[float | None]]:
+    """Rows of numbers as JSON, null where there is none."""
+    return [[float(x) if np.isfinite(x) else None for x in row] for row in rows]
 
 
 LARGEST_BYTES = 128 * 2**20  # twenty minutes of two people with their hints of depth

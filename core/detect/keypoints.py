@@ -66,6 +66,7 @@ def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
 
 
 FACE_NUMBERS = 6  # of a face, as `face` explains them
+HAND_NUMBERS = 12  # of a hand, as `hands` does
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +83,7 @@ class Keypoints:
     notes: tuple[str, ...] = ()
     """Sentences on who of several people was taken, and on what the sources' files leave open."""
     face: Array | None = None  # (F, 6) faces as in `face`, NaN where not looked at; None where nowhere
+    hands: Array | None = None  # (F, 2, 12) hands, left and right, as in `hands`, likewise
 
     def __post_init__(self) -> None:
         unknown = set(self.names) - set(BODY_POINTS)
@@ -93,6 +95,8 @@ class Keypoints:
         shapes = {"pixel": (frames, count, 2), "score": (frames, count), "hint_m": (frames, count, 3)}
         if self.face is not None:
             shapes["face"] = (frames, FACE_NUMBERS)
+        if self.hands is not None:
+            shapes["hands"] = (frames, len(SIDES), HAND_NUMBERS)
         freeze(self, shapes)
 
     @classmethod
@@ -114,12 +118,21 @@ class Keypoints:
             np.concatenate([part.hint_m for part in parts], axis=1),
             tuple(note for part in parts for note in part.notes),
             next((part.face for part in parts if part.face is not None), None),
+            next((part.hands for part in parts if part.hands is not None), None),
         )
 
     def frames(self, own: slice) -> "Keypoints":
         """The keypoints of some frames."""
         face = None if self.face is None else self.face[own]
-        return replace(self, pixel=self.pixel[own], score=self.score[own], hint_m=self.hint_m[own], face=face)
+        hands = None if self.hands is None else self.hands[own]
+        return replace(
+            self,
+            pixel=self.pixel[own],
+            score=self.score[own],
+            hint_m=self.hint_m[own],
+            face=face,
+            hands=hands,
+        )
 
     def frame(self, index: int) -> "Keypoints":
         """The keypoints of one frame."""
@@ -164,6 +177,7 @@ class SeenPeople:
     score: Array  # (H, N) 0 to 1, 0 where not seen
     hint_m: Array  # (H, N, 3) as in `Keypoints`
     face: Array | None = None  # (H, 6) as in `Keypoints`
+    hands: Array | None = None  # (H, 2, 12) likewise
 
     @classmethod
     def nobody(cls, points: int) -> "SeenPeople":

@@ -74,6 +74,7 @@ class Pose:
     presence: float  # how sure it is that the crop shows anybody, 0 to 1
     crop: Crop  # about this person
     face: Array | None = None  # (6,) as in `face`, where it was looked at
+    hands: Array | None = None  # (2, 12) as in `hands`, likewise
 
 
 class PoseNetwork:

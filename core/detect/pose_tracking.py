@@ -23,6 +23,7 @@ from ..video.clip import Clip
 from ..video.working_image import measuring_image
 from .closer_look import CloserLook
 from .face import no_faces, scaled_faces
+from .hands import no_hands
 from .keypoints import People, SeenPeople
 from .pose_network import LAYOUT, NAME, Crop, Pose, PoseNetwork
 
@@ -31,6 +32,7 @@ STRETCH = 30  # pictures kept at a time, 190 MB
 AHEAD = 6  # pictures that may be decoded before the network has seen the one before them
 LOOKS_A_SECOND = 15.0
 """Twice as many are no more exact: 2.26 % of a body's height on seven takes, 2.24 with a cubic in between."""
+HANDS_EVERY = 2  # looks at people; those at hands take longer
 LARGEST_SIDE_PX = 1920  # larger pictures are halved; the network sees 256 pixels of a person
 HEIGHTS = (1.15, 0.75, 0.5, 0.33)  # sides of the crops that are looked into, by the height of the picture
 SIZES = (0.75,)  # the same by the largest person who is followed already
@@ -167,8 +169,11 @@ class _Tracking:
 
     def _looked_at(self, closer: CloserLook) -> list[list[_Sighting]]:
         """The stretch's people with their heads and hands."""
-        seen = zip(self._pictures, self._seen, strict=True)
-        poses = iter(closer([(picture, one.pose) for picture, frame in seen for one in frame]))
+        seen = enumerate(zip(self._pictures, self._seen, strict=True))
+        looks = [
+            (picture, one.pose, index % HANDS_EVERY == 0) for index, (picture, frame) in seen for one in frame
+        ]
+        poses = iter(closer(looks))
         return [[_Sighting(one.track, next(poses)) for one in frame] for frame in self._seen]
 
     def _look(self, index: int) -> None:
@@ -311,15 +316,17 @@ def _fill(
     """Add a person to the frames from the first to the last look at them, in the clip's own pixels.
 
     Between looks all is on the cubic through them whose slopes are those of their neighbors (Catmull and Rom
-    1974), but for faces, which are those of looks. Points beyond the picture's edges are not seen.
+    1974), but for faces and hands, which are those of looks. Points beyond the picture's edges are not seen.
     """
     at = looked[sorted(track)]
     poses = [track[index] for index in sorted(track)]
-    face: Array | None = None
+    face, hands = no_faces(int(at[-1] - at[0]) + 1), no_hands(int(at[-1] - at[0]) + 1)
     if any(one.face is not None for one in poses):
-        face = no_faces(int(at[-1] - at[0]) + 1)
         known = [no_faces(1)[0] if one.face is None else one.face for one in poses]
         face[at - at[0]] = scaled_faces(known, 1.0 / scale)
+    if any(one.hands is not None for one in poses):
+        hands[at - at[0]] = [no_hands(1)[0] if one.hands is None else one.hands for one in poses]
+        hands[..., :2] /= scale
     seen = np.stack([np.column_stack([one.pixel / scale, one.score, one.hint_m]) for one in poses])
     if len(at) > 1:
         between = np.arange(at[0], at[-1] + 1)
@@ -333,9 +340,14 @@ def _fill(
             np.concatenate([others.pixel, pixel[row][None]]),
             np.concatenate([others.score, score[row][None]]),
             np.concatenate([others.hint_m, seen[row, None, :, 3:]]),
-            None if face is None else np.concatenate([_faces(others), face[row, None]]),
+            np.concatenate([_faces(others), face[row, None]]),
+            np.concatenate([_hands(others), hands[row, None]]),
         )
 
 
 def _faces(people: SeenPeople) -> Array:
     return no_faces(len(people.pixel)) if people.face is None else people.face
+
+
+def _hands(people: SeenPeople) -> Array:
+    return no_hands(len(people.pixel)) if people.hands is None else people.hands

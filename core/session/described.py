@@ -73,6 +73,7 @@ def described(
     method = settings.method or METHODS[0]
     return replace(
         inputs,
+        hands=settings.hands is not False,
         method=method,
         libraries=searched,
         floor_m=settings.floor_m,

@@ -28,7 +28,9 @@ def read(session: Session) -> Job[Reading]:
     if not session.inputs.detects:
         return (yield from read_footage(take, kept))
     clip = open_footage(take.clip, take.fps, take.camera.resolution)
-    with PeopleFinder(clip, PoseNetwork(), CloserLook(session.inputs.network)) as finder:
+    with PeopleFinder(
+        clip, PoseNetwork(), CloserLook(session.inputs.network, session.inputs.hands)
+    ) as finder:
         reading = yield from read_footage(take, kept, finder.add, DETECTING)
         if not finder.count:  # it is known already, and was not decoded
             return reading
@@ -41,7 +43,7 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
     key = reading_key(take.clip, take.fps, take.markers, None, take.ignored_regions)
     clip = take.fps, take.frame_start, take.frame_count, take.camera.resolution, take.camera.is_moving
     network = None if inputs.network is None else inputs.network.file.digest
-    return key, clip, take.contours, expected, network
+    return key, clip, take.contours, expected, network, inputs.hands
 
 
 STAGE = Stage("read", read, _uses, lambda inputs: 6.0 if inputs.detects and inputs.kept is None else 1.5)

@@ -39,7 +39,7 @@ def see(session: Session) -> Job[Sight]:
         people = reading.people if isinstance(reading, WatchedReading) else None
         if people is None:
             clip = open_footage(take.clip, take.fps, take.camera.resolution)
-            job = find_people(clip, PoseNetwork(), CloserLook(inputs.network))
+            job = find_people(clip, PoseNetwork(), CloserLook(inputs.network, inputs.hands))
             people = yield from stretch(job, 0.0, SEEN)
         take = replace(take, keypoints=(people,))
     if inputs.evidence is not None:
@@ -53,7 +53,8 @@ def see(session: Session) -> Job[Sight]:
 def _uses(inputs: Inputs) -> tuple[object, ...]:
     posed = sum(key.is_posed for key in inputs.take.keyframes) >= FEWEST_KEYFRAMES
     network = None if inputs.network is None else inputs.network.file.digest
-    return inputs.performer, inputs.detects, network, inputs.evidence, inputs.take.keypoints, posed
+    sees = inputs.performer, inputs.detects, network, inputs.hands
+    return (*sees, inputs.evidence, inputs.take.keypoints, posed)
 
 
 STAGE = Stage("see", see, _uses, lambda inputs: 4.5 if inputs.detects and inputs.kept is not None else 0.1)

@@ -39,6 +39,8 @@ class Inputs:
     """Whether the pose network is to see the performer, in place of the take's keypoints."""
     network: Network | None = None
     """One of somebody's own that looks beside it."""
+    hands: bool = True
+    """Whether palms face where hands are seen."""
     evidence: tuple[str, ...] | None = None
     """Kinds of evidence that are used, also of what is detected; None for all there are."""
     open_lens: Lens | None = None

@@ -14,7 +14,7 @@ from ..video.image_sequence import find_images
 from .conversion_settings import METHODS, ConversionSettings
 from .description import FILE_FIELDS, SETTING_FIELDS, Description, keypoint_files
 
-FORMAT = 3
+FORMAT = 4
 """Raised whenever the same input gives another result without a new version."""
 
 
@@ -72,6 +72,7 @@ def conversion_digest(
         settings.floor_m if libraries else None,
         settings.method or METHODS[0],
         settings.pictures is not False,
+        settings.hands is not False,
         None if character is None else ((contents, character.object, options), tuple(maps)),
         *evidence,
         *(value for value in (settings.subject, settings.shot, settings.performer) if value is not None),

@@ -97,6 +97,8 @@ class ConversionSettings(Record):
     interpolation the keyframes alone."""
     pictures: bool | None = None
     """Whether pictures of the result are drawn; the default is true."""
+    hands: bool | None = None
+    """Whether hands are looked at, so that palms face where they are seen to; the default is true."""
     character: CharacterSettings | None = None
     """The character that gets the motion too, as character.blend in the results."""
     keypoints: Annotated[tuple[Path, ...], KeypointFiles()] | None = None

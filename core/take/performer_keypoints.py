@@ -13,6 +13,7 @@ from ..body.mirror import other_side
 from ..body.posture import Posture
 from ..detect.continuity import same_person
 from ..detect.face import no_faces
+from ..detect.hands import no_hands
 from ..detect.keypoints import FACE, Keypoints, People, SeenPeople
 from ..detect.performer import Expected, Sightings, choose_performer, person_size
 from ..errors import InputError, pluralize
@@ -133,13 +134,18 @@ def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: 
     pixel = np.full((frames, len(people.names), 2), np.nan)
     score, hint = np.zeros(pixel.shape[:2]), np.full((*pixel.shape[:2], 3), np.nan)
     face = no_faces(frames) if any(seen.face is not None for seen in people.frames) else None
+    hands = None
+    if any(seen.hands is not None for seen in people.frames):
+        hands = no_hands(frames)
     for index, seen in enumerate(people.frames[:frames]):
         row = chosen[index]
         if row != NOBODY and len(seen.pixel):
             pixel[index], score[index], hint[index] = seen.pixel[row], seen.score[row], seen.hint_m[row]
             if face is not None and seen.face is not None:
                 face[index] = seen.face[row]
-    return Keypoints(people.names, people.sources, pixel, score, hint, notes, face)
+            if hands is not None and seen.hands is not None:
+                hands[index] = seen.hands[row]
+    return Keypoints(people.names, people.sources, pixel, score, hint, notes, face, hands)
 
 
 def _with_middles(

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.rotations import exponential, logarithm, right_jacobian_inverse, smallest
 from ..camera.camera import Camera
 from ..detect.keypoints import FACE as FACE_POINTS
@@ -38,8 +38,8 @@ class ObservedHeads:
 
     @classmethod
     def of(cls, keypoints: Keypoints, camera: Camera) -> "ObservedHeads | None":
-        """Those of a clip's keypoints; None where no face was looked for."""
-        if keypoints.face is None:
+        """Those of a clip's keypoints; None where no head was looked at."""
+        if keypoints.face is None or not np.isfinite(keypoints.face).any():
             return None
         looked = np.isfinite(keypoints.face).all(axis=-1)
         face = np.where(looked[:, None], keypoints.face, 0.0)
@@ -51,12 +51,10 @@ class ObservedHeads:
         found = looked & before & (face[:, 5] > PRESENT) & (aside < BEHIND_RAD)
         std_rad = np.where(aside < ASIDE_RAD, NEAR_STD_RAD, ASIDE_STD_RAD)
         std_rad = np.where(found, std_rad, np.where(looked & before & guessed, POINTS_STD_RAD, np.inf))
-        frame = np.arange(len(face))
-        axes = camera.pose(frame)[0] @ FLIP
-        sight = camera.rays(np.where(looked[:, None], face[:, :2], camera.principal_point), frame)[1]
-        axes = smallest(np.broadcast_to(axes[..., 2], sight.shape), sight) @ axes
+        middle = np.where(looked[:, None], face[:, :2], camera.principal_point)
+        axes = viewer_axes(camera, middle, np.arange(len(face)))
         seen = np.where(found[:, None, None], by_face, by_points)
-        return cls(axes @ seen @ FACING, np.where(np.isfinite(sight).all(axis=-1), std_rad, np.inf))
+        return cls(axes @ seen @ FACING, np.where(np.isfinite(axes).all(axis=(-2, -1)), std_rad, np.inf))
 
     @property
     def seen(self) -> BoolArray:
@@ -66,6 +64,13 @@ class ObservedHeads:
     def __getitem__(self, frames: slice) -> "ObservedHeads":
         """Those of some frames."""
         return ObservedHeads(self.turn[frames], self.std_rad[frames])
+
+
+def viewer_axes(camera: Camera, pixel: Array, frame: IndexArray) -> Array:
+    """(F, 3, 3) axes in the world of who looks at pixels (F, 2): x right, y down, z away along the sight."""
+    axes = camera.pose(frame)[0] @ FLIP
+    sight = camera.rays(pixel, frame)[1]
+    return np.asarray(smallest(np.broadcast_to(axes[..., 2], sight.shape), sight) @ axes)
 
 
 def _aside(turn: Array) -> Array:

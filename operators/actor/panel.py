@@ -72,6 +72,7 @@ class KEYMARK_PT_actor_options(Popover, bpy.types.Panel):
         column.operator("keymark.measure_actor", text="Measure in This Frame", icon="ARROW_LEFTRIGHT")
         column.prop(take.follow, "use_depth_hints")
         draw_network(column)
+        column.prop(take.follow, "use_hands")
         column.prop(take, "armature")
         if take.armature is None:
             return

@@ -122,6 +122,13 @@ SETTINGS: dict[str, tuple[str, dict[str, Any]]] = {
 PICTURES = argument(
     "--no-report", dest="pictures", action="store_const", const=False, help="draw no pictures"
 )
+HANDS = argument(
+    "--no-hands",
+    dest="hands",
+    action="store_const",
+    const=False,
+    help="do not look at hands: palms face naturally",
+)
 SHOOT_OPTIONS = setting_options(
     *("keypoints", "network", "evidence", "keyframes", "library", "floor_m", "method"),
     condition="; counts where nothing in SHOOT says it",
@@ -192,6 +199,7 @@ def given_settings(arguments: argparse.Namespace) -> ConversionSettings:
         | {
             "floor_m": vars(arguments).get("floor_m"),
             "pictures": vars(arguments).get("pictures"),
+            "hands": vars(arguments).get("hands"),
             "character": character_settings(arguments) if values["character"] else None,
             "keypoints": tuple(filter(None, values["keypoints"] or ())) or None,
         }

@@ -65,6 +65,12 @@ class KEYMARK_PG_follow(bpy.types.PropertyGroup):
         "it is calibrated at your keyframes and never believed over them",
         default=True,
     )
+    use_hands: Switch(
+        "Hands",
+        "Look at hands where they are large enough, so that palms face where they are seen to; what you pose "
+        "stays as it is",
+        default=True,
+    )
     use_tracks: Switch(
         "Follow Tracks",
         "Hold the motion against the clip's own motion tracks that follow points of the body",

@@ -128,7 +128,8 @@ def detect(scene: Scene) -> "Job[Detected]":
     identifier, source = take.identifier, footage_of(scene, take)
     output, first = keypoint_output(take, source.path), source.first_frame
     clip = open_footage(source.path, source.rate, (source.clip.size[0], source.clip.size[1]))
-    people = yield from find_people(clip, PoseNetwork(), CloserLook(chosen_network()))
+    closer = CloserLook(chosen_network(), bool(take.follow.use_hands))
+    people = yield from find_people(clip, PoseNetwork(), closer)
     return Detected(identifier, output, people, clip.fps, first)
 
 

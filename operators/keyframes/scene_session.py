@@ -59,7 +59,9 @@ def clip_session(
     footage, evidence, kept = footage_of(scene, settings), scene_evidence(settings), reading_of(settings)
     frames = yield from clip_frames(footage, evidence, kept)
     take = scene_take(footage, evidence, frames, body, camera or read_camera(footage, frames))
-    return SceneSession(identifier, Session(Inputs(take, kept=kept, **wanted)))
+    return SceneSession(
+        identifier, Session(Inputs(take, kept=kept, hands=bool(settings.follow.use_hands), **wanted))
+    )
 
 
 def read_session(
@@ -77,7 +79,8 @@ def read_session(
     source, actor, keys = footage_of(scene, settings), settings.armature, settings.keyframe_action
     digest = digest_of(keys)
     take, notes = yield from read_scene_take(source, actor, keys, scene_evidence(settings), matches, kept)
-    inputs = Inputs(take, **{"floor_m": floor_m, "kept": kept, **wanted})
+    hands = bool(settings.follow.use_hands)
+    inputs = Inputs(take, **{"floor_m": floor_m, "kept": kept, "hands": hands, **wanted})
     return SceneSession(identifier, Session(inputs), notes, digest)
 
 

@@ -10,7 +10,7 @@ from keymark.core.camera.camera_fields import FARTHEST_M, MOST_DISTORTION, Camer
 from keymark.core.detect.detected_frames import FARTHEST_M as FARTHEST_GUESS_M
 from keymark.core.detect.detected_frames import FARTHEST_PX, MOST_PEOPLE
 from keymark.core.detect.keypoint_file import OwnFile
-from keymark.core.detect.keypoints import FACE_NUMBERS
+from keymark.core.detect.keypoints import FACE_NUMBERS, HAND_NUMBERS
 from keymark.core.detect.layouts import OWN
 from keymark.core.files import kinds, records
 from keymark.core.files.kinds import Kind, NumberArray
@@ -48,6 +48,7 @@ def _numbers(count: int, limit: float, *types: str) -> dict[str, Any]:
 NULL = {"type": "null"}
 _PERSON, _GUESS = _numbers(3, FARTHEST_PX), {"anyOf": [NULL, _numbers(3, FARTHEST_GUESS_M, "null")]}
 _FACE = {"anyOf": [NULL, _numbers(FACE_NUMBERS, FARTHEST_PX, "null")["items"]]}
+_HANDS = {"anyOf": [NULL, _numbers(HAND_NUMBERS, FARTHEST_PX, "null") | {"minItems": 2, "maxItems": 2}]}
 RULES: dict[type[Record], dict[str, Any]] = {
     OwnFile: {
         "oneOf": [
@@ -58,6 +59,7 @@ RULES: dict[type[Record], dict[str, Any]] = {
                     "people": NULL,
                     "world": {"items": _GUESS},
                     "face": {"items": _FACE},
+                    "hands": {"items": _HANDS},
                 },
             },
             {
@@ -70,6 +72,7 @@ RULES: dict[type[Record], dict[str, Any]] = {
                     },
                     "world": {"items": {"anyOf": [NULL, {"type": "array", "items": _GUESS}]}},
                     "face": {"items": {"anyOf": [NULL, {"type": "array", "items": _FACE}]}},
+                    "hands": {"items": {"anyOf": [NULL, {"type": "array", "items": _HANDS}]}},
                 },
             },
         ],

@@ -17,6 +17,7 @@ from ..console import Console
 from ..conversion.character_result import FORMAT, check_exporters, export_formats
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
 from ..options import (
+    HANDS,
     HEIGHT,
     PICTURES,
     bare_clip_fields,
@@ -95,6 +96,7 @@ ANIMATE = Command(
         FORMAT,
         *character_options(),
         PICTURES,
+        HANDS,
     ),
     run=animate_command,
 )

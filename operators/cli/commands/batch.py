@@ -23,7 +23,7 @@ from ..batch.worker_pool import WorkerPool
 from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, Job, worker_command_line
 from ..command import Command, UsageError, argument, require_blender
 from ..console import Console
-from ..options import PICTURES, SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option, output
+from ..options import HANDS, PICTURES, SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option, output
 
 WORKER_BYTES = 1.5 * 2**30
 """Memory that a worker may need; the default number of jobs leaves each this much."""
@@ -145,6 +145,7 @@ BATCH = Command(
         argument("--again", action="store_true", help="convert takes anew that are converted already"),
         *SHOOT_OPTIONS,
         PICTURES,
+        HANDS,
         argument(
             "--failed-takes",
             choices=("fail", "pass"),

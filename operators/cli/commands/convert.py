@@ -11,7 +11,7 @@ from ....core.take.evidence import KEYPOINTS
 from ..command import Command, UsageError, argument
 from ..console import Console
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
-from ..options import PICTURES, SETTINGS, given_settings, output, setting_options
+from ..options import HANDS, PICTURES, SETTINGS, given_settings, output, setting_options
 
 
 def convert_command(arguments: argparse.Namespace, console: Console) -> None:
@@ -55,6 +55,7 @@ CONVERT = Command(
         *output("OUT", "folder for the result, new or old"),
         *setting_options(*SETTINGS),
         PICTURES,
+        HANDS,
     ),
     run=convert_command,
 )

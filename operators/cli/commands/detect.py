@@ -24,7 +24,7 @@ from ....core.take.take_file import FRAME_RATE, FRAME_START
 from ....core.video.image_sequence import find_images
 from ..command import Command, UsageError, argument, refuse_existing
 from ..console import Console
-from ..options import output, setting_options
+from ..options import HANDS, output, setting_options
 
 MOST_NAMED = 5
 
@@ -72,7 +72,7 @@ def detect_command(arguments: argparse.Namespace, console: Console) -> None:
     them.
     """
     own = None if arguments.network is None else open_network(arguments.network)
-    networks = PoseNetwork(), CloserLook(own)
+    networks = PoseNetwork(), CloserLook(own, arguments.hands is not False)
     one = _single(arguments.target)
     if one is not None:
         footage = one if arguments.output is None else replace(one, output=arguments.output)
@@ -198,6 +198,7 @@ DETECT = Command(
             required=False,
             replace="replace keypoint files that are there",
         ),
+        HANDS,
     ),
     run=detect_command,
 )

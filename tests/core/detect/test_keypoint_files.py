@@ -166,14 +166,16 @@ def test_own_file_is_read_back(tmp_path: Path) -> None:
         hint[1:2] = np.nan
         face = np.round(generator.uniform(0.0, 1.0, (count, 6)), 4)
         face[2:3] = np.nan
-        frames.append(SeenPeople(pixel, score, hint, face if count else None))
+        hands = np.round(generator.uniform(0.0, 1.0, (count, 2, 12)), 4)
+        hands[1:2, 0] = hands[2:3] = np.nan
+        frames.append(SeenPeople(pixel, score, hint, *((face, hands) if count else (None, None))))
     people = People(("head", "heel.L"), "a detector", SIZE, tuple(frames), by_hand=True)
     write_keypoints(tmp_path / "keypoints.json", people, 7, 25.0)
     again = read(tmp_path / "keypoints.json", 5, fps=25.0, frame_start=7)
     assert (again.names, again.source, again.size, again.by_hand) == (people.names, "a detector", SIZE, True)
     assert again.notes == ()
     for one, other in zip(people.frames, again.frames, strict=True):
-        for name in ("pixel", "score", "hint_m", "face"):
+        for name in ("pixel", "score", "hint_m", "face", "hands"):
             np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
 
 
