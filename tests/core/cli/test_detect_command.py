@@ -133,3 +133,13 @@ def test_a_take_that_names_its_keypoints_gets_them_there(tmp_path: Path) -> None
     assert main(["detect", str(take), "--quiet"]) == 0
     assert (take / "found.json").is_file() and not (take / "keypoints.json").exists()
     assert len(read_take(take, whole=True).keypoints) == 1
+
+
+def test_a_network_of_ones_own_that_is_none_is_one_sentence(
+    clip: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "net.onnx"
+    file.write_bytes(b"PK\x03\x04")
+    assert main(["detect", str(clip), "--network", str(file), "--quiet"]) == 2
+    assert "net.onnx: is a zip archive; unpack it" in one_line(capsys.readouterr().err)
+    assert not clip.with_name("walk.keypoints.json").exists()

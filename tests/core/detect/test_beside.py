@@ -9,16 +9,18 @@ import pytest
 from _drawn_clip import CIRCLE, Drawn
 from _networks import COLORS, METERS, draw_dots, instant_hmr, simcc
 from keymark.core.arrays import Array, Image
+from keymark.core.body.human import HUMAN
 from keymark.core.detect.closer_look import CloserLook
 from keymark.core.detect.families.beside import Beside
 from keymark.core.detect.families.instant_hmr import LAYOUT as MHR
 from keymark.core.detect.families.table import open_network
 from keymark.core.detect.keypoint_file import read_keypoints, write_keypoints
-from keymark.core.detect.keypoints import People, mirrored_point
+from keymark.core.detect.keypoints import Keypoints, People, SecondSource, mirrored_point
 from keymark.core.detect.layouts import LAYOUTS, Layout
 from keymark.core.detect.pose_network import LAYOUT, Crop, Look, Pose
 from keymark.core.detect.pose_tracking import find_people
 from keymark.core.progress import run
+from keymark.core.take.reference import seen_reference
 from keymark.core.video.clip import Clip
 
 SIZE, FRAMES = (640, 360), 16
@@ -175,3 +177,18 @@ def test_a_file_whose_second_source_has_no_points_of_its_own(
     write_json(file, rows | {"second": {"detector": "x", "names": ["nose"] * points}})
     with pytest.raises(InputError, match=sentence):
         read_keypoints(file, 1, (64, 48))
+
+
+def test_what_is_seen_in_space_is_a_motion_with_z_up_and_no_hint() -> None:
+    names, hint = (*LAYOUT.names, *MHR.names), np.zeros((3, len(LAYOUT.names) + len(MHR.names), 3))
+    hint[:] = np.random.default_rng(6).normal(size=hint.shape)
+    second = SecondSource("InstantHMR", MHR.names, motion=True)
+    people = People(names, "BlazePose", SIZE, (), second=second)
+    flat = np.ones((3, len(names), 2))
+    found, left = seen_reference(Keypoints(names, people.sources, flat, flat[..., 0], hint), [people])
+    assert found is not None and found.name == "InstantHMR"
+    first, knee = len(LAYOUT.names), MHR.names.index("knee.L")
+    right, down, away = np.moveaxis(hint[:, first + knee], -1, 0)
+    own = found.points_m[:, HUMAN.point_names.index("knee.L")]
+    np.testing.assert_allclose(own, np.stack([right, away, -down], axis=-1))
+    assert np.isnan(left.hint_m[:, first:]).all() and (left.hint_m[:, :first] == hint[:, :first]).all()
