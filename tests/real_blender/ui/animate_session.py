@@ -79,8 +79,8 @@ def corrected(person: Person) -> Steps[None]:
         yield from steps_correct.stored(person, steps_correct.dragged, "wrist.L")
         expect(frame in person.state.posed, f"frame {frame} is not put right")
         hands.clicks += 1  # the drag
-    yield from job(person, "keymark.reconstruct")
-    yield from steps_first.retarget(person)
+    yield from job(person, "keymark.update")
+    expect(not person.state.is_outdated, "something is made of what has changed since")
     yield from person.look("put_right")
 
 

@@ -34,7 +34,7 @@ FIRST_CLICKS, FIRST_KEYS = 6, 6
 ANIMATE_STEPS = ("panel", "file_browser", "mistaken", "running", "animated", "played", "put_right")
 ANIMATE_MOST = 2, 2
 """Clicks and keys: tab, Animate; N, Enter. Choosing a file and entering the height take three clicks more."""
-CORRECTED_MOST = 11, 6
+CORRECTED_MOST = 10, 6
 """With a joint dragged in two poses, and the motion made and given to the character anew; played once."""
 MOST_CLICKS = 40
 """From the clip to the motion: a button, five sleeves, a few buttons more, and four doubtful keyframes."""
