@@ -17,7 +17,19 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-ROOMS = ("numerics", "body", "terms", "prior", "estimate", "poses", "finish", "retarget")
+ROOMS = (
+    "numerics",
+    "body",
+    "camera",
+    "terms",
+    "prior",
+    "estimate",
+    "poses",
+    "feet",
+    "keys",
+    "mend",
+    "retarget",
+)
 FOLDERS = ("core", "operators", "presets", "tests", "tools", "benchmarks", "docs")
 FILES = ("__init__.py", "__main__.py", "blender_manifest.toml", "pyproject.toml", "Makefile")
 OPERATORS = {
