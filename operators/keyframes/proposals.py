@@ -1,6 +1,6 @@
 """Propose frames to pose, from the speed of the performer in the footage."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import bpy
@@ -46,15 +46,14 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         """Return the job; a clip that was read for these markers before is not read again."""
         from ...core.markers.reading import Reading
         from ...core.prior.keyframe_proposals import evidence_speed, propose_keyframes
-        from ...core.session.see import Sight
         from ...core.take.performer_keypoints import performer_keypoints
 
         take = active_take(scene)
         count = take.keyframe_count or None
         made = yield from stretch(clip_session(scene, take), 0.0, READ)
-        made = yield from stretch(go_on(made, "see"), 0.0, 0.9)
+        made = yield from stretch(go_on(made, "read"), 0.0, 0.9)
         known, reading = made.session.inputs.take, made.session[Reading]
-        keypoints = performer_keypoints(replace(known, keypoints=made.session[Sight].checked), reading.tracks)
+        keypoints = performer_keypoints(known, reading.tracks)
         segments = tuple(style.segment for style in known.markers)
         moved = evidence_speed(reading.tracks, segments, keypoints, reading.album)
         speed = yield from within("Measuring the speed", moved, 0.9, 1.0)
