@@ -19,7 +19,7 @@ LARGEST_MEAN_ERROR_M = 0.035
 LARGEST_SHARE = {".": 0.6, "without_markers": 0.75}
 """Of the error of straight lines between the keyframes, by the folder of the motion in OUTPUT."""
 PICTURES_AT_LEAST = 2
-LARGEST_MM = {"skate_mm": 0.3, "penetration_mm": 2.2, "ik_fk_mm": 1.5}
+LARGEST_MM = {"skate_mm": 0.3, "penetration_mm": 2.2}
 """Of the figures of the character's motion; of the skin of ankle, heel and toes the one that slides most.
 Feet deeper than 2 mm are lifted, on a larger character deeper in proportion."""
 LARGEST_ANIMATED_M = 0.12

@@ -16,6 +16,7 @@ from ....core.retarget.controls.control_spaces import (
     ControlSpace,
     PosedControls,
     chosen,
+    constant_turn,
     find_spaces,
     rigid_offset,
 )
@@ -41,6 +42,8 @@ STRAIGHT = 0.005
 """A limb whose joints span less than this, in squares of its length, is straight and shows no plane."""
 NOTICEABLE_RAD, NOTICEABLE = 0.3, 0.05
 """Turn, and distance in sizes, by which a bone may fail to follow its control before a note is made."""
+LEAST_SHARE = 0.75
+"""Share of a control's own turns that its bone may miss; those of Rigify's spines follow two by half."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +155,8 @@ def _offsets(
         )
         if turn_rad <= FOLLOWS_RAD and distance <= FOLLOWS * size:
             offsets[plan.name] = offset
-        if turn_rad > NOTICEABLE_RAD or distance > NOTICEABLE * size:
+        _, own_rad = constant_turn(posed.poses[: posed.still, index, :3, :3])
+        if turn_rad > max(NOTICEABLE_RAD, LEAST_SHARE * own_rad) or distance > NOTICEABLE * size:
             notes.append(
                 f"Bone '{plan.bone}' does not follow its control '{plan.name}' rigidly; its poses may be off"
             )

@@ -12,7 +12,7 @@ from _performances import performance, stepping
 from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.retarget.recognition.recognize import recognize
-from keymark.core.take.character_settings import RetargetOptions
+from keymark.core.take.character_settings import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.read_character import make_override, needs_override, read_character
 from keymark.operators.bridge.character.retarget import retarget
 
@@ -111,7 +111,8 @@ def test_a_linked_character_is_refused_until_it_is_overridden(rigify_blend: Path
     known = recognize(character).character_map
     body, posture = stepping()
     source = performance(body, posture[:10])
-    done = run(retarget(made, source, 1.0 + np.arange(10), known, RetargetOptions()))
+    options = RetargetOptions(arms=LimbKeys.BOTH, legs=LimbKeys.BOTH)
+    done = run(retarget(made, source, 1.0 + np.arange(10), known, options))
     action = done.write(bpy.context.scene, "Steps")
     assert made.animation_data.action == action
     assert done.quality.ik_fk_mm is not None and done.quality.ik_fk_mm < 1.0

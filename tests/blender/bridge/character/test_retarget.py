@@ -238,7 +238,7 @@ def test_a_control_rig_performs_in_ik_and_in_fk(
     rigify: bpy.types.Object, known: CharacterMap, source: SegmentMotion
 ) -> None:
     before = {key: rigify.pose.bones["thigh_parent.L"][key] for key in ("IK_FK", "IK_Stretch", "pole_vector")}
-    made = retargeted(rigify, known, source, RetargetOptions())
+    made = retargeted(rigify, known, source, RetargetOptions(arms=LimbKeys.BOTH, legs=LimbKeys.BOTH))
     quality = made.quality
     assert quality.ik_fk_mm is not None and 0.01 < quality.ik_fk_mm < 1.0
     assert quality.skate_mm is not None and quality.skate_mm < 0.05

@@ -8,9 +8,11 @@ import pytest
 from keymark.core.retarget.controls.control_plan import planned_controls
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.recognition.recognize import recognize
-from keymark.core.take.character_settings import RetargetOptions
+from keymark.core.take.character_settings import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.probe_controls import ProbedControls, probe_controls
 from keymark.operators.bridge.character.read_character import read_character
+
+BOTH = RetargetOptions(arms=LimbKeys.BOTH, legs=LimbKeys.BOTH)
 
 
 @pytest.fixture
@@ -22,7 +24,7 @@ def known(rigify: bpy.types.Object) -> CharacterMap:
 @pytest.fixture
 def probed(rigify: bpy.types.Object, known: CharacterMap) -> ProbedControls:
     """Its controls."""
-    return probe_controls(rigify, known, planned_controls(known, RetargetOptions()))
+    return probe_controls(rigify, known, planned_controls(known, BOTH))
 
 
 CARRIERS = {
@@ -70,7 +72,7 @@ def test_hands_and_feet_follow_their_goals(rigify: bpy.types.Object, probed: Pro
 def test_nothing_is_left_behind(
     rigify: bpy.types.Object, known: CharacterMap, state: Callable[[bpy.types.Object], object]
 ) -> None:
-    planned = planned_controls(known, RetargetOptions())
+    planned = planned_controls(known, BOTH)
     rigify.pose.bones["chest"].rotation_quaternion = (0.8, 0.3, 0.1, 0.2)
     rigify.pose.bones["thigh_parent.L"]["IK_parent"] = 3
     bpy.context.view_layer.update()
@@ -86,7 +88,7 @@ def test_what_an_animator_left_posed_is_part_of_the_space(
 ) -> None:
     rigify.pose.bones["root"].location = (0.5, 0.25, 0.0)
     bpy.context.view_layer.update()
-    again = probe_controls(rigify, known, planned_controls(known, RetargetOptions()))
+    again = probe_controls(rigify, known, planned_controls(known, BOTH))
     for first, second in zip(probed.controls, again.controls, strict=True):
         if first.space.carrier < 0:
             moved = second.space.origin - first.space.origin
