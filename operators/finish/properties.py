@@ -23,7 +23,7 @@ def _names(finish: bpy.types.PropertyGroup) -> list[str]:
 
 def _items(finish: bpy.types.PropertyGroup, _context: object) -> list[tuple[str, str, str, str, int]]:
     words = "Write what this armature performs, with what it moves"
-    names = _names(finish) or [""]
+    names = _names(finish) or ["Nobody"]  # Blender reads the choice before there is one
     _performers[:] = [(name, name, words, "ARMATURE_DATA", index) for index, name in enumerate(names)]
     return _performers
 

@@ -10,7 +10,6 @@ import bpy
 import numpy as np
 import pytest
 from _drawn_clip import MiddleNetwork
-from _networks import instant_hmr
 from keymark.core.detect.families.instant_hmr import LAYOUT
 from keymark.core.detect.keypoint_file import write_keypoints
 from keymark.core.take.motion import Motion
@@ -285,6 +284,9 @@ def own_network(tmp_path: Path) -> Iterator[Path]:
     """A network of somebody's own, chosen in the preferences as those of an installed extension."""
     addon = bpy.context.preferences.addons.new()
     addon.module = EXTENSION
+    pytest.importorskip("onnx")  # a real Blender lacks it
+    from _networks import instant_hmr
+
     addon.preferences.network = str(instant_hmr(tmp_path / "body.onnx", LAYOUT.numbers))
     yield tmp_path / "body.onnx"
     bpy.context.preferences.addons.remove(addon)

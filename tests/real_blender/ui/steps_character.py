@@ -107,9 +107,7 @@ def _again(person: Person) -> Steps[None]:
         "the result was not made again",
     )
     expect(len(bpy.data.actions) == count, "retargeting again left another Action")
-    yield from person.undoable(
-        "marking the asset", lambda: person.hands.click_button("keymark.mark_result_asset")
-    )
+    yield from person.undoable("marking the asset", lambda: person.hands.invoke("keymark.mark_result_asset"))
 
 
 def _another(person: Person) -> Steps[None]:
