@@ -229,7 +229,10 @@ def test_what_somebody_has_changed_is_kept_beside(take: Path, tmp_path: Path) ->
     assert (out / "motion (changed).blend").read_bytes() == b"worked in"
     assert (out / "motion (changed).bvh").read_text(encoding="utf-8") == "changed"
     notes = json.loads((out / "conversion.json").read_text(encoding="utf-8"))["notes"]
-    assert any("motion.blend was changed" in note and "motion (changed).blend" in note for note in notes)
+    assert any(
+        "motion.blend is not as Keymark had made it" in note and "motion (changed).blend" in note
+        for note in notes
+    )
     assert is_whole(out) and blend_is_of(out)
     for name in ("conversion.json", ".as_made.json"):
         (out / name).unlink()
