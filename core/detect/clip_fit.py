@@ -55,10 +55,7 @@ def held_against_clip(
         rows = rows[(everyone.score[rows] > 0.0).any(axis=-1)]
         index = number - aligned.first
         if len(rows) and 0 <= index < aligned.frame_count:
-            face, hands = (None if own is None else own[rows] for own in (everyone.face, everyone.hands))
-            frames[index] = SeenPeople(
-                everyone.pixel[rows], everyone.score[rows], everyone.hint_m[rows], face, hands
-            )
+            frames[index] = everyone.only(rows)
     if not any(len(frame.pixel) for frame in frames):
         raise InputError(f"{detected.where}: nobody is seen in any frame of the clip; it must show a person")
     again = [] if detected.by_hand else repeated_results(frames)

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ..arrays import Array, BoolArray, freeze
+from ..arrays import Array, BoolArray, IndexArray, freeze
 from ..body.human import HUMAN
 from ..body.skeleton import SIDES
 from ..files.kinds import Choice, Items, Text
@@ -184,9 +184,10 @@ class SeenPeople:
         """No person at all, H = 0, by a source of so many points."""
         return cls(np.zeros((0, points, 2)), np.zeros((0, points)), np.zeros((0, points, 3)))
 
-    def only(self, row: int) -> "SeenPeople":
-        """One of them alone."""
-        return SeenPeople(self.pixel[[row]], self.score[[row]], self.hint_m[[row]])
+    def only(self, rows: Sequence[int] | IndexArray) -> "SeenPeople":
+        """Some of them alone."""
+        face, hands = (None if own is None else own[rows] for own in (self.face, self.hands))
+        return SeenPeople(self.pixel[rows], self.score[rows], self.hint_m[rows], face, hands)
 
 
 NAMES = Items("body points", 1, len(BODY_POINTS), unique="point", item=Choice(BODY_POINTS))

@@ -107,7 +107,7 @@ def people_of(people: People, number: int, fps: float) -> People:
     )
     chosen = choose_performer(sightings, Expected(pixel, std_px, weight), fps)
     frames = tuple(
-        SeenPeople.nobody(len(people.names)) if row == NOBODY else frame.only(int(row))
+        SeenPeople.nobody(len(people.names)) if row == NOBODY else frame.only([int(row)])
         for frame, row in zip(people.frames, chosen, strict=True)
     )
     return replace(people, frames=frames)

@@ -87,10 +87,13 @@ def test_the_performer_is_named_from_the_left_and_copies_are_said(
             pixel[1 - row] = 2.0 * SHIFT + pixel[row][sides] * [-1.0, 1.0] + [people.size[0], 0.0]
             frames.append(replace(frame, pixel=pixel))
         people = replace(people, frames=tuple(frames))
+    faces = tuple(replace(each, face=each.pixel[:, :3].reshape(-1, 6)) for each in people.frames)
+    people = replace(people, frames=faces)
     one = people_of(people, number, take.fps)
     for index, (frame, row) in enumerate(zip(people.frames, truth, strict=True)):
         wanted = row if number == 1 else 1 - row
         np.testing.assert_array_equal(one.frames[index].pixel, frame.pixel[[wanted]])
+        np.testing.assert_array_equal(one.frames[index].face, frame.face[[wanted]])
     (note,) = performer_keypoints(replace(take, keyframes=(), keypoints=(people,))).notes
     assert ("mirrored copies" in note) == mirrored and "copies of each other" in note
     with pytest.raises(InputError, match="performer is 3; detector sees at most 2 people"):
