@@ -1,11 +1,8 @@
 """A closer look at the people of a clip: how heads and hands turn, by networks that see these alone."""
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import TypeVar
-
-import cv2
 
 from ..arrays import Image
 from ..errors import InputError
@@ -13,7 +10,7 @@ from .face import FaceNetwork
 from .families.beside import Beside
 from .families.network import Network
 from .hands import HandNetwork
-from .pose_network import MOST_AT_ONCE, Pose
+from .pose_network import Pose, in_parallel
 
 Part = TypeVar("Part")
 
@@ -32,8 +29,7 @@ class CloserLook:
 
         Behind their points are another network's.
         """
-        with ThreadPoolExecutor(max(1, min(cv2.getNumThreads(), MOST_AT_ONCE))) as pool:
-            poses = list(pool.map(lambda look: self._seen(*look), looks))
+        poses = in_parallel(lambda look: self._seen(*look), looks)
         if self.beside is not None:
             poses = self.beside([picture for picture, *_ in looks], poses)
         return poses

@@ -59,10 +59,8 @@ class FaceNetwork:
 
 def _first_crop(pose: Pose) -> Crop:
     """The crop about eyes and nose, as large as their places in space say, upright with the person."""
-    pixel, hint = pose.pixel[AROUND], pose.hint_m[AROUND, :2]
-    apart, apart_m = pixel - pixel.mean(axis=0), hint - hint.mean(axis=0)
-    scale = np.sqrt((apart**2).sum() / max(float((apart_m**2).sum()), 1e-9))
-    return Crop(pixel[:3].mean(axis=0), CROP_M * float(scale), pose.crop.angle)
+    middle = pose.pixel[AROUND[:3]].mean(axis=0)
+    return Crop(middle, CROP_M * pose.pixels_per_meter(AROUND), pose.crop.angle)
 
 
 def _seen(points: Array, crop: Crop) -> tuple[Array, Array, Crop]:
@@ -76,10 +74,7 @@ def _seen(points: Array, crop: Crop) -> tuple[Array, Array, Crop]:
     turned = exponential(np.array([0.0, 0.0, crop.angle]))
     turn = turned @ np.column_stack([across, down, np.cross(across, down)])
     upright = pixel[CHIN] - pixel[TOP]
-    own = Crop(crop.center, 1.0, float(np.arctan2(-upright[0], upright[1])))
-    within = pixel @ own.turn
-    low, high = within.min(axis=0), within.max(axis=0)
-    best = Crop(own.turn @ (0.5 * (low + high)), CROP_SIZES * float((high - low).max()), own.angle)
+    best = Crop.around(pixel, float(np.arctan2(-upright[0], upright[1])), CROP_SIZES)
     return turn, pixel.mean(axis=0), best
 
 

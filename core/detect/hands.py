@@ -96,8 +96,7 @@ def _first_crop(pose: Pose, side: str) -> Crop:
         LAYOUT.names.index(f"{name}.{side}") for name in ("wrist", "index", "pinky", "elbow")
     )
     pixel, hint = pose.pixel, pose.hint_m
-    apart, apart_m = pixel - pixel.mean(axis=0), hint[:, :2] - hint[:, :2].mean(axis=0)
-    length = LENGTH_M * float(np.sqrt((apart**2).sum() / max(float((apart_m**2).sum()), 1e-9)))
+    length = LENGTH_M * pose.pixels_per_meter()
     ahead = unit(0.5 * (hint[index] + hint[little]) - hint[wrist])[:2]
     up = 0.5 * (pixel[index] + pixel[little]) - pixel[wrist]
     if np.hypot(*up) < 0.15 * length:  # it points at the viewer, or away
@@ -109,7 +108,4 @@ def _first_crop(pose: Pose, side: str) -> Crop:
 def _around(pixel: Array) -> Crop:
     """The crop about a hand's points (21, 2), fingers up."""
     up = pixel[MIDDLE] - pixel[WRIST]
-    own = Crop(pixel[WRIST], 1.0, float(np.arctan2(up[0], -up[1])))
-    within = pixel @ own.turn
-    low, high = within.min(axis=0), within.max(axis=0)
-    return Crop(own.turn @ (0.5 * (low + high)), CROP_HANDS * float((high - low).max()), own.angle)
+    return Crop.around(pixel, float(np.arctan2(up[0], -up[1])), CROP_HANDS)

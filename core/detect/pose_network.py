@@ -4,10 +4,11 @@ onnxruntime runs it on the processor. It has learned crops about the hips with t
 crop must move and turn with the person: `Pose.crop` is where to look next.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import cv2
 import numpy as np
@@ -28,6 +29,18 @@ NEIGHBORS = 3  # a point goes to the middle of its heat map within so many cells
 MOST_AT_ONCE = 2  # looks: one person is followed two ways
 OUTPUTS = ("Identity", "Identity_1", "Identity_3", "Identity_4")  # as `tools/fetch_model.py` keeps them
 
+Item = TypeVar("Item")
+Seen = TypeVar("Seen")
+
+
+def in_parallel(look: Callable[[Item], Seen], items: Sequence[Item]) -> list[Seen]:
+    """What looks see, in order.
+
+    Two at a time with one thread each are faster than several threads for one.
+    """
+    with ThreadPoolExecutor(max(1, min(len(items), cv2.getNumThreads(), MOST_AT_ONCE))) as pool:
+        return list(pool.map(look, items))
+
 
 @dataclass(frozen=True, eq=False)
 class Crop:
@@ -36,6 +49,14 @@ class Crop:
     center: Array  # (2,) [px]
     side: float  # [px]
     angle: float = 0.0  # clockwise turn of the person within the picture [rad]
+
+    @classmethod
+    def around(cls, pixel: Array, angle: float, share: float) -> "Crop":
+        """The smallest, turned so far, about points (N, 2) of a picture, so many times as large."""
+        turn = cls(pixel[0], 1.0, angle).turn
+        within = pixel @ turn
+        low, high = within.min(axis=0), within.max(axis=0)
+        return cls(turn @ (0.5 * (low + high)), share * float((high - low).max()), angle)
 
     @property
     def matrix(self) -> Array:
@@ -76,6 +97,12 @@ class Pose:
     face: Array | None = None  # (6,) as in `face`, where it was looked at
     hands: Array | None = None  # (2, 12) as in `hands`, likewise
 
+    def pixels_per_meter(self, points: Sequence[int] | slice = slice(None)) -> float:
+        """Size of some points in the picture over that of the guess of them in space, across the view."""
+        pixel, hint = self.pixel[points], self.hint_m[points, :2]
+        apart, apart_m = pixel - pixel.mean(axis=0), hint - hint.mean(axis=0)
+        return float(np.sqrt((apart**2).sum() / max(float((apart_m**2).sum()), 1e-9)))
+
 
 class PoseNetwork:
     """The network with its weights."""
@@ -88,13 +115,9 @@ class PoseNetwork:
         return self.each([(picture, crop)])[0]
 
     def each(self, looks: Sequence[tuple[Image, Crop]]) -> list[Pose]:
-        """The persons in crops of pictures.
-
-        Two looks at a time with one thread each are faster than several threads for one look.
-        """
-        with ThreadPoolExecutor(max(1, min(len(looks), cv2.getNumThreads(), MOST_AT_ONCE))) as pool:
-            seen = pool.map(lambda look: self.infer(self.preprocess(*look)), looks)
-            return [self.postprocess(out, crop) for out, (_, crop) in zip(seen, looks, strict=True)]
+        """The persons in crops of pictures."""
+        seen = in_parallel(lambda look: self.infer(self.preprocess(*look)), looks)
+        return [self.postprocess(out, crop) for out, (_, crop) in zip(seen, looks, strict=True)]
 
     def preprocess(self, picture: Image, crop: Crop) -> SingleArray:
         """The network's input (1, 3, 256, 256), red first, 0 to 1."""

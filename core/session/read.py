@@ -42,8 +42,7 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
     expected = (take.keyframes, take.body.actor.segments_m, take.camera) if take.markers else ()
     key = reading_key(take.clip, take.fps, take.markers, None, take.ignored_regions)
     clip = take.fps, take.frame_start, take.frame_count, take.camera.resolution, take.camera.is_moving
-    network = None if inputs.network is None else inputs.network.file.digest
-    return key, clip, take.contours, expected, network, inputs.hands
+    return key, clip, take.contours, expected, *inputs.closer
 
 
 STAGE = Stage("read", read, _uses, lambda inputs: 6.0 if inputs.detects and inputs.kept is None else 1.5)

@@ -52,8 +52,7 @@ def see(session: Session) -> Job[Sight]:
 
 def _uses(inputs: Inputs) -> tuple[object, ...]:
     posed = sum(key.is_posed for key in inputs.take.keyframes) >= FEWEST_KEYFRAMES
-    network = None if inputs.network is None else inputs.network.file.digest
-    sees = inputs.performer, inputs.detects, network, inputs.hands
+    sees = inputs.performer, inputs.detects, *inputs.closer
     return (*sees, inputs.evidence, inputs.take.keypoints, posed)
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.posture_fit import nearest_rotation
 from ..body.rotations import exponential, logarithm, right_jacobian_inverse, smallest
 from ..camera.camera import Camera
 from ..detect.keypoints import FACE as FACE_POINTS
@@ -88,10 +89,7 @@ def _by_points(keypoints: Keypoints) -> Array:
     known = np.isfinite(seen).all(axis=(1, 2))
     usual = np.array([_usual(name) for name in FACE_POINTS]) @ FACING.T
     apart = seen[known] - seen[known].mean(axis=1, keepdims=True)
-    left, _, right = np.linalg.svd(np.swapaxes(apart, -1, -2) @ (usual - usual.mean(axis=0)))
-    proper = np.where(np.linalg.det(left @ right) < 0.0, -1.0, 1.0)
-    left[..., 2] *= proper[:, None]
-    turn[known] = left @ right
+    turn[known] = nearest_rotation(np.swapaxes(apart, -1, -2) @ (usual - usual.mean(axis=0)))
     return turn
 
 

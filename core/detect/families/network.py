@@ -5,7 +5,6 @@ Whoever is in the picture is found by Keymark's own pose network, about whose po
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -18,7 +17,7 @@ from ...errors import InputError, describe_unexpected
 from ..layouts import Layout
 from ..network_file import network_input
 from ..onnx_file import HALF, KINDS, OnnxFile, Tensor
-from ..pose_network import MOST_AT_ONCE, Look
+from ..pose_network import Look, in_parallel
 
 MEAN = np.array([0.485, 0.456, 0.406]).reshape(3, 1, 1)
 STD = np.array([0.229, 0.224, 0.225]).reshape(3, 1, 1)
@@ -115,8 +114,7 @@ class Network(ABC):
 
     def each(self, looks: Sequence[tuple[Image, Box]]) -> list[Look]:
         """The persons in boxes of pictures."""
-        with ThreadPoolExecutor(max(1, min(len(looks), cv2.getNumThreads(), MOST_AT_ONCE))) as pool:
-            return list(pool.map(self._look, looks))
+        return in_parallel(self._look, looks)
 
     def _look(self, look: tuple[Image, Box]) -> Look:
         window, values = self.prepare(*look)
