@@ -5,7 +5,6 @@ from functools import lru_cache
 import numpy as np
 
 from ..arrays import Array
-from .actor import Actor
 from .posture import Posture
 from .skeleton import Skeleton
 
@@ -28,11 +27,6 @@ def mirrored(posture: Posture) -> Posture:
     return Posture(
         posture.skeleton, posture.translation * MIRROR, turned, posture.angles[..., hinges] * signs
     )
-
-
-def mirrored_actor(actor: Actor) -> Actor:
-    """An actor with the lengths of left and right exchanged."""
-    return Actor({name: actor.segments_m[other_side(name)] for name in actor.segments_m})
 
 
 @lru_cache(maxsize=8)

@@ -1,4 +1,4 @@
-"""`keymark library`: list, show, check, merge, mirror, learn and exchange keyframe libraries."""
+"""`keymark library`: list, show, check, learn and exchange keyframe libraries."""
 
 import argparse
 from collections import Counter
@@ -7,12 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from ....core.errors import InputError
-from ....core.files.fields import listed
 from ....core.prior.library import Library, read_library, write_library
 from ....core.prior.registry import find_library, identifier_of, registered_libraries
-from ....core.prior.texts import LONGEST_NAME, checked_identifier, identifier_from
+from ....core.prior.texts import checked_identifier
 from ..blender_silence import blender_silence
-from ..command import Command, CommandGroup, UsageError, argument, refuse_existing, require_blender
+from ..command import Command, CommandGroup, argument, refuse_existing, require_blender
 from ..console import Console
 from ..library_search_path import library_folders
 from ..options import REPLACE_HELP, output
@@ -162,8 +161,7 @@ def read_command(arguments: argparse.Namespace, console: Console) -> None:
 def learn_command(arguments: argparse.Namespace, console: Console) -> None:
     """Makes a library of a motion's postures at spread-out, distinct frames.
 
-    With it the next take of the same kind needs fewer keyframes or none. A motion that repeats itself becomes
-    one average cycle.
+    With it the next take of the same kind needs fewer keyframes or none.
     """
     from ....core.prior.learning import LibraryMetadata, learn_library
     from ....core.take.motion import read_motion
@@ -178,42 +176,6 @@ def learn_command(arguments: argparse.Namespace, console: Console) -> None:
     console.stage("Choosing postures")
     library = learn_library(motion.body, motion.posture, motion.time_s, about, arguments.count)
     write_new_library(console, arguments, library)
-
-
-def merge_command(arguments: argparse.Namespace, console: Console) -> None:
-    """Writes the postures and motions of both libraries as one, on the proportions of the first.
-
-    Two versions of one library are merged by name; different libraries become a new one, in which
-    postures of the same name get a number.
-    """
-    from ....core.prior.merging import differing_names, join_libraries, merge_versions
-
-    refuse_existing(arguments.output, arguments.replace)
-    folders = library_folders()
-    first, second = (find_library(name, folders) for name in (arguments.library, arguments.other))
-    if first.identifier == second.identifier:
-        conflicts, changed = arguments.conflicts, differing_names(first, second)
-        if changed and conflicts is None:
-            names = listed(map(repr, changed), 5)
-            raise UsageError(f"both versions of {first.identifier} have {names}, and differ; add --conflicts")
-        library = merge_versions(first, second, conflicts == "replace")
-    else:
-        title = arguments.title or f"{first.title} and {second.title}"[:LONGEST_NAME].strip()
-        identifier = arguments.identifier or identifier_from(title, [first.identifier, second.identifier])
-        library = join_libraries(first, second, identifier, title)
-    write_new_library(console, arguments, library)
-
-
-def mirror_command(arguments: argparse.Namespace, console: Console) -> None:
-    """Writes a library with left and right exchanged in every posture and motion.
-
-    Matching does so by itself; it is for posing.
-    """
-    from ....core.prior.transfer import mirrored_library
-
-    refuse_existing(arguments.output, arguments.replace)
-    library = find_library(arguments.library, library_folders())
-    write_new_library(console, arguments, mirrored_library(library))
 
 
 LIBRARY_NAME = argument("library", metavar="LIBRARY", help=LIBRARY_HELP)
@@ -236,32 +198,6 @@ CHECK = Command(
     summary="check library files",
     arguments=(argument("files", metavar="FILE", type=Path, nargs="+", help="library files"),),
     run=check_command,
-)
-
-
-MERGE = Command(
-    summary="join two libraries",
-    arguments=(
-        argument("library", metavar="A", help=f"{LIBRARY_HELP}, which gives title, author and proportions"),
-        argument("other", metavar="B", help=LIBRARY_HELP),
-        argument(
-            "--conflicts",
-            choices=("keep", "replace"),
-            help="of two versions: what of A has changed in B is kept, or replaced; by default they are "
-            "named and nothing is written",
-        ),
-        argument("--title", metavar="TEXT", help="of the new library; by default that of both"),
-        argument("--identifier", metavar="NAME", help="of the new library; by default made of the title"),
-        *LIBRARY_FILE,
-    ),
-    run=merge_command,
-)
-
-
-MIRROR = Command(
-    summary="exchange left and right",
-    arguments=(LIBRARY_NAME, *LIBRARY_FILE),
-    run=mirror_command,
 )
 
 
@@ -304,14 +240,13 @@ READ = Command(
 
 LIBRARY = CommandGroup(
     name="library",
-    description="Lists, looks at, checks, joins and makes keyframe libraries.",
+    description="Lists, looks at, checks and makes keyframe libraries.",
     epilog="""\
 examples:
   {program} list
   {program} show walking
   {program} learn out/walk/motion.json --title "Anna walking" --author Anna --output anna_walking.json
-  {program} merge walking anna_walking.json --output studio.json
 
 A library is a file, or the name of one that comes with Keymark or lies in a folder of KEYMARK_LIBRARIES.""",
-    commands=(LIST, SHOW, CHECK, MERGE, MIRROR, LEARN, BLEND, READ),
+    commands=(LIST, SHOW, CHECK, LEARN, BLEND, READ),
 )

@@ -14,7 +14,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.body_volume import sole_places
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
-from keymark.core.body.mirror import MIRROR, mirrored, mirrored_actor, other_side
+from keymark.core.body.mirror import MIRROR, mirrored, other_side
 from keymark.core.body.posture import Posture
 from keymark.core.body.posture_fit import fit_posture
 from keymark.core.body.posture_spline import cubic_spline, linear_spline
@@ -102,7 +102,8 @@ def test_mirroring_twice_gives_the_very_same_numbers(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(5))
 def test_points_are_mirrored(seed: int) -> None:
     lengths = dict(Actor.from_stature(1.75).segments_m) | {"thigh.L": 0.5, "upper_arm.R": 0.25}
-    body, opposite = Body(Actor(lengths)), Body(mirrored_actor(Actor(lengths)))
+    swapped_lengths = {name: lengths[other_side(name)] for name in lengths}
+    body, opposite = Body(Actor(lengths)), Body(Actor(swapped_lengths))
     posture = random_posture(seed, 0.8)
     pose, mirror_pose = body.pose(posture), opposite.pose(mirrored(posture))
     names = HUMAN.point_names

@@ -2,7 +2,6 @@
 
 import json
 import re
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -98,46 +97,6 @@ def test_a_motion_is_learned_and_nothing_replaced(
 
 
 @pytest.mark.parametrize(
-    "words", [["mirror", "small_steps"], ["merge", "small_steps", "SHELF/any name.json"]]
-)
-def test_what_is_made_of_libraries_is_one(
-    words: list[str], shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    before, made = (shelf / "any name.json").read_bytes(), tmp_path / "out.json"
-    assert run(*(word.replace("SHELF", str(shelf)) for word in words), "--output", made, "--json") == 0
-    assert json.loads(capsys.readouterr().out)["files"] == [str(made)]
-    assert len(read_library(made).postures) >= 3
-    assert (shelf / "any name.json").read_bytes() == before
-
-
-def test_two_versions_are_merged_only_as_told(
-    shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    mine = small_library()
-    first, *others = mine.postures
-    moved = replace(first, posture=others[0].posture)
-    theirs = replace(mine, version=mine.version + 1, postures=(moved, *others))
-    write_library(tmp_path / "theirs.json", theirs)
-    words = ("merge", "small_steps", tmp_path / "theirs.json", "--output", tmp_path / "out.json")
-    assert run(*words) == 2
-    assert first.name in capsys.readouterr().err and not (tmp_path / "out.json").exists()
-    for choice, wanted in (("keep", first), ("replace", moved)):
-        assert run(*words, "--conflicts", choice, "--replace", "--quiet") == 0
-        got = read_library(tmp_path / "out.json").by_name[first.name].posture
-        assert np.abs(got.minus(wanted.posture)).max() < 1e-8
-
-
-def test_different_libraries_become_a_new_one(
-    shelf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    write_library(tmp_path / "other.json", replace(small_library(), identifier="other", title="Other"))
-    words = ("merge", "small_steps", tmp_path / "other.json", "--output", tmp_path / "out.json")
-    assert run(*words, "--title", "Both of Them", "--quiet") == 0
-    both = read_library(tmp_path / "out.json")
-    assert (both.identifier, both.title) == ("both_of_them", "Both of Them")
-
-
-@pytest.mark.parametrize(
     ("words", "sentence"),
     [
         ([], "COMMAND"),
@@ -151,8 +110,6 @@ def test_different_libraries_become_a_new_one(
         (["learn", "m.json", "--title", "T", "--output", "l.json", "--identifier", "../x"], "--identifier"),
         (["learn", "MOTION", "--title", "T", "--output", "l.json", "--license", "free for all!"], "SPDX"),
         (["learn", "MOTION", "--title", "T", "--output", "l.json", "--count", "400"], "40 frames"),
-        (["merge", "small_steps", "--output", "c.json"], "B"),
-        (["mirror", "small_steps", "--output", "SHELF/any name.json"], "is there already"),
     ],
 )
 def test_mistakes_are_one_line(
