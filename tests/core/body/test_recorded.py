@@ -15,7 +15,7 @@ from keymark.core.body.body_volume import (
 )
 from keymark.core.body.human import HUMAN, mass_weights
 from keymark.core.body.human_mesh import HumanMesh
-from keymark.core.body.mirror import mirrored, mirrored_actor
+from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture, headings_rad
 from keymark.core.body.posture_fit import fit_posture, guess_posture
 from keymark.core.body.posture_spline import cubic_spline, linear_spline
@@ -31,7 +31,7 @@ def test_the_skeleton_and_its_shape() -> None:
     for field in ("start", "end", "half_widths", "sagittal", "lateral"):
         assert_recorded(f"pieces {field}", *(getattr(piece, field) for piece in pieces))
     assert_recorded("rings", *(piece.rings(8, 3, 4) for piece in pieces))
-    lengths = mirrored_actor(BODY.actor).segments_m
+    lengths = BODY.actor.segments_m
     assert_recorded("lengths", [lengths[name] for name in sorted(lengths)], [standing_height_m(BODY)])
 
 
