@@ -70,8 +70,7 @@ class Mended:
 def mend_motion(points: Array, rate: float, options: MendOptions, frame_start: int = 1) -> Job[Mended]:
     """Mend points (F, 13, 3) [m], Z up, NaN where one is missing, at a rate [1/s].
 
-    Raises:
-        InputError: There are too few frames, too many, or too few with the whole body; no size of a person.
+    InputError: there are too few frames, too many, or too few with the whole body; no size of a person.
     """
     yield Progress("Looking through the motion", 0.0)
     given, notes = _checked(points, options, frame_start)
@@ -128,8 +127,7 @@ def mend_motion(points: Array, rate: float, options: MendOptions, frame_start: i
 def _checked(points: Array, options: MendOptions, frame_start: int) -> tuple[Array, list[str]]:
     """The points with NaN where a frame is missing or repeats the one before, and notes.
 
-    Raises:
-        InputError: See `mend_motion`.
+    InputError: see `mend_motion`.
     """
     frames = len(points)
     if not 3 <= frames <= MOST_FRAMES:
@@ -163,8 +161,7 @@ def _checked(points: Array, options: MendOptions, frame_start: int) -> tuple[Arr
 def measured_actor(points: Array) -> Actor:
     """The actor whose segments have the median lengths of points (F, 13, 3) [m].
 
-    Raises:
-        InputError: A length is that of no person.
+    InputError: a length is that of no person.
     """
     at = {name: points[:, index] for index, name in enumerate(HUMAN.point_names)}
     middle = {part: 0.5 * (at[f"{part}.L"] + at[f"{part}.R"]) for part in ("hip", "shoulder")}

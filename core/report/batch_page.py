@@ -26,10 +26,8 @@ MOST_ROWS = 5000  # largest number of takes on the page; browsers are slow to la
 MOST_NAMED = 12  # frames and notes of a take
 GOOD = WEAK_CONFIDENCE
 """Mean confidence from which a take is good: frames of this confidence need no keyframe."""
-FAIR = 0.5
-"""Mean confidence from which a take is fair: below, most joints are likely off."""
-GOOD_WEAKEST = FAIR
-"""Least confidence of the weakest twentieth of a good take's frames."""
+FAIR = 0.5  # mean confidence from which a take is fair: below, most joints are likely off
+GOOD_WEAKEST = FAIR  # least confidence of the weakest twentieth of a good take's frames
 
 
 class Verdict(StrEnum):

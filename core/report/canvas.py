@@ -11,8 +11,7 @@ from ..body.human import STRONG
 from ..camera.camera import Camera
 from ..numerics.vectors import unit
 
-Color = tuple[int, int, int]
-"""Blue, green, red, 0 to 255."""
+Color = tuple[int, int, int]  # blue, green, red, 0 to 255
 
 WHITE: Color = (255, 255, 255)
 INK: Color = (51, 45, 42)
@@ -23,13 +22,10 @@ LEFT: Color = STRONG["L"][::-1]
 RIGHT: Color = STRONG["R"][::-1]
 ACCENT: Color = (115, 158, 0)
 
-SCALE = 2
-"""Supersampling: everything is drawn this much larger and reduced at the end."""
-SUBPIXEL_BITS = 4
-"""Fractional bits of coordinates: OpenCV draws to sixteenths of a pixel."""
+SCALE = 2  # supersampling: everything is drawn this much larger and reduced at the end
+SUBPIXEL_BITS = 4  # fractional bits of coordinates: OpenCV draws to sixteenths of a pixel
 FONT = cv2.FONT_HERSHEY_DUPLEX
-LETTER_PX = 21.0
-"""Height of the font's capital letters at scale 1."""
+LETTER_PX = 21.0  # height of the font's capital letters at scale 1
 
 
 class Canvas:
@@ -177,8 +173,7 @@ def side_directions(camera: Camera) -> Array:
     return np.stack([ahead, UP, np.cross(UP, ahead)])
 
 
-GRID_M = 0.5
-"""Between the lines of a grid that sizes are read off."""
+GRID_M = 0.5  # between the lines of a grid that sizes are read off
 
 
 def draw_grid(tile: Canvas, scale: float, floor: float) -> None:

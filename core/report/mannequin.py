@@ -28,12 +28,9 @@ SKIN: Color = (196, 190, 186)
 class CharacterFigure:
     """A character in one frame."""
 
-    points: Array
-    """(N, 3) corners of the triangles in the world [m]."""
-    triangles: IndexArray
-    """(T, 3) rows of `points`, counterclockwise seen from outside."""
-    colors: Array
-    """(T, 3) blue, green, red, 0 to 255."""
+    points: Array  # (N, 3) corners of the triangles in the world [m]
+    triangles: IndexArray  # (T, 3) rows of `points`, counterclockwise seen from outside
+    colors: Array  # (T, 3) blue, green, red, 0 to 255
 
 
 def draw_character(canvas: Canvas, figure: CharacterFigure, project: Projection) -> None:
@@ -58,11 +55,9 @@ def draw_character(canvas: Canvas, figure: CharacterFigure, project: Projection)
 
 SIDES_OF_RING, BANDS_OF_CAP, BANDS_OF_SHAFT = 16, 4, 5
 TRUNK = (186, 182, 180)
-BAND = (235, 232, 230)
-"""Color of a ring around each right limb, which marks it for color-blind eyes too."""
+BAND = (235, 232, 230)  # color of a ring around each right limb, which marks it for color-blind eyes too
 FLOOR_M = 0.0
-SHADOW, SOFTNESS_M = 0.32, 0.03
-"""Darkness of the shadow, and its blur."""
+SHADOW, SOFTNESS_M = 0.32, 0.03  # darkness of the shadow, and its blur
 
 
 @dataclass(frozen=True)
@@ -72,12 +67,9 @@ class View:
     turn_rad: float
     """Turn of the eye around the world's Z: at 0 it sees a performer who faces -Y from the front, at π/2 from
     their left."""
-    tilt_rad: float
-    """Downward tilt of the view."""
-    scale: float
-    """Pixels a meter."""
-    center: tuple[float, float]
-    """The world's origin in the picture: pixels to the right and down."""
+    tilt_rad: float  # downward tilt of the view
+    scale: float  # pixels a meter
+    center: tuple[float, float]  # the world's origin in the picture: pixels to the right and down
 
     def project(self, points: Array) -> tuple[Array, Array]:
         """Pixels (..., 2) and depths (...,) [m] of world points (..., 3)."""
@@ -137,8 +129,7 @@ def _pieces(body: Body) -> tuple[Piece, ...]:
 
 SIZE = 256
 EDGE = 8
-TILT_RAD = 0.16
-"""Downward tilt of the view, which shows where on the floor the feet are."""
+TILT_RAD = 0.16  # downward tilt of the view, which shows where on the floor the feet are
 WALL = np.array([250.0, 249.0, 248.0])
 FLOOR = np.array([229.0, 225.0, 222.0])
 BEHIND_M = 0.45
@@ -172,8 +163,7 @@ def backdrop(height: int, width: int, floor: float, scale: float) -> Image:
 
 
 SIDE = 220
-ROOM = 1.15
-"""Side of the view from the side, in heights or widths of the largest figure."""
+ROOM = 1.15  # side of the view from the side, in heights or widths of the largest figure
 
 
 def character_sheet(

@@ -47,10 +47,8 @@ def draw_outlines(
 SOURCE_COLORS: tuple[Color, ...] = ((167, 121, 204), (66, 228, 240), (233, 180, 86), (0, 159, 230))
 """Purple, yellow, sky blue and orange for the first sources, Okabe and Ito's beside those of the limbs."""
 THROWN_OUT: Color = (40, 30, 200)
-ARM = 3.4
-"""Half-length of a cross's arms [px]; half of it for a small figure."""
-RING = 2.2
-"""Radius of the ring at the predicted place [px]; the same."""
+ARM = 3.4  # half-length of a cross's arms [px]; half of it for a small figure
+RING = 2.2  # radius of the ring at the predicted place [px]; the same
 
 
 def source_color(keypoints: ComparedKeypoints, source: str) -> Color:

@@ -16,18 +16,15 @@ from .canvas import GRAY, INK, LEFT, PALE, PAPER, RIGHT, WHITE, Canvas, Color, v
 Projection = Callable[[Array], tuple[Array, Array]]
 """From world points (N, 3) to canvas points (N, 2) and depths (N,), which grow with the distance."""
 
-HEAD_RADIUS = 0.055
-"""In statures; the head point is the head's center."""
+HEAD_RADIUS = 0.055  # in statures; the head point is the head's center
 
 
 @dataclass(frozen=True)
 class Limb:
     """A line through points of the body, for every frame."""
 
-    side: str
-    """`L`, `R`, or empty for the trunk."""
-    points: Array
-    """(F, N, 3) [m]."""
+    side: str  # `L`, `R`, or empty for the trunk
+    points: Array  # (F, N, 3) [m]
 
 
 @dataclass(frozen=True)
@@ -35,8 +32,7 @@ class StickFigure:
     """The limbs and the head of a motion's performer."""
 
     limbs: tuple[Limb, ...]
-    head: Array
-    """(F, 3) center of the head [m]."""
+    head: Array  # (F, 3) center of the head [m]
     head_radius_m: float
 
 

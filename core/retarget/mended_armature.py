@@ -20,8 +20,7 @@ from ..numerics.vectors import unit
 from ..numerics.wandering import smooth_path
 from .solve.rest_body import RestBody
 
-Poses = Mapping[str, Array]
-"""(F, 4, 4) by name of bone."""
+Poses = Mapping[str, Array]  # (F, 4, 4) by name of bone
 AIMS = {
     f"{part}.{side}": f"{point}.{side}"
     for part, point in (("upper_arm", "elbow"), ("forearm", "wrist"), ("thigh", "knee"), ("shin", "ankle"))

@@ -117,19 +117,11 @@ class RetargetRecord(Record):
 
 
 def write_retarget_record(folder: Path, record: RetargetRecord) -> None:
-    """Write a record into a folder of results, atomically.
-
-    Raises:
-        ConversionError: The file cannot be written.
-    """
+    """Write a record into a folder of results, atomically. ConversionError: the file cannot be written."""
     write_readable_json(folder / RECORD_FILE, record.to_json())
 
 
 def read_retarget_record(folder: Path) -> RetargetRecord:
-    """Read a folder's record.
-
-    Raises:
-        InputError: There is none, or a field is unusable.
-    """
+    """Read a folder's record. InputError: there is none, or a field is unusable."""
     path = folder / RECORD_FILE
     return RetargetRecord.from_json(read_json(path, LARGEST_BYTES), str(path))

@@ -71,9 +71,7 @@ class Review:
     def from_arrays(cls, arrays: Arrays) -> "Review":
         """Restore a review, also of a version that knew neither keypoints nor contours.
 
-        Raises:
-            KeyError: An array is missing.
-            ValueError: A reason is unknown.
+        KeyError: an array is missing; ValueError: a reason is unknown.
         """
         frames, weak = len(arrays["frames"]), len(arrays["weak_index"])
         new = {"contours": ContourSight.none(frames).lines, "weak_point": np.full(weak, "")}

@@ -121,8 +121,7 @@ class TruthFile(Record):
 def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
     """(F, 13, 3) true points [m] of a take's `truth.json` for the clip's frames.
 
-    Raises:
-        InputError: The file is unusable or lacks a frame of the clip.
+    InputError: the file is unusable or lacks a frame of the clip.
     """
     truth = TruthFile.from_json(read_json(path), str(path))
     wanted = tuple(range(frame_start, frame_start + frame_count))

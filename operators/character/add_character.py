@@ -73,8 +73,7 @@ def rigify(_context: bpy.types.Context, _state: object) -> str | None:
 def add_rigify_character(context: bpy.types.Context) -> bpy.types.PropertyGroup:
     """Add a Rigify rig of the performer's size as the active take's character; enables Rigify.
 
-    Raises:
-        InputError: Rigify cannot make the rig.
+    InputError: Rigify cannot make the rig.
     """
     active = context.view_layer.objects.active
     if active is not None and active.mode != "OBJECT":

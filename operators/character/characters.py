@@ -58,11 +58,7 @@ def candidates(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[
 
 
 def active_character(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-    """Return the character that is chosen in the active take's list.
-
-    Raises:
-        InputError: There is none.
-    """
+    """Return the character that is chosen in the active take's list. InputError: there is none."""
     character = find_character(scene)
     if character is None:
         raise InputError(f"scene '{scene.name}' has no character; add one to the take first")
@@ -131,11 +127,7 @@ class SourceMotion:
 
 
 def source_of(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> SourceMotion:
-    """The motion that a character is to perform.
-
-    Raises:
-        InputError: There is none; the sentence says what to do.
-    """
+    """The motion that a character is to perform. InputError: there is none; the sentence says what to do."""
     problem = missing_source(take, character)
     if problem is not None:
         raise InputError(problem)

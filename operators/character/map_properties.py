@@ -136,8 +136,7 @@ class KEYMARK_PG_character_map(bpy.types.PropertyGroup):
 
 DIGITS = 7  # significant digits of values that Blender keeps as float32
 WORDS = ("author", "license", "description")
-TYPES = {"BOOL": bool, "INT": int, "FLOAT": float}
-"""The types of properties' values."""
+TYPES = {"BOOL": bool, "INT": int, "FLOAT": float}  # the types of properties' values
 NO_DOUBTS: Mapping[str, str] = {}
 
 

@@ -34,8 +34,7 @@ class RoleBoneOperator:
 def give_bone(character: bpy.types.PropertyGroup, role: str, index: int, bone: str) -> None:
     """Give a role a bone, which makes the role the person's.
 
-    Raises:
-        InputError: There is no such role or place in it, or no such bone.
+    InputError: there is no such role or place in it, or no such bone.
     """
     if role not in ROLES:
         raise InputError(f"there is no role '{role}'; roles are {', '.join(ROLES)}")
@@ -81,8 +80,7 @@ def told(context: bpy.types.Context, role: str) -> str:
 def recognize_bones(character: bpy.types.PropertyGroup) -> None:
     """Recognize the bones of a character's armature, and show which play which role.
 
-    Raises:
-        InputError: It is no character; the properties keep what they held.
+    InputError: it is no character; the properties keep what they held.
     """
     from ...core.retarget.recognition.recognize import recognize
     from ..bridge.character.read_character import read_character

@@ -22,10 +22,8 @@ from ..character import CHAINS, LIMBS, ROLES, SOURCES
 
 MOST_BONES, MOST_SETTINGS, MOST_SOLE_POINTS = 100, 1000, 1000
 """Most bones of one role; settings; points of one sole."""
-LONGEST_BONE = 255
-"""Characters of a bone's or a property's name; Blender's own have up to 63 bytes."""
-FARTHEST = 1e6
-"""Largest coordinate of a sole, in the armature's units, and largest value of a property."""
+LONGEST_BONE = 255  # characters of a bone's or a property's name; Blender's own have up to 63 bytes
+FARTHEST = 1e6  # largest coordinate of a sole, in the armature's units, and largest value of a property
 DECIMALS = 9
 ROUGH_LENGTH, EXACT_LENGTH = 1e-3, 1e-8
 """How far a rest correction's length may be from 1; one that is farther than the second is made 1."""
@@ -333,20 +331,14 @@ LARGEST_BYTES = 2**20
 
 
 def read_character_map(path: Path) -> CharacterMap:
-    """Read a character map file.
-
-    Raises:
-        InputError: The file is missing, no character map, or invalid.
-    """
+    """Read a character map file. InputError: the file is missing, no character map, or invalid."""
     return CharacterMap.from_json(read_json(path, LARGEST_BYTES), str(path))
 
 
 def write_character_map(path: Path, character_map: CharacterMap) -> None:
     """Write a character map file, whole or not at all.
 
-    Raises:
-        InputError: The map is invalid and could not be read back.
-        ConversionError: The file cannot be written.
+    InputError: the map is invalid and could not be read back; ConversionError: the file cannot be written.
     """
     value = character_map.to_json()
     CharacterMap.from_json(value, f"character map {shown(character_map.title)}")

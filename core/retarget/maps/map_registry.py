@@ -28,9 +28,7 @@ def missing_bones(character_map: CharacterMap, character: Character) -> tuple[st
 def check_map(character_map: CharacterMap, character: Character, where: str = "") -> None:
     """Refuse a map for another character, or one without the roles that every character has.
 
-    Raises:
-        InputError: A bone or a role is missing; the sentence begins with `where`, by default the map's
-            title.
+    InputError: a bone or a role is missing; the sentence begins with `where`, by default the map's title.
     """
     name = where or f"character map {shown(character_map.title)}"
     missing = missing_bones(character_map, character)
@@ -58,8 +56,7 @@ def registered_maps(folders: Sequence[Path]) -> tuple[Registered[CharacterMap], 
 def find_map(name_or_path: str | Path, folders: Sequence[Path]) -> Registered[CharacterMap]:
     """Find a map by its title, its file's name without `.json`, or its path.
 
-    Raises:
-        InputError: There is no such map, or it is invalid.
+    InputError: there is no such map, or it is invalid.
     """
     if is_path(name_or_path):
         path = Path(name_or_path)
@@ -113,9 +110,7 @@ def choose_map(character: Character, wanted: str, folders: Sequence[Path]) -> Ch
     """The map of a character: the one with the wanted title or path, or the one found.
 
     `auto` takes a saved one that knows the character's bones, else recognition; `none` recognition alone.
-
-    Raises:
-        InputError: There is no such map, it is for another character, or the bones are no character's.
+    InputError: there is no such map, it is for another character, or the bones are no character's.
     """
     if wanted not in (AUTO, NO_MAP):
         named = find_map(wanted, folders)
@@ -130,8 +125,7 @@ def choose_map(character: Character, wanted: str, folders: Sequence[Path]) -> Ch
 def map_digests(wanted: str, folders: Sequence[Path]) -> tuple[str, ...]:
     """Digests of the maps that `choose_map` may take, for the digest of what it is used for.
 
-    Raises:
-        InputError: There is no such map.
+    InputError: there is no such map.
     """
     if wanted == NO_MAP:
         return ()

@@ -13,8 +13,7 @@ from ...files.records import declared
 from ..character import Character
 from .character_map import Bones, CharacterMap, RoleBones
 
-SHIPPED = Path(__file__).resolve().parents[3] / "presets" / "characters"
-"""The presets that come with Keymark."""
+SHIPPED = Path(__file__).resolve().parents[3] / "presets" / "characters"  # the presets that come with Keymark
 LARGEST_BYTES = 2**20
 
 _SEPARATORS = re.compile(r"[\s._-]+")
@@ -38,30 +37,21 @@ class _PresetFields(CharacterMap):
 class Preset:
     """A convention of bone names."""
 
-    identifier: str
-    """Name of its file, without the ending."""
-    character_map: CharacterMap
-    """Its map, of the bones that a full character has."""
-    requires: tuple[str, ...]
-    """Bones by which it is found: all must be there."""
-    lacks: tuple[str, ...] = ()
-    """Bones that must not be there."""
+    identifier: str  # name of its file, without the ending
+    character_map: CharacterMap  # its map, of the bones that a full character has
+    requires: tuple[str, ...]  # bones by which it is found: all must be there
+    lacks: tuple[str, ...] = ()  # bones that must not be there
 
 
 def read_preset(path: Path) -> Preset:
-    """Read a preset.
-
-    Raises:
-        InputError: The file is missing, no preset, or invalid.
-    """
+    """Read a preset. InputError: the file is missing, no preset, or invalid."""
     return preset_from_json(read_json(path, LARGEST_BYTES), str(path), path.stem)
 
 
 def preset_from_json(value: Any, where: str, identifier: str) -> Preset:
     """Read a preset from JSON that is not trusted: a character map's fields, and `requires` and `lacks`.
 
-    Raises:
-        InputError: The JSON is no valid preset; the sentence begins with `where`.
+    InputError: the JSON is no valid preset; the sentence begins with `where`.
     """
     read = _PresetFields.from_json(value, where)
     given = {name: getattr(read, name) for name in declared(CharacterMap)}

@@ -47,8 +47,7 @@ class RestBody:
     def of(cls, character: Character, character_map: CharacterMap) -> "RestBody":
         """The rest pose by a map.
 
-        Raises:
-            InputError: A required role is missing, a bone is not there, or a limb has no length.
+        InputError: a required role is missing, a bone is not there, or a limb has no length.
         """
         check_map(character_map, character)
         _check_single_roles(character_map)
@@ -133,11 +132,7 @@ class RestBody:
         return np.asarray(scale * self.stance @ farthest)
 
     def check_limbs(self) -> None:
-        """Refuse limbs without length.
-
-        Raises:
-            InputError: Two joints of a limb lie in one place.
-        """
+        """Refuse limbs without length. InputError: two joints of a limb lie in one place."""
         extent = float(np.ptp([bone.head for bone in self.bones], axis=0).max())
         for limb in LIMBS:
             there = [role for role in joint_roles(limb) if role in self.first]
