@@ -8,11 +8,11 @@ section 7.5). The handles' heights are then `value + slope * length / 3` and `va
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg.lapack import dpbsv
 
-from ..arrays import Array, BoolArray, IndexArray
+from ..arrays import Array, IndexArray
 
-SLOPE_WEIGHT = 0.05  # of the data's slope at a key [frames]: decides where no frame lies between keys
 BAND = 3  # bandwidth: value and slope of a key couple with those of the next
 
 
@@ -26,15 +26,22 @@ class Spline:
 
     def evaluate(self, times: Array, first: int, last: int) -> Array:
         """Values (N, C) at the frames `first` to `last`, both included, which lie between the outer keys."""
-        return self._at(times, np.arange(first, last + 1))
+        frames = np.arange(first, last + 1)
+        piece = np.clip(np.searchsorted(self.keys, frames, side="right") - 1, 0, len(self.keys) - 2)
+        v0, m0, v1, m1 = _basis(times, self.keys, frames, piece).T[..., None]
+        values, slopes = self.values, self.slopes
+        return np.asarray(
+            v0 * values[piece] + m0 * slopes[piece] + v1 * values[piece + 1] + m1 * slopes[piece + 1]
+        )
 
     def with_keys(self, times: Array, new: IndexArray) -> "Spline":
         """The spline with further keys on its own curve (between its outer keys): nothing moves yet."""
         fresh = np.setdiff1d(new, self.keys).astype(np.intp)
+        curve = CubicHermiteSpline(times[self.keys], self.values, self.slopes)
         keys = np.concatenate([self.keys, fresh])
         order = np.argsort(keys, kind="stable")
-        values = np.concatenate([self.values, self._at(times, fresh)])
-        slopes = np.concatenate([self.slopes, self._slope_at(times, fresh)])
+        values = np.concatenate([self.values, curve(times[fresh])])
+        slopes = np.concatenate([self.slopes, curve(times[fresh], 1)])
         return Spline(keys[order], values[order], slopes[order])
 
     def without_key(self, position: int) -> "Spline":
@@ -43,36 +50,6 @@ class Spline:
             np.delete(self.keys, position),
             np.delete(self.values, position, axis=0),
             np.delete(self.slopes, position, axis=0),
-        )
-
-    def columns(self, first: int, last: int) -> "Spline":
-        """The keys of the curves `first` up to but without `last`."""
-        return Spline(self.keys, self.values[:, first:last], self.slopes[:, first:last])
-
-    def _pieces(self, frames: IndexArray) -> IndexArray:
-        """(N,) index of the segment between two keys that each frame lies in."""
-        return np.clip(np.searchsorted(self.keys, frames, side="right") - 1, 0, len(self.keys) - 2)
-
-    def _at(self, times: Array, frames: IndexArray) -> Array:
-        piece = self._pieces(frames)
-        v0, m0, v1, m1 = _basis(times, self.keys, frames, piece).T[..., None]
-        return np.asarray(
-            v0 * self.values[piece]
-            + m0 * self.slopes[piece]
-            + v1 * self.values[piece + 1]
-            + m1 * self.slopes[piece + 1]
-        )
-
-    def _slope_at(self, times: Array, frames: IndexArray) -> Array:
-        piece = self._pieces(frames)
-        start = times[self.keys[piece]]
-        length = (times[self.keys[piece + 1]] - start)[:, None]
-        s = (times[frames] - start)[:, None] / length
-        rise = (self.values[piece + 1] - self.values[piece]) / length
-        return np.asarray(
-            6.0 * s * (1.0 - s) * rise
-            + (1.0 - s) * (1.0 - 3.0 * s) * self.slopes[piece]
-            + s * (3.0 * s - 2.0) * self.slopes[piece + 1]
         )
 
 
@@ -87,8 +64,7 @@ def fit_keys(times: Array, data: Array, keys: IndexArray, exact: IndexArray) -> 
     `keys` are at least two rising frames, the first and the last among them; at the frames `exact` a key has
     the data's own value.
     """
-    start = Spline(keys, data[keys], _slopes(times, data, keys))
-    return refit(times, data, start, 0, len(keys) - 1, exact)
+    return refit(times, data, Spline(keys, data[keys], data[keys]), 0, len(keys) - 1, exact)
 
 
 def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exact: IndexArray) -> Spline:
@@ -96,18 +72,31 @@ def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exac
     low, high = max(first - 1, 0), min(last + 1, len(spline.keys) - 1)
     keys = spline.keys[low : high + 1]
     band, right = _normal_equations(times, data, keys)
-    own = _slopes(times, data, keys)
-    band[BAND, 1::2] += SLOPE_WEIGHT**2
-    right[1::2] += SLOPE_WEIGHT**2 * own
-    pinned = _contains(keys, exact)
-    known = np.empty_like(right)
-    known[0::2] = np.where(pinned[:, None], data[keys], spline.values[low : high + 1])
-    known[1::2] = spline.slopes[low : high + 1]
+    # The data's slope at a key has a little weight [frames²]: it decides where no frame lies between keys.
+    before, after = np.maximum(keys - 1, 0), np.minimum(keys + 1, len(times) - 1)
+    slope = (data[after] - data[before]) / (times[after] - times[before])[:, None]
+    band[BAND, 1::2] += 0.0025
+    right[1::2] += 0.0025 * slope
+    pinned = np.isin(keys, exact)
+    values = np.zeros_like(right)  # the known ones, and zero for those that are sought
+    values[0::2] = np.where(pinned[:, None], data[keys], spline.values[low : high + 1])
+    values[1::2] = spline.slopes[low : high + 1]
     fixed = np.zeros(len(right), dtype=bool)
     fixed[0::2] = pinned
     fixed[: 2 * (first - low)] = True
     fixed[len(right) - 2 * (high - last) :] = True
-    solved = _solve(band, right, fixed, known)
+    values[~fixed] = 0.0
+    for apart in range(1, BAND + 1):
+        row = band[BAND - apart, apart:]
+        right[:-apart] -= row[:, None] * values[apart:]
+        right[apart:] -= row[:, None] * values[:-apart]
+        row[fixed[apart:] | fixed[:-apart]] = 0.0
+    band[BAND, fixed] = 1.0
+    right[fixed] = values[fixed]
+    # A fit is solved thousands of times: the plain LAPACK call costs a tenth of `solveh_banded`.
+    _, solved, failed = dpbsv(band, right)
+    if failed:
+        raise np.linalg.LinAlgError("the keys' values and slopes are not determined by the frames")
     values, slopes = spline.values.copy(), spline.slopes.copy()
     values[low : high + 1], slopes[low : high + 1] = solved[0::2], solved[1::2]
     return Spline(spline.keys, values, slopes)
@@ -135,13 +124,6 @@ def _normal_equations(times: Array, data: Array, keys: IndexArray) -> tuple[Arra
     return band, right
 
 
-def _contains(keys: IndexArray, chosen: IndexArray) -> BoolArray:
-    """(K,) whether each key is one of the rising, chosen frames."""
-    if not len(chosen):
-        return np.zeros(len(keys), dtype=bool)
-    return np.asarray(chosen[np.minimum(np.searchsorted(chosen, keys), len(chosen) - 1)] == keys)
-
-
 def _basis(times: Array, keys: IndexArray, frame: IndexArray, piece: IndexArray) -> Array:
     """(N, 4) Hermite basis: factors of the earlier key's value and slope and of the later one's."""
     at = times[keys]
@@ -154,26 +136,3 @@ def _basis(times: Array, keys: IndexArray, frame: IndexArray, piece: IndexArray)
     basis[:, 2] = s * s * (3.0 - 2.0 * s)
     basis[:, 3] = -s * s * rest * length
     return basis
-
-
-def _slopes(times: Array, data: Array, keys: IndexArray) -> Array:
-    """(K, C) the data's slope at each key, by the frames beside it."""
-    before, after = np.maximum(keys - 1, 0), np.minimum(keys + 1, len(times) - 1)
-    return np.asarray((data[after] - data[before]) / (times[after] - times[before])[:, None])
-
-
-def _solve(band: Array, right: Array, fixed: BoolArray, known: Array) -> Array:
-    """Solve a banded system in which some unknowns are fixed at known values."""
-    values = np.where(fixed[:, None], known, 0.0)
-    for apart in range(1, BAND + 1):
-        row = band[BAND - apart, apart:]
-        right[:-apart] -= row[:, None] * values[apart:]
-        right[apart:] -= row[:, None] * values[:-apart]
-        row[fixed[apart:] | fixed[:-apart]] = 0.0
-    band[BAND, fixed] = 1.0
-    right[fixed] = known[fixed]
-    # A fit is solved thousands of times: the plain LAPACK call costs a tenth of `solveh_banded`.
-    _, solved, failed = dpbsv(band, right)
-    if failed:
-        raise np.linalg.LinAlgError("the keys' values and slopes are not determined by the frames")
-    return np.asarray(solved)

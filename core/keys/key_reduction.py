@@ -13,13 +13,14 @@ from .hermite import Spline, fit_keys, refit
 from .rig import Rig, RigPose
 
 REACH = 3  # number of keys on either side of a new or removed one that are fitted anew
+REMOVAL_MARGIN = 0.98  # share of the tolerance that removal may use: F-curves store numbers with few digits
+TRIALS_A_YIELD = 25  # removals tried between two reports of progress
 
 
 @dataclass(frozen=True, eq=False)
 class Trial:
     """The curves and their pose without one of the keys."""
 
-    group: int
     spline: Spline
     frames: slice  # the frames that change
     pose: RigPose
@@ -53,28 +54,24 @@ class KeyedBody:
         """For each group the frames at which its keys have the target's own values."""
         self.tolerance_m = tolerance_m
         self.data = [np.concatenate([values[bone] for bone in group], axis=1) for group in groups]
-        self._ends = [np.cumsum([values[bone].shape[1] for bone in group]) for group in groups]
+        self._ends = [np.cumsum([values[bone].shape[1] for bone in group])[:-1] for group in groups]
         self.target = rig.pose(list(values))
         keys = np.union1d([0, len(times) - 1], exact).astype(np.intp)
         self.splines = [fit_keys(times, data, keys, exact) for data in self.data]
-        self.update()
 
-    def update(self) -> None:
-        """Evaluate all curves and the pose they give."""
+    def update(self) -> Array:
+        """Evaluate all curves and the pose they give; (F, P) distance of each point from its target [m]."""
         last = len(self.times) - 1
         self.pose = self.rig.pose([one.evaluate(self.times, 0, last) for one in self.bone_splines()])
-
-    def error_m(self) -> Array:
-        """(F, P) distance of each point from its target [m]."""
         return np.asarray(np.linalg.norm(self.pose.points - self.target.points, axis=-1))
 
     def bone_splines(self) -> tuple[Spline, ...]:
         """The keys of each bone, in the order of the rig's."""
         found: dict[int, Spline] = {}
-        for group, ends, spline in zip(self.groups, self._ends, self.splines, strict=True):
-            starts = [0, *ends[:-1]]
-            for bone, first, last in zip(group, starts, ends, strict=True):
-                found[bone] = spline.columns(first, last)
+        for group, ends, one in zip(self.groups, self._ends, self.splines, strict=True):
+            values, slopes = (np.split(held, ends, axis=1) for held in (one.values, one.slopes))
+            for bone, value, slope in zip(group, values, slopes, strict=True):
+                found[bone] = Spline(one.keys, value, slope)
         return tuple(found[bone] for bone in range(len(self.rig.bones)))
 
     def insert(self, group: int, frames: IndexArray, everywhere: bool) -> None:
@@ -103,60 +100,41 @@ class KeyedBody:
         spline = refit(self.times, self.data[group], spline, low, high, self.pinned[group])
         start, stop = int(spline.keys[max(low - 1, 0)]), int(spline.keys[min(high + 1, last)])
         frames = slice(start, stop + 1)
-        changed = self._by_bone(group, spline.evaluate(self.times, start, stop))
+        values = np.split(spline.evaluate(self.times, start, stop), self._ends[group], axis=1)
+        changed = dict(zip(self.groups[group], values, strict=True))
         pose = self.rig.pose_changed(self.pose, frames, changed)
         distance = np.linalg.norm(pose.points - self.target.points[frames], axis=-1)
-        return Trial(group, spline, frames, pose, float((distance / self.tolerance_m[frames]).max()))
-
-    def accept(self, trial: Trial) -> None:
-        """Adopt a trial."""
-        self.splines[trial.group] = trial.spline
-        self.pose.rotation[:, trial.frames] = trial.pose.rotation
-        self.pose.points[trial.frames] = trial.pose.points
+        return Trial(spline, frames, pose, float((distance / self.tolerance_m[frames]).max()))
 
     def influence(self, group: int, off: BoolArray) -> Array:
         """(F,) largest displacement [m] that a group's own error gives the points that are `off` (F, P).
 
-        To first order; 0 where the group is pinned already.
+        To first order; 0 where the group is pinned already, and for points that it does not carry.
         """
-        moved = np.zeros(len(self.times))
-        for bone in self.groups[group]:
-            moved = np.maximum(moved, np.where(off, self._moved_by(bone), 0.0).max(axis=1))
-        moved[self.pinned[group]] = 0.0
-        return moved
-
-    def _moved_by(self, bone: int) -> Array:
-        """(F, P) displacement of each point by a bone's own error [m]; 0 for those it does not carry."""
         rig, every = self.rig, slice(None)
-        joint = rig.point_slices[bone].start
-        error = self.pose.local(rig, bone, every) @ np.swapaxes(self.target.local(rig, bone, every), -1, -2)
-        vector = rotations.logarithm(error)[:, None]  # (F, 1, 3) in the turner's frame
-        shift = np.zeros_like(vector)
-        turner, above = rig.bones[bone].turner, rig.bones[bone].parent
-        if turner >= 0:
-            vector = vector @ np.swapaxes(self.target.rotation[turner], -1, -2)
-        if rig.bones[bone].location_axes is not None:
-            shift = (self.pose.place(rig, bone, every) - self.target.place(rig, bone, every))[:, None]
-            if above >= 0:
-                shift = shift @ np.swapaxes(self.target.rotation[above], -1, -2)
-        rows = [rig.point_slices[below] for below in rig.subtrees[bone]]
-        carried = np.concatenate([np.arange(where.start, where.stop) for where in rows])
-        arm = self.target.points[:, carried] - self.target.points[:, joint, None]
-        moved = np.zeros(self.target.points.shape[:2])
-        moved[:, carried] = np.linalg.norm(rotations.cross(vector, arm) + shift, axis=-1)
-        return moved
-
-    def _by_bone(self, group: int, values: Array) -> dict[int, Array]:
-        parts = np.split(values, self._ends[group][:-1], axis=1)
-        return dict(zip(self.groups[group], parts, strict=True))
+        found = np.zeros(len(self.times))
+        for bone in self.groups[group]:
+            joint = rig.point_slices[bone].start
+            wanted = np.swapaxes(self.target.local(rig, bone, every), -1, -2)
+            vector = rotations.logarithm(self.pose.local(rig, bone, every) @ wanted)[:, None]  # (F, 1, 3)
+            shift = np.zeros_like(vector)
+            turner, above = rig.bones[bone].turner, rig.bones[bone].parent
+            if turner >= 0:  # from its turner's frame
+                vector = vector @ np.swapaxes(self.target.rotation[turner], -1, -2)
+            if rig.bones[bone].location_axes is not None:
+                shift = (self.pose.place(rig, bone, every) - self.target.place(rig, bone, every))[:, None]
+                if above >= 0:
+                    shift = shift @ np.swapaxes(self.target.rotation[above], -1, -2)
+            rows = [rig.point_slices[below] for below in rig.subtrees[bone]]
+            carried = np.concatenate([np.arange(where.start, where.stop) for where in rows])
+            arm = self.target.points[:, carried] - self.target.points[:, joint, None]
+            moved = np.linalg.norm(rotations.cross(vector, arm) + shift, axis=-1)
+            found = np.maximum(found, np.where(off[:, carried], moved, 0.0).max(axis=1))
+        found[self.pinned[group]] = 0.0
+        return found
 
 
 # --- Key reduction
-
-
-REMOVAL_MARGIN = 0.98  # share of the tolerance that removal may use: F-curves store numbers with few digits
-ADDING_SHARE = 0.2  # share of the work that adding keys usually is
-TRIALS_A_YIELD = 25  # removals tried between two reports of progress
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,11 +169,10 @@ def reduce_keys(
     allowed = np.broadcast_to(tolerance_m, (len(times), rig.point_slices[-1].stop))
     body = KeyedBody(rig, times, values, allowed, np.unique(exact).astype(np.intp), groups)
     for done in _add_keys(body):
-        yield ADDING_SHARE * done
+        yield 0.2 * done
     for done in _remove_keys(body):
-        yield ADDING_SHARE + (1.0 - ADDING_SHARE) * done
-    yield 1.0
-    return ReducedKeys(body.bone_splines(), float(body.error_m().max()))
+        yield 0.2 + 0.8 * done
+    return ReducedKeys(body.bone_splines(), float(body.update().max()))
 
 
 def _add_keys(body: KeyedBody) -> Generator[float, None, None]:
@@ -203,39 +180,24 @@ def _add_keys(body: KeyedBody) -> Generator[float, None, None]:
     most = 0
     for number in count():
         # Share of the tolerance that added keys must reach; removal then chooses among them.
-        off = body.error_m() > 0.5 * body.tolerance_m
+        off = body.update() > 0.5 * body.tolerance_m
         frames_off = int(off.any(axis=1).sum())
         if not frames_off:
             return
         most = max(most, frames_off)
-        done = 1.0 - frames_off / most
-        influence = []
-        for group in range(len(body.groups)):
-            influence.append(body.influence(group, off))
-            yield done
-        for group, frames in enumerate(_frames_for_keys(body, np.array(influence))):
-            if len(frames):
-                # Rounds in which all keys are fitted anew; later ones fit only the new keys' neighbors.
-                body.insert(group, frames, everywhere=number < 3)
-                yield done
-        body.update()
-
-
-def _frames_for_keys(body: KeyedBody, influence: Array) -> list[IndexArray]:
-    """For each group the frames to key or pin, at most one between two keys."""
-    most = influence.max(axis=0)
-    chosen = []
-    for spline, own in zip(body.splines, influence, strict=True):
+        yield 1.0 - frames_off / most
+        influence = np.array([body.influence(group, off) for group in range(len(body.groups))])
         # A bone gets a key where its influence on a point is at least this share of the largest bone's.
-        wanted = np.where(own >= 0.6 * most, own, 0.0)
-        starts, stops = spline.keys, np.append(spline.keys[1:], len(wanted))
-        found = [
-            int(start) + int(np.argmax(wanted[start:stop]))
-            for start, stop in zip(starts, stops, strict=True)
-            if wanted[start:stop].max() > 0.0
-        ]
-        chosen.append(np.array(found, dtype=np.intp))
-    return chosen
+        wanted = np.where(influence >= 0.6 * influence.max(axis=0), influence, 0.0)
+        for group, own in enumerate(wanted):
+            # At most one new or pinned frame between two keys.
+            starts = body.splines[group].keys
+            pieces = zip(starts, np.append(starts[1:], len(own)), strict=True)
+            frames = [int(a) + int(own[a:b].argmax()) for a, b in pieces if own[a:b].max() > 0.0]
+            if frames:
+                # Rounds in which all keys are fitted anew; later ones fit only the new keys' neighbors.
+                body.insert(group, np.array(frames, dtype=np.intp), everywhere=number < 3)
+                yield 1.0 - frames_off / most
 
 
 def _remove_keys(body: KeyedBody) -> Generator[float, None, None]:
@@ -263,6 +225,8 @@ def _remove_keys(body: KeyedBody) -> Generator[float, None, None]:
             if waiting and trial.worst > 1.02 * waiting[0][0]:
                 heapq.heappush(waiting, (trial.worst, group, frame))
             else:
-                body.accept(trial)
+                body.splines[group] = trial.spline
+                body.pose.rotation[:, trial.frames] = trial.pose.rotation
+                body.pose.points[trial.frames] = trial.pose.points
         if number % TRIALS_A_YIELD == 0:
             yield 0.5 + 0.5 * (1.0 - len(waiting) / judged)

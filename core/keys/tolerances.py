@@ -34,8 +34,7 @@ def point_tolerances(
     for contact in contacts:
         side = SIDES[contact.point]
         ankle = rig.point_slices[names.index(f"shin.{side}")].start + 1
-        allowed[contact.frames, ankle] = min(RESTING_M, tolerance_m)
-        allowed[contact.frames, foot_rows(rig, side)] = min(RESTING_M, tolerance_m)
+        allowed[contact.frames, [ankle, *foot_rows(rig, side)]] = min(RESTING_M, tolerance_m)
     return allowed
 
 
