@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, BoolArray
+from ..body.skeleton import SIDES
 from ..numerics.vectors import runs
 
 RELEASE_SPEED_M_S = 0.25  # below this a foot may rest; once it must be slower than half of it
@@ -25,6 +26,11 @@ class Contact:
     def frames(self) -> slice:
         """Its frames."""
         return slice(self.first, self.last + 1)
+
+    @property
+    def leg(self) -> str:
+        """The limb whose foot rests, where points are counted left, right."""
+        return f"leg.{SIDES[self.point]}"
 
 
 def find_contacts(places: Array, time_s: Array, stray_m: float = STRAY_M) -> tuple[Contact, ...]:

@@ -31,10 +31,6 @@ METHOD = "mend"
 MOST_FRAMES = 36_000  # twenty minutes at 30 frames a second
 LEAST_SEEN = 0.5  # share of the frames that must show the whole body
 PLACE_M = 0.1  # usual error of the place that a network gives, after its jitter
-NO_PLACE_M = 0.02  # hips that move less than this were left at the origin by whoever wrote the file
-TWIST_S = 0.1  # over which turns that the points do not show are averaged
-FRAMES_AT_ONCE = 500
-FIT_ITERATIONS = 15  # after which no point moves by a millimeter
 LIMBS = (
     *(("upper_arm", "shoulder", "elbow"), ("forearm", "elbow", "wrist")),
     *(("thigh", "hip", "knee"), ("shin", "knee", "ankle")),
@@ -43,6 +39,7 @@ LIMBS = (
 HIPS, ANKLES = (
     tuple(HUMAN.point_names.index(f"{name}.{side}") for side in SIDES) for name in ("hip", "ankle")
 )
+OPPOSITE = np.array([HUMAN.point_names.index(other_side(name)) for name in HUMAN.point_names])
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +76,7 @@ def mend_motion(points: Array, rate: float, options: MendOptions, frame_start: i
     exchanged[posed] = False
     if exchanged.any():
         notes.append(f"Left and right were exchanged in {pluralize(int(exchanged.sum()), 'frame')}")
-        given[exchanged] = given[exchanged][:, opposite_points()]
+        given[exchanged] = given[exchanged][:, OPPOSITE]
     yield Progress("Smoothing", 0.1)
     hips = given[:, HIPS].mean(axis=1)
     relative = given - hips[:, None]
@@ -91,7 +88,8 @@ def mend_motion(points: Array, rate: float, options: MendOptions, frame_start: i
         axis=1,
     )
     yield Progress("Finding the way", 0.2)
-    has_place = bool(np.nanmax(np.ptp(hips[np.isfinite(hips).all(axis=1)], axis=0)) > NO_PLACE_M)
+    # Hips that move less than this were left at the origin by whoever wrote the file [m].
+    has_place = bool(np.nanmax(np.ptp(hips[np.isfinite(hips).all(axis=1)], axis=0)) > 0.02)
     hips = _smooth_hips(hips, rate, posed)
     if not has_place:
         notes.append("The file has the hips in one place; the way over the ground was found by the feet")
@@ -164,20 +162,21 @@ def measured_actor(points: Array) -> Actor:
     InputError: a length is that of no person.
     """
     at = {name: points[:, index] for index, name in enumerate(HUMAN.point_names)}
-    middle = {part: 0.5 * (at[f"{part}.L"] + at[f"{part}.R"]) for part in ("hip", "shoulder")}
-
-    def length(one: Array, other: Array) -> float:
-        return float(np.nanmedian(np.linalg.norm(one - other, axis=-1)))
-
-    lengths = {
-        f"{segment}.{side}": length(at[f"{upper}.{side}"], at[f"{lower}.{side}"])
+    at |= {part: 0.5 * (at[f"{part}.L"] + at[f"{part}.R"]) for part in ("hip", "shoulder")}
+    ends = {
+        f"{segment}.{side}": (f"{upper}.{side}", f"{lower}.{side}")
         for segment, upper, lower in LIMBS
         for side in SIDES
+    } | {
+        "shoulder_width": ("shoulder.L", "shoulder.R"),
+        "hip_width": ("hip.L", "hip.R"),
+        "trunk": ("hip", "shoulder"),
+        "neck_head": ("shoulder", "head"),
     }
-    lengths["shoulder_width"] = length(at["shoulder.L"], at["shoulder.R"])
-    lengths["hip_width"] = length(at["hip.L"], at["hip.R"])
-    lengths["trunk"] = length(middle["hip"], middle["shoulder"])
-    lengths["neck_head"] = length(middle["shoulder"], at["head"])
+    lengths = {
+        name: float(np.nanmedian(np.linalg.norm(at[one] - at[other], axis=-1)))
+        for name, (one, other) in ends.items()
+    }
     for name in REQUIRED:
         if not SHORTEST_M <= lengths[name] <= LONGEST_M:
             raise InputError(
@@ -207,12 +206,13 @@ def _smooth_hips(hips: Array, rate: float, posed: IndexArray) -> Array:
 def _fitted(body: Body, points: Array, rate: float) -> Job[Posture]:
     """Postures of points; turns that the points hardly show, as a straight arm's, change slowly."""
     guess = guess_posture(body, points)
-    turns, angles = (gaussian(values, TWIST_S * rate) for values in (guess.rotations, guess.angles))
+    turns, angles = (gaussian(values, 0.1 * rate) for values in (guess.rotations, guess.angles))
     start = Posture(body.skeleton, guess.translation, nearest_rotation(turns), angles)
     fitted: list[Posture] = []
-    parts = chunks(np.arange(len(points)), FRAMES_AT_ONCE)
+    parts = chunks(np.arange(len(points)), 500)
     for number, part in enumerate(parts):
-        fitted.append(fit_posture(body, points[part], start[part], FIT_ITERATIONS).posture)
+        # After so many iterations no point moves by a millimeter.
+        fitted.append(fit_posture(body, points[part], start[part], 15).posture)
         yield Progress("Fitting the body", 0.2 + 0.6 * (number + 1) / len(parts))
     return Posture.concatenate(fitted)
 
@@ -236,11 +236,6 @@ def _on_floor(
 # --- Frames in which left and right have changed places, as a network sees them behind a body
 
 
-EXCHANGE_COST = 8.0  # of a change between two frames: about that of one limb that jumps by its usual error
-STEP_M = 0.05  # usual distance that a point moves in a frame, with the network's own error
-FORWARD = 2.0  # cost of a knee and elbows that bend the wrong way, once in each frame
-
-
 def exchanged_frames(points: Array) -> BoolArray:
     """(F,) where the points (F, 13, 3) have their sides exchanged; frames with NaN are as their neighbors.
 
@@ -252,27 +247,20 @@ def exchanged_frames(points: Array) -> BoolArray:
     if len(known) < 2:
         return exchanged
     seen = points[known]
-    swapped = seen[:, opposite_points()]
-    own = FORWARD * _wrong_way(seen)
-    stay, change = _distances(seen[1:], seen[:-1]), _distances(seen[1:], swapped[:-1])
-    states = exchanged_path(np.stack([own, -own], axis=-1), stay, change + EXCHANGE_COST)
+    own = 2.0 * _wrong_way(seen)  # cost of knees that bend the wrong way, once in each frame
+    middled = seen - seen.mean(axis=1, keepdims=True)
+    # How far the points move about their middle, with heavy tails beyond what they usually move in a frame
+    # with the network's own error, 0.05 m.
+    stay, change = (
+        np.log1p(((middled[1:] - before[:-1]) ** 2).sum(axis=-1) / 0.05**2).sum(axis=1)
+        for before in (middled, middled[:, OPPOSITE])
+    )
+    # A change between two frames costs about as much as one limb that jumps by its usual error.
+    states = exchanged_path(np.stack([own, -own], axis=-1), stay, change + 8.0)
     if not states.any() or states.all():  # a body that is wrong from end to end is left as it is
         return exchanged
     halfway = 0.5 * (known[1:] + known[:-1])
     return np.asarray(states[np.searchsorted(halfway, np.arange(len(points)))])
-
-
-def opposite_points() -> IndexArray:
-    """(13,) index of each point's opposite."""
-    names = HUMAN.point_names
-    return np.array([names.index(other_side(name)) for name in names], dtype=np.intp)
-
-
-def _distances(after: Array, before: Array) -> Array:
-    """(F,) how far the points move about their middle, with heavy tails."""
-    relative = [points - points.mean(axis=1, keepdims=True) for points in (after, before)]
-    squared = ((relative[0] - relative[1]) ** 2).sum(axis=-1)
-    return np.asarray(np.log1p(squared / STEP_M**2).sum(axis=1))
 
 
 def _wrong_way(points: Array) -> Array:

@@ -26,8 +26,9 @@ MOST_ROWS = 5000  # largest number of takes on the page; browsers are slow to la
 MOST_NAMED = 12  # frames and notes of a take
 GOOD = WEAK_CONFIDENCE
 """Mean confidence from which a take is good: frames of this confidence need no keyframe."""
-FAIR = 0.5  # mean confidence from which a take is fair: below, most joints are likely off
-GOOD_WEAKEST = FAIR  # least confidence of the weakest twentieth of a good take's frames
+FAIR = 0.5
+"""Mean confidence from which a take is fair (below, most joints are likely off), and the least one of the
+weakest twentieth of a good take's frames."""
 
 
 class Verdict(StrEnum):
@@ -52,10 +53,7 @@ HEADINGS = {
 }
 """A sign and an advice for each section."""
 COLUMNS = ("Take", "Footage", "Confidence", "To do and to know", "Files")
-REPORT = "report/"
-PICTURE = f"{REPORT}overlay.png"
-"""The picture that stands for a take; the page shows a part, a click all of it."""
-FILE_ORDER = (".blend", ".bvh", ".json")
+PICTURE = "report/overlay.png"  # stands for a take; the page shows a part, a click all of it
 
 
 def visible(text: str) -> str:
@@ -114,7 +112,7 @@ def verdict(outcome: Outcome) -> Verdict:
         return Verdict.POOR
     if record.confidence is None:
         return Verdict.UNJUDGED
-    if record.confidence >= GOOD and (record.weakest is None or record.weakest >= GOOD_WEAKEST):
+    if record.confidence >= GOOD and (record.weakest is None or record.weakest >= FAIR):
         return Verdict.GOOD
     return Verdict.FAIR if record.confidence >= FAIR else Verdict.POOR
 
@@ -136,9 +134,19 @@ def summary_page(title: str, outcomes: Sequence[Outcome], output: Path) -> str:
     """A batch as one HTML page."""
     bodies, free_rows = [], MOST_ROWS
     for kind, those in sections(outcomes).items():
-        bodies.append(_section(kind, those[:free_rows], len(those), output))
-        free_rows -= min(free_rows, len(those))
-    rows = "\n".join(bodies)
+        shown = those[:free_rows]
+        free_rows -= len(shown)
+        sign, advice = HEADINGS[kind]
+        if len(shown) < len(those):
+            advice += f" {len(those) - len(shown)} of them are in summary.jsonl alone."
+        rows = "\n".join(_row(outcome, kind, output) for outcome in shown)
+        bodies.append(
+            '<tbody role="rowgroup"><tr role="row" class="section">'
+            f'<th role="rowheader" scope="rowgroup" colspan="{len(COLUMNS)}"><h2 class="{kind.name.lower()}">'
+            f'<span aria-hidden="true">{sign}</span> {kind.value.capitalize()} '
+            f'<span class="count">{len(those)}</span></h2> <small>{advice}</small></th></tr>\n{rows}</tbody>'
+        )
+    body = "\n".join(bodies)
     heads = "".join(f'<th role="columnheader" scope="col">{name}</th>' for name in COLUMNS)
     # The hash by which the Content Security Policy allows this style alone.
     style = base64.b64encode(hashlib.sha256(STYLE.encode()).digest()).decode()
@@ -156,7 +164,7 @@ def summary_page(title: str, outcomes: Sequence[Outcome], output: Path) -> str:
         f"<header><h1>{isolated(title)}</h1>{_counts(outcomes)}</header>\n"
         '<main><table role="table"><caption>Takes, those that need a person first</caption>\n'
         f'<thead role="rowgroup"><tr role="row">{heads}</tr></thead>\n'
-        f"{rows}</table></main>\n"
+        f"{body}</table></main>\n"
         "<footer>Confidence is the expected share of the body\u2019s joints that lie within a fortieth of "
         "the performer\u2019s height of their true places; the mark on the bar is what one frame in twenty "
         "falls short of. Frames are the scene\u2019s, the one that helps most first. On the pictures left "
@@ -174,56 +182,29 @@ def _counts(outcomes: Sequence[Outcome]) -> str:
     return f"<dl>{''.join(f'<div><dt>{name}</dt><dd>{value}</dd></div>' for name, value in figures)}</dl>"
 
 
-def _section(kind: Verdict, outcomes: Sequence[Outcome], count: int, output: Path) -> str:
-    sign, advice = HEADINGS[kind]
-    if len(outcomes) < count:
-        advice += f" {count - len(outcomes)} of them are in summary.jsonl alone."
-    rows = "\n".join(_row(outcome, kind, output) for outcome in outcomes)
-    return (
-        '<tbody role="rowgroup"><tr role="row" class="section">'
-        f'<th role="rowheader" scope="rowgroup" colspan="{len(COLUMNS)}"><h2 class="{_css_class(kind)}">'
-        f'<span aria-hidden="true">{sign}</span> {kind.value.capitalize()} '
-        f'<span class="count">{count}</span></h2> <small>{advice}</small></th></tr>\n{rows}</tbody>'
-    )
-
-
 def _row(outcome: Outcome, kind: Verdict, output: Path) -> str:
     path, record = relative_path(outcome.folder, output), current_record(outcome)
     if record is None:
-        cells = f'<td role="cell" colspan="{len(COLUMNS) - 1}">{_no_result(outcome)}</td>'
+        text = ""
+        if outcome.status is Status.FAILED:
+            text = f'<p class="error">{isolated(outcome.error or "It is not known why.")}</p>'
+        if outcome.record is not None:
+            text += "<p><small>An earlier result is still in its folder.</small></p>"
+        cells = f'<td role="cell" colspan="{len(COLUMNS) - 1}">{text}</td>'
     else:
         shown = (_footage(path, record), _confidence(record, kind), _to_do(record), _files(path, record))
         cells = "".join(f'<td role="cell">{cell}</td>' for cell in shown)
-    name = f'<th role="rowheader" scope="row">{_name(outcome, path)}</th>'
-    return f'<tr role="row" class="take">{name}{cells}</tr>'
-
-
-def _css_class(kind: Verdict) -> str:
-    return kind.value.replace(" ", "-")
-
-
-def _name(outcome: Outcome, path: str) -> str:
     name = isolated(outcome.take)
     if outcome.record is not None:
         name = f'<a href="{address(path, "")}">{name}</a>'
     timed = outcome.seconds is not None and outcome.status is Status.CONVERTED
     worked = f" in {duration(outcome.seconds or 0.0)}" if timed else ""
-    return f"{name}<small>{outcome.status.value}{worked}</small>"
+    head = f"{name}<small>{outcome.status.value}{worked}</small>"
+    return f'<tr role="row" class="take"><th role="rowheader" scope="row">{head}</th>{cells}</tr>'
 
 
 def _footage(path: str, record: ConversionRecord) -> str:
     length = f"{pluralize(record.frames, 'frame')}, {duration(record.frames / record.fps)}"
-    words = f"<small>{length} at {record.fps:g} frames a second; {_made_from(record)}</small>"
-    if PICTURE not in record.files:
-        return words
-    file = address(path, PICTURE)
-    return (
-        f'<a href="{file}"><img src="{file}" loading="lazy" decoding="async" '
-        f'alt="frames of the footage with the skeleton over them"></a>{words}'
-    )
-
-
-def _made_from(record: ConversionRecord) -> str:
     evidence = ""
     if record.evidence is not None:
         sources = ", ".join(isolated(each.source) for each in record.evidence.keypoints)
@@ -235,11 +216,21 @@ def _made_from(record: ConversionRecord) -> str:
     keyframes += f" ({doubtful} doubtful)" if doubtful else ""
     library = "" if record.library is None else f", library {isolated(record.library)}"
     library = ", all libraries" if record.library == COMPOSED else library
-    return f"{evidence}{' and '.join(counts) or 'no'} {keyframes}{library}, method {isolated(record.method)}"
+    words = (
+        f"<small>{length} at {record.fps:g} frames a second; {evidence}{' and '.join(counts) or 'no'} "
+        f"{keyframes}{library}, method {isolated(record.method)}</small>"
+    )
+    if PICTURE not in record.files:
+        return words
+    file = address(path, PICTURE)
+    return (
+        f'<a href="{file}"><img src="{file}" loading="lazy" decoding="async" '
+        f'alt="frames of the footage with the skeleton over them"></a>{words}'
+    )
 
 
 def _confidence(record: ConversionRecord, kind: Verdict) -> str:
-    word = f'<b class="{_css_class(kind)}">{HEADINGS[kind][0]} {kind.value}</b>'
+    word = f'<b class="{kind.name.lower()}">{HEADINGS[kind][0]} {kind.value}</b>'
     if record.confidence is None:
         return word
     bar = '<rect class="track" width="100" height="6"/>'
@@ -249,18 +240,9 @@ def _confidence(record: ConversionRecord, kind: Verdict) -> str:
         bar += f'<rect class="tick" x="{99 * record.weakest:.0f}" width="1" height="6"/>'
         weakest = f"<small>weakest twentieth {percent(record.weakest)}</small>"
     return (
-        f'<span class="share">{percent(record.confidence)}</span> {word}<svg class="{_css_class(kind)}" '
+        f'<span class="share">{percent(record.confidence)}</span> {word}<svg class="{kind.name.lower()}" '
         f'viewBox="0 0 100 6" preserveAspectRatio="none" aria-hidden="true">{bar}</svg>{weakest}'
     )
-
-
-def _no_result(outcome: Outcome) -> str:
-    text = ""
-    if outcome.status is Status.FAILED:
-        text = f'<p class="error">{isolated(outcome.error or "It is not known why.")}</p>'
-    if outcome.record is not None:
-        text += "<p><small>An earlier result is still in its folder.</small></p>"
-    return text
 
 
 def _to_do(record: ConversionRecord) -> str:
@@ -279,10 +261,10 @@ def _to_do(record: ConversionRecord) -> str:
 
 def _files(path: str, record: ConversionRecord) -> str:
     """Links to a result's files, and below them those to its pictures."""
-    names = {name: PurePosixPath(name).stem if name.startswith(REPORT) else name for name in record.files}
-    order = sorted(names, key=lambda name: (*(not name.endswith(ending) for ending in FILE_ORDER), name))
-    links = {name: f'<a href="{address(path, name)}">{isolated(names[name])}</a>' for name in order}
-    results = ", ".join(links[name] for name in order if names[name] == name)
-    return "<br>".join(
-        filter(None, (results, ", ".join(links[name] for name in order if names[name] != name)))
-    )
+    endings = (".blend", ".bvh", ".json")
+    lines: list[list[str]] = [[], []]
+    for name in sorted(record.files, key=lambda name: (*(not name.endswith(one) for one in endings), name)):
+        picture = name.startswith("report/")
+        words = isolated(PurePosixPath(name).stem if picture else name)
+        lines[picture].append(f'<a href="{address(path, name)}">{words}</a>')
+    return "<br>".join(", ".join(links) for links in lines if links)

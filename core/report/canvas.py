@@ -1,6 +1,7 @@
 """An anti-aliased picture to draw on, in pixels with fractions."""
 
 import unicodedata
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array, Image
 from ..body.human import STRONG
+from ..body.posture import UP
 from ..camera.camera import Camera
 from ..numerics.vectors import unit
 
@@ -26,6 +28,7 @@ SCALE = 2  # supersampling: everything is drawn this much larger and reduced at 
 SUBPIXEL_BITS = 4  # fractional bits of coordinates: OpenCV draws to sixteenths of a pixel
 FONT = cv2.FONT_HERSHEY_DUPLEX
 LETTER_PX = 21.0  # height of the font's capital letters at scale 1
+GRID_M = 0.5  # between the lines of a grid that sizes are read off
 
 
 class Canvas:
@@ -57,24 +60,18 @@ class Canvas:
         finite = np.isfinite(vertices).all(axis=-1)
         for run in np.split(np.arange(len(vertices)), np.flatnonzero(np.diff(finite)) + 1):
             if finite[run[0]] and len(run) > 1:
-                whole = closed and len(run) == len(vertices)
-                cv2.polylines(
-                    self._pixels,
-                    [_fixed(vertices[run])],
-                    whole,
-                    color,
-                    _width(thickness),
-                    cv2.LINE_AA,
-                    SUBPIXEL_BITS,
-                )
+                whole, width = closed and len(run) == len(vertices), max(1, round(thickness * SCALE))
+                lines = [_fixed(vertices[run])]
+                cv2.polylines(self._pixels, lines, whole, color, width, cv2.LINE_AA, SUBPIXEL_BITS)
 
-    def disc(self, center: ArrayLike, radius: float, color: Color) -> None:
-        """Fill a circle."""
-        self._circle(center, radius, color, cv2.FILLED)
-
-    def ring(self, center: ArrayLike, radius: float, color: Color, thickness: float = 1.0) -> None:
-        """Draw a circle."""
-        self._circle(center, radius, color, _width(thickness))
+    def circle(self, center: ArrayLike, radius: float, color: Color, thickness: float | None = None) -> None:
+        """Draw a circle as a line of a thickness, by default filled; none where its center is not finite."""
+        point = np.asarray(center, dtype=np.float64)
+        if np.isfinite(point).all():
+            x, y = _fixed(point[None])[0, 0]
+            size = round(radius * SCALE * 2**SUBPIXEL_BITS)
+            width = cv2.FILLED if thickness is None else max(1, round(thickness * SCALE))
+            cv2.circle(self._pixels, (int(x), int(y)), size, color, width, cv2.LINE_AA, SUBPIXEL_BITS)
 
     def box(self, left: float, top: float, right: float, bottom: float, color: Color) -> None:
         """Fill a rectangle."""
@@ -104,13 +101,6 @@ class Canvas:
         (width, _), _ = cv2.getTextSize(words, FONT, size * SCALE / LETTER_PX, 1)
         return float(width) / SCALE
 
-    def _circle(self, center: ArrayLike, radius: float, color: Color, thickness: int) -> None:
-        point = np.asarray(center, dtype=np.float64)
-        if np.isfinite(point).all():
-            x, y = _fixed(point[None])[0, 0]
-            size = round(radius * SCALE * 2**SUBPIXEL_BITS)
-            cv2.circle(self._pixels, (int(x), int(y)), size, color, thickness, cv2.LINE_AA, SUBPIXEL_BITS)
-
 
 def write_png(path: str, image: Image) -> None:
     """Write a picture as PNG; unlike OpenCV's own writer to any path on any system."""
@@ -128,52 +118,53 @@ def _fixed(points: Array) -> NDArray[np.int32]:
     return np.round(clipped * 2**SUBPIXEL_BITS).astype(np.int32)[:, None]
 
 
-def _width(thickness: float) -> int:
-    return max(1, round(thickness * SCALE))
+# --- Words, grids and views that several pictures have
 
 
-ELLIPSIS = "..."
-
-
-def ascii_text(text: str) -> str:
-    """The text in ASCII; accents are dropped, as are other characters that the font lacks."""
-    return unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
-
-
-def truncated(text: str, width: float, size: float) -> str:
-    """The text, truncated to a `width` in letters of a `size`."""
+def truncated(text: str, width: float = np.inf, size: float = 9.0) -> str:
+    """The text in ASCII, which the font has, truncated to a `width` in letters of a `size`."""
+    text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
     if Canvas.text_width(text, size) <= width:
         return text
-    while text and Canvas.text_width(text + ELLIPSIS, size) > width:
+    while text and Canvas.text_width(f"{text}...", size) > width:
         text = text[:-1]
-    return text.rstrip() + ELLIPSIS
+    return f"{text.rstrip()}..."
 
 
-UP = np.array([0.0, 0.0, 1.0])
+@dataclass(frozen=True, eq=False)
+class View:
+    """A parallel projection."""
+
+    axes: Array  # (3, 3) world directions that it shows to the right, upwards, and away from the eye, as rows
+    scale: float  # pixels a meter
+    center: tuple[float, float]  # the origin in the picture: pixels to the right and down
+    origin: Array | float = 0.0  # (3,) in the world [m]
+
+    def project(self, points: Array) -> tuple[Array, Array]:
+        """Pixels (..., 2) and depths (...,) [m] of world points (..., 3)."""
+        seen = (points - self.origin) @ self.axes.T
+        return self.center + self.scale * seen[..., :2] * [1.0, -1.0], seen[..., 2]
 
 
 def view_axes(turn_rad: float, tilt_rad: float) -> Array:
-    """World directions (3, 3) that a view shows to the right, upwards, and away from the eye, as rows."""
+    """Axes of a view by the turn of the eye around the world's Z and its tilt downward.
+
+    At 0 it sees a performer who faces -Y from the front, turned by π/2 from their left.
+    """
     right = np.array([np.cos(turn_rad), np.sin(turn_rad), 0.0])
     level = np.array([-right[1], right[0], 0.0])
-    away = np.cos(tilt_rad) * level - np.sin(tilt_rad) * np.array([0.0, 0.0, 1.0])
+    away = np.cos(tilt_rad) * level - np.sin(tilt_rad) * UP
     return np.stack([right, np.cross(right, away), away])
 
 
-def side_directions(camera: Camera) -> Array:
-    """World directions (3, 3) that a view from the side shows to the right, upwards, and away, as rows.
-
-    To the right is the camera's direction made level.
-    """
+def side_axes(camera: Camera) -> Array:
+    """Axes of a view from the side, which shows the camera's direction, made level, to the right."""
     matrix = camera.matrix_world.reshape(-1, 4, 4)[0]
     level = -matrix[:3, 2] * [1.0, 1.0, 0.0]
     if np.linalg.norm(level) < 0.1:  # looking straight down or up: the picture's upper edge is ahead
         level = matrix[:3, 1] * [1.0, 1.0, 0.0]
     ahead = unit(level)
     return np.stack([ahead, UP, np.cross(UP, ahead)])
-
-
-GRID_M = 0.5  # between the lines of a grid that sizes are read off
 
 
 def draw_grid(tile: Canvas, scale: float, floor: float) -> None:

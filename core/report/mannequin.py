@@ -15,12 +15,10 @@ from ..camera.camera import Camera
 from ..feet.natural_extremities import feet_on_floor
 from ..feet.soles import Shins, Soles
 from ..numerics.vectors import unit
-from .canvas import GRID_M, PAPER, Canvas, Color, ascii_text, draw_grid, side_directions, view_axes
-from .overlay_sheet import GAP, frame_label, sheet
+from .canvas import GRID_M, PAPER, Canvas, Color, View, draw_grid, side_axes, truncated, view_axes
+from .overlay_sheet import sheet
 from .stick_figure import Projection, square_of, squares_around
 
-LIGHT = np.array([0.35, -0.5, 0.8])
-DARKEST = 0.45
 SKIN: Color = (196, 190, 186)
 
 
@@ -46,35 +44,15 @@ def draw_character(canvas: Canvas, figure: CharacterFigure, project: Projection)
     shown = np.flatnonzero(facing & np.isfinite(corners).all(axis=(1, 2)) & np.isfinite(away))
     world = figure.points[figure.triangles[shown]]
     normal = np.cross(world[:, 1] - world[:, 0], world[:, 2] - world[:, 0])
-    lit = unit(normal) @ unit(LIGHT)
-    shaded = figure.colors[shown] * (DARKEST + (1.0 - DARKEST) * (0.5 + 0.5 * lit))[:, None]
+    lit = unit(normal) @ unit(np.array([0.35, -0.5, 0.8]))  # from above, before and aside
+    shaded = figure.colors[shown] * (0.725 + 0.275 * lit)[:, None]
     for row in np.argsort(-away[shown], kind="stable"):
         blue, green, red = (int(value) for value in np.clip(shaded[row], 0.0, 255.0))
         canvas.polygon(corners[shown[row]], (blue, green, red))
 
 
 SIDES_OF_RING, BANDS_OF_CAP, BANDS_OF_SHAFT = 16, 4, 5
-TRUNK = (186, 182, 180)
-BAND = (235, 232, 230)  # color of a ring around each right limb, which marks it for color-blind eyes too
-FLOOR_M = 0.0
-SHADOW, SOFTNESS_M = 0.32, 0.03  # darkness of the shadow, and its blur
-
-
-@dataclass(frozen=True)
-class View:
-    """Direction of view, scale and origin of a parallel projection."""
-
-    turn_rad: float
-    """Turn of the eye around the world's Z: at 0 it sees a performer who faces -Y from the front, at π/2 from
-    their left."""
-    tilt_rad: float  # downward tilt of the view
-    scale: float  # pixels a meter
-    center: tuple[float, float]  # the world's origin in the picture: pixels to the right and down
-
-    def project(self, points: Array) -> tuple[Array, Array]:
-        """Pixels (..., 2) and depths (...,) [m] of world points (..., 3)."""
-        seen = points @ view_axes(self.turn_rad, self.tilt_rad).T
-        return self.center + self.scale * seen[..., :2] * [1.0, -1.0], seen[..., 2]
+TILT_RAD = 0.16  # downward tilt of the view, which shows where on the floor the feet are
 
 
 def draw_mannequin(image: Image, figure: CharacterFigure, view: View) -> Image:
@@ -84,9 +62,9 @@ def draw_mannequin(image: Image, figure: CharacterFigure, view: View) -> Image:
     fallen = np.clip(view.project(figure.points * [1.0, 1.0, 0.0])[0], -1e4, 1e4).round().astype(np.int32)
     for corners in fallen[figure.triangles]:
         cv2.fillConvexPoly(shadow, corners, (1.0,))
-    shadow = np.asarray(cv2.GaussianBlur(shadow, (0, 0), SOFTNESS_M * view.scale))
+    shadow = np.asarray(cv2.GaussianBlur(shadow, (0, 0), 0.03 * view.scale))
     canvas = Canvas(width, height)
-    canvas.paste((image * (1.0 - SHADOW * shadow[..., None])).astype(np.uint8), 0, 0, width, height)
+    canvas.paste((image * (1.0 - 0.32 * shadow[..., None])).astype(np.uint8), 0, 0, width, height)
     draw_character(canvas, figure, view.project)
     return canvas.image()
 
@@ -94,10 +72,10 @@ def draw_mannequin(image: Image, figure: CharacterFigure, view: View) -> Image:
 def mannequin(body: Body, posture: Posture) -> CharacterFigure:
     """The body in a single posture, with feet turned where the rigid ones would go below the floor z = 0."""
     pose = body.pose(Posture.stack([posture]))
-    feet = Extremities(feet_on_floor(Shins.of(body, pose), Soles.of(body), FLOOR_M))
+    feet = Extremities(feet_on_floor(Shins.of(body, pose), Soles.of(body), 0.0))
     points, triangles, colors = [], [], []
     quads = ring_quads(2 * BANDS_OF_CAP + BANDS_OF_SHAFT + 1, SIDES_OF_RING)
-    for piece in _pieces(body):
+    for piece in (*body_pieces(body), _nose(body)):
         foot = piece.segment.startswith("foot")
         turn = segment_turn(body, pose, feet, piece.segment)[0] if foot else pose.rotation[0, piece.joint]
         rings = piece.rings(SIDES_OF_RING, BANDS_OF_CAP, BANDS_OF_SHAFT).reshape(-1, 3)
@@ -107,55 +85,49 @@ def mannequin(body: Body, posture: Posture) -> CharacterFigure:
         corners = quads.reshape(-1, 4) + sum(map(len, points[:-1]))
         triangles += [corners[:, [0, 1, 2]], corners[:, [0, 2, 3]]]
         side = piece.segment[-1]
-        color = np.tile(np.array(STRONG[side][::-1] if side in STRONG else TRUNK), (*quads.shape[:2], 1))
-        if side == "R":
-            color[BANDS_OF_CAP + BANDS_OF_SHAFT // 2] = BAND
+        paint = STRONG[side][::-1] if side in STRONG else (186, 182, 180)
+        color = np.tile(np.array(paint), (*quads.shape[:2], 1))
+        if side == "R":  # a ring around each right limb marks it for color-blind eyes too
+            color[BANDS_OF_CAP + BANDS_OF_SHAFT // 2] = (235, 232, 230)
         colors += [color.reshape(-1, 3)] * 2
     return CharacterFigure(np.concatenate(points), np.concatenate(triangles), np.concatenate(colors))
 
 
-def _pieces(body: Body) -> tuple[Piece, ...]:
-    """The body's volume and a nose, by which one sees where the face is."""
-    pieces = body_pieces(body)
-    head = next(piece for piece in pieces if piece.segment == "head")
-    middle = head.start + 0.65 * (head.end - head.start)
+def _nose(body: Body) -> Piece:
+    """A nose, by which one sees where the face is."""
+    head = next(piece for piece in body_pieces(body) if piece.segment == "head")
+    up = head.end - head.start
+    middle = head.start + 0.65 * up
     length, width = 1.3 * head.half_widths[1, 1], 0.2 * head.half_widths[1, 0]
-    widths = np.full((2, 2), width)
-    up = (head.end - head.start) / np.linalg.norm(head.end - head.start)
-    return *pieces, Piece(
-        "nose", head.joint, middle, middle - length * head.sagittal, head.lateral, up, widths
-    )
+    tip, widths = middle - length * head.sagittal, np.full((2, 2), width)
+    return Piece("nose", head.joint, middle, tip, head.lateral, up / np.linalg.norm(up), widths)
 
 
 SIZE = 256
-EDGE = 8
-TILT_RAD = 0.16  # downward tilt of the view, which shows where on the floor the feet are
-WALL = np.array([250.0, 249.0, 248.0])
-FLOOR = np.array([229.0, 225.0, 222.0])
-BEHIND_M = 0.45
 
 
 def posture_picture(body: Body, posture: Posture) -> Image:
     """Draw a single posture; the floor is z = 0."""
-    figure = mannequin(body, posture)
-    turn = facing_rad(-posture.rotations[0, :, 1]) + np.radians(-35.0)
-    seen = View(turn, TILT_RAD, 1.0, (0.0, 0.0)).project(figure.points)[0]
-    floor = View(turn, TILT_RAD, 1.0, (0.0, 0.0)).project(posture.translation * [1.0, 1.0, 0.0])[0][1]
+    figure, edge = mannequin(body, posture), 8
+    axes = view_axes(facing_rad(-posture.rotations[0, :, 1]) + np.radians(-35.0), TILT_RAD)
+    seen = View(axes, 1.0, (0.0, 0.0)).project(figure.points)[0]
+    floor = View(axes, 1.0, (0.0, 0.0)).project(posture.translation * [1.0, 1.0, 0.0])[0][1]
     (left, high), (right, low) = seen.min(axis=0), seen.max(axis=0)
     low = max(low, floor + 0.1)
-    scale = (SIZE - 2 * EDGE) / max(low - high, right - left, 1.08 * body.actor.stature_m)
-    center = (0.5 * SIZE - scale * 0.5 * (left + right), SIZE - EDGE - scale * low)
+    scale = (SIZE - 2 * edge) / max(low - high, right - left, 1.08 * body.actor.stature_m)
+    center = (0.5 * SIZE - scale * 0.5 * (left + right), SIZE - edge - scale * low)
     wall = backdrop(SIZE, SIZE, center[1] + scale * floor, scale)
-    return draw_mannequin(wall, figure, View(turn, TILT_RAD, scale, center))
+    return draw_mannequin(wall, figure, View(axes, scale, center))
 
 
 def backdrop(height: int, width: int, floor: float, scale: float) -> Image:
-    """A floor before a wall."""
-    rows = np.arange(height) + 0.5 - (floor - scale * BEHIND_M * np.sin(TILT_RAD))
+    """A floor before a wall, which begins half a meter behind the row `floor` at a scale [px/m]."""
+    wall, near = np.array([250.0, 249.0, 248.0]), np.array([229.0, 225.0, 222.0])
+    behind = 0.45 * scale * np.sin(TILT_RAD)
+    rows = np.arange(height) + 0.5 - (floor - behind)
     share = np.clip(rows + 0.5, 0.0, 1.0)  # of each row, that is floor
-    fade = np.clip(rows / (3.0 * scale * BEHIND_M * np.sin(TILT_RAD)), 0.0, 1.0)
-    ground = FLOOR + fade[:, None] * 0.6 * (WALL - FLOOR)
-    colors = WALL + share[:, None] * (ground - WALL)
+    fade = np.clip(rows / (3.0 * behind), 0.0, 1.0)
+    colors = wall + share[:, None] * (near + fade[:, None] * 0.6 * (wall - near) - wall)
     return np.asarray(np.repeat(np.round(colors)[:, None], width, axis=1), dtype=np.uint8)
 
 
@@ -163,7 +135,6 @@ def backdrop(height: int, width: int, floor: float, scale: float) -> Image:
 
 
 SIDE = 220
-ROOM = 1.15  # side of the view from the side, in heights or widths of the largest figure
 
 
 def character_sheet(
@@ -184,47 +155,37 @@ def character_sheet(
         frame_start: Scene frame of index 0.
         floor_m: Height of the floor under the character [m].
     """
-    title = ascii_text(f"{name}: through the camera, and from the side")
+    title = truncated(f"{name}: through the camera, and from the side")
     words = (
         f"From the side in parallel projection about the hips; grid of {GRID_M:g} m. Numbers: scene frames."
     )
-    rows = 3 if images else 2
-    canvas, cells = sheet(title, words, figures, len(figures), SIDE, rows * (SIDE + GAP) - GAP)
     points = {frame: figure.points for frame, figure in figures.items()}
     centers, side_px = squares_around(points, camera, list(figures))
-    side_m = ROOM * max(np.ptp(figure.points, axis=0).max() for figure in figures.values())
-    for cell, corner in zip(cells, centers - 0.5 * side_px, strict=True):
+    corners = dict(zip(figures, centers - 0.5 * side_px, strict=True))
+    # Side of the view from the side, in heights or widths of the largest figure.
+    room = 1.15
+    side_m = room * max(np.ptp(figure.points, axis=0).max() for figure in figures.values())
 
-        def project(places: Array, frame: int = cell.frame, corner: Array = corner) -> tuple[Array, Array]:
+    def draw(frame: int) -> list[Image]:
+        figure, image, corner = figures[frame], images.get(frame), corners[frame]
+        footage, through, side = (Canvas(SIDE, SIDE, PAPER) for _ in range(3))
+
+        def project(places: Array) -> tuple[Array, Array]:
             pixels, depth = camera.project(places, frame)
             return (pixels - corner) * (SIDE / side_px), depth
 
-        figure, image = figures[cell.frame], images.get(cell.frame)
-        through = Canvas(SIDE, SIDE, PAPER)
-        tiles = [Canvas(SIDE, SIDE, PAPER).image()] * (rows - 2)
-        if image is not None:
-            tiles = [square_of(image, corner, side_px, camera.resolution)]
         draw_character(through, figure, project)
-        tiles += [through.image(), _from_side(figure, camera, side_m, floor_m)]
-        for row, tile in enumerate(tiles):
-            canvas.paste(tile, cell.left, cell.top + row * (SIDE + GAP), SIDE, SIDE)
-        frame_label(canvas, cell, cell.frame + frame_start, keyframe=False)
-    return canvas.image()
+        # From its left side as the camera sees it, over a grid that begins at the floor.
+        middle = 0.5 * (figure.points.min(axis=0) + figure.points.max(axis=0)) * [1.0, 1.0, 0.0]
+        scale = SIDE / side_m
+        low_m = min(float(figure.points[:, 2].min()), floor_m) - 0.5 * (1.0 - 1.0 / room) * side_m
+        draw_grid(side, scale, SIDE - scale * (floor_m - low_m))
+        view = View(side_axes(camera), scale, (0.5 * SIDE, SIDE + scale * low_m), middle)
+        draw_character(side, figure, view.project)
+        tiles = [through.image(), side.image()]
+        if not images:
+            return tiles
+        seen = footage.image() if image is None else square_of(image, corner, side_px, camera.resolution)
+        return [seen, *tiles]
 
-
-def _from_side(figure: CharacterFigure, camera: Camera, side_m: float, floor_m: float) -> Image:
-    """The character from its left side as the camera sees it, over a grid that begins at the floor."""
-    axes = side_directions(camera)
-    middle = 0.5 * (figure.points.min(axis=0) + figure.points.max(axis=0))
-    scale = SIDE / side_m
-    low_m = min(float(figure.points[:, 2].min()), floor_m) - 0.5 * (1.0 - 1.0 / ROOM) * side_m
-    tile = Canvas(SIDE, SIDE, PAPER)
-    draw_grid(tile, scale, SIDE - scale * (floor_m - low_m))
-
-    def project(points: Array) -> tuple[Array, Array]:
-        right, _, away = axes @ (points - middle).T
-        pixels = np.stack([0.5 * SIDE + scale * right, SIDE - scale * (points[:, 2] - low_m)], axis=-1)
-        return pixels, away
-
-    draw_character(tile, figure, project)
-    return tile.image()
+    return sheet(title, words, figures, len(figures), (SIDE, SIDE), draw, frame_start).image()

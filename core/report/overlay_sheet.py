@@ -1,7 +1,6 @@
 """Contact sheet of the footage with the estimate over it: skeleton, regions, keypoints and contours."""
 
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 import cv2
 import numpy as np
@@ -15,7 +14,7 @@ from ..review.compared_keypoints import ComparedKeypoints
 from ..take.motion import Motion
 from ..take.take import Take
 from ..terms.contours import SHARES, SIDES, ContourModel
-from .canvas import ACCENT, GRAY, INK, WHITE, Canvas, Color, ascii_text, truncated
+from .canvas import ACCENT, GRAY, INK, WHITE, Canvas, Color, truncated
 from .stick_figure import draw_figure, legend, stick_figure
 
 OUTLINE: Color = (150, 70, 150)
@@ -47,22 +46,18 @@ def draw_outlines(
 SOURCE_COLORS: tuple[Color, ...] = ((167, 121, 204), (66, 228, 240), (233, 180, 86), (0, 159, 230))
 """Purple, yellow, sky blue and orange for the first sources, Okabe and Ito's beside those of the limbs."""
 THROWN_OUT: Color = (40, 30, 200)
-ARM = 3.4  # half-length of a cross's arms [px]; half of it for a small figure
-RING = 2.2  # radius of the ring at the predicted place [px]; the same
-
-
-def source_color(keypoints: ComparedKeypoints, source: str) -> Color:
-    """The color of a source's keypoints."""
-    index = list(dict.fromkeys(keypoints.sources)).index(source)
-    return SOURCE_COLORS[index % len(SOURCE_COLORS)]
 
 
 def draw_keypoints(
     canvas: Canvas, keypoints: ComparedKeypoints, frame: int, to_canvas: Callable[[Array], Array]
 ) -> None:
-    """Draw the keypoints of one frame, the marks of a small figure smaller."""
+    """Draw the keypoints of one frame, the marks of a small figure smaller.
+
+    Upright crosses; slanting where they are thrown out, in a square where sides are exchanged.
+    """
     seen, predicted = to_canvas(keypoints.seen[frame]), to_canvas(keypoints.predicted[frame])
-    colors = [source_color(keypoints, source) for source in keypoints.sources]
+    sources = list(dict.fromkeys(keypoints.sources))
+    colors = [SOURCE_COLORS[sources.index(source) % len(SOURCE_COLORS)] for source in keypoints.sources]
     thrown_out, swapped = keypoints.thrown_out[frame], keypoints.swapped[frame]
     rows = predicted[np.isfinite(predicted).all(axis=-1), 1]
     size = float(np.clip(np.ptp(rows) / 220.0, 0.5, 1.0)) if len(rows) else 1.0
@@ -70,18 +65,24 @@ def draw_keypoints(
         if not thrown_out[index]:
             canvas.line([seen[index], predicted[index]], color, 1.0)
     for place, color in zip(predicted, colors, strict=True):
-        canvas.ring(place, size * RING, WHITE, 2.0)
-        canvas.ring(place, size * RING, color, 1.0)
-    for index, color in enumerate(colors):
-        if np.isfinite(seen[index]).all():
-            _cross(canvas, seen[index], color, size, bool(thrown_out[index]), bool(swapped[index]))
+        canvas.circle(place, size * 2.2, WHITE, 2.0)
+        canvas.circle(place, size * 2.2, color, 1.0)
+    for index in np.flatnonzero(np.isfinite(seen).all(axis=-1)):
+        place, reach = seen[index], 3.4 * size
+        arms = reach * (np.array([[0.7, 0.7], [0.7, -0.7]]) if thrown_out[index] else np.eye(2))
+        for width, ink in ((2.0, WHITE), (1.0, THROWN_OUT if thrown_out[index] else colors[index])):
+            for arm in arms:
+                canvas.line([place - arm, place + arm], ink, width)
+            if swapped[index]:
+                corners = place + 1.2 * reach * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+                canvas.line(corners, ink, width, closed=True)
 
 
 def draw_keypoint_legend(
     canvas: Canvas, keypoints: ComparedKeypoints, left: float, right: float, y: float
 ) -> None:
     """Explain the marks on a line with its baseline at `y` that ends at `right`; nothing if it lacks room."""
-    names = [truncated(ascii_text(source), 150.0, 8.0) for source in dict.fromkeys(keypoints.sources)]
+    names = [truncated(source, 150.0, 8.0) for source in dict.fromkeys(keypoints.sources)]
     words = [("Cross: keypoint of", GRAY)]
     words += [(name, SOURCE_COLORS[index % len(SOURCE_COLORS)]) for index, name in enumerate(names)]
     words.append(("slanting: not believed; boxed: sides exchanged; ring: where the motion puts it", GRAY))
@@ -93,34 +94,7 @@ def draw_keypoint_legend(
         x += canvas.text_width(word, 8.0) + 8.0
 
 
-def _cross(canvas: Canvas, place: Array, color: Color, size: float, thrown_out: bool, swapped: bool) -> None:
-    """An upright cross; a slanting one where it is thrown out, one in a square where sides are exchanged."""
-    arms = size * ARM * (np.array([[0.7, 0.7], [0.7, -0.7]]) if thrown_out else np.eye(2))
-    color = THROWN_OUT if thrown_out else color
-    for width, ink in ((2.0, WHITE), (1.0, color)):
-        for arm in arms:
-            canvas.line([place - arm, place + arm], ink, width)
-        if swapped:
-            corners = place + 1.2 * size * ARM * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-            canvas.line(corners, ink, width, closed=True)
-
-
-MARGIN = 16
-GAP = 8
-TITLE = 34
-FOOT = 22
-LABEL = 20
-
-
-@dataclass(frozen=True)
-class Cell:
-    """A rectangle of the sheet for one frame."""
-
-    frame: int
-    left: int
-    top: int
-    width: int
-    height: int
+MARGIN, GAP, TITLE, LABEL = 16, 8, 34, 20  # of a sheet, and the height of its frames' numbers [px]
 
 
 def evenly_spaced_frames(frame_count: int, most: int = 12) -> tuple[int, ...]:
@@ -129,43 +103,45 @@ def evenly_spaced_frames(frame_count: int, most: int = 12) -> tuple[int, ...]:
 
 
 def sheet(
-    title: str, footer: str, frames: Collection[int], columns: int, cell_width: int, cell_height: int
-) -> tuple[Canvas, list[Cell]]:
-    """A canvas with a title above, a line of explanation below, and a cell for each frame, row by row."""
+    title: str,
+    footer: str,
+    frames: Collection[int],
+    columns: int,
+    size: tuple[int, int],
+    draw: Callable[[int], Sequence[Image]],
+    frame_start: int,
+    keyframes: Collection[int] = (),
+) -> Canvas:
+    """A title above, a line of explanation below, and the pictures of each frame, row by row.
+
+    `draw` gives the pictures of a frame, which have a `size` and lie below each other; the lowest has its
+    scene frame in the corner, with a diamond at keyframes.
+    """
+    pictures = {frame: draw(frame) for frame in frames}
     columns = min(columns, len(frames))
     rows = -(-len(frames) // columns)
-    width = 2 * MARGIN + columns * cell_width + (columns - 1) * GAP
-    height = MARGIN + TITLE + rows * cell_height + (rows - 1) * GAP + FOOT + MARGIN
-    canvas = Canvas(width, height)
+    across, below = size[0] + GAP, size[1] + GAP
+    cell = below * len(next(iter(pictures.values())))
+    height = MARGIN + TITLE + rows * cell - GAP + 22 + MARGIN
+    canvas = Canvas(2 * MARGIN + columns * across - GAP, height)
     canvas.text(title, MARGIN, MARGIN + 15, 12.0, INK)
     canvas.text(footer, MARGIN, height - MARGIN, 8.0, GRAY)
-    cells = [
-        Cell(
-            frame,
-            MARGIN + (index % columns) * (cell_width + GAP),
-            MARGIN + TITLE + (index // columns) * (cell_height + GAP),
-            cell_width,
-            cell_height,
-        )
-        for index, frame in enumerate(frames)
-    ]
-    return canvas, cells
-
-
-def frame_label(canvas: Canvas, cell: Cell, scene_frame: int, keyframe: bool) -> None:
-    """Write a frame's number into the cell's bottom right corner; keyframes carry a diamond as well."""
-    words = f"{scene_frame} key" if keyframe else f"{scene_frame}"
-    width = canvas.text_width(words) + (28.0 if keyframe else 14.0)
-    right, bottom = cell.left + cell.width, cell.top + cell.height
-    canvas.box(right - width, bottom - LABEL, right, bottom, ACCENT if keyframe else INK)
-    canvas.text(words, right - 7.0, bottom - 5.5, 9.0, WHITE, "right")
-    if keyframe:
-        x, y = right - width + 11.0, bottom - 10.0
-        canvas.polygon([[x - 4.5, y], [x, y - 4.5], [x + 4.5, y], [x, y + 4.5]], WHITE)
+    for index, (frame, own) in enumerate(pictures.items()):
+        left, top = MARGIN + index % columns * across, MARGIN + TITLE + index // columns * cell
+        for row, picture in enumerate(own):
+            canvas.paste(picture, left, top + row * below, *size)
+        words = f"{frame + frame_start} key" if frame in keyframes else f"{frame + frame_start}"
+        width = canvas.text_width(words) + (28.0 if frame in keyframes else 14.0)
+        right, bottom = left + size[0], top + cell - GAP
+        canvas.box(right - width, bottom - LABEL, right, bottom, ACCENT if frame in keyframes else INK)
+        canvas.text(words, right - 7.0, bottom - 5.5, 9.0, WHITE, "right")
+        if frame in keyframes:
+            x, y = right - width + 11.0, bottom - 10.0
+            canvas.polygon([[x - 4.5, y], [x, y - 4.5], [x + 4.5, y], [x, y + 4.5]], WHITE)
+    return canvas
 
 
 CELL_WIDTH = 400
-COLUMNS = 4
 
 
 def overlay_sheet(
@@ -178,7 +154,7 @@ def overlay_sheet(
 ) -> Image:
     """Draw frames of the clip with the skeleton and what was seen of the performer over them."""
     width, height = take.camera.resolution
-    cell_height = round(CELL_WIDTH * height / width)
+    size = CELL_WIDTH, round(CELL_WIDTH * height / width)
     title = f"Estimate over the footage ({motion.method}, {len(motion.time_s)} frames)"
     outlines = None if tracks.names else contours
     footer = "Numbers: scene frames; key: keyframes."
@@ -186,28 +162,31 @@ def overlay_sheet(
         footer = f"Ellipse and cross: region found of each marker. {footer}"
     elif outlines is not None:
         footer = f"Lines beside the limbs: contours as the motion predicts them. {footer}"
-    canvas, cells = sheet(title, footer, list(images), COLUMNS, CELL_WIDTH, cell_height)
     figure = stick_figure(motion)
     pose = motion.body.pose(motion.posture)
     scale = CELL_WIDTH / width
-    for cell in cells:
-        tile = Canvas(cell.width, cell.height)  # of its own, which clips what leaves the picture
-        tile.paste(paler(images[cell.frame]), 0, 0, cell.width, cell.height)
-        if outlines is not None:
-            draw_outlines(tile, outlines, pose, cell.frame, lambda pixels: scale * pixels)
 
-        def project(points: Array, frame: int = cell.frame) -> tuple[Array, Array]:
+    def draw(frame: int) -> list[Image]:
+        tile = Canvas(*size)  # of its own, which clips what leaves the picture
+        tile.paste(paler(images[frame]), 0, 0, *size)
+        if outlines is not None:
+            draw_outlines(tile, outlines, pose, frame, lambda pixels: scale * pixels)
+
+        def project(points: Array) -> tuple[Array, Array]:
             pixels, depth = take.camera.project(points, frame)
             return scale * pixels, depth
 
-        draw_figure(tile, figure, cell.frame, project, 3.5, outlined=True)
-        for marker, style in enumerate(take.markers):
+        draw_figure(tile, figure, frame, project, 3.5, outlined=True)
+        for style, center, moment in zip(
+            take.markers, tracks.centroid[frame], tracks.second_moment[frame], strict=False
+        ):
             red, green, blue = style.color_srgb
-            _draw_region(tile, tracks, cell.frame, marker, scale, (blue, green, red))
+            _draw_region(tile, scale * center, scale**2 * moment, (blue, green, red))
         if keypoints is not None:
-            draw_keypoints(tile, keypoints, cell.frame, lambda pixels: scale * pixels)
-        canvas.paste(tile.image(), cell.left, cell.top, cell.width, cell.height)
-        frame_label(canvas, cell, cell.frame + motion.frame_start, cell.frame in motion.keyframe_indices)
+            draw_keypoints(tile, keypoints, frame, lambda pixels: scale * pixels)
+        return [tile.image()]
+
+    canvas = sheet(title, footer, images, 4, size, draw, motion.frame_start, motion.keyframe_indices)
     legend(canvas, canvas.width - MARGIN, MARGIN + 15.0)
     if keypoints is not None and keypoints.names:
         left = MARGIN + canvas.text_width(footer, 8.0) + 2.0 * MARGIN
@@ -222,13 +201,8 @@ def paler(image: Image) -> Image:
     return np.asarray(np.clip(mixed, 0.0, 255.0), dtype=np.uint8)
 
 
-def _draw_region(
-    tile: Canvas, tracks: RegionTracks, frame: int, marker: int, scale: float, color: Color
-) -> None:
-    center = scale * tracks.centroid[frame, marker]
-    if not np.isfinite(center).all():
-        return
-    outline = ellipse_outline(center, scale**2 * tracks.second_moment[frame, marker])
+def _draw_region(tile: Canvas, center: Array, second_moment: Array, color: Color) -> None:
+    outline = ellipse_outline(center, second_moment)
     tile.line(outline, WHITE, 2.6, closed=True)
     tile.line(outline, color, 1.4, closed=True)
     for step in (np.array([4.0, 0.0]), np.array([0.0, 4.0])):

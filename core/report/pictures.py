@@ -6,7 +6,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from ..arrays import Array, BoolArray, Image
+from ..arrays import BoolArray, Image
 from ..camera.camera import Camera
 from ..errors import InputError
 from ..markers.reading import Reading
@@ -18,14 +18,24 @@ from ..take.steady_camera import steadied_picture
 from ..take.take import Take
 from ..terms.contours import ContourModel
 from ..video.clip import Clip
-from .canvas import GRID_M, PAPER, SCALE, Canvas, draw_grid, side_directions, write_png
-from .overlay_sheet import CELL_WIDTH, LABEL, MARGIN, evenly_spaced_frames, frame_label, overlay_sheet, sheet
+from .canvas import GRID_M, PAPER, SCALE, Canvas, View, draw_grid, side_axes, write_png
+from .overlay_sheet import CELL_WIDTH, LABEL, MARGIN, evenly_spaced_frames, overlay_sheet, sheet
 from .stick_figure import draw_figure, legend, stick_figure
 
 
 def footage_frames(clip: Clip, frames: Sequence[int]) -> dict[int, Image]:
-    """Frames of a clip by their index, rising, but unreadable ones."""
-    return {frame: _reduced(image) for frame, image in clip.source.at(list(frames))}
+    """Frames of a clip by their index, rising, but unreadable ones; reduced to the width of a cell.
+
+    Dozens of full 8K frames would fill the memory.
+    """
+    most, found = CELL_WIDTH * SCALE, {}
+    for frame, image in clip.source.at(list(frames)):
+        height, width = image.shape[:2]
+        if width > most:
+            size = (most, max(1, round(most * height / width)))
+            image = np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+        found[frame] = image
+    return found
 
 
 def glimpsed_frames(reading: Reading, there: BoolArray) -> dict[int, Image]:
@@ -37,24 +47,9 @@ def glimpsed_frames(reading: Reading, there: BoolArray) -> dict[int, Image]:
     return {frame: steadied_picture(*glimpses.picture(frame), reading, frame) for frame in kept}
 
 
-def _reduced(image: Image) -> Image:
-    """The frame, reduced to the width of a cell: dozens of full 8K frames would fill the memory."""
-    height, width = image.shape[:2]
-    most = CELL_WIDTH * SCALE
-    if width <= most:
-        return image
-    size = (most, max(1, round(most * height / width)))
-    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
-
-
-COLUMNS = 6
-SIDE_WIDTH, SIDE_HEIGHT = 220, 240
-PADDING_M = 0.1
-
-
 def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
     """Draw stick figures of some frames about their hips, in parallel projection."""
-    axes, figure, names = side_directions(camera), stick_figure(motion), motion.body.skeleton.point_names
+    axes, figure, names = side_axes(camera), stick_figure(motion), motion.body.skeleton.point_names
     hips, ankles = (motion.points[:, [names.index(f"{part}.{s}") for s in "LR"]] for part in ("hip", "ankle"))
     origin = hips.mean(axis=1) * [1.0, 1.0, 0.0]  # (F, 3): the ground under the hips
     lowest = float(np.nanmin(ankles[..., 2]))
@@ -62,24 +57,22 @@ def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
     seen = np.concatenate([limb.points for limb in figure.limbs], axis=1) - origin[:, None]
     seen = seen[list(frames)] @ axes[:2].T  # (K, N, 2)
     low, high = min(seen[..., 1].min(), floor), seen[..., 1].max() + figure.head_radius_m
-    free = SIDE_HEIGHT - LABEL  # the frame's number must not stand over the feet
-    height = high - low + 2.0 * PADDING_M
-    scale = float(min(0.5 * SIDE_WIDTH / (np.abs(seen[..., 0]).max() + PADDING_M), free / height))
-    foot = low - PADDING_M - 0.5 * (free / scale - height)  # height at the label's upper edge
+    size, padding_m = (220, 240), 0.1
+    free = size[1] - LABEL  # the frame's number must not stand over the feet
+    height = high - low + 2.0 * padding_m
+    scale = float(min(0.5 * size[0] / (np.abs(seen[..., 0]).max() + padding_m), free / height))
+    foot = low - padding_m - 0.5 * (free / scale - height)  # height at the label's upper edge
     title = "Side view: the camera is to the left; depth runs to the right"
     footer = f"Parallel projection about the hips; grid of {GRID_M:g} m. Numbers: scene frames."
-    canvas, cells = sheet(title, footer, frames, COLUMNS, SIDE_WIDTH, SIDE_HEIGHT)
-    for cell in cells:
-        tile = Canvas(cell.width, cell.height, PAPER)
+
+    def draw(frame: int) -> list[Image]:
+        tile = Canvas(*size, PAPER)
         draw_grid(tile, scale, free - scale * (floor - foot))
+        view = View(axes, scale, (0.5 * size[0], free + scale * foot), origin[frame])
+        draw_figure(tile, figure, frame, view.project, 4.0, outlined=False)
+        return [tile.image()]
 
-        def project(points: Array, frame: int = cell.frame) -> tuple[Array, Array]:
-            right, upward, away = axes @ (points - origin[frame]).T
-            return np.stack([0.5 * SIDE_WIDTH + scale * right, free - scale * (upward - foot)], axis=-1), away
-
-        draw_figure(tile, figure, cell.frame, project, 4.0, outlined=False)
-        canvas.paste(tile.image(), cell.left, cell.top, cell.width, cell.height)
-        frame_label(canvas, cell, cell.frame + motion.frame_start, cell.frame in motion.keyframe_indices)
+    canvas = sheet(title, footer, frames, 6, size, draw, motion.frame_start, motion.keyframe_indices)
     legend(canvas, canvas.width - MARGIN, MARGIN + 15.0)
     return canvas.image()
 

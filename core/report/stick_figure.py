@@ -11,12 +11,10 @@ from ..body.kinematics import segment_ends
 from ..camera.camera import Camera
 from ..feet.natural_extremities import natural_extremities
 from ..take.motion import Motion
-from .canvas import GRAY, INK, LEFT, PALE, PAPER, RIGHT, WHITE, Canvas, Color, view_axes
+from .canvas import GRAY, INK, LEFT, PALE, PAPER, RIGHT, WHITE, Canvas, Color, View, view_axes
 
 Projection = Callable[[Array], tuple[Array, Array]]
 """From world points (N, 3) to canvas points (N, 2) and depths (N,), which grow with the distance."""
-
-HEAD_RADIUS = 0.055  # in statures; the head point is the head's center
 
 
 @dataclass(frozen=True)
@@ -53,7 +51,8 @@ def stick_figure(motion: Motion) -> StickFigure:
     limbs.append(Limb("", np.stack([hips, waist, shoulders, by_name["head"]], axis=1)))
     limbs.append(Limb("", np.stack([by_name["hip.L"], hips, by_name["hip.R"]], axis=1)))
     limbs.append(Limb("", np.stack([by_name["shoulder.L"], shoulders, by_name["shoulder.R"]], axis=1)))
-    return StickFigure(tuple(limbs), by_name["head"], HEAD_RADIUS * body.actor.stature_m)
+    # The head's radius in statures; the head point is its center.
+    return StickFigure(tuple(limbs), by_name["head"], 0.055 * body.actor.stature_m)
 
 
 def draw_figure(
@@ -64,14 +63,18 @@ def draw_figure(
     for limb in figure.limbs:
         _, depth = project(limb.points[frame])
         parts.append((float(np.nan_to_num(depth).mean()), limb))
-    _, depth = project(figure.head[frame][None])
+    # The head's center and a step from it along each axis of space: the longest is its radius in any view.
+    rim, depth = project(figure.head[frame] + figure.head_radius_m * np.vstack([np.zeros(3), np.eye(3)]))
+    radius = float(np.linalg.norm(rim[1:] - rim[0], axis=-1).max())
     parts.append((float(np.nan_to_num(depth)[0]), None))
     for _, part in sorted(parts, key=lambda pair: -pair[0]):
-        if part is None:
-            _draw_head(canvas, figure, frame, project, width, outlined)
-        else:
+        if part is not None:
             points, _ = project(part.points[frame])
             _draw_limb(canvas, points, part.side, width, outlined)
+        elif np.isfinite(radius):
+            if outlined:
+                canvas.circle(rim[0], radius, WHITE, 0.8 * width + 2.0)
+            canvas.circle(rim[0], radius, INK, 0.8 * width)
 
 
 def _draw_limb(canvas: Canvas, points: Array, side: str, width: float, outlined: bool) -> None:
@@ -83,40 +86,20 @@ def _draw_limb(canvas: Canvas, points: Array, side: str, width: float, outlined:
     if side == "R":
         canvas.line(points, WHITE, 0.4 * thickness)
     for joint in points[:-1] if side else ():
-        canvas.disc(joint, 0.85 * width, color)
+        canvas.circle(joint, 0.85 * width, color)
         if side == "R":
-            canvas.disc(joint, 0.45 * width, WHITE)
-
-
-def _draw_head(
-    canvas: Canvas, figure: StickFigure, frame: int, project: Projection, width: float, outlined: bool
-) -> None:
-    center = figure.head[frame]
-    # A step along each axis of space; the longest projection is the radius in any view.
-    rim, _ = project(center + figure.head_radius_m * np.vstack([np.eye(3), np.zeros((1, 3))]))
-    radius = float(np.linalg.norm(rim[:3] - rim[3], axis=-1).max())
-    if not np.isfinite(radius):
-        return
-    if outlined:
-        canvas.ring(rim[3], radius, WHITE, 0.8 * width + 2.0)
-    canvas.ring(rim[3], radius, INK, 0.8 * width)
+            canvas.circle(joint, 0.45 * width, WHITE)
 
 
 def legend(canvas: Canvas, right: float, y: float) -> None:
     """Draw the legend of left and right limbs, ending at `right`."""
-    words: tuple[tuple[str, str, Color], ...] = (("R", "right", RIGHT), ("L", "left", LEFT))
-    for side, word, color in words:
+    sides: tuple[tuple[str, str, Color], ...] = (("R", "right", RIGHT), ("L", "left", LEFT))
+    for side, word, color in sides:
         text = f"performer's {word}"
         canvas.text(text, right, y, 9.0, color, "right")
         right -= canvas.text_width(text) + 8.0
         _draw_limb(canvas, np.array([[right - 26.0, y - 4.5], [right, y - 4.5]]), side, 4.0, False)
         right -= 26.0 + 18.0
-
-
-PADDING = 1.35
-"""Side of the square in heights or widths of the largest figure, whose points end at the head's center."""
-SMALLEST_SIDE = 0.3
-"""Smallest side of the square, of the picture's shorter side: limits the magnification of a tiny figure."""
 
 
 def squares_around(
@@ -139,8 +122,10 @@ def squares_around(
         if len(seen):
             low, high = np.clip(seen.min(axis=0), 0.0, size), np.clip(seen.max(axis=0), 0.0, size)
             centers[index], extents[index] = 0.5 * (low + high), (high - low).max()
-    wanted = PADDING * extents.max() if extents.any() else size.max()
-    side = float(np.clip(wanted, SMALLEST_SIDE * size.min(), size.max()))
+    # Room about the largest figure, whose points end at the head's center, but no less than a share of the
+    # picture, which limits the magnification of a tiny figure.
+    wanted = 1.35 * extents.max() if extents.any() else size.max()
+    side = float(np.clip(wanted, 0.3 * size.min(), size.max()))
     half = np.minimum(0.5 * side, 0.5 * size)
     return np.clip(centers, half, size - half), side
 
@@ -159,36 +144,26 @@ def square_of(image: Image, corner: Array, side: float, resolution: tuple[int, i
     return np.asarray(filled, dtype=np.uint8)
 
 
-SIZE = 256
-POSES = 3
-EDGE = 14
-
-
 def thumbnail(motion: Motion) -> Image:
     """Draw three poses of a motion, the earliest at the left, in parallel projection."""
-    frames = np.round(np.linspace(0, len(motion.time_s) - 1, 2 * POSES + 1)[1::2]).astype(np.intp)
+    side_px, edge, poses = 256, 14, 3
+    frames = np.round(np.linspace(0, len(motion.time_s) - 1, 2 * poses + 1)[1::2]).astype(np.intp)
     figure = stick_figure(motion)
     names = motion.body.skeleton.point_names
     side = np.nanmean(motion.points[:, names.index("hip.L")] - motion.points[:, names.index("hip.R")], axis=0)
     # The performer's left is on the right of the view.
     axes = view_axes(float(np.arctan2(side[1], side[0])) + 0.5, 0.0)
-    points = np.concatenate([limb.points for limb in figure.limbs], axis=1)[frames]  # (K, N, 3)
-    seen = points @ axes.T
+    seen = np.concatenate([limb.points for limb in figure.limbs], axis=1)[frames] @ axes.T  # (K, N, 3)
     middle = 0.5 * (seen[..., 0].max(axis=1) + seen[..., 0].min(axis=1))  # (K,)
     floor, top = seen[..., 1].min(), seen[..., 1].max() + figure.head_radius_m
+    column = (side_px - 2 * edge) / poses
     wide = float(np.ptp(seen[..., 0], axis=1).max())
-    column = (SIZE - 2 * EDGE) / POSES
-    scale = min((SIZE - 2 * EDGE) / (top - floor), 1.25 * column / wide)
-    ground = 0.5 * (SIZE + scale * (top - floor))
-    canvas = Canvas(SIZE, SIZE, PAPER)
-    canvas.line([[EDGE, ground], [SIZE - EDGE, ground]], GRAY, 1.5)
+    scale = min((side_px - 2 * edge) / (top - floor), 1.25 * column / wide)
+    ground = 0.5 * (side_px + scale * (top - floor))
+    canvas = Canvas(side_px, side_px, PAPER)
+    canvas.line([[edge, ground], [side_px - edge, ground]], GRAY, 1.5)
     for number, frame in enumerate(frames):
-        center = EDGE + column * (number + 0.5)
-
-        def project(points: Array, center: float = center, number: int = number) -> tuple[Array, Array]:
-            right, upward, away = axes @ points.T
-            x, y = center + scale * (right - middle[number]), ground - scale * (upward - floor)
-            return np.stack([x, y], axis=-1), away
-
-        draw_figure(canvas, figure, int(frame), project, 5.0, outlined=True)
+        center = edge + column * (number + 0.5) - scale * middle[number]
+        view = View(axes, scale, (center, ground + scale * floor))
+        draw_figure(canvas, figure, int(frame), view.project, 5.0, outlined=True)
     return canvas.image()

@@ -31,14 +31,9 @@ LIMBS = {
 """The roles of `arm.L`, `leg.L`, `arm.R` and `leg.R`, from the trunk outward."""
 SOURCES = ("preset", "names", "shape", "you")
 """Where a role may come from: a convention's preset, the bones' names, their places, or the person."""
-
-
-def joint_roles(limb: str) -> tuple[str, ...]:
-    """The roles that begin at a limb's three joints: upper arm, forearm and hand, or thigh, shin and foot."""
-    return LIMBS[limb][1:] if limb.startswith("arm") else LIMBS[limb][:3]
-
-
-LONG_BONES = {limb: tuple(pairwise(joint_roles(limb))) for limb in LIMBS}
+JOINTS = {limb: roles[1:] if limb.startswith("arm") else roles[:3] for limb, roles in LIMBS.items()}
+"""The roles that begin at a limb's three joints: upper arm, forearm and hand, or thigh, shin and foot."""
+LONG_BONES = {limb: tuple(pairwise(roles)) for limb, roles in JOINTS.items()}
 """By limb the roles at both ends of its two long bones."""
 
 

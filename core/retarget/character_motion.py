@@ -7,6 +7,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..arrays import Array, BoolArray
+from ..feet.contacts import Contact
 from .character import ARM, LEG, Character
 from .maps.character_map import CharacterMap
 
@@ -26,15 +27,6 @@ class Similarity:
     def from_world(self, points: Array) -> Array:
         """The inverse of `to_world`."""
         return (points - self.location) @ self.rotation / self.scale
-
-
-@dataclass(frozen=True, eq=False)
-class FootRest:
-    """A foot of the character at rest on the ground."""
-
-    limb: str  # `leg.L` or `leg.R`
-    first: int  # the first frame of the rest, from 0
-    last: int  # its last frame, included
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +51,7 @@ class CharacterMotion:
     root: Array | None  # (F, 4, 4) posed matrix of the root bone; None where it stays at rest
     to_world: Similarity
     """Where the armature object stands; that of the object itself with `Placement.CHARACTER`."""
-    rests: tuple[FootRest, ...]  # rests of the planted feet
+    rests: tuple[Contact, ...]  # rests of the planted feet; their places are the performer's
     soles: Mapping[str, Array]
     """(N, 3) by role of foot and toe: points of the sole at rest, in the armature's space."""
     size: float  # the character's size: its legs' length over the performer's

@@ -29,7 +29,6 @@ AIMS = {
 """The mended point that each bone of a limb is aimed at."""
 JOINTS = {"shoulder": "upper_arm", "elbow": "forearm", "hip": "thigh", "knee": "shin", "ankle": "foot"}
 """The role whose bone begins at each point."""
-HEAD_TIP = 0.5  # where the head's middle is between its joint and the end of its bone
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +42,21 @@ class ArmaturePoints:
     @classmethod
     def of(cls, body: RestBody) -> "ArmaturePoints":
         """The points of an armature at rest."""
-        bones, places = zip(*(_anchor(body, name) for name in HUMAN.point_names), strict=True)
-        return cls(body, bones, np.array(places))
+        character, bones, places = body.character, [], []
+        for point in HUMAN.point_names:
+            part, _, side = point.partition(".")
+            role, share = f"{JOINTS.get(part, 'hand')}.{side}", 0.0  # of the way from its joint to its end
+            if part == "head":
+                role = next(role for role in ("head", "neck", "spine", "hips") if role in body.first)
+                share = 0.5 if role == "head" else 1.0
+            elif role not in body.first:
+                role, share = f"forearm.{side}", 1.0
+            name = body.bones[(body.last if share else body.first)[role]].name
+            head, tip = character.bone(name).head, body.tip(role)
+            end = head if tip is None else tip @ body.stance / character.scale
+            bones.append(name)
+            places.append(head + share * (end - head))
+        return cls(body, tuple(bones), np.array(places))
 
     def of_poses(self, poses: Poses) -> Array:
         """(F, 13, 3) the points in the world [m]."""
@@ -57,72 +69,36 @@ class ArmaturePoints:
         return np.stack(columns, axis=1)
 
 
-def _anchor(body: RestBody, point: str) -> tuple[str, Array]:
-    part, _, side = point.partition(".")
-    character = body.character
-
-    def joint(role: str) -> tuple[str, Array]:
-        name = body.bones[body.first[role]].name
-        return name, character.bone(name).head
-
-    def tip(role: str, share: float) -> tuple[str, Array]:
-        name, head = body.bones[body.last[role]].name, character.bone(body.bones[body.last[role]].name).head
-        end = body.tip(role)
-        reached = head if end is None else end @ body.stance / character.scale
-        return name, head + share * (reached - head)
-
-    if part == "head":
-        role = next(role for role in ("head", "neck", "spine", "hips") if role in body.first)
-        return tip(role, HEAD_TIP if role == "head" else 1.0)
-    if part == "wrist":
-        return joint(f"hand.{side}") if f"hand.{side}" in body.first else tip(f"forearm.{side}", 1.0)
-    return joint(f"{JOINTS[part]}.{side}")
-
-
 def mended_poses(points: ArmaturePoints, poses: Poses, mended: Mended, posed: IndexArray) -> dict[str, Array]:
     """Poses (F, 4, 4) by name of the bones that play a role but the toes', for a mended motion of `points`.
 
     `poses` are those that the motion had; at the frames `posed` a person vouches for them.
     """
-    body = points.body
-    moved = [bone for bone in body.bones if not bone.role.startswith("toe")]
-    turns = {bone.name: _smooth(poses[bone.name][:, :3, :3], mended, posed) for bone in moved}
+    body, scale = points.body, points.body.character.scale
+    at_rest = dict(zip(HUMAN.point_names, points.places, strict=True))
     goals = dict(zip(HUMAN.point_names, np.moveaxis(mended.motion.points, 1, 0), strict=True))
+    for held in (at_rest, goals):
+        held["hips"] = 0.5 * (held["hip.L"] + held["hip.R"])
     found: dict[str, Array] = {}
-    for bone in moved:
-        pose = np.tile(np.eye(4), (len(mended.exchanged), 1, 1))
-        pose[:, :3, :3] = turns[bone.name]
-        if bone.carrier >= 0:
-            carrier = body.bones[bone.carrier].name
-            offset = np.linalg.inv(poses[carrier]) @ poses[bone.name]
-            pose[:, :3, 3] = (found[carrier] @ offset)[:, :3, 3]
-        found[bone.name] = pose
-        if bone.carrier < 0:
-            pose[:, :3, 3] = _hips_head(points, bone.name, pose[:, :3, :3], goals)
-        elif bone.role in AIMS:
-            end = points.places[HUMAN.point_names.index(AIMS[bone.role])]
-            rest = body.character.bone(bone.name).rest
-            along = unit((end - rest[:3, 3]) @ rest[:3, :3])
+    for bone in (one for one in body.bones if not one.role.startswith("toe")):
+        given, rest = poses[bone.name][:, :3, :3], body.character.bone(bone.name).rest
+        # Turns are smoothed as three points at their axes' ends; those of exchanged sides are not seen.
+        seen = np.where(mended.exchanged[:, None, None], np.nan, given)
+        ends = [smooth_path(seen[..., axis], mended.sizes, posed, given[posed, :, axis]) for axis in range(3)]
+        pose = found[bone.name] = np.tile(np.eye(4), (len(given), 1, 1))
+        pose[:, :3, :3] = turns = nearest_rotation(np.stack(ends, axis=-1))
+        if bone.carrier < 0:  # so that the middle of the hip joints is where it is to be
+            pose[:, :3, 3] = goals["hips"] - turns @ (scale * (at_rest["hips"] - rest[:3, 3]) @ rest[:3, :3])
+            continue
+        carrier = body.bones[bone.carrier].name
+        offset = np.linalg.inv(poses[carrier]) @ poses[bone.name]
+        pose[:, :3, 3] = (found[carrier] @ offset)[:, :3, 3]
+        if bone.role in AIMS:
+            along = unit((at_rest[AIMS[bone.role]] - rest[:3, 3]) @ rest[:3, :3])
             way = unit(goals[AIMS[bone.role]] - pose[:, :3, 3])
-            pose[:, :3, :3] = rotations.smallest(pose[:, :3, :3] @ along, way) @ pose[:, :3, :3]
+            pose[:, :3, :3] = rotations.smallest(turns @ along, way) @ turns
         elif bone.role.startswith("foot"):
-            rests = [rest for rest in mended.contacts if SIDES[rest.point] == bone.role[-1]]
-            still = [nearest_rotation(pose[rest.frames, :3, :3].mean(axis=0)[None])[0] for rest in rests]
-            pose[:, :3, :3] = held_turns(pose[:, :3, :3], rests, still, mended.motion.time_s)
+            rests = [one for one in mended.contacts if SIDES[one.point] == bone.role[-1]]
+            still = [nearest_rotation(turns[one.frames].mean(axis=0)[None])[0] for one in rests]
+            pose[:, :3, :3] = held_turns(turns, rests, still, mended.motion.time_s)
     return found
-
-
-def _smooth(turns: Array, mended: Mended, posed: IndexArray) -> Array:
-    """Turns (F, 3, 3) smoothed as three points at their axes' ends; those of exchanged sides are not seen."""
-    seen = np.where(mended.exchanged[:, None, None], np.nan, turns)
-    columns = [smooth_path(seen[..., axis], mended.sizes, posed, turns[posed, :, axis]) for axis in range(3)]
-    return nearest_rotation(np.stack(columns, axis=-1))
-
-
-def _hips_head(points: ArmaturePoints, hips: str, turns: Array, goals: Mapping[str, Array]) -> Array:
-    """(F, 3) head of the hips' bone, so that the middle of the hip joints is where it is to be [m]."""
-    character = points.body.character
-    middle = 0.5 * (goals["hip.L"] + goals["hip.R"])
-    rest = character.bone(hips).rest
-    at_rest = np.mean([points.places[HUMAN.point_names.index(f"hip.{side}")] for side in SIDES], axis=0)
-    return np.asarray(middle - turns @ (character.scale * (at_rest - rest[:3, 3]) @ rest[:3, :3]))

@@ -13,13 +13,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..body.skeleton import SIDES
+from ..feet.contacts import Contact
 from ..files.fields import listed
 from .character import LONG_BONES
-from .character_motion import CharacterMotion, FootRest
-
-SOLE_M = 0.01
-"""Height over its lowest point up to which a foot touches the ground [m], at the performer's size."""
-FULL_SHARE = 0.95  # share from which a hand's goal counts in full
+from .character_motion import CharacterMotion
 
 
 @dataclass(frozen=True)
@@ -93,7 +90,7 @@ def direction_errors_deg(
     return np.stack(angles, axis=1) if angles else np.empty((0, 0))
 
 
-def skate_mm(feet: Mapping[str, Array], rests: Sequence[FootRest], sole_m: float) -> Array:
+def skate_mm(feet: Mapping[str, Array], rests: Sequence[Contact], sole_m: float) -> Array:
     """(N,) way of resting feet from each frame to the next, of all rests: of the point that goes farthest.
 
     Feet (F, K, 3) are by limb, the ankle first; of its other points those count that are no higher than
@@ -101,8 +98,8 @@ def skate_mm(feet: Mapping[str, Array], rests: Sequence[FootRest], sole_m: float
     """
     steps = []
     for rest in rests:
-        if rest.limb in feet:
-            path = feet[rest.limb][rest.first : rest.last + 1]
+        if rest.leg in feet:
+            path = feet[rest.leg][rest.frames]
             height = path[len(path) // 2, :, 2]
             sole = height - height.min() < sole_m
             sole[0] = True
@@ -158,49 +155,45 @@ def measured(
     space = motion.to_world
     up, turn = space.rotation @ motion.stance.T, motion.facing
     turned = {role: path @ turn.T for role, path in source.items()}
-    arms = direction_errors_deg(turned, shown, (*LONG_BONES["arm.L"], *LONG_BONES["arm.R"]))
-    legs = direction_errors_deg(turned, shown, (*LONG_BONES["leg.L"], *LONG_BONES["leg.R"]))
-
-    def canonical(points: Array) -> Array:
-        return np.asarray((points - space.location) @ up)
-
-    carried = {role: canonical(path) + motion.way_m for role, path in shown.items()}
-    under = {role: canonical(points) for role, points in soles.items()}
+    arms, legs = (
+        direction_errors_deg(turned, shown, (*LONG_BONES[f"{limb}.L"], *LONG_BONES[f"{limb}.R"]))
+        for limb in ("arm", "leg")
+    )
+    carried = {role: (path - space.location) @ up + motion.way_m for role, path in shown.items()}
+    under = {role: (points - space.location) @ up for role, points in soles.items()}
     feet = {}
     for side in SIDES:
         if f"foot.{side}" in carried:
             own = [points + motion.way_m[..., None, :] for role, points in under.items() if role[-1] == side]
             feet[f"leg.{side}"] = np.concatenate([carried[f"foot.{side}"][:, None], *own], axis=1)
-    skate = skate_mm(feet, motion.rests, SOLE_M * motion.size)
+    # A foot touches the ground up to this height over its lowest point, at the performer's size.
+    skate = skate_mm(feet, motion.rests, 0.01 * motion.size)
     depth_m = depths_m({role: points[..., 2] for role, points in under.items()}, motion.ground_m)
     deepest = max((float(depth.max()) for depth in depth_m.values()), default=None)
-    lifted = [-depth_m[one.limb][one.first : one.last + 1] for one in motion.rests if one.limb in depth_m]
+    lifted = [-depth_m[one.leg][one.frames] for one in motion.rests if one.leg in depth_m]
     hands, floor = [], []
     for side, goal in motion.hands.items():
         if f"hand.{side}" in carried:
             off = carried[f"hand.{side}"] - goal.place_m
-            full = (goal.share >= FULL_SHARE) & goal.in_reach
+            full = (goal.share >= 0.95) & goal.in_reach  # shares from which goals count in full
             hands.append(1000.0 * np.linalg.norm(off, axis=-1)[full])
-            floor.append(1000.0 * np.abs(off[full & (goal.floor_share >= FULL_SHARE), 2]))
+            floor.append(1000.0 * np.abs(off[full & (goal.floor_share >= 0.95), 2]))
     quality = Quality(
-        arms_deg=_mean(arms),
-        arms_worst_deg=_most(arms),
-        legs_deg=_mean(legs),
-        legs_worst_deg=_most(legs),
-        skate_mm=_mean(skate),
-        skate_worst_mm=_most(skate),
+        *_mean_and_most([arms]),
+        *_mean_and_most([legs]),
+        *_mean_and_most([skate]),
         penetration_mm=None if deepest is None else 1000.0 * max(deepest, 0.0),
         lifted_mm=None if not lifted else 1000.0 * max(float(np.concatenate(lifted).mean()), 0.0),
-        hands_mm=_mean(*hands),
-        hands_worst_mm=_most(*hands),
-        hands_floor_mm=_most(*floor),
+        hands_mm=_mean_and_most(hands)[0],
+        hands_worst_mm=_mean_and_most(hands)[1],
+        hands_floor_mm=_mean_and_most(floor)[1],
     )
     return Measured(quality, depth_m)
 
 
-def _mean(*values: Array) -> float | None:
-    return float(np.concatenate(values).mean()) if any(one.size for one in values) else None
-
-
-def _most(*values: Array) -> float | None:
-    return max((float(one.max()) for one in values if one.size), default=None)
+def _mean_and_most(values: Sequence[Array]) -> tuple[float | None, float | None]:
+    """The mean of values and the largest; None where there are none."""
+    known = [one.ravel() for one in values if one.size]
+    if not known:
+        return None, None
+    return float(np.concatenate(known).mean()), float(np.concatenate(known).max())

@@ -32,15 +32,25 @@ def expected_covariance(point_covariance: Array, moved_m: Array, misfit: Array) 
     # Error in what is not seen, as a share of the distance that the footage moved a point: about the value
     # that takes with truth have with few keyframes.
     unseen = np.eye(3) * (0.2 * moved_m)[..., None, None] ** 2 / 3.0
-    return np.asarray((point_covariance + unseen) * _birge_ratio(misfit)[:, None, None, None])
+    # The Birge ratio of what is compared, at least one; of the median evidence, since an outlier has lost its
+    # weight in the estimate already.
+    ratio, compared = np.ones(len(misfit)), np.isfinite(misfit).any(axis=1)
+    ratio[compared] = np.maximum(np.nanmedian(misfit[compared], axis=1), 1.0)
+    return np.asarray((point_covariance + unseen) * ratio[:, None, None, None])
 
 
 def confidence(covariance: Array, tolerance_m: float) -> Array:
     """Share of the points (F,) expected within a tolerance [m], given `expected_covariance` (F, P, 3, 3).
 
-    NaN where the covariance is.
+    NaN where the covariance is. The squared length of a normal error is a weighted sum of χ²; the gamma
+    distribution of its mean and variance stands in for it (Satterthwaite 1946, *An approximate distribution
+    of estimates of variance components*), exactly so where it is alike in one, two or three directions.
     """
-    return np.asarray(_probability_within(covariance, tolerance_m).mean(axis=1))
+    mean = np.trace(covariance, axis1=-2, axis2=-1)
+    half_variance = np.einsum("...ij,...ji->...", covariance, covariance)
+    shape = mean**2 / np.maximum(2.0 * half_variance, 1e-30)
+    scale = np.maximum(2.0 * half_variance / np.maximum(mean, 1e-30), 1e-30)
+    return np.asarray(gammainc(shape, tolerance_m**2 / scale).mean(axis=1))
 
 
 def misfits(distance_px: Array, expected_px: Array) -> Array:
@@ -49,28 +59,3 @@ def misfits(distance_px: Array, expected_px: Array) -> Array:
     `expected_px` is the standard deviation of each of a centroid's two coordinates.
     """
     return np.asarray((distance_px / expected_px) ** 2 / 2)
-
-
-def _birge_ratio(misfit: Array) -> Array:
-    """(F,) Birge ratio, at least one, of what is compared of the evidence (F, E); one where nothing is.
-
-    It is the median one's: an outlier has lost its weight in the estimate already.
-    """
-    if not misfit.shape[1]:
-        return np.ones(len(misfit))
-    compared = np.isfinite(misfit).any(axis=1)
-    return np.maximum(np.nanmedian(np.where(compared[:, None], misfit, 1.0), axis=1), 1.0)
-
-
-def _probability_within(covariance: Array, tolerance_m: float) -> Array:
-    """Probability (...) that normal errors of covariance (..., 3, 3) are shorter than the tolerance.
-
-    The squared length is a weighted sum of χ²; the gamma distribution of its mean and variance stands in for
-    it (Satterthwaite 1946, *An approximate distribution of estimates of variance components*), exactly so
-    where the error is alike in one, two or three directions.
-    """
-    mean = np.trace(covariance, axis1=-2, axis2=-1)
-    half_variance = np.einsum("...ij,...ji->...", covariance, covariance)
-    shape = mean**2 / np.maximum(2.0 * half_variance, 1e-30)
-    scale = np.maximum(2.0 * half_variance / np.maximum(mean, 1e-30), 1e-30)
-    return np.asarray(gammainc(shape, tolerance_m**2 / scale))

@@ -17,16 +17,20 @@ from ..terms.keypoints import ObservedKeypoints
 from .compared_keypoints import ComparedKeypoints
 from .weak_frames import FrameEvidence
 
-SELDOM = 0.25  # share of a part's contour below which it seldom shows: the trunk's behind the arms
+
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """Markers or contours of segments in F frames."""
+
+    segments: tuple[str, ...]  # (N,) the segment of each
+    quality: Array  # (F, N) of its regions, or the share of its contour near an edge of what usually is
+    misfit: Array  # (F, N) as in `confidence`; NaN where not compared
 
 
 @dataclass(frozen=True, eq=False)
-class ContourSight:
-    """The O parts of the body in F frames, without hands and feet."""
+class ContourSight(Sight):
+    """The contours of the O parts of the body in F frames, without hands and feet."""
 
-    parts: tuple[str, ...]  # (O,) their segments
-    quality: Array  # (F, O) share of a part's contour near which an edge was found, of what usually is
-    misfit: Array  # (F, O) reduced squared distance from these edges; NaN where none was found
     lines: Array  # (F, L, S, 2) contour lines of all parts as the motion predicts them [px]
 
     @classmethod
@@ -55,8 +59,8 @@ def contour_sight(reconstruction: Reconstruction) -> Generator[float, None, Cont
     misfit = np.where(seen, squared, 0.0) @ own / np.maximum(number, 1.0)
     share = number / own.sum(axis=0)
     usual = np.median(share, axis=0)
-    # Nobody misses a part that seldom shows.
-    quality = np.where(usual < SELDOM, 1.0, np.clip(share / np.maximum(usual, SELDOM), 0.0, 1.0))
+    # Nobody misses a part that seldom shows, as the trunk's contour behind the arms.
+    quality = np.where(usual < 0.25, 1.0, np.clip(share / np.maximum(usual, 0.25), 0.0, 1.0))
     along = predicted.pixel.reshape(len(frame), -1, len(SHARES), len(SIDES), 2)
     lines = np.swapaxes(along, 2, 3).reshape(len(frame), -1, len(SHARES), 2)
     there = motion.there
@@ -91,15 +95,6 @@ ENDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """Body points that lie at the ends of a segment."""
 
 
-@dataclass(frozen=True, eq=False)
-class MarkerSight:
-    """M markers in F frames."""
-
-    segments: tuple[str, ...]  # (M,) the segment of each
-    quality: Array  # (F, M) of its regions, 0 where hidden
-    misfit: Array  # (F, M) as in `confidence`; NaN where not compared
-
-
 def believed_misfits(markers: Array, contours: ContourSight, keypoints: ComparedKeypoints) -> Array:
     """Misfits (F, M + O + K) of markers, contours, and the body points whose keypoints are believed."""
     believed = np.where(keypoints.thrown_out, np.nan, keypoints.misfit)
@@ -110,12 +105,12 @@ def frame_evidence(
     squared_error: Array,
     confidence: Array,
     speed: Array,
-    markers: MarkerSight,
+    markers: Sight,
     contours: ContourSight,
     keypoints: ComparedKeypoints,
 ) -> FrameEvidence:
     """Evidence of F frames, of M markers, O contours and K body points."""
-    segments = (*markers.segments, *contours.parts)
+    segments = (*markers.segments, *contours.segments)
     covered = np.concatenate([markers.quality, contours.quality], axis=1)
     points, by_point = keypoints.parts(), keypoints.quality()
     shown, seen = covered.copy(), by_point.copy()
@@ -134,7 +129,7 @@ def frame_evidence(
         np.concatenate([shown, seen], axis=1),
         np.concatenate([markers.misfit, contours.misfit, keypoints.by_part(keypoints.misfit)], axis=1),
         speed,
-        (*contours.parts, *points),
+        (*contours.segments, *points),
     )
 
 

@@ -18,7 +18,7 @@ from .compared_keypoints import Arrays, ComparedKeypoints, from_arrays, to_array
 from .confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
 from .frame_evidence import (
     ContourSight,
-    MarkerSight,
+    Sight,
     believed_misfits,
     compare_keypoints,
     contour_sight,
@@ -109,7 +109,7 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
         np.where(there, np.where(np.isfinite(squared), squared, 1.0), 0.0),
         np.where(there, believed, 1.0),  # where nobody is there no keyframe is missing
         reconstruction.speed,
-        MarkerSight(take.marker_segments, np.where(tracks.visible, tracks.quality, 0.0), misfit),
+        Sight(take.marker_segments, np.where(tracks.visible, tracks.quality, 0.0), misfit),
         contours,
         keypoints,
     )

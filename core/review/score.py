@@ -75,7 +75,9 @@ def score_points(
         raise InputError("the motion is empty in every frame without a keyframe; a score needs at least one")
     error = points - truth  # (F, P, 3)
     distance = np.linalg.norm(error, axis=-1)  # (F, P)
-    along, across = _along_and_across(error, truth, camera)
+    sight = camera.sight(truth, np.arange(len(truth))[:, None])
+    along = np.sum(error * sight, axis=-1)
+    across = np.linalg.norm(error - along[..., None] * sight, axis=-1)
     hips = [HUMAN.point_names.index(name) for name in ("hip.L", "hip.R")]
     rooted = np.linalg.norm(error - error[:, hips].mean(axis=1, keepdims=True), axis=-1)
     bend = np.linalg.norm(np.diff(error, n=2, axis=0), axis=-1)
@@ -88,7 +90,7 @@ def score_points(
         mpjpe=1e3 * float(distance[free].mean()),
         mpjpe_all=1e3 * float(distance[known].mean()),
         rooted=1e3 * float(rooted[free].mean()),
-        depth=1e3 * float(along[free].mean()),
+        depth=1e3 * float(np.abs(along)[free].mean()),
         image=1e3 * float(across[free].mean()),
         worst_p95=1e3 * float(np.percentile(distance[free], 95)),
         jitter=1e3 * float(bend.mean()) if len(bend) else 0.0,
@@ -133,13 +135,6 @@ def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
     if any(len(places) != frame_count for places in truth.points.values()):
         raise InputError(f"{path}: points: each point needs {frame_count} [x, y, z] in m")
     return np.stack(list(truth.points.values()), axis=1)
-
-
-def _along_and_across(error: Array, truth: Array, camera: Camera) -> tuple[Array, Array]:
-    """Sizes (F, P) of the error along and across the line from the camera to each true point."""
-    sight = camera.sight(truth, np.arange(len(truth))[:, None])
-    along = np.sum(error * sight, axis=-1)
-    return np.abs(along), np.linalg.norm(error - along[..., None] * sight, axis=-1)
 
 
 def _skate(points: Array, truth: Array) -> float | None:

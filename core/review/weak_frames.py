@@ -17,11 +17,6 @@ from ..arrays import Array, BoolArray, IndexArray
 WEAK_CONFIDENCE = 0.75  # frames of a higher confidence need no keyframe
 FRAMES_PER_NAMED = 20  # frames of the clip for each one that is named
 NEAREST_FRAMES = 4  # least distance of a named frame from a keyframe [frames]
-HIDDEN_QUALITY = 0.3
-NOTICEABLE_HIDDEN = 0.4  # share of the frames around a weak one in which a marker is hidden,
-NOTICEABLE_MISFIT = 2.0  # misfit, as in `confidence`, of which the root counts as it is squared,
-NOTICEABLE_SPEED = 1.5  # speed in the clip's median speeds, and
-NOTICEABLE_DISTANCE = 0.6  # distance from keyframes in mean gaps that make a reason; the greatest counts
 
 
 class Reason(StrEnum):
@@ -108,17 +103,19 @@ def _with_reason(evidence: FrameEvidence, keyframes: list[int], index: int, stre
     reach = max(2, distance // 2)
     nearby = slice(max(0, index - reach), index + reach + 1)
     usual_speed = max(float(np.median(evidence.speed)), 1e-9)
+    # Each over what makes it a reason: the distance from keyframes in mean gaps, the speed in median speeds,
+    # the share of frames in which something is hidden, and the misfit, whose root counts as it is squared.
     reasons: list[tuple[float, Reason, int | None]] = [
-        (distance * len(keyframes) / count / NOTICEABLE_DISTANCE, Reason.FAR, None),
-        (float(evidence.speed[nearby].mean()) / usual_speed / NOTICEABLE_SPEED, Reason.FAST, None),
+        (distance * len(keyframes) / count / 0.6, Reason.FAR, None),
+        (float(evidence.speed[nearby].mean()) / usual_speed / 1.5, Reason.FAST, None),
     ]
     if evidence.quality.shape[1]:
-        hidden = (evidence.quality[nearby] < HIDDEN_QUALITY).mean(axis=0)
+        hidden = (evidence.quality[nearby] < 0.3).mean(axis=0)
         compared = np.isfinite(evidence.misfit[nearby])
         misfit = np.where(compared, evidence.misfit[nearby], 0.0).sum(0) / np.maximum(compared.sum(0), 1)
         reasons += [
-            (float(hidden.max()) / NOTICEABLE_HIDDEN, Reason.HIDDEN, int(hidden.argmax())),
-            (float(misfit.max() / NOTICEABLE_MISFIT) ** 0.5, Reason.FOOTAGE, int(misfit.argmax())),
+            (float(hidden.max()) / 0.4, Reason.HIDDEN, int(hidden.argmax())),
+            (float(misfit.max() / 2.0) ** 0.5, Reason.FOOTAGE, int(misfit.argmax())),
         ]
     _, reason, column = max(reasons, key=lambda entry: entry[0])
     markers = evidence.quality.shape[1] - len(evidence.points)

@@ -10,8 +10,8 @@ import numpy as np
 from keymark.core.api import reconstruct
 from keymark.core.arrays import Array, Image
 from keymark.core.progress import run
-from keymark.core.report.canvas import INK, WHITE, Canvas, Color, view_axes, write_png
-from keymark.core.report.mannequin import TILT_RAD, View, backdrop, draw_mannequin, mannequin
+from keymark.core.report.canvas import INK, WHITE, Canvas, Color, View, view_axes, write_png
+from keymark.core.report.mannequin import TILT_RAD, backdrop, draw_mannequin, mannequin
 from keymark.core.report.stick_figure import draw_figure, stick_figure
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
@@ -54,7 +54,7 @@ def draw_icon(take: Take, motion: Motion) -> Image:
     def limb(start: str, end: str, color: Color, width: float) -> None:
         canvas.line([points[start], points[end]], color, width)
         for name in (start, end):
-            canvas.disc(points[name], 0.5 * width, color)
+            canvas.circle(points[name], 0.5 * width, color)
 
     for side in ("R", "L"):
         limb(f"hip.{side}", f"knee.{side}", CLOTH, 24.0)
@@ -107,7 +107,7 @@ def draw_figures(motion: Motion) -> Image:
     for frame, left in zip(FRAMES, card_lefts(), strict=True):
         posture = motion.posture[frame]
         aside = FIGURE_SCALE * float(view_axes(TURN_RAD, TILT_RAD)[0] @ posture.translation)
-        view = View(TURN_RAD, TILT_RAD, FIGURE_SCALE, (left + 0.5 * CARD[0] - aside, FLOOR_Y))
+        view = View(view_axes(TURN_RAD, TILT_RAD), FIGURE_SCALE, (left + 0.5 * CARD[0] - aside, FLOOR_Y))
         picture = draw_mannequin(picture, mannequin(motion.body, posture), view)
     return picture
 

@@ -229,6 +229,6 @@ def _rounded(panel: Image) -> Image:
     large.box(0.0, r, width, height - r, WHITE)
     for x in (r, width - r):
         for y in (r, height - r):
-            large.disc([x, y], r, WHITE)
+            large.circle([x, y], r, WHITE)
     share = large.image() / 255.0
     return np.asarray(np.rint(share * panel + (1.0 - share) * np.array(BACKGROUND)), dtype=np.uint8)

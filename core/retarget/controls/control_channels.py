@@ -40,11 +40,6 @@ class ControlChannels:
     turn: Array  # (F, 3, 3) its axes in the armature's space, as the channels give them
     place: Array  # (F, 3) its head in the armature's space, as the channels give it
 
-    def on(self, carrier: "ControlChannels") -> "ControlChannels":
-        """The same where turn and place are those in the axes of what carries it."""
-        place = carrier.place + (carrier.turn @ self.place[..., None])[..., 0]
-        return replace(self, turn=carrier.turn @ self.turn, place=place)
-
 
 def ordered_controls(controls: Sequence[Control]) -> tuple[Control, ...]:
     """The controls in an order in which those that turn or carry others come before them.
@@ -105,8 +100,11 @@ def control_channels(
             rotation = np.swapaxes(turn, -1, -2) @ unscaled(pose[:, :3, :3])
             turn = turn @ rotation
         place = place + axes @ space.origin
-        held = _held_hips(controls, index)
-        goal = pose[:, :3, 3] if held is None else wanted[held.name][:, :3, 3] - turn @ held.space.origin
+        goal = pose[:, :3, 3]
+        for hips in controls if control.plan.kind in (ControlKind.ROOT, ControlKind.CARRIER) else ():
+            held = hips.plan.kind is ControlKind.HIPS and hips.space.carrier == index
+            if held and not hips.space.movable:  # it must place hips that cannot be placed themselves
+                goal = wanted[hips.name][:, :3, 3] - turn @ hips.space.origin
         apart = goal - place
         location = None
         # Share of the character's size from which a bone that usually only turns is moved as well.
@@ -118,11 +116,3 @@ def control_channels(
             place = goal
         found.append(ControlChannels(rotation, location, turn, place))
     return tuple(found)
-
-
-def _held_hips(controls: Sequence[Control], index: int) -> Control | None:
-    """The hips that a root or carrier must place, because they cannot be placed themselves."""
-    if controls[index].plan.kind not in (ControlKind.ROOT, ControlKind.CARRIER):
-        return None
-    hips = (control for control in controls if control.plan.kind is ControlKind.HIPS)
-    return next((one for one in hips if one.space.carrier == index and not one.space.movable), None)

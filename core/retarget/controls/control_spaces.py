@@ -64,7 +64,15 @@ def find_spaces(posed: PosedControls) -> tuple[ControlSpace, ...]:
     """The space of every control."""
     turns, places = unscaled(posed.poses[..., :3, :3]), posed.poses[..., :3, 3]
     axes = turns @ np.swapaxes(posed.channels[..., :3, :3], -1, -2)  # (S, C, 3, 3)
-    turners, carriers = _turners(turns, axes), _carriers(turns, places, posed.still)
+    inverse = np.swapaxes(turns, -1, -2)[:, :, None]
+    # A control is turned by what its own rotation axes change least in the axes of,
+    seen = inverse @ axes[:, None]  # (S, turner, control, 3, 3)
+    turners = _least(_spread(seen, (-2, -1)), _spread(axes, (-2, -1)))
+    # and carried by what its place without location changes least from.
+    still = places[: posed.still]
+    apart = still[:, None] - still[:, :, None]  # (still, carrier, control, 3)
+    seen = (inverse[: posed.still] @ apart[..., None])[..., 0]
+    carriers = _least(_spread(seen, (-1,)), _spread(still, (-1,)))
     spaces = []
     for control, (turner, carrier) in enumerate(zip(turners, carriers, strict=True)):
         turn, residual_rad = constant_turn(in_axes_of(turns, turner, axes[:, control]))
@@ -94,20 +102,6 @@ def constant_turn(turns: Array) -> tuple[Array, float]:
     """The turn (3, 3) nearest to all of (S, 3, 3), and the largest angle to one of them [rad]."""
     mean = nearest_rotation(turns.mean(axis=0)[None])[0]
     return mean, float(np.linalg.norm(rotations.logarithm(mean.T @ turns), axis=-1).max())
-
-
-def _turners(turns: Array, axes: Array) -> list[int]:
-    """What turns each control: in whose axes its own rotation axes (S, C, 3, 3) change least."""
-    seen = np.swapaxes(turns, -1, -2)[:, :, None] @ axes[:, None]  # (S, turner, control, 3, 3)
-    return _least(_spread(seen, (-2, -1)), _spread(axes, (-2, -1)))
-
-
-def _carriers(turns: Array, places: Array, still: int) -> list[int]:
-    """What carries each control: from where its place without location changes least."""
-    turns, places = turns[:still], places[:still]
-    apart = places[:, None] - places[:, :, None]  # (still, carrier, control, 3)
-    seen = (np.swapaxes(turns, -1, -2)[:, :, None] @ apart[..., None])[..., 0]
-    return _least(_spread(seen, (-1,)), _spread(places, (-1,)))
 
 
 def _spread(values: Array, axis: tuple[int, ...]) -> Array:

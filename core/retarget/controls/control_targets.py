@@ -8,7 +8,7 @@ import numpy as np
 from ...arrays import Array
 from ...body import rotations
 from ...numerics.vectors import unit
-from ..character import LIMBS, Character, joint_roles
+from ..character import JOINTS, LIMBS, Character
 from ..character_motion import CharacterMotion
 from ..maps.character_map import CharacterMap
 from ..solve.two_bone import STRAIGHTEST, LimbPose, reach_for
@@ -105,7 +105,7 @@ def _limb_paths(
     in_fk = {control.plan.bone for control in controls if control.plan.kind in IN_FK}
     for limb in LIMBS:
         bones = limb_bones(character_map, limb)
-        if not set(joint_roles(limb)) <= set(character_map.roles) or not set(bones) <= set(motion.poses):
+        if not set(JOINTS[limb]) <= set(character_map.roles) or not set(bones) <= set(motion.poses):
             continue
         root, middle, end = (motion.poses[bone][:, :3, 3] for bone in bones)
         pole = character_map.ik[limb].pole if limb in in_ik else None

@@ -14,9 +14,6 @@ from ..character import LIMBS, MIDDLE, Character
 from ..character_motion import CharacterMotion
 from ..maps.character_map import CharacterMap
 
-LEVER = 0.3  # distance of a point that shows a bone's turn about its own length, in lengths of the bone
-END = 0.5  # length of a limb's last part, in lengths of the part before it
-
 
 class PointKind(Enum):
     """What a point is held for."""
@@ -54,13 +51,14 @@ def held_points(
             last = number + 1 == len(bones)
             along = (bone.tail if last else bones[number + 1].head) - bone.head
             own = float(np.linalg.norm(along))
-            if last and own > 1e-9:  # tails may lie anywhere: their direction is as good as any
-                along = along * (END * length / own)
+            if last and own > 1e-9:  # tails may lie anywhere: half of the part before is as good as any
+                along = along * (0.5 * length / own)
             length = float(np.linalg.norm(along))
             end = bone.head + along
             kind = PointKind.END if role.split(".")[0] in ("hand", "foot") else PointKind.BODY
             places = [(bone.head, kind), (end, PointKind.BODY)]
-            places.append((end + LEVER * length * across(along), PointKind.BODY))
+            # This far off, in lengths of the bone, a point shows its turn about its own length.
+            places.append((end + 0.3 * length * across(along), PointKind.BODY))
             places += [(point, PointKind.SOLE) for point in soles.get(role, ())]
             turn = bone.rest[:3, :3]
             found += [HeldPoint(bone.name, (place - bone.head) @ turn, kind, limb) for place, kind in places]
@@ -74,7 +72,6 @@ def held_points(
 SWITCH_M = 0.0008  # largest distance of wrists and ankles between IK and FK
 LEAST_M = 0.0002  # of a limb's ends where it is all but straight: less would bring keys and no likeness
 CARRIED_SHARE = 0.5  # share of the tolerance for a limb's root, and as much for elbow or knee on it
-POLE_RAD = 0.04  # turn of a limb about its own line that a pole's error may make [rad]
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,8 +111,8 @@ class ToleranceRules:
         """(F,) whether the foot of a limb rests."""
         rests = np.zeros(len(self.time_s), dtype=bool)
         for rest in self.motion.rests:
-            if rest.limb == limb:
-                rests[rest.first : rest.last + 1] = True
+            if rest.leg == limb:
+                rests[rest.frames] = True
         return rests
 
     def reach_m(self, joints: tuple[Array, Array, Array], share: float = 1.0) -> Array:
@@ -132,7 +129,7 @@ class ToleranceRules:
         return np.asarray(np.clip(general_m * out / longer, min(least_m, general_m), general_m))
 
     def pole_m(self, joints: tuple[Array, Array, Array], distance_m: float) -> Array:
-        """(F,) error of a pole that moves elbow or knee by the tolerance, or its limb by `POLE_RAD` [m].
+        """(F,) error of a pole that moves elbow or knee by the tolerance, or turns its limb by 0.04 rad [m].
 
         `distance_m` is that of the pole from elbow or knee.
         """
@@ -140,4 +137,4 @@ class ToleranceRules:
         line = unit(end - root)
         out = np.linalg.norm(np.cross(middle - root, line), axis=-1)
         reach, least_m = out + distance_m, LEAST_M * self.motion.size
-        return np.asarray(np.minimum(self.body_m * reach / np.maximum(out, least_m), POLE_RAD * reach))
+        return np.asarray(np.minimum(self.body_m * reach / np.maximum(out, least_m), 0.04 * reach))

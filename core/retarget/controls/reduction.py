@@ -21,15 +21,8 @@ from .control_motion import ChannelValues, ControlMotion, KeyedControl
 from .control_plan import ControlKind
 from .control_spaces import NOTHING
 from .control_targets import leg_on_body
-from .point_tolerances import (
-    CARRIED_SHARE,
-    SWITCH_M,
-    HeldPoint,
-    PointKind,
-    ToleranceRules,
-)
+from .point_tolerances import CARRIED_SHARE, SWITCH_M, HeldPoint, PointKind, ToleranceRules
 
-NO_POINTS = np.zeros((0, 3))
 Toleranced = tuple[Array, Array | Callable[[Array], Array]]
 """A point (3,) in its control's axes [m], and its tolerance (F,), or that from its path (F, 3) in the
 armature's."""
@@ -50,7 +43,13 @@ def reduce_controls(
     motion: ControlMotion, times: Array, rules: ToleranceRules, of: ChannelValues
 ) -> Part[tuple[KeyedControl, ...]]:
     """Find few keys for every control of a motion at rising scene frames (F,), at least two."""
-    body, following = control_stages(motion.controls, _legs(motion))
+    legs: dict[str, tuple[int, list[int]]] = {}
+    for leg, limb in motion.limbs.items():
+        if leg.startswith("leg") and limb.in_fk and limb.root_control != NOTHING:
+            bones = {point.bone for point in motion.points if point.limb == leg}
+            members = [index for bone in bones if (index := motion.fk_control(bone)) is not None]
+            legs[leg] = (limb.root_control, members)
+    body, following = control_stages(motion.controls, legs)
     keyed: dict[int, KeyedControl] = {}
     shown: dict[int, ControlChannels] = {}
     done = 0.0
@@ -59,7 +58,8 @@ def reduce_controls(
         done = 0.5 if following else 1.0
         points: dict[int, list[Toleranced]] = {
             index: [
-                (place, partial(_of_body, motion, rules, point)) for point, place in motion.points_of(index)
+                (place, partial(_tolerance, motion, rules, None, point))
+                for point, place in motion.points_of(index)
             ]
             for index in body
         }
@@ -80,69 +80,43 @@ def reduce_controls(
     return tuple(keyed[index] for index in range(len(motion.controls)))
 
 
-def _legs(motion: ControlMotion) -> dict[str, tuple[int, list[int]]]:
-    """By leg in FK the control that carries it, and the indices of its own."""
-    found = {}
-    for leg, limb in motion.limbs.items():
-        if not leg.startswith("leg") or not limb.in_fk or limb.root_control == NOTHING:
-            continue
-        roles = {point.bone for point in motion.points if point.limb == leg}
-        members = [index for bone in roles if (index := motion.fk_control(bone)) is not None]
-        found[leg] = (limb.root_control, members)
-    return found
-
-
 # --- In which order the keys are found
 
 
 def control_stages(
     controls: Sequence[Control], legs: Mapping[str, tuple[int, Collection[int]]]
 ) -> tuple[tuple[int, ...], tuple[FollowingControls, ...]]:
-    """Indices of the controls that are fitted first, rising, and the others in the order of their fitting."""
+    """Indices of the controls that are fitted first, rising, and the others in the order of their fitting.
+
+    `legs` are those in FK: the control that carries each, and the indices of its own.
+    """
+    above = [{control.space.turner, control.space.carrier} for control in controls]
     later: list[bool] = []
-    for control in controls:
+    for control, over in zip(controls, above, strict=True):
         in_ik = control.plan.kind in (ControlKind.GOAL, ControlKind.TOE, ControlKind.POLE)
-        later.append(in_ik or any(later[other] for other in _above(control) if other != NOTHING))
+        later.append(in_ik or any(later[other] for other in over if other != NOTHING))
     chains = []
     for leg, (carrier, members) in legs.items():
         others = [index for index in range(len(controls)) if index not in members and not later[index]]
-        carries = any(_above(controls[index]) & set(members) for index in others)
-        if _outside(controls, members) == {carrier} and not carries:
+        carries = any(above[index] & set(members) for index in others)
+        if set().union(*(above[index] for index in members)) - set(members) == {carrier} and not carries:
             chains.append(FollowingControls(tuple(sorted(members)), carrier, leg))
     apart = {index for chain in chains for index in chain.controls}
     body = {index for index, late in enumerate(later) if not late} - apart
-    group = _groups(controls, [late and index not in apart for index, late in enumerate(later)])
+    # For each control that follows the first of those that it hangs together with.
+    group: dict[int, int] = {}
+    for index in sorted(set(range(len(controls))) - apart - body):
+        near = {group[other] for other in above[index] if other in group}
+        group[index] = min(near, default=index)
+        group |= {other: group[index] for other, name in group.items() if name in near}
     for name in sorted(set(group.values())):
-        members = tuple(index for index in group if group[index] == name)
-        outside = _outside(controls, members)
+        members = tuple(index for index in sorted(group) if group[index] == name)
+        outside = set().union(*(above[index] for index in members)) - set(members)
         if len(outside) == 1:
             chains.append(FollowingControls(members, outside.pop()))
         else:  # turned by one and carried by another: only the whole rig shows where they are
             body |= set(members)
     return tuple(sorted(body)), tuple(chains)
-
-
-def _above(control: Control) -> set[int]:
-    return {control.space.turner, control.space.carrier}
-
-
-def _outside(controls: Sequence[Control], members: Collection[int]) -> set[int]:
-    """What turns and carries some controls and is none of them."""
-    return {other for index in members for other in _above(controls[index]) if other not in members}
-
-
-def _groups(controls: Sequence[Control], later: Sequence[bool]) -> dict[int, int]:
-    """For each control that follows the first of those that it hangs together with."""
-    group: dict[int, int] = {}
-    for index, control in enumerate(controls):
-        if not later[index]:
-            continue
-        near = {group[other] for other in _above(control) if other in group}
-        group[index] = min(near, default=index)
-        for other, name in group.items():
-            if name in near:
-                group[other] = group[index]
-    return dict(sorted(group.items()))
 
 
 # --- Some of the controls as a rig, in meters, in the axes of the armature or of what carries them
@@ -170,7 +144,8 @@ def control_rig(
         origin = scale * space.origin
         if channels[index].location is not None:
             moved[index] = len(bones)
-            bones.append(RigBone(name, parent, NO_TURN, still, still, origin, NO_POINTS, scale * space.axes))
+            none = np.zeros((0, 3))
+            bones.append(RigBone(name, parent, NO_TURN, still, still, origin, none, scale * space.axes))
             parent, origin = moved[index], np.zeros(3)
         turned[index] = len(bones)
         mode = NO_TURN if channels[index].rotation is None else controls[index].mode
@@ -265,11 +240,12 @@ def _reduce_following(
             distance_m = motion.scale * motion.limbs[limb].pole_distance
             heads[index] = rules.pole_m(motion.joints_m(limb), distance_m)
     keyed, local = yield from _reduced(motion, channels, times, rules.body_m, of, points, heads)
-    return keyed, local if carrier is None else {index: one.on(carrier) for index, one in local.items()}
-
-
-def _of_body(motion: ControlMotion, rules: ToleranceRules, point: HeldPoint, path: Array) -> Array:
-    return rules.of(point, path, not motion.shows_ik(point.limb), rules.general_m)
+    if carrier is None:
+        return keyed, local
+    for index, one in local.items():
+        place = carrier.place + (carrier.turn @ one.place[..., None])[..., 0]
+        local[index] = replace(one, turn=carrier.turn @ one.turn, place=place)
+    return keyed, local
 
 
 def _followed(
@@ -292,9 +268,16 @@ def _followed(
 
 
 def _tolerance(
-    motion: ControlMotion, rules: ToleranceRules, group: FollowingControls, point: HeldPoint, path: Array
+    motion: ControlMotion,
+    rules: ToleranceRules,
+    group: FollowingControls | None,
+    point: HeldPoint,
+    path: Array,
 ) -> Array:
+    """(F,) tolerance of a point on its path (F, 3), of the body's controls or of some that follow them."""
     shows_ik, limb = motion.shows_ik(point.limb), motion.limbs.get(str(point.limb))
+    if group is None:
+        return rules.of(point, path, not shows_ik, rules.general_m)
     if group.leg is not None:
         allowed = rules.of(point, path, not shows_ik, rules.general_m)
         share = CARRIED_SHARE if point.kind is PointKind.BODY else 1.0

@@ -19,10 +19,8 @@ from ...body.kinematics import SegmentMotion
 from ...body.skeleton import SIDES
 from ...feet.fading import ease
 from ...numerics.vectors import unit
+from ..character import LONG_BONES
 from .rest_body import RestBody
-
-CLEAR_BEND_RAD = (np.radians(12.0), np.radians(30.0))
-"""Bend of a resting elbow or knee from which its plane begins to count, and counts in full."""
 
 
 def rest_alignment(body: RestBody) -> Mapping[str, Array]:
@@ -50,32 +48,27 @@ def _align(body: RestBody, turns: dict[str, Array], limb: list[str], along: Arra
     first = unit(middle - body.joint(upper))
     tip = body.joint(end) if end in body.first else body.tip(lower)
     second = first if tip is None else unit(tip - middle)
-    corrected = turns[upper] @ first
-    turn = rotations.smallest(corrected, along) @ turns[upper]
-    turn = _with_hinge(turn @ first, turn @ second, along, hinge) @ turn
+    turn = rotations.smallest(turns[upper] @ first, along) @ turns[upper]
+    # A twist about the limb lets its resting bend turn about the hinge; none where it hardly bends.
+    axis = rotations.cross(turn @ first, turn @ second)
+    bend = float(np.arctan2(np.linalg.norm(axis), first @ second))
+    axis = unit(axis)
+    twist = float(np.arctan2(rotations.cross(axis, hinge) @ along, axis @ hinge))
+    # Bends from which the plane of an elbow or knee begins to count, and counts in full; one that is farther
+    # than the last from the hinge's own direction says nothing of it.
+    begins, clear, astray = np.radians([12.0, 30.0, 75.0])
+    share = float(ease(np.array(bend), begins, clear)) * float(abs(twist) < astray)
+    turn = rotations.hinge(along, np.array(share * twist)) @ turn
     turns[upper] = turn
     bent = turn @ turns[lower] @ second
     turns[lower] = rotations.smallest(bent, along) @ turn @ turns[lower]
 
 
-def _with_hinge(first: Array, second: Array, along: Array, hinge: Array) -> Array:
-    """A twist about the limb that lets its resting bend turn about the hinge; none where it hardly bends."""
-    axis = rotations.cross(first, second)
-    bend = float(np.arctan2(np.linalg.norm(axis), first @ second))
-    axis = unit(axis)
-    twist = float(np.arctan2(rotations.cross(axis, hinge) @ along, axis @ hinge))
-    # A resting bend farther than that from the hinge's own direction says nothing of it.
-    clear = float(ease(np.array(bend), *CLEAR_BEND_RAD)) * float(abs(twist) < np.radians(75.0))
-    return rotations.hinge(along, np.array(clear * twist))
-
-
 # --- Turns of bones that follow from the performer's segments alone, and where they put the joints
 
 
-def segment_of(role: str) -> str:
-    """The performer's segment that a role of one bone follows; spine and neck lie between two of them."""
-    part, dot, side = role.partition(".")
-    return {"hips": "pelvis", "shoulder": "girdle", "toe": "foot"}.get(part, part) + dot + side
+FOLLOWED = {"hips": "pelvis", "shoulder": "girdle", "toe": "foot"}
+"""The performer's segment that a role of one bone follows where it has another name."""
 
 
 def bone_turns(body: RestBody, turn: Mapping[str, Array], alignment: Mapping[str, Array]) -> list[Array]:
@@ -96,7 +89,8 @@ def bone_turns(body: RestBody, turn: Mapping[str, Array], alignment: Mapping[str
             turn_up = rotations.logarithm(np.swapaxes(lower, -1, -2) @ upper)
             wanted = lower @ rotations.exponential(share * turn_up)
         else:
-            wanted = turn[segment_of(bone.role)]
+            part, dot, side = bone.role.partition(".")
+            wanted = turn[FOLLOWED.get(part, part) + dot + side]
         found.append(np.asarray(wanted @ alignment[bone.role]))
     return found
 
@@ -115,10 +109,6 @@ def joint_places(body: RestBody, turns: list[Array]) -> list[Array]:
 
 
 # --- Places on a body that carry over to another
-
-
-HEAD_HEIGHT = 0.10  # from the head's joint to the crown, as a share of stature
-LEG_SHARE = 0.491  # the legs' share of stature (Drillis & Contini 1966)
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,35 +135,35 @@ def part_shapes(
 ) -> tuple[PartShape, ...]:
     """The parts of a character that hands may be near: head, chest, pelvis and legs."""
     lengths = source.body.actor.segments_m
-    parts: list[PartShape] = []
-
-    def add(segment: str, bone: int, origin: Array, *scale: float) -> None:
+    hip, shoulder = body.middle("thigh"), body.middle("upper_arm")
+    trunk = float(np.linalg.norm(shoulder - hip)) / lengths["trunk"]
+    hips, shoulders = (
+        float(np.linalg.norm(body.joint(f"{part}.L") - body.joint(f"{part}.R"))) / lengths[width]
+        for part, width in (("thigh", "hip_width"), ("upper_arm", "shoulder_width"))
+    )
+    # Range of a width over what the character's size alone would give.
+    hips, shoulders = np.clip([hips, shoulders], 0.5 * size, 2.5 * size)
+    chest = body.last.get("spine", 0)
+    wanted = [
+        ("pelvis", 0, hip, (hips, np.sqrt(hips * size), trunk)),
+        ("chest", chest, shoulder, (shoulders, np.sqrt(shoulders * trunk), trunk)),
+    ]
+    if "head" in body.first:
+        joint, tip = body.joint("head"), body.tip("head")
+        # Crown over the head's joint and legs, as shares of stature (the latter Drillis & Contini 1966).
+        height = 0.10 * body.leg_m / 0.491
+        if tip is not None and tip[2] - joint[2] > 0.5 * height:
+            height = float(tip[2] - joint[2])
+        ratio = height / (0.10 * source.body.actor.stature_m)
+        wanted.append(("head", body.first["head"], joint + [0.0, 0.0, 0.5 * height], (ratio, ratio, ratio)))
+    for role, below in (ends for side in SIDES for ends in LONG_BONES[f"leg.{side}"]):
+        ratio = body.length_m(role, below) / lengths[role]
+        wanted.append((role, body.first[role], body.joint(role), (size, size, ratio)))
+    parts = []
+    for segment, bone, origin, scale in wanted:
         own = body.bones[bone]
         to_rest = alignment[own.role].T if body.is_moved(own.role) else np.eye(3)
         parts.append(PartShape(segment, bone, origin - own.head, np.array(scale), to_rest))
-
-    def width(part: str, own_m: float) -> float:
-        ratio = np.linalg.norm(body.joint(f"{part}.L") - body.joint(f"{part}.R")) / own_m
-        # Range of a width over what the character's size alone would give.
-        return float(np.clip(ratio, *np.multiply((0.5, 2.5), size)))
-
-    trunk = float(np.linalg.norm(body.shoulder_joints - body.hip_joints)) / lengths["trunk"]
-    shoulders, hips = width("upper_arm", lengths["shoulder_width"]), width("thigh", lengths["hip_width"])
-    add("pelvis", 0, body.hip_joints, hips, np.sqrt(hips * size), trunk)
-    chest = body.last.get("spine", 0)
-    add("chest", chest, body.shoulder_joints, shoulders, np.sqrt(shoulders * trunk), trunk)
-    if "head" in body.first:
-        joint, tip = body.joint("head"), body.tip("head")
-        height = HEAD_HEIGHT * body.leg_m / LEG_SHARE
-        if tip is not None and tip[2] - joint[2] > 0.5 * height:
-            height = float(tip[2] - joint[2])
-        ratio = height / (HEAD_HEIGHT * source.body.actor.stature_m)
-        add("head", body.first["head"], joint + [0.0, 0.0, 0.5 * height], ratio, ratio, ratio)
-    for side in SIDES:
-        for name, below in (("thigh", "shin"), ("shin", "foot")):
-            role = f"{name}.{side}"
-            ratio = body.length_m(role, f"{below}.{side}") / lengths[role]
-            add(role, body.first[role], body.joint(role), size, size, ratio)
     return tuple(parts)
 
 

@@ -24,19 +24,10 @@ from .foot_shape import FootShape
 from .stage import Stage
 from .two_bone import LimbPose
 
-FLAT_RAD = (np.radians(15.0), np.radians(30.0))
-"""Tilt of a resting sole up to which it lies flat, and from which it stays as it is (on tiptoe, kneeling)."""
 TOUCHING_M = (0.01, 0.04)
 """Height of the performer's toe tip up to which it is on the ground, and from which it is in the air."""
-SLIDING_M_S = (0.4, 1.2)
-"""Speed of the tip up to which the foot rolls over it, and from which it swings over the ground."""
-LARGEST_ROLL_RAD = np.radians(20.0)
-"""Largest change of a foot's pitch for a front that is nearer to the ankle than the performer's; a heel that
-rises higher than that front allows leaves the ground with it."""
-LARGEST_CHANGE_RAD = np.radians(45.0)  # largest change of a foot's pitch for a foot of another shape
-LONGEST_ROLL_S = 0.5
-LIFT_S = 0.1  # time over which a foot is lifted that a few frames would have in the ground
 MOST_TOE_BEND_RAD = np.radians(75.0)
+ACROSS = np.eye(3)[0]  # canonical axis about which feet and toes pitch
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,18 +55,28 @@ def plan_foot(
     ground_m = stage.heights(ground.height_m[:, point]) + lift_m
     turn = _rolled(source, stage, ground, shape, side, ankle[:, 2] - ground_m)
     rests = [rest for rest in ground.rests if rest.point == point]
-    stands = [_standing(turn[rest.frames]) for rest in rests]
+    stands = []
+    for rest in rests:  # the turn throughout a rest: its mean, flat where it nearly is
+        mean = Rotation.from_matrix(turn[rest.frames]).mean().as_matrix()
+        # Tilts up to which a resting sole lies flat, and from which it stays as it is (on tiptoe, kneeling).
+        flat = 1.0 - ease(np.arccos(np.clip(mean[2, 2], -1.0, 1.0)), *np.radians([15.0, 30.0]))
+        upright = rotations.logarithm(rotations.smallest(mean[:, 2], UP))
+        stands.append(rotations.exponential(flat * upright) @ mean)
     turn = held_turns(turn, rests, stands, time_s)
     depth_m = sole_depth_m(turn, shape)
     planted = np.zeros(len(time_s), dtype=bool)
     holds = []
-    still = _still(source, ground, side)
-    for number, (rest, stand) in enumerate(zip(rests, stands, strict=True)):
-        first, last = _with_rolls(number, rests, still, time_s)
-        frames = slice(first, last + 1)
-        place = _footprint(rest, stand, turn[frames], shape, leg, first)
-        place[:, 2] = ground_m[frames] + depth_m[frames]
-        holds.append(Hold(first, place - ankle[frames]))
+    for rest, stand, (first, last) in zip(rests, stands, _rolls(source, ground, side, rests), strict=True):
+        # The place of the rest is the mean of where the leg's directions put the ankle. Frames in which the
+        # leg is nearly straight count more: there a knee bends a lot for a little way.
+        middle = np.average(leg.end[rest.frames], axis=0, weights=leg.straightness[rest.frames])
+        frames, into, out = slice(first, last + 1), slice(first, rest.first), slice(rest.last + 1, last + 1)
+        place = ankle.copy()
+        place[rest.frames] = middle
+        place[into] = middle + stand @ shape.heel - turn[into] @ shape.heel
+        place[out] = middle + stand @ shape.front - turn[out] @ shape.front
+        place[:, 2] = ground_m + depth_m
+        holds.append(Hold(first, (place - ankle)[frames]))
         planted[frames] = True
     path = ankle + faded(holds, time_s)
     path[:, 2] = np.maximum(path[:, 2], ground_m + depth_m)
@@ -93,14 +94,14 @@ def floor_lifts(
     lift = np.where(depth_m > 0.0, depth_m + spare_m, 0.0)
     for first, last in stands:
         lift[first : last + 1] = lift[first : last + 1].max()
-    return smooth_above(lift, time_s, LIFT_S)
+    return smooth_above(lift, time_s, 0.1)
 
 
 def sole_depth_m(turn: Array, shape: FootShape) -> Array:
     """(F,) depth of the foot's lowest point under the ankle, the toes bent up as far as they bend [m]."""
     points = shape.foot
     if shape.toe_joint is not None:
-        toe = shape.toe_joint + shape.toe @ _about_x(np.array(-MOST_TOE_BEND_RAD)).T
+        toe = shape.toe_joint + shape.toe @ rotations.hinge(ACROSS, np.array(-MOST_TOE_BEND_RAD)).T
         points = np.concatenate([points, toe])
     return np.asarray(-(turn[:, 2] @ points.T).min(axis=1))
 
@@ -118,7 +119,7 @@ def toe_bends(turn: Array, shape: FootShape, height_m: Array) -> Array:
         middle = (np.arctan2(-b, a) + 0.5 * np.pi) % (2.0 * np.pi) - 0.5 * np.pi
         bend = np.maximum(bend, middle - np.arccos(ratio))
     bend = np.minimum(bend, MOST_TOE_BEND_RAD)
-    return np.asarray(turn @ _about_x(-bend))
+    return np.asarray(turn @ rotations.hinge(ACROSS, -bend))
 
 
 def _rolled(
@@ -133,9 +134,13 @@ def _rolled(
     tip = source.start[f"foot.{side}"] + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[point][1]
     speed = speeds(tip, source.time_s)
     touching = 1.0 - ease(tip[:, 2] - ground.height_m[:, point], *TOUCHING_M)
-    touching *= 1.0 - ease(speed, *SLIDING_M_S)
+    # Speeds [m/s] up to which a foot rolls over its tip, and from which it swings over the ground.
+    touching *= 1.0 - ease(speed, 0.4, 1.2)
     rolled = np.clip(_pitches_to_ground(turn, shape.front, height_m, toes=1.0), -np.pi, np.pi)
-    change = touching * LARGEST_ROLL_RAD * np.tanh(rolled / LARGEST_ROLL_RAD)
+    # Largest change of pitch for a front that is nearer to the ankle than the performer's: a heel that rises
+    # higher than that front allows leaves the ground with it. And for a foot of another shape.
+    most_rolled, most_changed = np.radians([20.0, 45.0])
+    change = touching * most_rolled * np.tanh(rolled / most_rolled)
     in_front = [point for point in shape.foot if point[1] < 0.0]
     behind = [point for point in shape.foot if point[1] >= 0.0]
     free = np.full(len(turn), np.inf)  # a sole without points before or behind the ankle hits nothing there
@@ -146,7 +151,7 @@ def _rolled(
         [-free, *(_pitches_to_ground(turn, point, height_m, toes=-1.0) for point in behind)]
     )
     change = np.clip(change, np.minimum(least, most), most)
-    return np.asarray(turn @ _about_x(np.clip(change, -LARGEST_CHANGE_RAD, LARGEST_CHANGE_RAD)))
+    return np.asarray(turn @ rotations.hinge(ACROSS, np.clip(change, -most_changed, most_changed)))
 
 
 def _pitches_to_ground(turn: Array, point: Array, height_m: Array, toes: float) -> Array:
@@ -169,64 +174,32 @@ def _heights(turn: Array, point: Array) -> tuple[Array, Array, Array]:
     return up[:, 0] * x, up[:, 1] * y + up[:, 2] * z, up[:, 2] * y - up[:, 1] * z
 
 
-def _about_x(angle_rad: Array) -> Array:
-    return rotations.hinge(np.array([1.0, 0.0, 0.0]), angle_rad)
+def _rolls(
+    source: SegmentMotion, ground: Ground, side: str, rests: Sequence[Contact]
+) -> list[tuple[int, int]]:
+    """First and last frame of each rest together with the roll onto the sole and off it.
 
-
-def _standing(turn: Array) -> Array:
-    """(3, 3) the turn of a foot throughout a rest: its mean, flat where it nearly is."""
-    mean = Rotation.from_matrix(turn).mean().as_matrix()
-    flat = 1.0 - ease(np.arccos(np.clip(mean[2, 2], -1.0, 1.0)), *FLAT_RAD)
-    return rotations.exponential(flat * rotations.logarithm(rotations.smallest(mean[:, 2], UP))) @ mean
-
-
-def _still(source: SegmentMotion, ground: Ground, side: str) -> tuple[BoolArray, BoolArray]:
-    """(F,) whether the heel stands still on the ground with the toes up, and the front with the heel up."""
-    turn, ankle = source.turn[f"foot.{side}"], source.start[f"foot.{side}"]
+    Before a rest the heel stands still on the ground with the toes up, after it the front with the heel up.
+    """
+    turn, ankle, time_s = source.turn[f"foot.{side}"], source.start[f"foot.{side}"], source.time_s
     heel, tip = (ankle + turn @ offset for offset in sole_offsets(source.body)[SIDES.index(side)])
     # Place of the ball between ankle and tip of the performer's foot.
     ball = ankle + 0.62 * (tip - ankle)
     ground_m = ground.height_m[:, SIDES.index(side)]
     pitch = turn[:, 2, 1]
-    slow = [speeds(path, source.time_s) < RELEASE_SPEED_M_S for path in (heel, tip, ball)]
+    slow = [speeds(path, time_s) < RELEASE_SPEED_M_S for path in (heel, tip, ball)]
     on_heel = slow[0] & (heel[:, 2] - ground_m < TOUCHING_M[1]) & (pitch <= 0.0)
     on_front = (slow[1] | slow[2]) & (tip[:, 2] - ground_m < TOUCHING_M[1]) & (pitch >= 0.0)
-    return on_heel, on_front
-
-
-def _with_rolls(
-    number: int, rests: list[Contact], still: tuple[BoolArray, BoolArray], time_s: Array
-) -> tuple[int, int]:
-    """First and last frame of a rest together with the roll onto the sole and off it."""
-    rest = rests[number]
-    before = rests[number - 1].last if number else -1
-    after = rests[number + 1].first if number + 1 < len(rests) else len(time_s)
-    earliest = max(
-        (before + rest.first) // 2 + 1, int(np.searchsorted(time_s, time_s[rest.first] - LONGEST_ROLL_S))
-    )
-    latest = min((rest.last + after) // 2, int(np.searchsorted(time_s, time_s[rest.last] + LONGEST_ROLL_S)))
-    on_heel = still[0][earliest : rest.first][::-1]
-    on_front = still[1][rest.last + 1 : latest]
-    return rest.first - _run(on_heel), rest.last + _run(on_front)
-
-
-def _run(flags: BoolArray) -> int:
-    """How many of the first flags are set."""
-    return len(flags) if flags.all() else int(np.argmin(flags))
-
-
-def _footprint(
-    rest: Contact, stand: Array, turn: Array, shape: FootShape, leg: LimbPose, first: int
-) -> Array:
-    """(N, 3) places of the ankle through a rest and its rolls; heights are not meant.
-
-    The place of the rest is the mean of where the leg's directions put the ankle. Frames in which the leg is
-    nearly straight count more: there a knee bends a lot for a little way.
-    """
-    frames = slice(rest.first, rest.last + 1)
-    place = np.average(leg.end[frames], axis=0, weights=leg.straightness[frames])
-    found = np.broadcast_to(place, (len(turn), 3)).copy()
-    into, out = rest.first - first, rest.last + 1 - first
-    found[:into] = place + stand @ shape.heel - turn[:into] @ shape.heel
-    found[out:] = place + stand @ shape.front - turn[out:] @ shape.front
+    found = []
+    for number, rest in enumerate(rests):
+        before = rests[number - 1].last if number else -1
+        after = rests[number + 1].first if number + 1 < len(rests) else len(time_s)
+        # No roll is longer than half a second, or goes beyond the middle of the way to the next rest.
+        start, stop = np.searchsorted(time_s, [time_s[rest.first] - 0.5, time_s[rest.last] + 0.5])
+        first, last = rest.first, rest.last
+        while first > max((before + rest.first) // 2 + 1, int(start)) and on_heel[first - 1]:
+            first -= 1
+        while last < min((rest.last + after) // 2, int(stop)) - 1 and on_front[last + 1]:
+            last += 1
+        found.append((first, last))
     return found

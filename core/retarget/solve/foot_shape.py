@@ -13,15 +13,6 @@ from ...feet.contacts import find_contacts
 from ...feet.ground import Ground, find_ground
 from .rest_body import RestBody
 
-TOE_ROOM = 0.05
-"""Largest height of the lowest joint or toe over the armature's origin, as a share of the leg, at which the
-origin is the ground that the character stands on."""
-ANKLE_ROOM = 0.12  # the same where nothing is known of the foot but its ankle
-TOE_THICKNESS = 0.02  # height of joints at the toes over the sole, as a share of the leg
-ANKLE_HEIGHT = 0.08
-"""Height of the ankle over the sole, as a share of the leg: 0.039 of a stature of which the leg is 0.49
-(Winter 2009, *Biomechanics and Motor Control of Human Movement*)."""
-
 
 @dataclass(frozen=True, eq=False)
 class FootShape:
@@ -48,7 +39,11 @@ def rest_floor_m(body: RestBody) -> float:
     ankles = [body.joint(f"foot.{side}") for side in SIDES]
     below = [point for side in SIDES for point in _beyond_ankle(body, side)]
     lowest = float(min(point[2] for point in (*ankles, *below)))
-    room, thickness = (TOE_ROOM, TOE_THICKNESS) if below else (ANKLE_ROOM, ANKLE_HEIGHT)
+    # In shares of the leg: the largest height of the lowest joint or toe over the armature's origin at which
+    # that is the ground, and the height of joints at the toes over the sole. Where only the ankle is known,
+    # the latter is 0.039 of a stature of which the leg is 0.49 (Winter 2009, *Biomechanics and Motor Control
+    # of Human Movement*).
+    room, thickness = (0.05, 0.02) if below else (0.12, 0.08)
     if 0.0 <= lowest <= room * body.leg_m:
         return 0.0
     return lowest - thickness * body.leg_m
@@ -67,7 +62,11 @@ def foot_shape(body: RestBody, side: str, floor_m: float) -> FootShape:
     if "foot" not in given:
         given = _sole_of_bones(body, side, ankle, toe, floor_m)
     foot = given["foot"] if toe is not None or "toe" not in given else np.concatenate(list(given.values()))
-    ahead = _ahead(foot - ankle if toe is None else (toe - ankle)[None])
+    # Ahead is, on the level, where the way to the ball or a point of the sole leads farthest.
+    level = (foot - ankle if toe is None else (toe - ankle)[None]) * [1.0, 1.0, 0.0]
+    longest = level[np.linalg.norm(level, axis=-1).argmax()]
+    length = float(np.linalg.norm(longest))
+    ahead = longest / length if length > 1e-6 else np.array([0.0, -1.0, 0.0])
     front = foot[np.argmax((foot - ankle) @ ahead)] if toe is None else toe
     heel = foot[np.argmin((foot - ankle) @ ahead)]
     middle, low = ankle + ((heel - ankle) @ ahead) * ahead, float(foot[:, 2].min())
@@ -93,7 +92,15 @@ def _sole_of_bones(
     body: RestBody, side: str, ankle: Array, toe: Array | None, floor_m: float
 ) -> dict[str, Array]:
     """Heel, ball and tip on the ground, inside and outside, by part."""
-    tip = _tip(body, side, ankle, toe)
+    if toe is not None:
+        forward, tip = (toe - ankle) * [1.0, 1.0, 0.0], body.tip(f"toe.{side}")
+        if tip is None or (tip - toe) @ forward <= 0.0:
+            tip = toe + 0.4 * forward  # usual length of the toes, as a share of that from ankle to ball
+    else:
+        beyond = [point for point in _beyond_ankle(body, side) if point[1] < ankle[1]]
+        # Where no bone shows it, the usual length from ankle to toe tip, as a share of the leg.
+        usual = ankle + 0.21 * body.leg_m * np.array([0.0, -1.0, 0.0])
+        tip = min(beyond, key=lambda point: float(point[1]), default=usual)
     along = (tip - ankle) * [1.0, 1.0, 0.0]
     length = float(np.linalg.norm(along))
     ahead = along / length
@@ -103,21 +110,6 @@ def _sole_of_bones(
     ball = ankle + 0.6 * length * ahead if toe is None else toe
     parts = {"foot": [heel + 0.7 * across, heel - 0.7 * across, ball + across, ball - across], "toe": [tip]}
     return {part: np.stack(points) * [1.0, 1.0, 0.0] + [0.0, 0.0, floor_m] for part, points in parts.items()}
-
-
-def _tip(body: RestBody, side: str, ankle: Array, toe: Array | None) -> Array:
-    if toe is not None:
-        ball = (toe - ankle) * [1.0, 1.0, 0.0]
-        tip = body.tip(f"toe.{side}")
-        if tip is not None and (tip - toe) @ ball > 0.0:
-            return tip
-        # Length of the toes, as a share of that from ankle to ball, where no bone tells.
-        return np.asarray(toe + 0.4 * ball)
-    beyond = [point for point in _beyond_ankle(body, side) if point[1] < ankle[1]]
-    if beyond:
-        return min(beyond, key=lambda point: float(point[1]))
-    # Length from ankle to toe tip along the ground, as a share of the leg, where no bone tells.
-    return np.asarray(ankle + 0.21 * body.leg_m * np.array([0.0, -1.0, 0.0]))
 
 
 def _beyond_ankle(body: RestBody, side: str) -> list[Array]:
@@ -135,14 +127,6 @@ def _beyond_ankle(body: RestBody, side: str) -> list[Array]:
             found.append(bone.tail)
         open_ += character.children[index]
     return [character.scale * body.stance @ point for point in found]
-
-
-def _ahead(ways: Array) -> Array:
-    """(3,) the level direction of the way that leads farthest."""
-    level = ways * [1.0, 1.0, 0.0]
-    longest = level[np.linalg.norm(level, axis=-1).argmax()]
-    length = float(np.linalg.norm(longest))
-    return longest / length if length > 1e-6 else np.array([0.0, -1.0, 0.0])
 
 
 # --- The ground under a performer

@@ -167,5 +167,5 @@ def _reachable(arm: LimbPose, goal: Array) -> Array:
     """(F, 3) the place nearest to a goal that an arm reaches [m]."""
     way = goal - arm.start
     wanted_m = np.linalg.norm(way, axis=-1)
-    reached_m = stretched_m(wanted_m, arm.extension_m, arm.length_m)
+    reached_m = stretched_m(wanted_m, arm.extension_m, sum(arm.lengths_m))
     return np.asarray(arm.start + unit(way) * reached_m[:, None])

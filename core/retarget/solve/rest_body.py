@@ -8,14 +8,14 @@ forearm, hand ...), whatever the armature's hierarchy: feet that hang on a root 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import chain, pairwise
 
 import numpy as np
 
 from ...arrays import Array
 from ...body.skeleton import SIDES
 from ...errors import InputError, shown
-from ..character import LIMBS, LONG_BONES, MIDDLE, Character, joint_roles
+from ..character import JOINTS, LIMBS, LONG_BONES, MIDDLE, Character
 from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap
 from ..maps.map_registry import check_map
@@ -47,19 +47,33 @@ class RestBody:
     def of(cls, character: Character, character_map: CharacterMap) -> "RestBody":
         """The rest pose by a map.
 
-        InputError: a required role is missing, a bone is not there, or a limb has no length.
+        InputError: a required role is missing, a bone is not there or plays two roles, or a limb has no
+        length.
         """
         check_map(character_map, character)
-        _check_single_roles(character_map)
         stance = find_stance(character, character_map)
         bones: list[RestBone] = []
-        for role in _order():
+        for role in (*MIDDLE, *chain.from_iterable(LIMBS.values())):
             for number, name in enumerate(character_map.bones(role)):
+                played = next((bone.role for bone in bones if bone.name == name), None)
+                if played is not None:
+                    raise InputError(
+                        f"character map {shown(character_map.title)} gives bone {shown(name)} for both "
+                        f"{played} and {role}; a bone plays one role"
+                    )
                 carrier = _carrier(character, bones, role, name)
                 head = character.scale * stance @ character.bone(name).head
                 bones.append(RestBone(name, role, number, carrier, head))
         body = cls(character, character_map, stance, tuple(bones))
-        body.check_limbs()
+        extent = float(np.ptp([bone.head for bone in bones], axis=0).max())
+        for limb in LIMBS:
+            for role, below in pairwise(role for role in JOINTS[limb] if role in body.first):
+                if not body.length_m(role, below) > SHORTEST_SHARE * extent:
+                    raise InputError(
+                        f"{character.name}: {bones[body.first[role]].name} ({role}) and "
+                        f"{bones[body.first[below]].name} ({below}) begin at the same place; "
+                        f"the bones of {limb} must have a length"
+                    )
         return body
 
     @cached_property
@@ -89,15 +103,9 @@ class RestBody:
         """Mean length of the legs, hip to ankle along the bones [m]."""
         return 0.5 * sum(self.length_m(*ends) for side in SIDES for ends in LONG_BONES[f"leg.{side}"])
 
-    @cached_property
-    def hip_joints(self) -> Array:
-        """(3,) midpoint of the hip joints [m]."""
-        return np.asarray(0.5 * (self.joint("thigh.L") + self.joint("thigh.R")))
-
-    @cached_property
-    def shoulder_joints(self) -> Array:
-        """(3,) midpoint of the shoulder joints [m]."""
-        return np.asarray(0.5 * (self.joint("upper_arm.L") + self.joint("upper_arm.R")))
+    def middle(self, part: str) -> Array:
+        """(3,) midpoint of the joints of a part on both sides, canonical [m]."""
+        return np.asarray(0.5 * (self.joint(f"{part}.L") + self.joint(f"{part}.R")))
 
     @cached_property
     def tails_are_meant(self) -> bool:
@@ -130,35 +138,6 @@ class RestBody:
             return None
         farthest = max(ends, key=lambda end: float(np.linalg.norm(end - bone.head)))
         return np.asarray(scale * self.stance @ farthest)
-
-    def check_limbs(self) -> None:
-        """Refuse limbs without length. InputError: two joints of a limb lie in one place."""
-        extent = float(np.ptp([bone.head for bone in self.bones], axis=0).max())
-        for limb in LIMBS:
-            there = [role for role in joint_roles(limb) if role in self.first]
-            for role, below in pairwise(there):
-                if not self.length_m(role, below) > SHORTEST_SHARE * extent:
-                    raise InputError(
-                        f"{self.character.name}: {self.bones[self.first[role]].name} ({role}) and "
-                        f"{self.bones[self.first[below]].name} ({below}) begin at the same place; "
-                        f"the bones of {limb} must have a length"
-                    )
-
-
-def _check_single_roles(character_map: CharacterMap) -> None:
-    seen: dict[str, str] = {}
-    for role in _order():
-        for name in character_map.bones(role):
-            if name in seen:
-                raise InputError(
-                    f"character map {shown(character_map.title)} gives bone {shown(name)} for both "
-                    f"{seen[name]} and {role}; a bone plays one role"
-                )
-            seen[name] = role
-
-
-def _order() -> tuple[str, ...]:
-    return (*MIDDLE, *(role for roles in LIMBS.values() for role in roles))
 
 
 def _carrier(character: Character, bones: list[RestBone], role: str, name: str) -> int:

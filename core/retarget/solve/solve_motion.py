@@ -14,8 +14,8 @@ from ...feet.fading import ease, smooth_above, smoothed
 from ...feet.ground import Ground
 from ...progress import Job, Progress
 from ...take.character_settings import Placement, RetargetOptions, RootMotion
-from ..character import LIMBS, Character, joint_roles
-from ..character_motion import CharacterMotion, FootRest, HandGoal, Similarity
+from ..character import JOINTS, LIMBS, Character
+from ..character_motion import CharacterMotion, HandGoal, Similarity
 from ..maps.character_map import CharacterMap
 from .body_frames import bone_turns, joint_places, rest_alignment
 from .feet import FootPath, plan_foot, toe_bends
@@ -32,10 +32,7 @@ HINGES = {
     "leg.R": (1.0, 0.0, 0.0),
 }
 """Axis of elbow or knee by limb, of the performer at rest."""
-SINK_S = 0.12  # time over which the hips go down and up again
-CARRY_S = 0.08  # standard deviation in time of the smoothing of what they are moved by with the feet
-MOMENT_S = 0.07  # standard deviation in time of the smoothing of how far a limb may be stretched
-DEEPEST_SHARE = 0.08  # farthest that they go down or up, as a share of the legs' length
+DEEPEST_SHARE = 0.08  # farthest that the hips go down or up, as a share of the legs' length
 
 
 @dataclass(eq=False)
@@ -50,29 +47,13 @@ class Solution:
     hips: Array  # (F, 3) the midpoint of the hip joints, canonical [m]
     turns: list[Array]  # (F, 3, 3) a bone: its turn from rest, canonical
 
-    @classmethod
-    def by_directions(
-        cls,
-        body: RestBody,
-        alignment: Mapping[str, Array],
-        source: SegmentMotion,
-        stage: Stage,
-        ground: Ground,
-    ) -> "Solution":
-        """The motion by the performer's directions alone."""
-        turn = {name: stage.turn @ own for name, own in source.turn.items()}
-        middle = stage.joints(0.5 * (source.start["thigh.L"] + source.start["thigh.R"]))
-        if not body.is_moved("hips"):
-            middle = np.broadcast_to(body.hip_joints, middle.shape).copy()
-        return cls(body, alignment, source, stage, ground, middle, bone_turns(body, turn, alignment))
-
     def places(self) -> list[Array]:
         """(F, 3) the joint of each bone, canonical [m]."""
         return [self.hips + place for place in joint_places(self.body, self.turns)]
 
     def limb(self, limb: str) -> LimbPose | None:
         """A limb as it is; None where its end is not there or one of its bones is left alone."""
-        roles = joint_roles(limb)
+        roles = JOINTS[limb]
         if not all(self.body.is_moved(role) for role in roles):
             return None
         places = self.places()
@@ -86,10 +67,10 @@ class Solution:
             self.turns[upper] @ (self.alignment[roles[0]].T @ np.array(HINGES[limb])),
         )
 
-    def arms(self) -> dict[str, LimbPose]:
-        """The arms that can reach, by side."""
-        found = {side: self.limb(f"arm.{side}") for side in SIDES}
-        return {side: arm for side, arm in found.items() if arm is not None}
+    def limbs(self, kind: str) -> dict[str, LimbPose]:
+        """The limbs of a kind, `arm` or `leg`, that can reach, by side."""
+        found = {side: self.limb(f"{kind}.{side}") for side in SIDES}
+        return {side: limb for side, limb in found.items() if limb is not None}
 
     def plan_feet(self, shapes: Mapping[str, FootShape], lifts: Mapping[str, Array]) -> dict[str, FootPath]:
         """Paths of the feet that can be planted, by side, lifted by (F,) by leg [m]."""
@@ -100,15 +81,14 @@ class Solution:
             side: plan_foot(
                 self.source, self.stage, self.ground, shapes[side], side, leg, lifts.get(f"leg.{side}", none)
             )
-            for side in SIDES
-            if (leg := self.limb(f"leg.{side}")) is not None
+            for side, leg in self.limbs("leg").items()
         }
 
     def move_hips(self, feet: Mapping[str, FootPath], arms: Mapping[str, LimbPose]) -> None:
         """Move the hips with feet that stand, and lower them for these and for hands on the floor."""
-        legs = {side: leg for side in feet if (leg := self.limb(f"leg.{side}")) is not None}
-        if not legs:
+        if not feet:
             return
+        legs = self.limbs("leg")
         time_s, leg_m = self.source.time_s, self.body.leg_m
         ankles, over_m = [feet[side].ankle for side in legs], [feet[side].over_m for side in legs]
         raised = _raised_m(list(legs.values()), ankles, over_m, time_s, leg_m)
@@ -121,14 +101,14 @@ class Solution:
             moved = goal - raised[:, None] * UP
             needed.append(share * _needed_drop_m(arm, moved, share > 0.0, ARM_SOFT, time_s))
         lowered = np.minimum(np.maximum.reduce(needed), DEEPEST_SHARE * leg_m)
-        self.hips = self.hips + (raised - smooth_above(lowered, time_s, SINK_S))[:, None] * UP
+        # Time [s] over which the hips go down and up again.
+        self.hips = self.hips + (raised - smooth_above(lowered, time_s, 0.12))[:, None] * UP
 
     def plant(self, feet: Mapping[str, FootPath], shapes: Mapping[str, FootShape]) -> None:
         """Bring legs to where the feet belong."""
-        for side, foot in feet.items():
-            leg = self.limb(f"leg.{side}")
-            if leg is None:
-                continue
+        legs = self.limbs("leg") if feet else {}
+        for side, leg in legs.items():
+            foot = feet[side]
             solved = reach_for(leg, leg.start, foot.ankle, LEG_SOFT)
             self._turn(f"thigh.{side}", solved.upper_turn)
             self._turn(f"shin.{side}", solved.lower_turn)
@@ -138,7 +118,7 @@ class Solution:
 
     def reach_with_hands(self) -> dict[str, HandGoal]:
         """Bring hands to where they belong, which is returned by side."""
-        arms = self.arms()
+        arms, floor_m = self.limbs("arm"), self.stage.heights(self.ground.lowest_m)
         goals = hand_goals(
             self.body, self.source, self.stage, self.ground, self.places(), self.turns, self.alignment, arms
         )
@@ -146,17 +126,14 @@ class Solution:
             solved = reach(arm, goals[side].place_m, goals[side].share)
             self._turn(f"upper_arm.{side}", solved.upper_turn)
             self._turn(f"forearm.{side}", solved.lower_turn)
-            self._keep_above_floor(side, solved.end)
+            role = f"hand.{side}"
+            tip = self.body.tip(role)
+            if tip is not None:
+                aligned = self.alignment[role]
+                turn = self.turns[self.body.first[role]] @ aligned.T
+                along = aligned @ (tip - self.body.joint(role))
+                self._turn(role, above_floor(turn, solved.end[:, 2] - floor_m, along))
         return goals
-
-    def _keep_above_floor(self, side: str, wrist: Array) -> None:
-        role = f"hand.{side}"
-        tip, floor_m = self.body.tip(role), self.stage.heights(self.ground.lowest_m)
-        if tip is not None:
-            aligned = self.alignment[role]
-            turn = self.turns[self.body.first[role]] @ aligned.T
-            along = aligned @ (tip - self.body.joint(role))
-            self._turn(role, above_floor(turn, wrist[:, 2] - floor_m, along))
 
     def _turn(self, role: str, turn: Array) -> None:
         if self.body.is_moved(role):
@@ -175,35 +152,19 @@ class Solution:
             found[bone.name] = pose
         return found
 
-    def bends(self) -> dict[str, Array]:
-        """(F, 3) by limb: toward its elbow or knee, in the armature's axes."""
-        found = {}
-        for limb in LIMBS:
-            pose = self.limb(limb)
-            if pose is not None:
-                found[limb] = pose.bend @ self.body.stance
-        return found
-
-    def rests(self, feet: Mapping[str, FootPath]) -> tuple[FootRest, ...]:
-        """Rests of the planted feet."""
-        return tuple(
-            FootRest(f"leg.{SIDES[rest.point]}", rest.first, rest.last)
-            for rest in self.ground.rests
-            if SIDES[rest.point] in feet
-        )
-
 
 # --- How high the hips are
 
 
 def _needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float, time_s: Array) -> Array:
     """(F,) how much lower a limb must begin to reach its goal (F, 3) where that is needed (F,) [m]."""
-    own = np.minimum(limb.extension_m / limb.length_m, 1.0)
+    length_m = sum(limb.lengths_m)
+    own = np.minimum(limb.extension_m / length_m, 1.0)
     # A knee that is straight for a moment only is not stretched to the limit for it: it would snap.
-    allowed = np.maximum(soft, np.minimum(own, smoothed(own, time_s, MOMENT_S, ends_kept=False)))
+    allowed = np.maximum(soft, np.minimum(own, smoothed(own, time_s, 0.07, ends_kept=False)))
     way = goal - limb.start
     aside = np.sum(way[:, :2] ** 2, axis=-1)
-    below = np.sqrt(np.maximum((allowed * STRAIGHTEST * limb.length_m) ** 2 - aside, 0.0))
+    below = np.sqrt(np.maximum((allowed * STRAIGHTEST * length_m) ** 2 - aside, 0.0))
     return np.where(needed, np.maximum(-way[:, 2] - below, 0.0), 0.0)
 
 
@@ -223,7 +184,7 @@ def _raised_m(
         total += weight * (ankle - leg.end)[:, 2]
         weights += weight
     limit = DEEPEST_SHARE * leg_m
-    return np.clip(smoothed(total / weights, time_s, CARRY_S, ends_kept=False), -limit, limit)
+    return np.clip(smoothed(total / weights, time_s, 0.08, ends_kept=False), -limit, limit)
 
 
 WAY_S = 0.4  # standard deviation in time of what counts as the way and heading; faster changes are sway
@@ -249,28 +210,36 @@ def solve_motion(
     shapes = {side: foot_shape(body, side, floor_m) for side in SIDES}
     yield Progress("Finding where the feet rest", 0.1)
     ground = performer_ground(source)
-    stand = np.array([*body.hip_joints[:2], floor_m])
+    stand = np.array([*body.middle("thigh")[:2], floor_m])
     ankle_m = float(np.mean([shape.ankle_m for shape in shapes.values()]))
     stage = find_stage(source, ground, stand, body.leg_m, ankle_m)
     yield Progress("Turning bones", 0.2)
-    solution = Solution.by_directions(body, alignment, source, stage, ground)
+    turn = {name: stage.turn @ own for name, own in source.turn.items()}
+    hips = stage.joints(0.5 * (source.start["thigh.L"] + source.start["thigh.R"]))
+    if not body.is_moved("hips"):
+        hips = np.broadcast_to(body.middle("thigh"), hips.shape).copy()
+    turns = bone_turns(body, turn, alignment)  # by the performer's directions alone
+    solution = Solution(body, alignment, source, stage, ground, hips, turns)
     yield Progress("Planting feet", 0.4)
     feet = solution.plan_feet(shapes, lifts) if options.plant_feet else {}
-    arms = solution.arms() if options.reach_hands else {}
+    arms = solution.limbs("arm") if options.reach_hands else {}
     solution.move_hips(feet, arms)
     solution.plant(feet, shapes)
     yield Progress("Reaching with hands", 0.6)
     hands = solution.reach_with_hands() if arms else {}
     yield Progress("Going over the ground", 0.8)
     way, root, notes = _root_motion(solution, options)
-    filmed = options.place is Placement.PERFORMER
-    to_world = stage.to_world(body.stance, character.scale) if filmed else object_space
+    to_world = object_space
+    if options.place is Placement.PERFORMER:
+        place = stage.under - stage.turn.T @ stage.stand
+        to_world = Similarity(stage.turn.T @ body.stance, place, character.scale)
+    poses = {limb: pose for limb in LIMBS if (pose := solution.limb(limb)) is not None}
     return CharacterMotion(
         poses=solution.poses(way),
-        bends=solution.bends(),
+        bends={limb: pose.bend @ body.stance for limb, pose in poses.items()},
         root=root,
         to_world=to_world,
-        rests=solution.rests(feet),
+        rests=tuple(rest for rest in ground.rests if SIDES[rest.point] in feet),
         soles=sole_points(body, shapes),
         size=stage.size,
         stance=body.stance,

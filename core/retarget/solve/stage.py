@@ -8,24 +8,18 @@ from ...arrays import Array
 from ...body.kinematics import SegmentMotion
 from ...body.posture import turn_headings_rad, yaw_rotation
 from ...feet.ground import Ground
-from ..character_motion import Similarity
 
 
 @dataclass(frozen=True, eq=False)
 class Stage:
     """From the performer's world to the character's canonical space [m]."""
 
-    heading_rad: float  # where the performer faces at the first frame
+    turn: Array  # (3, 3) from the world's axes to canonical ones, by where the performer faces at first
     under: Array  # (3,) the point of the performer's floor under the hips at the first frame [m]
     stand: Array  # (3,) the point of the floor under the resting character's hips, canonical [m]
     size: float  # the character's size: its legs' length over the performer's
     lift_m: float
     """What the character's ankles are higher over their soles than those of a performer of its size [m]."""
-
-    @property
-    def turn(self) -> Array:
-        """(3, 3) from the world's axes to canonical ones."""
-        return yaw_rotation(-self.heading_rad)
 
     def joints(self, points: Array) -> Array:
         """Canonical places (..., 3) of the performer's joints [m]: ankles over soles, not through them."""
@@ -35,11 +29,6 @@ class Stage:
     def heights(self, heights_m: Array) -> Array:
         """Canonical heights (...) of world heights of the ground [m]."""
         return np.asarray(self.stand[2] + self.size * (heights_m - self.under[2]))
-
-    def to_world(self, stance: Array, scale: float) -> Similarity:
-        """Where the armature stands so that the character performs where the performer did."""
-        rotation = self.turn.T @ stance
-        return Similarity(rotation, self.under - self.turn.T @ self.stand, scale)
 
 
 def find_stage(source: SegmentMotion, ground: Ground, stand: Array, leg_m: float, ankle_m: float) -> Stage:
@@ -52,5 +41,5 @@ def find_stage(source: SegmentMotion, ground: Ground, stand: Array, leg_m: float
     size = leg_m / own_m
     hips = 0.5 * (source.start["thigh.L"][0] + source.start["thigh.R"][0])
     under = np.array([hips[0], hips[1], ground.height_m[0].min()])
-    heading = float(turn_headings_rad(source.turn["pelvis"][:1])[0])
-    return Stage(heading, under, stand, size, ankle_m - size * ground.ankle_m)
+    turn = yaw_rotation(-float(turn_headings_rad(source.turn["pelvis"][:1])[0]))
+    return Stage(turn, under, stand, size, ankle_m - size * ground.ankle_m)

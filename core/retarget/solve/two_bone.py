@@ -35,25 +35,17 @@ class LimbPose:
         return np.asarray(np.linalg.norm(self.end - self.start, axis=-1))
 
     @property
-    def upper_m(self) -> float:
-        """Length of the upper bone [m]."""
-        return float(np.median(np.linalg.norm(self.middle - self.start, axis=-1)))
-
-    @property
-    def lower_m(self) -> float:
-        """Length of the lower bone [m]."""
-        return float(np.median(np.linalg.norm(self.end - self.middle, axis=-1)))
-
-    @property
-    def length_m(self) -> float:
-        """Length of both bones [m]."""
-        return self.upper_m + self.lower_m
+    def lengths_m(self) -> tuple[float, float]:
+        """Lengths of the upper and the lower bone [m]."""
+        ways = (self.middle - self.start, self.end - self.middle)
+        upper_m, lower_m = (float(np.median(np.linalg.norm(way, axis=-1))) for way in ways)
+        return upper_m, lower_m
 
     @property
     def straightness(self) -> Array:
         """(F,) how much it bends for a little way: a weight, large where it is nearly straight."""
         # What a leg is longer than the way between its ends, as a share, when it counts as nearly straight.
-        return np.asarray(1.0 / (0.01 + np.maximum(1.0 - self.extension_m / self.length_m, 0.0)))
+        return np.asarray(1.0 / (0.01 + np.maximum(1.0 - self.extension_m / sum(self.lengths_m), 0.0)))
 
     @property
     def bend(self) -> Array:
@@ -81,14 +73,16 @@ def reach_for(limb: LimbPose, start: Array, goal: Array, soft: float = ARM_SOFT)
 
     It resists from the share `soft` of its length.
     """
-    upper_m, lower_m = limb.upper_m, limb.lower_m
+    upper_m, lower_m = limb.lengths_m
     way = goal - start
     wanted_m = np.linalg.norm(way, axis=-1)
     distance = stretched_m(wanted_m, limb.extension_m, upper_m + lower_m, soft)
-    distance = np.maximum(distance, abs(upper_m - lower_m) + LEAST_M)
+    distance = np.maximum(distance, abs(upper_m - lower_m) + 1e-6)
     old = unit(limb.end - limb.start)
-    line = np.where(wanted_m[:, None] > LEAST_M, unit(way), old)
-    hinge = unit(_carried(old, line, limb.hinge))
+    line = np.where(wanted_m[:, None] > 1e-6, unit(way), old)
+    # The hinge is turned as the line through the ends is, and across it again.
+    turned = (rotations.smallest(old, line) @ limb.hinge[..., None])[..., 0]
+    hinge = unit(turned - np.sum(turned * line, axis=-1, keepdims=True) * line)
     out = rotations.cross(line, hinge)
     along = (upper_m**2 - lower_m**2 + distance**2) / (2.0 * distance)
     aside = np.sqrt(np.maximum(upper_m**2 - along**2, 0.0))
@@ -104,20 +98,11 @@ def reach_for(limb: LimbPose, start: Array, goal: Array, soft: float = ARM_SOFT)
     )
 
 
-def _carried(old: Array, new: Array, axis: Array) -> Array:
-    """Axes (F, 3) turned as the lines they are across were turned, and across the new ones again."""
-    turned = (rotations.smallest(old, new) @ axis[..., None])[..., 0]
-    return np.asarray(turned - np.sum(turned * new, axis=-1, keepdims=True) * new)
-
-
 def _redirected(turn: Array, old: Array, old_hinge: Array, new: Array, new_hinge: Array) -> Array:
     """Turns of a bone whose direction and hinge became others."""
-    before, after = _frame(old, old_hinge), _frame(new, new_hinge)
-    return np.asarray(after @ np.swapaxes(before, -1, -2) @ turn)
-
-
-def _frame(direction: Array, hinge: Array) -> Array:
-    """(F, 3, 3) axes of a bone as columns: along it, about it, across both."""
-    along = unit(direction)
-    about = unit(hinge - np.sum(hinge * along, axis=-1, keepdims=True) * along)
-    return np.stack([along, about, rotations.cross(along, about)], axis=-1)
+    axes = []  # (F, 3, 3) as columns: along the bone, about it, across both
+    for direction, hinge in ((old, old_hinge), (new, new_hinge)):
+        along = unit(direction)
+        about = unit(hinge - np.sum(hinge * along, axis=-1, keepdims=True) * along)
+        axes.append(np.stack([along, about, rotations.cross(along, about)], axis=-1))
+    return np.asarray(axes[1] @ np.swapaxes(axes[0], -1, -2) @ turn)

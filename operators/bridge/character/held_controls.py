@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from ....core.errors import InputError
-from ....core.retarget.character import joint_roles
+from ....core.retarget.character import JOINTS
 from ....core.retarget.controls.control_plan import IN_FK, ControlKind, PlannedControl
 from ....core.retarget.maps.character_map import CharacterMap
 from ..object_space import evaluated
@@ -49,7 +49,7 @@ def find_releases(
 ) -> Releases:
     """What holds the planned controls as the armature stands now, but for limbs whose IK is keyed."""
     in_ik = {str(plan.limb) for plan in planned if plan.kind is ControlKind.GOAL}
-    roles = {role for limb in in_ik for role in joint_roles(limb)}
+    roles = {role for limb in in_ik for role in JOINTS[limb]}
     own = {bone for role in roles for bone in (*character_map.bones(role), *character_map.keyed_bones(role))}
     turned = [plan.name for plan in planned if plan.kind in (*IN_FK, ControlKind.CARRIER, ControlKind.ROOT)]
     constraints: list[Held] = []

@@ -10,7 +10,7 @@ import numpy as np
 from ....core.arrays import Array, IndexArray
 from ....core.body.kinematics import SegmentMotion
 from ....core.progress import Part, scaled
-from ....core.retarget.character import LIMBS, Character, joint_roles
+from ....core.retarget.character import JOINTS, LIMBS, Character
 from ....core.retarget.character_motion import CharacterMotion
 from ....core.retarget.controls.control_spaces import unscaled
 from ....core.retarget.maps.character_map import CharacterMap
@@ -62,7 +62,7 @@ def measure(
         return found
     showing = _show(armature_object, action, frames, bones, properties, in_fk, None, still)
     switched = yield from scaled(showing, 0.5, 1.0)
-    ends = [joint_roles(limb)[2] for limb in LIMBS if limb in character_map.ik]
+    ends = [JOINTS[limb][2] for limb in LIMBS if limb in character_map.ik]
     other = {role: switched[role][:, :3, 3] for role in bones}
     return replace(found, quality=replace(found.quality, ik_fk_mm=farthest_mm(shown, other, ends)))
 

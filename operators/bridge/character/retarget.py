@@ -283,7 +283,7 @@ class _Performance:
         return {
             limb: floor_lifts(
                 depth,
-                [(rest.first, rest.last) for rest in motion.rests if rest.limb == limb],
+                [(rest.first, rest.last) for rest in motion.rests if rest.leg == limb],
                 self.source.time_s,
                 SPARE * most_m,
             )

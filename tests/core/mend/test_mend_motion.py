@@ -8,12 +8,12 @@ from keymark.core.body.body_volume import sole_offsets
 from keymark.core.errors import InputError
 from keymark.core.feet.place_by_feet import place_by_feet
 from keymark.core.mend.mend_motion import (
+    OPPOSITE,
     Mended,
     MendOptions,
     exchanged_frames,
     measured_actor,
     mend_motion,
-    opposite_points,
 )
 from keymark.core.progress import run
 
@@ -59,7 +59,7 @@ def test_lengths_stay_and_the_feet_stand_on_zero(mended: Mended) -> None:
 
 def test_exchanged_sides_are_found_and_put_right(truth: Array) -> None:
     given = seen_by_network(truth, 5)
-    given[40:60] = given[40:60][:, opposite_points()]
+    given[40:60] = given[40:60][:, OPPOSITE]
     assert np.flatnonzero(exchanged_frames(given)).tolist() == list(range(40, 60))
     found = run(mend_motion(given, RATE, MendOptions()))
     assert found.exchanged.sum() == 20 and "exchanged in 20 frames" in found.notes[0]

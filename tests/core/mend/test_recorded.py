@@ -11,7 +11,7 @@ from keymark.core.feet.place_by_feet import place_by_feet
 from keymark.core.feet.planted_feet import plant_feet
 from keymark.core.feet.soles import Shins, Soles, ground_of
 from keymark.core.keys.hermite import fit_keys, refit
-from keymark.core.mend.mend_motion import MendOptions, exchanged_frames, mend_motion, opposite_points
+from keymark.core.mend.mend_motion import OPPOSITE, MendOptions, exchanged_frames, mend_motion
 from keymark.core.progress import run
 
 FRAMES = 80
@@ -48,7 +48,7 @@ def test_the_ground() -> None:
 def test_motions_mended() -> None:
     given = seen_by_network(POINTS, 2)
     exchanged = given.copy()
-    exchanged[30:45] = given[30:45][:, opposite_points()]
+    exchanged[30:45] = given[30:45][:, OPPOSITE]
     for name, points in (("plain", given), ("exchanged", exchanged)):
         found = run(mend_motion(points, RATE, MendOptions()))
         assert_recorded(f"mended {name}", found.motion.points, share=1e-4)

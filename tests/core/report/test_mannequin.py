@@ -6,8 +6,8 @@ from _libraries import ACTOR
 from keymark.core.body.body_volume import sole_heights_m, standing_posture
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.report.canvas import LEFT, RIGHT
-from keymark.core.report.mannequin import SIZE, View, draw_mannequin, mannequin, posture_picture
+from keymark.core.report.canvas import LEFT, RIGHT, View, view_axes
+from keymark.core.report.mannequin import SIZE, draw_mannequin, mannequin, posture_picture
 
 BODY = Body(ACTOR)
 STANDING = standing_posture(BODY)
@@ -36,7 +36,9 @@ def test_a_posture_fills_its_picture_and_left_is_told_from_right() -> None:
 
 def test_a_limb_in_front_hides_what_is_behind() -> None:
     paper = np.full((200, 200, 3), 250, dtype=np.uint8)
-    image = draw_mannequin(paper, mannequin(BODY, STANDING), View(0.5 * np.pi, 0.0, 90.0, (100.0, 180.0)))
+    image = draw_mannequin(
+        paper, mannequin(BODY, STANDING), View(view_axes(0.5 * np.pi, 0.0), 90.0, (100.0, 180.0))
+    )
     assert alike(image, LEFT).sum() > 20 * alike(image, RIGHT).sum()
 
 

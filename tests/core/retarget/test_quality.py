@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from _characters import plain_character, plain_map
 from _performances import joints, quality, soles, solved, source_joints, steps
+from keymark.core.feet.contacts import Contact
 from keymark.core.feet.ground import floor_notes
-from keymark.core.retarget.character_motion import FootRest, HandGoal
+from keymark.core.retarget.character_motion import HandGoal
 from keymark.core.retarget.quality import (
     Quality,
     depths_m,
@@ -32,7 +33,7 @@ def test_skate_counts_in_rests_alone() -> None:
     path = np.zeros((10, 1, 3))
     path[:, 0, 0] = 0.002 * np.arange(10)
     path[0] = 1.0
-    rests = [FootRest("leg.L", 2, 6), FootRest("leg.R", 0, 9)]
+    rests = [Contact(0, 2, 6, np.zeros(3)), Contact(1, 0, 9, np.zeros(3))]
     np.testing.assert_allclose(skate_mm({"leg.L": path}, rests, 0.01), [2.0] * 4)
     assert skate_mm({}, rests, 0.01).size == 0
 
@@ -42,7 +43,7 @@ def test_a_heel_that_turns_about_a_still_ankle_slides_and_toes_in_the_air_do_not
     heel, lifted = still.copy(), still.copy()
     heel[:, 1, 0] = 0.003 * np.arange(5)
     lifted[:, 3, 0] = 0.003 * np.arange(5)
-    rests = [FootRest("leg.L", 0, 4)]
+    rests = [Contact(0, 0, 4, np.zeros(3))]
     np.testing.assert_allclose(skate_mm({"leg.L": heel}, rests, 0.01), [3.0] * 4)
     np.testing.assert_allclose(skate_mm({"leg.L": lifted}, rests, 0.01), [0.0] * 4)
 

@@ -7,7 +7,7 @@ import pytest
 from _performances import made_up_keypoints
 from keymark.core.detect.keypoints import BODY_POINTS
 from keymark.core.review.compared_keypoints import ComparedKeypoints, part_of
-from keymark.core.review.frame_evidence import ContourSight, MarkerSight, believed_misfits, frame_evidence
+from keymark.core.review.frame_evidence import ContourSight, Sight, believed_misfits, frame_evidence
 from keymark.core.review.weak_frames import FrameEvidence
 
 FRAMES = 6
@@ -25,7 +25,7 @@ def of_names(names: tuple[str, ...]) -> ComparedKeypoints:
 def evidence_of(
     segments: tuple[str, ...], quality: np.ndarray, misfit: np.ndarray, keypoints: ComparedKeypoints
 ) -> FrameEvidence:
-    alike, markers = np.ones(FRAMES), MarkerSight(segments, quality, misfit)
+    alike, markers = np.ones(FRAMES), Sight(segments, quality, misfit)
     return frame_evidence(alike, alike, alike, markers, ContourSight.none(FRAMES), keypoints)
 
 
@@ -97,7 +97,7 @@ def test_contours_are_evidence_as_markers_are() -> None:
     far, nothing = np.full((FRAMES, 2), 7.0), ContourSight.none(FRAMES)
     contours = ContourSight(("forearm.L", "shin.L"), np.zeros((FRAMES, 2)), far, nothing.lines)
     keypoints = of_names(("elbow.L", "wrist.L"))
-    none = MarkerSight((), np.zeros((FRAMES, 0)), np.zeros((FRAMES, 0)))
+    none = Sight((), np.zeros((FRAMES, 0)), np.zeros((FRAMES, 0)))
     alike = np.ones(FRAMES)
     told = frame_evidence(alike, alike, alike, none, contours, keypoints)
     assert told.points == ("forearm.L", "shin.L", "elbow.L", "wrist.L")

@@ -138,7 +138,7 @@ def test_contours_judge_a_motion_only_where_no_marker_does(take: Take) -> None:
     moved = replace(good.motion, posture=good.motion.posture.plus(ASIDE))
     bad = replace(good, motion=moved)
     sights = [run(contour_sight(result)) for result in (good, bad)]
-    assert sights[0].parts == sights[1].parts and "shin.L" in sights[0].parts
+    assert sights[0].segments == sights[1].segments and "shin.L" in sights[0].segments
     assert np.nanmedian(sights[1].misfit) > 2.0 * np.nanmedian(sights[0].misfit)
     believed = [run(review(bare, result, np.arange(24) + 1.0)).confidence.mean() for result in (good, bad)]
     assert believed[1] < believed[0]

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from _characters import plain_character, plain_map
 from _controls import with_ik
+from keymark.core.feet.contacts import Contact
 from keymark.core.keys.tolerances import RESTING_M
-from keymark.core.retarget.character_motion import CharacterMotion, FootRest, Similarity
+from keymark.core.retarget.character_motion import CharacterMotion, Similarity
 from keymark.core.retarget.controls.control_channels import Control
 from keymark.core.retarget.controls.control_plan import (
     ControlKind,
@@ -97,13 +98,13 @@ def test_legs_follow_the_body_and_goals_follow_the_legs() -> None:
     assert control_stages(on_leg, {"leg.L": (0, [1, 2])})[0] == (0, 1, 2, 3)
 
 
-def still_motion(rests: tuple[FootRest, ...]) -> CharacterMotion:
+def still_motion(rests: tuple[Contact, ...]) -> CharacterMotion:
     """Nothing but rests."""
     return CharacterMotion({}, {}, None, Similarity(np.eye(3), np.zeros(3), 1.0), rests, {}, 1.0)
 
 
 def test_resting_and_low_feet_are_held_more_tightly() -> None:
-    motion = still_motion((FootRest("leg.L", 5, 9),))
+    motion = still_motion((Contact(0, 5, 9, np.zeros(3)),))
     rules = ToleranceRules(motion, np.arange(FRAMES) / 30.0, np.array([0.0, 0.0, 1.0]), 0.005)
     path = np.zeros((FRAMES, 3))
     path[20:, 2] = 0.2
@@ -131,7 +132,7 @@ def test_straight_limbs_are_held_by_what_their_knees_do() -> None:
 
 
 def test_tolerances_are_in_proportion_to_the_character() -> None:
-    rests, time_s, up = (FootRest("leg.L", 5, 9),), np.arange(FRAMES) / 30.0, np.array([0.0, 0.0, 1.0])
+    rests, time_s, up = (Contact(0, 5, 9, np.zeros(3)),), np.arange(FRAMES) / 30.0, np.array([0.0, 0.0, 1.0])
     path = np.linspace(0.0, 0.3, FRAMES)[:, None] * up
     limb = (
         np.zeros((2, 3)),

@@ -116,7 +116,7 @@ def test_resting_feet_do_not_slide() -> None:
         motion = on_controls(keys)
         poses = shown(motion, reduced(motion))
         for rest in rests:
-            path = poses[f"{foot}.{rest.limb[-1]}"].place[rest.first : rest.last + 1]
+            path = poses[f"{foot}.{rest.leg[-1]}"].place[rest.first : rest.last + 1]
             assert np.linalg.norm(path - path.mean(axis=0), axis=-1).max() < 0.0003
             assert np.linalg.norm(np.diff(path, axis=0), axis=-1).mean() < 0.0001
 

@@ -232,7 +232,7 @@ def test_roles_left_alone_go_with_what_carries_them() -> None:
 def test_a_leg_left_alone_is_not_planted() -> None:
     character = plain_character()
     character_map = replace(plain_map(character), left_alone=("shin.L",))
-    assert {rest.limb for rest in solved(character, character_map, steps()).rests} == {"leg.R"}
+    assert {rest.leg for rest in solved(character, character_map, steps()).rests} == {"leg.R"}
 
 
 def test_the_spine_shares_its_turn() -> None:
