@@ -108,7 +108,6 @@ OFF: Mapping[str, tuple[Switch, ...]] = {
         (regions, "missing_variance", no_variance),
         (keyframe_evidence, "missing_variance", no_variance),
     ),
-    "markers found again": ((refinement, "find_lost", job(lambda problem, *_: (problem, np.zeros(0, int)))),),
     "turns": ((refinement, "choose_turns", job(lambda problem, states: (problem, states))),),
     "sizes of motion": ((refinement, "adapted", job(lambda problem, _, states: (problem, states))),),
     "sizes of limbs": ((refinement, "limb_sizes", lambda problem, *_: problem.limb_size),),

@@ -37,7 +37,7 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     belief, step_s, ankles = data.belief, data.step_s[window.first : window.last - 1], _seen_ankles(data)
     prior_depth = point_depths(data.body, data.camera, data.body.pose(state.prior), state.frame)
     depth_std_m = belief.depth_std_m[frames, None] * clip.depth_factor[frames]
-    regions = evidence.model, clip.observed[frames], data.width_px[frames]
+    regions = evidence.model, data.observed[frames], data.width_px[frames]
     pace = float(np.median(step_s)) / REFERENCE_STEP_S if len(step_s) else 1.0
     terms: list[Term] = [
         _prior_term(clip, window, step_s),

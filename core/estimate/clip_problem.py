@@ -11,7 +11,6 @@ from ..body.posture import Posture
 from ..body.skeleton import Skeleton
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
-from ..markers.ignored_regions import IgnoredPixels
 from ..prior.frame_prior import REFERENCE_STEP_S, process_noise_factor
 from ..prior.keyframes import with_turns
 from ..terms.head import ObservedHeads
@@ -67,9 +66,8 @@ class ClipData:
     body: Body
     camera: Camera  # as stated; the calibration has the lens found
     belief: Belief  # in the motion, with its keyframes
-    tracked: ObservedRegions  # the markers' regions as tracked
+    observed: ObservedRegions  # the markers' regions
     width_px: Array  # (F, M) half-width of each marker's limb [px]
-    ignored: IgnoredPixels | None  # what is never a marker, in all frames; None for nothing
     keypoints: Keypoints  # of the performer, N of them; left and right exchanged back where they were swapped
     points: ObservedKeypoints  # the same, as they are compared
     swapped: BoolArray  # (F, N) which of them were exchanged
@@ -109,7 +107,6 @@ class ClipProblem:
     turns: IndexArray  # (K - 1,) whole turns about the vertical that the prior adds in each gap
     limb_size: Array  # (D,) factor on the accelerations of each degree of freedom's limb
     depth_factor: Array  # (F, P) on the noise of the prior's depths, by how far the prior misses each point
-    observed: ObservedRegions  # the markers' regions: as tracked, and those found at a second look
     rests: Array | None = None  # (F - 1, A) how far each ankle seen rests; None where not asked
 
     @classmethod
@@ -123,7 +120,6 @@ class ClipProblem:
             np.zeros(max(len(data.belief.frame) - 1, 0), dtype=np.intp),
             np.ones(skeleton.dof_count),
             np.ones((prior.batch[0], len(skeleton.points))),
-            data.tracked,
         )
 
     @property
@@ -143,7 +139,7 @@ class ClipProblem:
 
     def start(self, window: Window) -> ClipState:
         """The state of a window to begin with: its prior, without biases."""
-        frames, markers = window.last - window.first, self.observed.quality.shape[1]
+        frames, markers = window.last - window.first, self.data.observed.quality.shape[1]
         return ClipState(
             self.data.body,
             self.prior[window.frames],

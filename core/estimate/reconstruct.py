@@ -1,7 +1,6 @@
 """Reconstruction of a motion from a take: one generator shared by operator, command line and tests."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
@@ -14,7 +13,6 @@ from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..detect.keypoints import Keypoints
 from ..errors import InputError
-from ..markers.ignored_regions import IgnoredPixels
 from ..markers.reading import Reading
 from ..markers.region_tracks import RegionTracks
 from ..prior.keyframe_proposals import evidence_speed
@@ -37,7 +35,6 @@ from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .performer_placement import feet_over_floor_m, found_ankle_m, lower_ankle_m
 from .reference_evidence import OPTIONS, NoReference, ReferenceEvidence, with_reference
-from .second_look import seen_tracks
 from .sigma import UNOBSERVED, place_depth_std_m, undetermined_covariance, unobserved_variance
 from .whole_clip import Seen, WholeClipResult, estimate_whole_clip
 
@@ -61,12 +58,6 @@ class Reconstruction:
     def keypoint_fit(self) -> KeypointFit | None:
         """How the keypoints agree with the motion, point by point; None without keypoints or `map`."""
         return self.solution.keypoints if self.solution is not None and self.keypoints.names else None
-
-    @cached_property
-    def tracks(self) -> RegionTracks:
-        """The markers' regions in every frame: as tracked, and those found at a second look."""
-        tracks = self.reading.tracks
-        return tracks if self.solution is None else seen_tracks(tracks, self.solution.problem.observed)
 
 
 def reconstruct(
@@ -145,16 +136,14 @@ def _reconstruct(
     prior = interpolate(keyframes, tracks.frame_count)
     notes += keypoints.notes
     baseline = _motion(take, tracks, prior, None, "interpolation")
-    motion, model, solution, seen = baseline, average_model(take), None, tracks
+    motion, model, solution = baseline, average_model(take), None
     if method == "map":
-        ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
-        footage = Seen(tracks, take.marker_segments, keypoints, reading.album, ignored, there)
+        footage = Seen(tracks, take.marker_segments, keypoints, reading.album, there)
         unseen = shown.unseen
         belief = _belief(take, prior, doubt, unseen, referred)
         estimate = estimate_whole_clip(take.body, take.camera, footage, belief)
         solution = yield from within("Estimating the motion", estimate, 0.0, 1.0)
-        seen = seen_tracks(tracks, solution.problem.observed)
-        motion, model = _solved(take, seen, solution, doubt, unseen, floor_m), solution.evidence.model
+        motion, model = _solved(take, tracks, solution, doubt, unseen, floor_m), solution.evidence.model
         if not shaken:  # else the camera is what does not fit
             notes += evidence_notes(take, solution.evidence)
         notes += keypoint_notes(solution.keypoints)
@@ -166,7 +155,7 @@ def _reconstruct(
     moved = evidence_speed(tracks, take.marker_segments, keypoints, reading.album)
     speed = yield from within("Measuring the speed", moved, 1.0, 1.0)
     yield Progress("Done", 1.0)
-    notes += marker_notes(seen, there)
+    notes += marker_notes(tracks, there)
     motion, baseline = motion.emptied(there), baseline.emptied(there)
     return Reconstruction(motion, baseline, reading, speed.values, notes, keypoints, model, solution)
 

@@ -25,7 +25,6 @@ from .belief import found_covariance
 from .clip_problem import ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_search import all_located, contour_schedule, points_locate
-from .second_look import find_lost
 from .turn_choice import choose_turns
 from .window_problem import WindowProblem
 from .windows import Window, spliced
@@ -128,14 +127,6 @@ def refine(
         schedule = contour_schedule(data.body, camera, album.factor, segments, problem.prior, data.keypoints)
         learning = learn_contours(data.body, camera, album, posture, data.belief.frame, schedule)
         contours = yield from scaled(learning, 0.4, 0.5)
-    if contours is not None and len(problem.evidence.model.placements):
-        looking = find_lost(problem, posture, contours)
-        problem, found = yield from scaled(looking, 0.5, 0.8)
-        for index, window in enumerate(spans):
-            if ((found >= window.first) & (found < window.last)).any():
-                part = WindowProblem(problem, window, states[index])
-                yield from scaled(part.follow_markers(), 0.8, 1.0)
-                states[index] = part.state.without_cache()
     return problem, states, contours
 
 

@@ -117,7 +117,7 @@ def choose_turns(problem: ClipProblem, states: list[ClipState]) -> Part[tuple[Cl
     data = problem.data
     # 0.2: how far beyond its keyframes, which hold it, a stretch is solved
     margin = round(0.2 / (data.pace * REFERENCE_STEP_S))
-    seen = bool(problem.observed.quality.any() or data.points.seen.any())  # contours alone decide nothing
+    seen = bool(data.observed.quality.any() or data.points.seen.any())  # contours alone decide nothing
     doubts = doubted_turns(problem, image_cost(problem, states)) if seen else []
     for number, doubt in enumerate(doubts):
         first, last = (int(frame) for frame in problem.data.belief.frame[doubt.gap : doubt.gap + 2])

@@ -17,7 +17,6 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
-from ..markers.ignored_regions import IgnoredPixels
 from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import runs
 from ..prior.frame_prior import REFERENCE_STEP_S
@@ -50,7 +49,6 @@ class Seen:
     segments: tuple[str, ...]  # the segment each marker is bound to
     keypoints: Keypoints | None = None  # the performer's; None for none
     album: Album | None = None  # pictures of all frames, in which contours are measured; None leaves them out
-    ignored: IgnoredPixels | None = None  # what of the pictures is never a marker; None for nothing
     there: BoolArray | None = None  # (F,) frames in which the performer is there; all where None
 
 
@@ -127,7 +125,6 @@ def estimate_whole_clip(
         belief,
         observed,
         width_px,
-        seen.ignored,
         keypoints,
         points,
         swapped,
@@ -194,7 +191,7 @@ def _solve(
     outlined = None
     if contours is not None and contours.along is not None:
         outlined = np.zeros((problem.frames, len(contours.model.parts.segments)), dtype=bool)
-    residual_px = np.full(problem.observed.quality.shape, np.nan)
+    residual_px = np.full(data.observed.quality.shape, np.nan)
     postures: list[Posture] = []
     for window, begun, ended in stretches:
         first, last = (REFINED_SHARE + (1.0 - REFINED_SHARE) * share for share in (begun, ended))

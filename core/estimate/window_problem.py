@@ -109,7 +109,7 @@ class WindowProblem:
             tangent_jacobian @ blocks @ np.swapaxes(tangent_jacobian, -1, -2), dtype=np.float64
         )
         predicted = self.clip.evidence.model.evaluate(state.pose, state.frame)
-        offset = predicted.centroid - self.clip.observed.centroid[self.window.frames]
+        offset = predicted.centroid - self.clip.data.observed.centroid[self.window.frames]
         distance = np.hypot(offset[..., 0], offset[..., 1])
         distance[predicted.visible <= NOISE.least_visible] = np.nan
         return state.posture[kept], covariance, distance[kept]
@@ -128,5 +128,7 @@ def image_cost(clip: ClipProblem, states: list[ClipState]) -> Array:
         part = WindowProblem(clip, Window(first, last, first, last), state)
         seen = [term.cost(state) for term in part.terms if isinstance(term, RegionTerm | KeypointTerm)]
         cost[first:last] = np.sum(seen, axis=0)
-    count = (clip.observed.quality > 0.0).sum(axis=1) + 2.0 / FEATURES * clip.data.points.seen.sum(axis=1)
+    count = (clip.data.observed.quality > 0.0).sum(axis=1) + 2.0 / FEATURES * clip.data.points.seen.sum(
+        axis=1
+    )
     return cost / np.maximum(count, 1.0)

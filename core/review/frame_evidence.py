@@ -43,7 +43,7 @@ def contour_sight(reconstruction: Reconstruction) -> Generator[float, None, Cont
     """Edges near a motion's contours; none where markers judge the motion, or no contour was followed."""
     motion, solution = reconstruction.motion, reconstruction.solution
     frame = np.arange(len(motion.time_s))
-    if reconstruction.tracks.names or solution is None or solution.contours is None:
+    if reconstruction.reading.tracks.names or solution is None or solution.contours is None:
         return ContourSight.none(len(frame))
     found = yield from solution.contours.measure(motion.posture, frame)
     model = found.model
@@ -167,7 +167,7 @@ def compare_keypoints(reconstruction: Reconstruction) -> ComparedKeypoints:
 
 def used_evidence(reconstruction: Reconstruction) -> UsedEvidence:
     """What a motion was held against: all that a take has, but with the paper's filter its markers alone."""
-    method, markers = reconstruction.motion.method, reconstruction.tracks.names
+    method, markers = reconstruction.motion.method, reconstruction.reading.tracks.names
     solution = reconstruction.solution
     if method != "map" or solution is None:
         return UsedEvidence(markers if method == "ekf" else ())

@@ -87,7 +87,7 @@ class Review:
 
 def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> Job[Review]:
     """Review a reconstruction; `scene_frames` (F,) are those of the clip's frames."""
-    motion, tracks, model = reconstruction.motion, reconstruction.tracks, reconstruction.model
+    motion, tracks, model = reconstruction.motion, reconstruction.reading.tracks, reconstruction.model
     frame = np.arange(tracks.frame_count)
     pose, there = take.body.pose(motion.posture), motion.there
     predicted, offset = yield from within(STAGE, _predictions(model, pose, tracks.centroid), 0.0, 0.5)

@@ -62,7 +62,6 @@ class ObservedRegions:
     deviation: Array  # (F, M, 2) standard deviation of the region along them [px]
     area: Array  # (F, M) [px], NaN where hidden
     quality: Array  # (F, M)
-    variance: Array  # (F, M, 5) of the features beyond that of tracked regions [px²]
 
     @classmethod
     def from_tracks(cls, tracks: RegionTracks) -> "ObservedRegions":
@@ -70,37 +69,16 @@ class ObservedRegions:
         seen = tracks.visible
         moments = np.where(seen[..., None, None], tracks.second_moment, np.eye(2))
         quality = np.where(seen, tracks.quality, 0.0)
-        variance = np.zeros((*seen.shape, FEATURES))
-        return cls(tracks.centroid, moments, *_axes(moments), tracks.area, quality, variance)
-
-    def replaced(self, where: tuple[IndexArray, IndexArray], found: "ObservedRegions") -> "ObservedRegions":
-        """The same with the regions at R pairs of a frame and a marker replaced by those of `found`, (R,)."""
-        changed = {}
-        for field in fields(self):
-            values = getattr(self, field.name).copy()
-            values[where] = getattr(found, field.name)
-            changed[field.name] = values
-        return ObservedRegions(**changed)
-
-    @classmethod
-    def found(
-        cls, centroid: Array, second_moment: Array, area: Array, quality: Array, variance: Array
-    ) -> "ObservedRegions":
-        """Regions (...) that were measured otherwise than by tracking."""
-        return cls(centroid, second_moment, *_axes(second_moment), area, quality, variance)
+        values, axes = np.linalg.eigh(moments)
+        # 0.6 px: what pixels resolve
+        deviation = np.sqrt(np.maximum(values, 0.6**2))
+        return cls(tracks.centroid, moments, axes, deviation, tracks.area, quality)
 
     def __getitem__(
         self, index: slice | IndexArray | tuple[slice | IndexArray, IndexArray]
     ) -> "ObservedRegions":
         """Some of the frames, of the frames and markers, or of the pairs of both."""
         return ObservedRegions(*(getattr(self, field.name)[index] for field in fields(self)))
-
-
-def _axes(second_moment: Array) -> tuple[Array, Array]:
-    """Axes of regions and their deviations along these [px], not below what pixels resolve."""
-    values, axes = np.linalg.eigh(second_moment)
-    # 0.6 px: what pixels resolve
-    return axes, np.sqrt(np.maximum(values, 0.6**2))
 
 
 def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tuple[Array, Array | None]:
@@ -203,5 +181,4 @@ class RegionTerm(Term):
         variance = NOISE.pixel_std_px**2 + NOISE.surface_std(self.width_px) ** 2
         variance = variance * self.distrust[:, None] ** 2
         variance = variance + missing_variance(self.observed.area, self.area_ratio, predicted)
-        variance = variance + self.observed.variance
         return np.asarray(np.where(usable[..., None], trust[..., None] / variance, 0.0))

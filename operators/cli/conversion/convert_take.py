@@ -138,7 +138,7 @@ def convert_if_changed(
             console.stage("Drawing the pictures")
             seen, contours = compare_keypoints(result), performer_contours(result)
             report = staging_folder / REPORT
-            write_pictures(report, take, result.motion, result.tracks, seen, contours, result.reading)
+            write_pictures(report, take, result.motion, result.reading.tracks, seen, contours, result.reading)
         asked, folders = (description, settings, digest), (staging_folder, output)
         return finish_result(session, notes, asked, version(), folders, curves, kept_names)
 

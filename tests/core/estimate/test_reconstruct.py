@@ -140,7 +140,7 @@ def test_a_clip_that_is_cut_off_is_converted_as_far_as_it_goes_and_said_so(
         change(value)
         (folder / name).write_text(json.dumps(value), encoding="utf-8")
     result = run(reconstruct(read_take(folder)))
-    assert 12 <= result.tracks.frame_count < 24 and np.isfinite(result.motion.points).all()
+    assert 12 <= result.reading.tracks.frame_count < 24 and np.isfinite(result.motion.points).all()
     assert any("clip.avi claims 24 frames" in note and "cut off" in note for note in result.notes)
     assert capfd.readouterr().err == ""
 
@@ -152,7 +152,7 @@ def test_footage_beats_every_interpolation_of_hand_posed_keyframes(
     folder = take_folder(name)
     take = read_take(folder, folder / "keyframes_noisy.json")
     result: Reconstruction = run(reconstruct(take))
-    frames = result.tracks.frame_count
+    frames = result.reading.tracks.frame_count
     linear = take.body.points(take.body.pose(interpolate_linearly(take.keyframes, frames)))
     truth = read_truth(folder / "truth.json", take.frame_start, frames)
     ours, plain, smooth = (
