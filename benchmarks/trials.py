@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
 from takes import chosen_takes, load_project
 
 load_project()
@@ -12,16 +13,28 @@ load_project()
 from auto_clamped import interpolate_auto_clamped  # noqa: E402
 from keymark.core.api import reconstruct  # noqa: E402
 from keymark.core.arrays import Array  # noqa: E402
+from keymark.core.body.posture import Posture  # noqa: E402
+from keymark.core.body.posture_spline import find_intervals  # noqa: E402
 from keymark.core.detect.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.markers.reading import Reading  # noqa: E402
 from keymark.core.markers.region_tracks import RegionTracks  # noqa: E402
-from keymark.core.prior.keyframes import interpolate, interpolate_linearly  # noqa: E402
+from keymark.core.prior.keyframes import Keyframe, interpolate  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score, read_truth, score_points  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402
+
+
+def interpolate_linearly(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
+    """Constant velocity between keyframes (slerp): the plainest baseline."""
+    knots = np.array([keyframe.index for keyframe in keyframes], dtype=np.float64)
+    posed = Posture.stack([keyframe.posture for keyframe in keyframes])
+    interval, elapsed = find_intervals(knots, np.arange(frame_count, dtype=np.float64))
+    share = elapsed / np.diff(knots)[interval]
+    return posed[interval].plus(share[:, None] * posed[1:].minus(posed[:-1])[interval])
+
 
 KEYPOINTS = "keypoints_mediapipe.json"
 """File of a detector's keypoints in a take's folder."""

@@ -1,4 +1,4 @@
-"""Splines through postures, on the manifold: monotone cubic and linear, one curve a degree of freedom.
+"""A spline through postures, on the manifold: monotone cubic, one curve a degree of freedom.
 
 Each interval between two knots is a cubic Hermite curve in the tangent space at the earlier posture.
 Tangents are the three-point (parabolic) estimate where neighboring intervals agree in direction and
@@ -20,13 +20,6 @@ def cubic_spline(posed: Posture, knots: Array, times: Array) -> Posture:
     tangent = _tangents(step / gap, gap)  # (K, D) per unit of time
     interval, elapsed = find_intervals(knots, times)
     return posed[interval].plus(_hermite(posed, step, gap, tangent, interval, elapsed))
-
-
-def linear_spline(posed: Posture, knots: Array, times: Array) -> Posture:
-    """Like `cubic_spline`, with constant velocity between postures (slerp): the plainest baseline."""
-    interval, elapsed = find_intervals(knots, times)
-    share = elapsed / np.diff(knots)[interval]
-    return posed[interval].plus(share[:, None] * posed[1:].minus(posed[:-1])[interval])
 
 
 def find_intervals(knots: Array, times: Array) -> tuple[IndexArray, Array]:

@@ -38,7 +38,7 @@ from .keyframe_evidence import (
     placements_from,
 )
 from .performer_placement import ground_place
-from .single_frame import MISPLACED
+from .single_frame import is_misplaced_marker, is_misplaced_point
 
 MEASURED = ("upper_arm", "forearm", "thigh", "shin", "shoulder_width", "hip_width", "trunk", "neck_head")
 """Lengths that are measured, left and right alike; hands and feet follow from the height."""
@@ -219,13 +219,13 @@ class _Problem:
         predicted = model.evaluate(self._pose(x, model.body), self.frame)
         apart = np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)
         width = limb_widths(model, self.posture(x, model.body).translation, self.frame)
-        explained = np.nan_to_num(apart) <= np.maximum(MISPLACED.widths * width, MISPLACED.px)
-        misfits = np.nan_to_num(np.linalg.norm(self._off_px(x)[0], axis=-1))
-        near = misfits <= np.maximum(MISPLACED.m * self._scale, MISPLACED.px)
-        sure = self.points.confidence[0] >= MISPLACED.sure
+        off_px = np.linalg.norm(self._off_px(x)[0], axis=-1)
+        misplaced = is_misplaced_point(off_px, self._scale, self.points.confidence[0])
         upright = [name.split(".")[0] in UPRIGHT_PARTS for name in HUMAN.dof_names]
         deviations = np.abs(x / self.std)[: HUMAN.dof_count][np.array(upright)]
-        return bool(explained.all() and near[sure].all() and deviations.max() <= 3.0)
+        return not (is_misplaced_marker(apart, width).any() or misplaced.any()) and bool(
+            deviations.max() <= 3.0
+        )
 
     def _off_px(self, x: Array) -> tuple[Array, Array]:
         """Differences (N, 2) of predicted and seen keypoints [px], and their variances (N,) [px²]."""

@@ -34,8 +34,8 @@ from .keyframe_selection import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .performer_placement import feet_over_floor_m, found_ankle_m, lower_ankle_m
-from .reference_evidence import OPTIONS, NoReference, ReferenceEvidence, with_reference
-from .sigma import UNOBSERVED, place_depth_std_m, undetermined_covariance, unobserved_variance
+from .reference_evidence import KEYFRAME_WIDTH, NoReference, ReferenceEvidence, with_reference
+from .sigma import LIMB_STD_RAD, place_depth_std_m, undetermined_covariance, unobserved_variance
 from .whole_clip import Seen, WholeClipResult, estimate_whole_clip
 
 CHUNK_FRAMES = 500
@@ -192,7 +192,7 @@ def _belief(
     elif doubt.all():  # posed keyframes say where the floor is, and better
         ankle_m = lower_ankle_m(take.body, prior[frame], frame, prior.batch[0])
     referring = [key.matched is not None and key.matched.is_referred for key in take.keyframes]
-    doubt = doubt * np.where(referring, OPTIONS.keyframe_width, 1.0)
+    doubt = doubt * np.where(referring, KEYFRAME_WIDTH, 1.0)
     pictured = np.array([keyframe.depth_found for keyframe in take.keyframes])
     expected = None if referred is None else referred.expected
     return Belief(prior, frame, doubt, pictured, ankle_m, unseen, expected)
@@ -234,7 +234,7 @@ def _solved(
     names = (*take.marker_segments, *points)
     unseen = unobserved_variance(take.body.skeleton, names, visible, index, tracks.time_s)
     for limb in never:
-        unseen[:, limb_dofs(take.body.skeleton, limb)] = UNOBSERVED.limb_std_rad**2
+        unseen[:, limb_dofs(take.body.skeleton, limb)] = LIMB_STD_RAD**2
     posture = rested(take.body, result.posture, never)
     motion = _motion(take, tracks, posture, result.covariance, "map", diagnostics, unseen)
     motion = replace(motion, unseen=never)

@@ -42,26 +42,12 @@ STD_M = np.array([USUAL_STD_M[name.partition(".")[0]] for name in HUMAN.point_na
 LIMBS = np.array([name.startswith(("elbow", "wrist", "knee", "ankle")) for name in HUMAN.point_names])
 
 
-@dataclass(frozen=True)
-class ReferenceOptions:
-    """How far a reference motion is believed."""
-
-    along: float = 2.2  # error along the line of sight, in those across it
-    least_factor: float = 0.7
-    most_factor: float = 3.0
-    keyframe_width: float = 4.0  # of their error, in a usual difference between performers
-    # Its bias over time, as posed keyframes tell it: the share that lasts all along the clip, the time in
-    # which the rest fades, and a person's own error beside it. What is left is believed no more for it: with
-    # a smaller deviation beside keyframes posed by hand, slow motions came out worse than without it.
-    constant_share: float = 0.3
-    usual_count: float = 3.0  # posed keyframes that the error in the picture weighs as much as
-    # Right motions cost .1 to .3 of what the same motion costs at other times, others more than .7.
-    least_gain: float = 0.29
-    other_times: int = 21
-
-
-OPTIONS = ReferenceOptions()
-USUAL_ERROR_M = float(STD_M.mean() * np.sqrt(2.0 + OPTIONS.along**2))  # of a point in space
+ALONG = 2.2  # error along the line of sight, in those across it
+FACTORS = 0.7, 3.0  # least and largest factor on the usual error
+KEYFRAME_WIDTH = 4.0  # error of its keyframes, in a usual difference between performers
+LEAST_GAIN = 0.29  # right motions cost .1 to .3 of what they cost at other times, others more than .7
+OTHER_TIMES = 21
+USUAL_ERROR_M = float(STD_M.mean() * np.sqrt(2.0 + ALONG**2))  # of a point in space
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +92,7 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
     aligned = align(take.reference, take.body, seen, tracks.time_s, take.fps)
     cost, usual = own_and_usual_cost(aligned, seen)
     gain = 1.0 - cost / usual
-    if gain < OPTIONS.least_gain:
+    if gain < LEAST_GAIN:
         return NoReference(
             (
                 f"{name}: is set aside, since it fits the footage hardly better than the same motion at "
@@ -206,22 +192,22 @@ def _left_out(aligned: AlignedReference, usual: float, time_s: Array) -> BoolArr
     near = gaussian(np.where(known, aligned.placed.cost, 0.0), width) / np.maximum(
         gaussian(1.0 * known, width), 1e-9
     )
-    return np.asarray(near > (1.0 - OPTIONS.least_gain) * usual)
+    return np.asarray(near > (1.0 - LEAST_GAIN) * usual)
 
 
 def _with_posed(factor: float, offset: Array, whitening: Array) -> float:
     """The error in usual ones, by posed keyframes too, of which `offset` (K, 13, 3) is left."""
     squared = np.mean((whitening @ offset[..., None])[..., 0] ** 2, axis=(1, 2))
-    total = OPTIONS.usual_count * factor**2 + squared.sum()
-    learned = float(np.sqrt(total / (OPTIONS.usual_count + len(squared))))
-    return float(np.clip(learned, OPTIONS.least_factor, OPTIONS.most_factor))
+    # 3.0: posed keyframes that the error in the picture weighs as much as
+    learned = np.sqrt((3.0 * factor**2 + squared.sum()) / (3.0 + len(squared)))
+    return float(np.clip(learned, *FACTORS))
 
 
 def _whitening(take: Take, hips: Array, std_m: Array) -> Array:
     """(F, 13, 3, 3) inverse standard deviations, larger along the line of sight; `std_m` (13,) across."""
     sight = take.camera.sight(hips, np.arange(len(hips)))
     along = sight[:, :, None] * sight[:, None, :]
-    shape = np.eye(3) - along * (1.0 - 1.0 / OPTIONS.along)
+    shape = np.eye(3) - along * (1.0 - 1.0 / ALONG)
     return np.asarray(shape[:, None] / std_m[:, None, None])
 
 
@@ -243,12 +229,15 @@ def _keyframes(
 
 
 def _bias(at_s: Array, time_s: Array) -> Array:
-    """(F, K) weights that tell a bias at other times by what it is at K."""
+    """(F, K) weights that tell a bias at other times by what it is at K.
+
+    What is left is believed no more for it: with a smaller deviation beside keyframes posed by hand, slow
+    motions came out worse than without it.
+    """
 
     def covariance(one: Array, other: Array) -> Array:
-        # 0.5 s: time in which the rest of the bias fades
-        alike = np.exp(-np.abs(one[:, None] - other) / 0.5)
-        return np.asarray(OPTIONS.constant_share + (1.0 - OPTIONS.constant_share) * alike)
+        # 0.3: share of the bias that lasts all along the clip; 0.5 s: time in which the rest fades
+        return np.asarray(0.3 + 0.7 * np.exp(-np.abs(one[:, None] - other) / 0.5))
 
     # 0.1: variance of a person's own error, relative to the bias's
     known = covariance(at_s, at_s) + 0.1 * np.eye(len(at_s))
@@ -268,9 +257,9 @@ def own_and_usual_cost(aligned: AlignedReference, seen: SeenPoints) -> tuple[flo
     known = known[np.unique(np.linspace(0, len(known) - 1, 400).round().astype(int))]
     some, part, count = inside[known], seen[known], len(known)
     others = []
-    for number in range(OPTIONS.other_times):
+    for number in range(OTHER_TIMES):
         order = np.arange(count)[:: 1 - 2 * (number % 2)]
-        other = np.roll(order, round((number + 1) * count / (OPTIONS.other_times + 1)))
+        other = np.roll(order, round((number + 1) * count / (OTHER_TIMES + 1)))
         others.append(float(np.nanmean(place(some[other], part).cost)))
     return float(np.nanmean(place(some, part).cost)), max(float(np.median(others)), 1e-9)
 
@@ -285,7 +274,7 @@ def error_factor(aligned: AlignedReference, seen: SeenPoints) -> float:
         return 1.0
     # The median of two axes' square is 2 log 2 variances.
     size = np.sqrt(np.nanmedian(squared[:, limb], axis=0) / (2.0 * np.log(2.0))) / usual[limb]
-    return float(np.clip(np.median(size), OPTIONS.least_factor, OPTIONS.most_factor))
+    return float(np.clip(np.median(size), *FACTORS))
 
 
 # --- Its jitter

@@ -3,8 +3,6 @@
 Where the markers are seen tells the place across the line of sight, and little of that along it.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
@@ -89,18 +87,10 @@ def undetermined_covariance(
 # --- Unobserved
 
 
-@dataclass(frozen=True)
-class UnobservedOptions:
-    """How postures become uncertain where nothing observes them."""
-
-    grace_s: float = 0.25  # time for which the estimate's own covariance holds
-    limb_std_rad: float = 0.5
-    # Growth of the place's standard deviation along each axis: the performer may stand or walk.
-    walking_speed_m_per_s: float = 0.5
-    farthest_m: float = 2.0
-
-
-UNOBSERVED = UnobservedOptions()
+GRACE_S = 0.25  # time for which the estimate's own covariance holds
+LIMB_STD_RAD = 0.5  # of joints anywhere in reach
+# Growth of the place's standard deviation along each axis: the performer may stand or walk.
+WALKING_M_PER_S, FARTHEST_M = 0.5, 2.0
 
 
 def unobserved_variance(
@@ -124,23 +114,22 @@ def unobserved_variance(
         observed = posed | (visible if part is trunk else visible[:, own]).any(axis=1)
         unknown = _unobserved_time_s(observed, time_s)
         # 0.15: standard deviation of joints anywhere in reach [rad]
-        reach = 0.15 if part is trunk else UNOBSERVED.limb_std_rad
+        reach = 0.15 if part is trunk else LIMB_STD_RAD
         # 0.35: time constant at which a limb approaches the variance of anywhere in reach
         std[:, part] = (-np.expm1(-unknown / 0.35) * reach)[:, None]
         if part is trunk:
-            walked = UNOBSERVED.walking_speed_m_per_s * unknown
-            std[:, :3] = np.minimum(walked, UNOBSERVED.farthest_m)[:, None]
+            std[:, :3] = np.minimum(WALKING_M_PER_S * unknown, FARTHEST_M)[:, None]
     return std**2
 
 
 def _unobserved_time_s(observed: BoolArray, time_s: Array) -> Array:
     """(F,) time from the nearest observed frame beyond the grace [s]."""
     if not observed.any():
-        return np.full(len(time_s), UNOBSERVED.farthest_m / UNOBSERVED.walking_speed_m_per_s)
+        return np.full(len(time_s), FARTHEST_M / WALKING_M_PER_S)
     known = time_s[observed]
     after = np.searchsorted(known, time_s)
     gap = np.minimum(
         np.abs(time_s - known[np.minimum(after, len(known) - 1)]),
         np.abs(time_s - known[np.maximum(after - 1, 0)]),
     )
-    return np.asarray(np.maximum(gap - UNOBSERVED.grace_s, 0.0))
+    return np.asarray(np.maximum(gap - GRACE_S, 0.0))

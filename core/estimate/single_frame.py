@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array, IndexArray
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.posture import Posture
 from ..detect.keypoints import mirror_images
 from ..markers.region_tracks import ExpectedRegions
@@ -22,18 +22,17 @@ from .keyframe_evidence import SeenAtKeyframes, read_keyframes
 from .keypoint_evidence import KeypointEvidence
 
 
-@dataclass(frozen=True)
-class MisplacedOptions:
-    """When a posture does not explain what is seen."""
-
-    widths: float = 1.5  # a marker farther off than this many of its limb's half-widths is misplaced ...
-    px: float = 4.0  # ... unless it is nearer than this [px]
-    # A sure keypoint farther off than this is misplaced, too: a limb's width and a detector's error are less.
-    m: float = 0.12
-    sure: float = 0.5  # least confidence of a keypoint that is called misplaced
+def is_misplaced_marker(off_px: Array, width_px: Array) -> BoolArray:
+    """Whether markers lie off by more than one and a half half-widths of their limbs, and 4 px."""
+    return np.asarray(np.nan_to_num(off_px) > np.maximum(1.5 * width_px, 4.0))
 
 
-MISPLACED = MisplacedOptions()
+def is_misplaced_point(off_px: Array, scale: Array | float, confidence: Array) -> BoolArray:
+    """Whether sure keypoints lie off by more than a limb's width and a detector's error, 12 cm, and 4 px.
+
+    `scale`: pixels of a meter.
+    """
+    return np.asarray((np.nan_to_num(off_px) > np.maximum(0.12 * scale, 4.0)) & (confidence >= 0.5))
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,15 +60,14 @@ def frame_residuals(
     pose = model.body.pose(Posture.stack([posture]))
     off = np.linalg.norm(model.evaluate(pose, index).centroid - observed.centroid, axis=-1)[0]
     width = limb_widths(model, posture.translation[None], index)[0]
-    markers = np.flatnonzero(np.nan_to_num(off) > np.maximum(MISPLACED.widths * width, MISPLACED.px))
+    markers = np.flatnonzero(is_misplaced_marker(off, width))
     if points is None:
         return FrameResiduals(off, np.zeros(0), tuple(map(int, markers)), ())
     own = evidence.keypoints.model
     depth = own.camera.depth(own.world(pose), index[:, None])[0]
-    far_px = MISPLACED.m * own.camera.focal_px / np.maximum(depth, 0.1)
     point_off = np.linalg.norm(own.pixels(pose, index) - points.pixel, axis=-1)[0]
-    far = np.nan_to_num(point_off) > np.maximum(far_px, MISPLACED.px)
-    misplaced = np.flatnonzero(far & (points.confidence[0] >= MISPLACED.sure))
+    scale = own.camera.focal_px / np.maximum(depth, 0.1)
+    misplaced = np.flatnonzero(is_misplaced_point(point_off, scale, points.confidence[0]))
     names = tuple(dict.fromkeys(own.names[row] for row in misplaced))
     return FrameResiduals(off, point_off, tuple(map(int, markers)), names)
 

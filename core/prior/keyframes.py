@@ -8,7 +8,7 @@ from scipy.interpolate import PchipInterpolator
 
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture, headings_rad, yawed_at
-from ..body.posture_spline import cubic_spline, linear_spline
+from ..body.posture_spline import cubic_spline
 from ..files.kinds import Number, Text
 from ..files.records import Record
 from .texts import COMPOSED, REFERENCE
@@ -110,17 +110,9 @@ def with_turns(prior: Posture, keyframes: IndexArray, turns: IndexArray) -> Post
 
 def interpolate(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
     """The a priori posture of every frame."""
-    return cubic_spline(*_posed(keyframes), np.arange(frame_count, dtype=np.float64))
-
-
-def interpolate_linearly(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
-    """Like `interpolate`, with constant velocity between keyframes (slerp): the plainest baseline."""
-    return linear_spline(*_posed(keyframes), np.arange(frame_count, dtype=np.float64))
-
-
-def _posed(keyframes: tuple[Keyframe, ...]) -> tuple[Posture, Array]:
     index = np.array([keyframe.index for keyframe in keyframes], dtype=np.float64)
-    return Posture.stack([keyframe.posture for keyframe in keyframes]), index
+    posed = Posture.stack([keyframe.posture for keyframe in keyframes])
+    return cubic_spline(posed, index, np.arange(frame_count, dtype=np.float64))
 
 
 # --- Performer offset

@@ -17,7 +17,7 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.mirror import MIRROR, mirrored, other_side
 from keymark.core.body.posture import Posture
 from keymark.core.body.posture_fit import fit_posture
-from keymark.core.body.posture_spline import cubic_spline, linear_spline
+from keymark.core.body.posture_spline import cubic_spline
 from scipy.interpolate import CubicHermiteSpline
 
 
@@ -138,11 +138,6 @@ def test_a_hinge_follows_the_limited_cubic() -> None:
     found = cubic_spline(posed(), KNOTS, TIMES).to_vector()
     np.testing.assert_allclose(found[:, KNEE], expected(np.clip(TIMES, 0.0, 8.0)), atol=1e-12)
     assert not np.delete(found, KNEE, axis=1).any()
-
-
-def test_the_linear_spline_is_held_beyond_its_ends() -> None:
-    found = linear_spline(posed(), KNOTS, TIMES).to_vector()[:, KNEE]
-    np.testing.assert_allclose(found, np.interp(TIMES, KNOTS, VALUES), atol=1e-12)
 
 
 def test_balls_pass_their_postures_smoothly() -> None:

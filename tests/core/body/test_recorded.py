@@ -18,7 +18,7 @@ from keymark.core.body.human_mesh import HumanMesh
 from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture, headings_rad
 from keymark.core.body.posture_fit import fit_posture, guess_posture
-from keymark.core.body.posture_spline import cubic_spline, linear_spline
+from keymark.core.body.posture_spline import cubic_spline
 from keymark.core.body.rotations import right_jacobian, right_jacobian_inverse
 
 POSTURES = Posture.stack([random_posture(seed) for seed in range(6)])
@@ -53,7 +53,6 @@ def test_kinematics() -> None:
 def test_postures_between_and_of_points() -> None:
     knots, times = np.array([0.0, 7.0, 12.0, 20.0, 26.0, 30.0]), np.linspace(-2.0, 33.0, 40)
     assert_recorded("cubic", BODY.points(BODY.pose(cubic_spline(POSTURES, knots, times))))
-    assert_recorded("linear", BODY.points(BODY.pose(linear_spline(POSTURES, knots, times))))
     points = BODY.points(BODY.pose(exercise(30)[::5]))
     points = points + 0.01 * np.random.default_rng(0).normal(size=points.shape)
     assert_recorded("guess", guess_posture(BODY, points).to_vector())

@@ -23,8 +23,8 @@ from keymark.core.estimate.keyframe_evidence import (
 )
 from keymark.core.estimate.performer_placement import SHOE_M, lower_ankle_m
 from keymark.core.estimate.sigma import (
+    GRACE_S,
     SURE_STD_M,
-    UNOBSERVED,
     UNSURE_STD_M,
     place_depth_std_m,
     undetermined_covariance,
@@ -161,7 +161,7 @@ def open_of(visible: np.ndarray, keyframes: list[int]) -> np.ndarray:
 @pytest.mark.parametrize("keyframes", [[0], [0, 45, 89]])
 def test_nothing_is_open_where_markers_are_seen(keyframes: list[int]) -> None:
     visible = np.ones((90, 3), dtype=bool)
-    visible[30 : 29 + int(2 * 30 * UNOBSERVED.grace_s), 1] = False
+    visible[30 : 29 + int(2 * 30 * GRACE_S), 1] = False
     seen = [HUMAN.dof_names.index(name) for name in ("elbow.L.flexion", "knee.L.flexion", "waist.rotation_x")]
     assert open_of(visible, keyframes)[:, seen].max() == 0.0
 

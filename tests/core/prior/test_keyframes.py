@@ -11,7 +11,6 @@ from keymark.core.prior.keyframes import (
     Keyframe,
     Matched,
     interpolate,
-    interpolate_linearly,
     with_offset,
     with_turns,
 )
@@ -34,10 +33,9 @@ def place_only(values: list[float], indices: list[int]) -> tuple[Keyframe, ...]:
     return tuple(Keyframe(index, posed[i]) for i, index in enumerate(indices))
 
 
-@pytest.mark.parametrize("method", [interpolate, interpolate_linearly])
-def test_the_curve_passes_through_every_keyframe_and_is_held_outside(method) -> None:  # noqa: ANN001
+def test_the_curve_passes_through_every_keyframe_and_is_held_outside() -> None:
     posed = keyframes()
-    curve = method(posed, FRAMES)
+    curve = interpolate(posed, FRAMES)
     for keyframe in posed:
         assert np.abs(curve[keyframe.index].minus(keyframe.posture)).max() < 1e-9
     assert np.abs(curve[0].minus(posed[0].posture)).max() < 1e-9
