@@ -51,14 +51,14 @@ class Pose:
         """World position (..., 3) of a point given in a joint's frame [m]."""
         return np.asarray(self.origin[..., joint, :] + self.rotation[..., joint, :, :] @ local)
 
-    def places_jacobian(self, joints: Sequence[int], world: Array) -> Array:
+    def places_jacobian(self, joints: Sequence[int] | IndexArray, world: Array) -> Array:
         """d world / d tangent (..., N, 3, D) of points `world` (..., N, 3), each fixed in a joint's frame."""
         # v + ω × p for all points in one product: the rows 1 and -[p]× with all screws.
         unit = np.broadcast_to(np.eye(3), (*world.shape, 3))
         rows = np.concatenate([unit, -rotations.cross_matrix(world)], axis=-1)
         flat = rows.reshape(*world.shape[:-2], -1, 6) @ self.screws
         jacobian = flat.reshape(*world.shape, -1)
-        jacobian *= self.posture.skeleton.moved_by[list(joints)][:, None, :]
+        jacobian *= self.posture.skeleton.moved_by[joints][:, None, :]
         return np.asarray(jacobian)
 
     def along_jacobian(self, joints: Sequence[int] | IndexArray, world: Array, direction: Array) -> Array:

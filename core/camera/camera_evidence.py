@@ -1,6 +1,6 @@
 """What a picture shows of the camera that took it: lines of buildings, and upright things of known length."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -44,33 +44,25 @@ class Uprights:
     @classmethod
     def persons(cls, ground_px: ArrayLike, crown_px: ArrayLike, stature_m: float) -> "Uprights":
         """Someone of a stature [m] at N places, clicked on the floor between the feet and on the crown."""
-        # In every step heads rise and fall by 3 %, and walkers lean to any side.
-        single = (0.02, float(np.radians(3.0)))
-        return cls._standing(ground_px, crown_px, stature_m, single, (STATURE_STD, COMMON_LEAN_RAD))
+        built = cls.things(ground_px, crown_px, stature_m)
+        return replace(
+            built,
+            # In every step heads rise and fall by 3 %, and walkers lean to any side.
+            length_std=np.full(len(built), 0.02),
+            lean_std_rad=np.full(len(built), np.radians(3.0)),
+            common_std=STATURE_STD,
+            common_lean_rad=COMMON_LEAN_RAD,
+        )
 
     @classmethod
     def things(cls, lower_px: ArrayLike, upper_px: ArrayLike, length_m: ArrayLike) -> "Uprights":
         """Things of known lengths (N,) [m] that stand on the floor, as doors, by their ends (N, 2) [px]."""
-        # They were built upright, and measured.
-        single = (0.005, float(np.radians(0.5)))
-        return cls._standing(lower_px, upper_px, length_m, single, (0.0, 0.0))
-
-    @classmethod
-    def _standing(
-        cls,
-        lower_px: ArrayLike,
-        upper_px: ArrayLike,
-        length_m: ArrayLike,
-        single: tuple[float, float],
-        common: tuple[float, float],
-    ) -> "Uprights":
-        """With deviations of length [share] and lean [rad] of each, and of all together."""
         lower = np.array(lower_px, dtype=np.float64).reshape(-1, 2)
         upper = np.array(upper_px, dtype=np.float64).reshape(-1, 2)
         ones = np.ones(len(lower))
-        length = np.broadcast_to(np.asarray(length_m, dtype=np.float64), ones.shape)
-        stds = (CLICK_STD_PX * ones, single[0] * ones, single[1] * ones)
-        return cls(lower, upper, 0.0 * ones, length, *stds, *common)
+        # They were built upright, and measured.
+        stds = CLICK_STD_PX * ones, 0.005 * ones, np.radians(0.5) * ones
+        return cls(lower, upper, 0.0 * ones, np.asarray(length_m, dtype=np.float64) * ones, *stds)
 
     def __len__(self) -> int:
         return len(self.lower_px)

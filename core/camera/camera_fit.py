@@ -153,15 +153,14 @@ class _Problem:
         uprights = self.evidence.uprights
         return np.array([*std, *heading, *np.maximum([uprights.common_std, uprights.common_lean_rad], 1e-6)])
 
-    def placement_of(self, x: Array) -> CameraPlacement:
-        now = CameraPlacement.of(self.camera.matrix_world)
-        height = max(now.height_m, LEAST_RISE_M) * float(np.exp(x[0]))
-        return CameraPlacement(height, now.tilt_rad + float(x[1]), now.roll_rad + float(x[2]))
-
     def camera_of(self, x: Array) -> Camera:
         """The camera of x, above the world's origin and looking along +Y."""
-        lens = self.camera.lens_mm * float(np.exp(x[3]))
-        return replace(self.camera, lens_mm=lens, matrix_world=self.placement_of(x).matrix())
+        now = CameraPlacement.of(self.camera.matrix_world)
+        higher, tilted, rolled, longer = map(float, x[: len(PARAMETERS)])
+        height = max(now.height_m, LEAST_RISE_M) * float(np.exp(higher))
+        placement = CameraPlacement(height, now.tilt_rad + tilted, now.roll_rad + rolled)
+        lens_mm = self.camera.lens_mm * float(np.exp(longer))
+        return replace(self.camera, lens_mm=lens_mm, matrix_world=placement.matrix())
 
     def residuals(self, x: Array) -> tuple[Array, Array]:
         """Of all lines and uprights (R,), in px and in standard deviations."""
@@ -173,21 +172,13 @@ class _Problem:
             parts.append(_line_residuals(camera, self.evidence.across, np.array([-along, across, 0.0])))
         lines = np.concatenate(parts)
         px, scaled = self._upright_residuals(camera, float(np.exp(x[-2])), float(x[-1]))
-        room = self._room_residuals(camera)
-        return np.concatenate([lines, px]), np.concatenate([lines / CLICK_STD_PX, scaled, room])
-
-    def _room_residuals(self, camera: Camera) -> Array:
-        """(3,) tilt, roll and lens against those of the room's lines, in standard deviations; else none."""
-        room = self.evidence.room
-        if room is None:
-            return np.zeros(0)
-        placement = CameraPlacement.of(camera.matrix_world)
-        off = [
-            placement.tilt_rad - room.tilt_rad,
-            placement.roll_rad - room.roll_rad,
-            np.log(camera.focal_px / room.focal_px),
-        ]
-        return np.asarray(np.linalg.solve(np.linalg.cholesky(room.covariance), off))
+        whitened = [lines / CLICK_STD_PX, scaled]
+        room, placement = self.evidence.room, CameraPlacement.of(camera.matrix_world)
+        if room is not None:
+            turned = [placement.tilt_rad - room.tilt_rad, placement.roll_rad - room.roll_rad]
+            off = [*turned, np.log(camera.focal_px / room.focal_px)]
+            whitened.append(np.linalg.solve(np.linalg.cholesky(room.covariance), off))
+        return np.concatenate([lines, px]), np.concatenate(whitened)
 
     def descend(self) -> Array:
         """The most probable x (X,), from the likeliest starts."""

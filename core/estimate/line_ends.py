@@ -5,7 +5,6 @@ coordinates of both ends of the body part. Here the centroid is their midpoint, 
 line between them, and the aspect ratio compares the line's length with the segment's given width.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,7 +14,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array, IndexArray
 from ..body.body_volume import TRUNK, marker_parts, marker_segments, segment_piece
 from ..body.kinematics import Body, Pose
-from ..body.rotations import cross_matrix
+from ..body.skeleton import SIDES
 from ..camera.camera import Camera
 from ..errors import InputError
 from ..markers.moments import axis_angle_difference, characteristics
@@ -56,19 +55,11 @@ class LineEnds:
     @cached_property
     def _end_points(self) -> tuple[IndexArray, Array, Array]:
         """Joints (A,) and local points (A, 3) that the ends are means of, and their weights (M, 2, A)."""
-        joints: list[int] = []
-        local: list[Array] = []
-        shares: list[tuple[int, int, float]] = []
-        for marker, name in enumerate(self.segments):
-            for end, points in enumerate(_segment_ends(self.body, name)):
-                for joint, point in points:
-                    joints.append(joint)
-                    local.append(point)
-                    shares.append((marker, end, 1.0 / len(points)))
-        share = np.zeros((len(self.segments), 2, len(joints)))
-        for point_index, (marker, end, value) in enumerate(shares):
-            share[marker, end, point_index] = value
-        return np.array(joints, dtype=np.intp), np.stack(local), share
+        ends = [end for name in self.segments for end in _segment_ends(self.body, name)]
+        owner = np.repeat(np.arange(len(ends)), [len(end) for end in ends])
+        share = np.eye(len(ends))[:, owner] / np.bincount(owner)[:, None]
+        joint, local = zip(*(point for end in ends for point in end), strict=True)
+        return np.array(joint, dtype=np.intp), np.stack(local), share.reshape(-1, 2, len(owner))
 
     def evaluate(self, pose: Pose, frame: ArrayLike | None = None) -> Array:
         """Predicted characteristics (paper, eq. 7 without noise).
@@ -126,10 +117,7 @@ class LineEnds:
     def _world_ends_jacobian(self, pose: Pose) -> Array:
         """Derivative of the ends, (..., M, 2, 3, D)."""
         joint, _, share = self._end_points
-        screws = pose.screws[..., None, :, :]
-        # ω × p is -[p]× ω; all points at once, since a filter asks for one posture at a time.
-        linear = screws[..., 0:3, :] - cross_matrix(self._world_points(pose)) @ screws[..., 3:6, :]
-        moving = linear * self.body.skeleton.moved_by[joint][:, None, :]
+        moving = pose.places_jacobian(joint, self._world_points(pose))
         return np.asarray(np.einsum("mea,...aid->...meid", share, moving))
 
 
@@ -170,13 +158,10 @@ def _per_end(frame: ArrayLike | None) -> IndexArray | None:
 
 def _segment_ends(body: Body, name: str) -> tuple[list[JointPoint], list[JointPoint]]:
     """Points whose mean is the segment's start, and points whose mean is its end."""
-    skeleton = body.skeleton
-    if name == TRUNK:
-        return _points_named(body, ("hip.L", "hip.R")), _points_named(body, ("shoulder.L", "shoulder.R"))
-    segment = next(segment for segment in skeleton.segments if segment.name == name)
-    return [(segment.joint, body.local(segment.start))], [(segment.joint, body.local(segment.end))]
-
-
-def _points_named(body: Body, names: Sequence[str]) -> list[JointPoint]:
-    indices = [body.skeleton.point_names.index(name) for name in names]
-    return [(body.skeleton.points[i].joint, body.point_places[i]) for i in indices]
+    if name != TRUNK:
+        segment = body.skeleton.segment(name)
+        return [(segment.joint, body.local(segment.start))], [(segment.joint, body.local(segment.end))]
+    joints = [point.joint for point in body.skeleton.points]
+    known = dict(zip(body.skeleton.point_names, zip(joints, body.point_places, strict=True), strict=True))
+    hips, shoulders = ([known[f"{root}.{side}"] for side in SIDES] for root in ("hip", "shoulder"))
+    return hips, shoulders
