@@ -67,6 +67,17 @@ def test_place_and_direction_do_not_matter() -> None:
         assert np.abs(mine.posture.minus(its.posture)).max() < 1e-9
 
 
+@pytest.mark.parametrize(("bend_rad", "tags"), [(0.58, ()), (0.66, ("right foot up",))])
+def test_a_posture_says_which_foot_is_lifted(bend_rad: float, tags: tuple[str, ...]) -> None:
+    vector = np.tile(standing_posture(BODY).to_vector(), (40, 1))
+    vector[20:, COLUMN["knee.R.flexion"]] += bend_rad
+    posture = Posture.from_vector(BODY.skeleton, vector)
+    apart_m = np.ptp(ankle_heights(BODY, posture[39:]))
+    assert apart_m == pytest.approx(0.08, abs=0.02) and (apart_m > 0.08) == bool(tags)
+    library = learn_library(BODY, posture, np.arange(40) / FPS, ABOUT)
+    assert {posture.tags for posture in library.postures} == {(), tags}
+
+
 def test_a_motion_stays_whole() -> None:
     posture, time_s = reaching()
     library = learn_library(BODY, posture, time_s, ABOUT, count=12)

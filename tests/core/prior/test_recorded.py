@@ -55,6 +55,7 @@ def test_a_frames_prior() -> None:
         assert_recorded(f"prior {name}, deviation", prior.std)
     assert_recorded("differences", difference_std(HUMAN, 0.4), unrelated_std(HUMAN))
     assert_recorded("process noise", process_noise_factor(exercise(30), np.arange(30) / 25.0))
+    assert_recorded("process noise, one", process_noise_factor(exercise(1), np.zeros(1)))
 
 
 def test_proposals() -> None:

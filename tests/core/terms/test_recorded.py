@@ -1,16 +1,20 @@
 """What postures predict of the footage, number by number: regions, contours, keypoints, line ends."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from _recorded import assert_recorded
-from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film
+from _scene import BODY, CAMERA, MODEL, SEGMENTS, detect, exercise, film
 from keymark.core.camera.camera import Camera
 from keymark.core.detect.keypoints import BODY_POINTS
 from keymark.core.estimate.line_ends import LineEnds, angle_weight, observed_characteristics, residual
 from keymark.core.terms.contours import ContourModel, LimbAxes, part_map
 from keymark.core.terms.depths import DepthLinks, depths_jacobian, point_depths
+from keymark.core.terms.head import ASIDE_RAD, BEHIND_RAD, PRESENT, ObservedHeads
 from keymark.core.terms.keypoints import KeypointModel
 from keymark.core.terms.occlusion import outline_depth
+from keymark.core.terms.reference import ExpectedPoints
 from keymark.core.terms.region_model import RegionModel
 from keymark.core.terms.regions import ObservedRegions, feature_rows, limb_widths, missing_variance
 
@@ -63,6 +67,7 @@ def test_keypoints_and_depths() -> None:
     assert_recorded("keypoints", model.pixels(POSE, FRAME))
     assert_recorded("keypoints, slopes", model.pixels_jacobian(POSE, FRAME))
     assert_recorded("links", links.depths(model, POSE, FRAME), links.jacobian(model, POSE, FRAME))
+    assert_recorded("links, lengths", links.lengths_m(model))
     assert_recorded("depths", point_depths(BODY, CAMERA, POSE, FRAME))
     assert_recorded("depths, slopes", depths_jacobian(BODY, CAMERA, POSE, FRAME))
 
@@ -74,3 +79,31 @@ def test_line_ends() -> None:
     assert_recorded("line ends", predicted)
     assert_recorded("line ends, residual", residual(observed, predicted))
     assert_recorded("angle weight", angle_weight(np.linspace(-1.0, 3.0, 9)))
+
+
+def test_heads_of_faces_and_points() -> None:
+    """Faces ahead, aside, turned away and unsure, one not looked at; points in space of all but one head."""
+    keypoints = detect(exercise(FRAMES), names=BODY_POINTS, hint_error_m=0.01)
+    aside = [0.0, 0.5 * ASIDE_RAD, ASIDE_RAD - 0.01, ASIDE_RAD + 0.01, BEHIND_RAD - 0.01, BEHIND_RAD + 0.01]
+    face = np.zeros((FRAMES, 6))
+    face[:, :2], face[:6, 3], face[:, 4] = keypoints.pixel[:, 0], aside, 0.1
+    face[:, 5] = np.where(FRAME % 4 == 3, PRESENT - 0.01, PRESENT + 0.01)
+    face[8] = np.nan
+    hint = np.random.default_rng(2).normal(0.0, 0.1, keypoints.hint_m.shape)
+    hint[3] = np.nan
+    heads = ObservedHeads.of(replace(keypoints, face=face, hint_m=hint), CAMERA)
+    assert heads is not None
+    assert_recorded("heads", heads.turn[heads.seen], np.where(heads.seen, heads.std_rad, 0.0))
+
+
+def test_reference_points_that_differ() -> None:
+    points = np.random.default_rng(3).normal(size=(4, 13, 3))
+    one = ExpectedPoints(points, np.full((4, 13, 3, 3), np.eye(3)), 0.4)
+    moved, wider = points.copy(), one.whitening.copy()
+    moved[1, 4, 2] += 1.5e-3
+    moved[2, 4, 2] += 0.5e-3
+    wider[3, 7] *= np.exp(0.06)
+    np.testing.assert_array_equal(one.differ(replace(one, points=moved)), FRAME[:4] == 1)
+    np.testing.assert_array_equal(one.differ(replace(one, whitening=wider)), FRAME[:4] == 3)
+    wider[3, 7] *= np.exp(-0.02)
+    assert not one.differ(replace(one, whitening=wider)).any()
