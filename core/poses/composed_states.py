@@ -7,6 +7,7 @@ floor asks both legs: one of them stands on it, or none does.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from ..body.human import HUMAN, LIMBS, mass_weights
 from ..estimate.single_frame import EXCHANGED_COST
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..terms.contact import STEP_M
-from .frame_likelihood import FrameLikelihood, image_moments, lowest, squared_distances
+from .frame_likelihood import FrameLikelihood, image_moments, lowest, spread, squared_distances
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
 from .part_pools import ARM
 
@@ -155,23 +156,26 @@ class FrameCosts:
         """(N, L) cost of each of a limb's parts on stances at places from the camera, without the floor."""
         seen, features = self.likelihood, self.stances.limbs[limb]
         turn, origin = self.stances.frame_of(limb, stance)
+        away = origin + places
         cost = self.stances.limb_cost[limb][stance // HEADINGS]
+        place, depth = [], []
         for column, point in features.columns(self.seen):
-            local = features.place[:, column].T  # (3, L)
-            squared = np.zeros_like(cost)
-            for row in seen.rows[point]:
-                residual = (row @ turn) @ local
-                residual += ((origin + places) @ row)[:, None]
-                residual *= residual
-                squared += residual
-            cost += seen.place_cost(squared)
+            rows, products = seen.rows[point], features.products[column]
+            place.append(spread(rows @ turn, away @ rows.T) @ products)
             if seen.depth_weight[point]:
-                cost += seen.depth_cost(point, (seen.sight @ turn) @ local + (origin @ seen.sight)[:, None])
+                row = seen.sight[None] * seen.depth_weight[point]
+                off = origin @ row.T - seen.depth_m[point] * seen.depth_weight[point]
+                depth.append(spread(row @ turn, off) @ products)
             if seen.whole[point]:
+                local = features.place[:, column].T  # (3, L)
                 moment = features.second_moment[:, column].T  # (6, L)
                 entries = [each @ moment for each in image_moments(seen.image_axes[point] @ turn)]
-                away = -((origin + places) @ seen.backward)[:, None] - (seen.backward @ turn) @ local
-                cost += seen.extent_cost(point, entries, away)
+                behind = -(away @ seen.backward)[:, None] - (seen.backward @ turn) @ local
+                cost += seen.extent_cost(point, entries, behind)
+        for spreads, dimensions in ((place, 2), (depth, 1)):
+            if spreads:  # one logarithm of their product: logarithms of each would take longer
+                factor = np.float32(seen.share * 0.5 * (DEGREES + dimensions))
+                cost += factor * np.log(reduce(np.multiply, spreads))
         return cost
 
     def foot_heights(self, limb: str, stance: IndexArray, places: SingleArray) -> SingleArray:

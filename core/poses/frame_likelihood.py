@@ -124,6 +124,27 @@ def image_moments(axes: SingleArray) -> tuple[SingleArray, SingleArray, SingleAr
     return products(first, first), products(first, second), products(second, second)
 
 
+PAIRS = np.triu_indices(4)
+_TWICE = np.where(PAIRS[0] == PAIRS[1], 1.0, 2.0).astype(np.float32)
+
+
+def products(points: SingleArray) -> SingleArray:
+    """(10, N) products of the coordinates of points (N, 3) and 1, in which squared distances are linear."""
+    known = np.concatenate([points, np.ones((len(points), 1), dtype=np.float32)], axis=1).T
+    return np.ascontiguousarray(known[PAIRS[0]] * known[PAIRS[1]] * _TWICE[:, None])
+
+
+def spread(slopes: SingleArray, off: SingleArray) -> SingleArray:
+    """(N, 10) whose product with `products` is 1 plus squared distances over the t's degrees.
+
+    `slopes` (N, R, 3) and `off` (N, R) of R rows give the distances, in standard deviations, of a point at 0.
+    """
+    rows = np.concatenate([slopes, off[..., None]], axis=-1)
+    found = np.einsum("nri,nri->ni", rows[..., PAIRS[0]], rows[..., PAIRS[1]]) / np.float32(DEGREES)
+    found[:, -1] += 1.0
+    return found
+
+
 def squared_distances(first: SingleArray, second: SingleArray) -> SingleArray:
     """(J, K) mean squared distances of points (J, Q, 3) and (K, Q, 3)."""
     a, b = first.reshape(len(first), -1), second.reshape(len(second), -1)

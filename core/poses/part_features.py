@@ -5,6 +5,7 @@ legs and arms hang.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..body.human import HUMAN, LIMBS, TRUNK, limb_of
 from ..body.mirror import mirrored
 from ..body.posture import Posture, yaw_rotation
 from ..estimate.performer_placement import standing_ankle_m
-from .frame_likelihood import ENTRIES
+from .frame_likelihood import ENTRIES, products
 from .match_evidence import MatchEvidence, marker_moments
 from .part_pools import ARM, PartPool, PartPools
 
@@ -33,6 +34,11 @@ class PartFeatures:
     points: SingleArray  # (N, Q, 3) elbow and wrist, knee and ankle; of stances all others [m]
     soles: SingleArray  # (N, 2, 3) heel and tip of a leg's foot; none else [m]
     cost: SingleArray  # (N,) how unusual each is
+
+    @cached_property
+    def products(self) -> list[SingleArray]:
+        """(10, N) of each column of `place`, see `products`."""
+        return [products(np.ascontiguousarray(own)) for own in np.swapaxes(self.place, 0, 1)]
 
     def columns(self, seen: BoolArray) -> list[tuple[int, int]]:
         """Columns of `place` of those of the evidence (A,) that are seen in a frame, and which these are."""
