@@ -113,26 +113,22 @@ class FrameCosts:
         matrix = firm * np.outer(backward, backward) + np.eye(3) * 1e-4
         right = -firm * np.outer(depth_m, backward)
 
-        def rows_of(point: int) -> SingleArray:
-            return self.likelihood.rows[point].T @ self.likelihood.rows[point]
-
         for column, point in torso.columns(self.seen):
-            own = rows_of(point)
+            own = self.likelihood.rows[point].T @ self.likelihood.rows[point]
             matrix = matrix + own
             right -= torso.place[stance, column] @ own
         for row, limb in enumerate(LIMBS):
             features = self.stances.limbs[limb]
             turn, origin = self.stances.frame_of(limb, stance)
             for column, point in features.columns(self.seen):
-                own = rows_of(point)
+                own = self.likelihood.rows[point].T @ self.likelihood.rows[point]
                 if limbs is None:
-                    local = np.broadcast_to(features.place[:, column].mean(axis=0), (len(stance), 3))
-                    spread = float(features.place[:, column].var(axis=0).mean())
-                    own = own / (1.0 + spread * float(self.likelihood.weight[point]) ** 2)
+                    local = features.middle[column]
+                    own = own / (1.0 + features.variance[column] * float(self.likelihood.weight[point]) ** 2)
                 else:
-                    local = features.place[limbs[:, row], column]
+                    local = features.place[limbs[:, row], column, :, None]
                 matrix = matrix + own
-                right -= (origin + (turn @ local[..., None])[..., 0]) @ own
+                right -= (origin + (turn @ local).reshape(-1, 3)) @ own
         return single(np.linalg.solve(matrix, right.T).T)
 
     def torso_cost(self, stance: IndexArray, places: SingleArray) -> SingleArray:
@@ -158,24 +154,29 @@ class FrameCosts:
         turn, origin = self.stances.frame_of(limb, stance)
         away = origin + places
         cost = self.stances.limb_cost[limb][stance // HEADINGS]
-        place, depth = [], []
-        for column, point in features.columns(self.seen):
-            rows, products = seen.rows[point], features.products[column]
-            place.append(spread(rows @ turn, away @ rows.T) @ products)
-            if seen.depth_weight[point]:
-                row = seen.sight[None] * seen.depth_weight[point]
-                off = origin @ row.T - seen.depth_m[point] * seen.depth_weight[point]
-                depth.append(spread(row @ turn, off) @ products)
+        columns = features.columns(self.seen)
+        for column, point in columns:
             if seen.whole[point]:
                 local = features.place[:, column].T  # (3, L)
                 moment = features.second_moment[:, column].T  # (6, L)
                 entries = [each @ moment for each in image_moments(seen.image_axes[point] @ turn)]
                 behind = -(away @ seen.backward)[:, None] - (seen.backward @ turn) @ local
                 cost += seen.extent_cost(point, entries, behind)
-        for spreads, dimensions in ((place, 2), (depth, 1)):
-            if spreads:  # one logarithm of their product: logarithms of each would take longer
-                factor = np.float32(seen.share * 0.5 * (DEGREES + dimensions))
-                cost += factor * np.log(reduce(np.multiply, spreads))
+        turns = np.ascontiguousarray(np.moveaxis(turn, 0, -1)).reshape(3, -1)
+        deep = [each for each in columns if seen.depth_weight[each[1]]]
+        shown, guessed = ([point for _, point in own] for own in (columns, deep))
+        weight = seen.depth_weight[guessed][:, None, None]
+        off = weight * (origin @ seen.sight - seen.depth_m[guessed][:, None, None])
+        for own, rows, at_root in (
+            (columns, seen.rows[shown], seen.rows[shown] @ away.T),
+            (deep, weight * seen.sight, off),
+        ):
+            if own:
+                slopes = (rows.reshape(-1, 3) @ turns).reshape(*rows.shape, -1)
+                terms = zip(spread(slopes, at_root), own, strict=True)
+                each = [term.T @ features.products[column] for term, (column, _) in terms]
+                # One logarithm of their product: logarithms of each would take longer.
+                cost += np.float32(0.5 * seen.share * (DEGREES + rows.shape[1])) * np.log(reduce(np.multiply, each))
         return cost
 
     def foot_heights(self, limb: str, stance: IndexArray, places: SingleArray) -> SingleArray:
@@ -199,11 +200,11 @@ class FrameCosts:
         if paired and self.floor_m is not None:
             rows = np.arange(len(stance))
             left, right, pairs = self.leg_pairs(stance, places, tables, limbs)
-            chance = np.exp(left.cost.min(axis=1, keepdims=True) - left.cost)[:, :, None]
-            chance = chance * np.exp(right.cost.min(axis=1, keepdims=True) - right.cost)[:, None]
-            cost -= np.log((chance * np.exp(-pairs)).sum(axis=(1, 2)) / chance.sum(axis=(1, 2)))
-            whole = left.cost[:, :, None] + right.cost[:, None] + pairs
-            best = np.unravel_index(whole.reshape(len(stance), -1).argmin(axis=1), whole.shape[1:])
+            first, second = (np.exp(leg.cost.min(axis=1, keepdims=True) - leg.cost) for leg in (left, right))
+            chance = (np.exp(-pairs) @ second[..., None])[..., 0]
+            cost -= np.log((first * chance).sum(axis=1) / (first.sum(axis=1) * second.sum(axis=1)))
+            pairs += left.cost[:, :, None] + right.cost[:, None]
+            best = np.unravel_index(pairs.reshape(len(stance), -1).argmin(axis=1), pairs.shape[1:])
             for limb, choices, which in zip(LEGS, (left, right), best, strict=True):
                 limbs[:, LIMBS.index(limb)] = choices.index[rows, which]
         return cost, limbs
@@ -294,7 +295,9 @@ def soft_least(cost: SingleArray) -> SingleArray:
     A limb that points at the camera explains whatever a nearer body shows; few limbs do so.
     """
     least = cost.min(axis=1)
-    return np.asarray(least - np.log(np.exp(least[:, None] - cost).sum(axis=1)))
+    # Exponents of numbers that single precision can hardly hold take three times as long.
+    chance = np.exp(np.maximum(least[:, None] - cost, np.float32(-60.0)))
+    return np.asarray(least - np.log(chance.sum(axis=1)))
 
 
 # --- Two legs on a stance: which stands on the floor, and whether the body is balanced over that
@@ -314,24 +317,31 @@ def pair_costs(left: LegChoices, right: LegChoices, mass: SingleArray) -> Single
 
     `mass` (N, 2) is the center of mass without the legs' shares, times the rest's share, from the hips [m].
     """
-    # The floor's axes first: sums over a last axis of two would take most of the time.
-    middle, far, near, foot, other = (
-        np.ascontiguousarray(np.moveaxis(each, -1, 0))
-        for each in (mass, left.mass, right.mass, left.foot, right.foot)
-    )
-    first = foot[..., None]
-    way = other[:, :, None] - first
-    from_first = middle[..., None, None] + far[..., None] + near[:, :, None] - first
-    along = (from_first * way).sum(axis=0) / np.maximum((way * way).sum(axis=0), np.float32(1e-4))
+    # The center of mass over the left foot, without the right leg's share, and what squares and products with
+    # that share and the right foot need: each a product of matrices, where arrays of pairs would be added up.
+    foot, over = left.foot, mass[:, None] + left.mass - left.foot
+
+    def sums(*parts: tuple[SingleArray, SingleArray]) -> SingleArray:
+        """(N, C, C) sums of products of what belongs to left legs (N, C, K) and to right ones."""
+        ones, others = (np.concatenate(own, axis=-1) for own in zip(*parts, strict=True))
+        return np.asarray(ones @ np.swapaxes(others, -1, -2))
+
+    def dot(first: SingleArray, second: SingleArray) -> SingleArray:
+        return np.asarray((first * second).sum(axis=-1, keepdims=True))
+
+    one, other = np.ones_like(foot[..., :1]), np.ones_like(right.foot[..., :1])
+    along = sums((over, right.foot), (-dot(over, foot), other), (-foot, right.mass), (one, dot(right.mass, right.foot)))
+    way = sums((dot(foot, foot), other), (-2.0 * foot, right.foot), (one, dot(right.foot, right.foot)))
+    away = sums((dot(over, over), other), (2.0 * over, right.mass), (one, dot(right.mass, right.mass)))
     higher = right.height[:, None] - left.height[:, :, None]
-    along = np.where(higher > STEP_M, 0.0, np.where(higher < -STEP_M, 1.0, np.clip(along, 0.0, 1.0)))
-    off = from_first - along.astype(np.float32) * way
+    share = np.clip(along / np.maximum(way, np.float32(1e-4)), 0.0, 1.0)
+    share = np.where(np.abs(higher) > STEP_M, (higher < 0.0).astype(np.float32), share)
     # Horizontal distance of the center of mass from the feet that stand: a foot's length, a step under way.
-    squared = (off * off).sum(axis=0) / np.float32(0.12**2)
+    squared = np.maximum(away + share * (share * way - 2.0 * along), 0.0) / np.float32(0.12**2)
     # Of Student's t: who runs, leaps or leans on something is forgiven.
     falling = multivariate_cost(squared, 3.0, 2)
-    stands = standing_cost(np.minimum(left.height[:, :, None], right.height[:, None])) + falling
-    return np.asarray(np.minimum(stands, np.float32(NO_CONTACT_COST)))
+    stands = np.minimum(standing_cost(left.height)[:, :, None], standing_cost(right.height)[:, None])
+    return np.asarray(np.minimum(stands + falling, np.float32(NO_CONTACT_COST)))
 
 
 def below_cost(height: SingleArray) -> SingleArray:

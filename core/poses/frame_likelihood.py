@@ -135,14 +135,15 @@ def products(points: SingleArray) -> SingleArray:
 
 
 def spread(slopes: SingleArray, off: SingleArray) -> SingleArray:
-    """(N, 10) whose product with `products` is 1 plus squared distances over the t's degrees.
+    """(..., 10, N) whose product with `products` is 1 plus squared distances over the t's degrees.
 
-    `slopes` (N, R, 3) and `off` (N, R) of R rows give the distances, in standard deviations, of a point at 0.
+    `slopes` (..., R, 3, N) and `off` (..., R, N), of a point at 0, of R rows give the distances in standard
+    deviations.
     """
-    rows = np.concatenate([slopes, off[..., None]], axis=-1)
-    found = np.einsum("nri,nri->ni", rows[..., PAIRS[0]], rows[..., PAIRS[1]]) / np.float32(DEGREES)
-    found[:, -1] += 1.0
-    return found
+    rows = np.concatenate([slopes, off[..., None, :]], axis=-2)
+    found = (rows[..., PAIRS[0], :] * rows[..., PAIRS[1], :]).sum(axis=-3) / np.float32(DEGREES)
+    found[..., -1, :] += 1.0
+    return np.asarray(found)
 
 
 def squared_distances(first: SingleArray, second: SingleArray) -> SingleArray:

@@ -36,6 +36,16 @@ class PartFeatures:
     cost: SingleArray  # (N,) how unusual each is
 
     @cached_property
+    def middle(self) -> SingleArray:
+        """(A, 3) means of `place`."""
+        return np.asarray(self.place.mean(axis=0))
+
+    @cached_property
+    def variance(self) -> SingleArray:
+        """(A,) variances of `place` along an axis [m²]."""
+        return np.asarray(self.place.var(axis=0).mean(axis=-1))
+
+    @cached_property
     def products(self) -> list[SingleArray]:
         """(10, N) of each column of `place`, see `products`."""
         return [products(np.ascontiguousarray(own)) for own in np.swapaxes(self.place, 0, 1)]
