@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from _libraries import sample_motion
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture, yawed_at
@@ -13,7 +14,6 @@ from keymark.core.markers.reading import Reading
 from keymark.core.markers.region_tracks import MarkerStyle, RegionTracks
 from keymark.core.poses.found_poses import FoundPoses
 from keymark.core.prior.library import Library
-from keymark.core.prior.motion_playback import sample_motion
 from keymark.core.take.take import Take
 from keymark.core.terms.keypoints import KeypointModel
 from keymark.core.terms.region_model import MarkerPlacement, RegionModel

@@ -176,7 +176,9 @@ class FrameCosts:
                 terms = zip(spread(slopes, at_root), own, strict=True)
                 each = [term.T @ features.products[column] for term, (column, _) in terms]
                 # One logarithm of their product: logarithms of each would take longer.
-                cost += np.float32(0.5 * seen.share * (DEGREES + rows.shape[1])) * np.log(reduce(np.multiply, each))
+                cost += np.float32(0.5 * seen.share * (DEGREES + rows.shape[1])) * np.log(
+                    reduce(np.multiply, each)
+                )
         return cost
 
     def foot_heights(self, limb: str, stance: IndexArray, places: SingleArray) -> SingleArray:
@@ -330,7 +332,9 @@ def pair_costs(left: LegChoices, right: LegChoices, mass: SingleArray) -> Single
         return np.asarray((first * second).sum(axis=-1, keepdims=True))
 
     one, other = np.ones_like(foot[..., :1]), np.ones_like(right.foot[..., :1])
-    along = sums((over, right.foot), (-dot(over, foot), other), (-foot, right.mass), (one, dot(right.mass, right.foot)))
+    along = sums(
+        (over, right.foot), (-dot(over, foot), other), (-foot, right.mass), (one, dot(right.mass, right.foot))
+    )
     way = sums((dot(foot, foot), other), (-2.0 * foot, right.foot), (one, dot(right.foot, right.foot)))
     away = sums((dot(over, over), other), (2.0 * over, right.mass), (one, dot(right.mass, right.mass)))
     higher = right.height[:, None] - left.height[:, :, None]

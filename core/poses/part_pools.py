@@ -11,17 +11,17 @@ from functools import lru_cache
 from typing import Any, TypeVar
 
 import numpy as np
+from scipy.spatial.distance import cdist
 
 from ..arrays import Array, IndexArray
 from ..body.human import HUMAN, LIMBS
 from ..body.kinematics import Body
 from ..body.mirror import mirrored
 from ..body.posture import Posture, headings_rad, yawed_at
+from ..body.posture_spline import cubic_spline
 from ..body.skeleton import Skeleton
 from ..numerics.robust import multivariate_cost
 from ..prior.library import Library, LibraryMotion
-from ..prior.motion_playback import sample_motion
-from ..prior.transfer import transferred
 
 Learned = TypeVar("Learned")
 ARM, LEG, TORSO = "arm", "leg", "torso"
@@ -125,31 +125,20 @@ def kept(
 def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
     facing, names = known_motions(libraries, body)
     samples = _samples(np.random.default_rng(0))
-    torsos, arms, legs = (_pool(body, kind, facing, samples) for kind in (TORSO, ARM, LEG))
+    pools = {kind: _pool(body, kind, facing, samples) for kind in (TORSO, ARM, LEG)}
     # Sources are postures and then their mirror images: the right limb of one is the left limb of the other.
     other_side = np.roll(np.arange(len(names)), len(names) // 2)
-    near = _nearness(body, torsos, facing)
-    limb_cost, seen = {}, {}
+    limb_cost = {}
     for limb in LIMBS:
         kind, side = limb.split(".")
-        pool = arms if kind == ARM else legs
-        own = _nearness(body, pool, facing)
-        seen[limb] = own / own.sum(axis=0)
-        seen[limb] = seen[limb] if side == "L" else seen[limb][:, other_side]
-        together = near @ seen[limb].T
+        pool, near = pools[kind]
+        seen = near / near.sum(axis=0)
+        together = pools[TORSO][1] @ (seen if side == "L" else seen[:, other_side]).T
         together /= together.sum(axis=1, keepdims=True)
-        alone = np.exp(-pool.cost)
         # Half is for the parts that libraries show together, the rest for any other combination.
-        limb_cost[limb] = -np.log(0.5 * alone + 0.5 * together)
+        limb_cost[limb] = -np.log(0.5 * np.exp(-pool.cost) + 0.5 * together)
+    torsos, arms, legs = (pool for pool, _ in pools.values())
     return PartPools(body, torsos, arms, legs, names, limb_cost)
-
-
-def _nearness(body: Body, pool: PartPool, known: Posture) -> Array:
-    """(N, S) nearness of each part to that of each of S known postures."""
-    points, parts = (part_points(body, pool.kind, each) for each in (known, pool.posture))
-    apart = np.array([_distance(points, each) for each in parts])
-    # Distance within which parts go with the same other parts: what performers differ by.
-    return np.asarray(np.exp(-0.5 * (apart / 0.08) ** 2) + 1e-9)
 
 
 def part_points(body: Body, kind: str, posture: Posture) -> Array:
@@ -183,51 +172,46 @@ def _samples(random: np.random.Generator) -> Posture:
     return Posture.from_vector(HUMAN, lower + share * (upper - lower))
 
 
-def _pool(body: Body, kind: str, known: Posture, samples: Posture) -> PartPool:
+def _pool(body: Body, kind: str, known: Posture, samples: Posture) -> tuple[PartPool, Array]:
+    """The pool of a kind of part, and (N, S) how near each is to that of each of S known postures."""
     known_points, sample_points = (part_points(body, kind, each) for each in (known, samples))
     known_m, most_known, sampled_m, most_sampled = SPREAD[kind]
-    chosen = _spread(known_points, None, known_m, most_known)
+    nearest = int(_distances(known_points.mean(axis=0, keepdims=True), known_points).argmin())
+    first = np.array([nearest], dtype=np.intp)
+    chosen = np.append(first, _spread(known_points, known_points[first], known_m, most_known - 1))
     added = _spread(sample_points, known_points[chosen], sampled_m, most_sampled)
-    away = _distance(sample_points[added][:, None], known_points[None])
-    nearest = away.argmin(axis=1)
-    off = away[np.arange(len(added)), nearest]
-    usual = np.sqrt(np.bincount(_nearest(known_points, known_points[chosen]), minlength=len(chosen)))
+    away = _distances(np.concatenate([known_points[chosen], sample_points[added]]), known_points)
+    count = len(chosen)
+    usual = np.sqrt(np.bincount(away[:count].argmin(axis=0), minlength=count))
     # Distance from the nearest known part that is as usual as the known part. Student's t of three degrees:
     # a prior must forgive.
+    off = away[count:].min(axis=1, initial=np.inf)
     rare = np.median(usual) * np.exp(-multivariate_cost((off / 0.15) ** 2, 3.0, 1))
     weight = np.concatenate([usual, rare])
-    return PartPool(
+    pool = PartPool(
         kind,
         Posture.concatenate([_only(kind, known[chosen]), _only(kind, samples[added])]),
         -np.log(weight / weight.sum()),
-        np.concatenate([chosen, nearest]).astype(np.intp),
+        np.concatenate([chosen, away[count:].argmin(axis=1)]).astype(np.intp),
     )
+    # Distance within which parts go with the same other parts: what performers differ by.
+    return pool, np.exp(-0.5 * (away / 0.08) ** 2) + 1e-9
 
 
-def _nearest(points: Array, among: Array) -> IndexArray:
-    """(N,) the nearest of items (K, Q, 3) to each of (N, Q, 3)."""
-    return np.asarray(np.argmin([_distance(points, each) for each in among], axis=0))
-
-
-def _spread(points: Array, taken: Array | None, radius_m: float, most: int) -> IndexArray:
-    """Farthest-point sampling (Gonzalez 1985): indices of items (N, Q, 3) that lie apart."""
-    if taken is None:
-        first = int(_distance(points, points.mean(axis=0)).argmin())
-        chosen, away = [first], _distance(points, points[first])
-    else:
-        chosen, away = [], np.min([_distance(points, each) for each in taken], axis=0)
+def _spread(points: Array, taken: Array, radius_m: float, most: int) -> IndexArray:
+    """Indices of items (N, Q, 3) apart from (K, Q, 3) taken ones: farthest-point sampling (Gonzalez 1985)."""
+    chosen: list[int] = []
+    away = _distances(taken, points).min(axis=0)
     while len(chosen) < most and away.max() > radius_m:
         chosen.append(int(away.argmax()))
-        away = np.minimum(away, _distance(points, points[chosen[-1]]))
+        away = np.minimum(away, _distances(points[chosen[-1:]], points)[0])
     return np.array(chosen, dtype=np.intp)
 
 
-def _distance(first: Array, second: Array) -> Array:
-    """Mean distance of points (..., Q, 3) [m]; Q and 3 are so few that sums by hand are five times faster."""
-    apart = first - second
-    x, y, z = np.moveaxis(apart * apart, -1, 0)
-    apart = np.sqrt(x + y + z)
-    return np.asarray(sum(np.moveaxis(apart, -1, 0)) / apart.shape[-1])
+def _distances(first: Array, second: Array) -> Array:
+    """(N, K) mean distances of points (N, Q, 3) and (K, Q, 3) [m]."""
+    each = zip(np.swapaxes(first, 0, 1), np.swapaxes(second, 0, 1), strict=True)
+    return np.asarray(sum(cdist(one, other) for one, other in each) / first.shape[1])
 
 
 # --- All motions of some libraries and their mirror images as postures at small steps of time
@@ -236,6 +220,7 @@ def _distance(first: Array, second: Array) -> Array:
 STEP_M = 0.045  # mean distance of points between postures: well below performers' differences
 MOST_RATE = 25.0  # postures per second of a motion; the least are 8
 MOST_POSTURES = 450  # postures of a library, without mirror images; with more the steps are widened
+NEIGHBORS = 2  # postures before and after a cycle that the spline within it depends on
 
 
 def known_motions(libraries: Sequence[Library], body: Body) -> tuple[Posture, tuple[tuple[str, bool], ...]]:
@@ -246,9 +231,9 @@ def known_motions(libraries: Sequence[Library], body: Body) -> tuple[Posture, tu
     """
     every = [each for library in libraries for each in _motions(library, body)]
     plain = Posture.concatenate([posture for posture, _ in every])
-    posture = Posture.concatenate([plain, mirrored(plain)])
     names = [name for _, own in every for name in own]
-    facing = yawed_at(posture, -headings_rad(posture), np.zeros((2 * len(names), 3)))
+    both = Posture.concatenate([plain, mirrored(plain)])
+    facing = yawed_at(both, -headings_rad(both), np.zeros((2 * len(names), 3)))
     return facing, (*((name, False) for name in names), *((name, True) for name in names))
 
 
@@ -258,10 +243,9 @@ def _motions(library: Library, body: Body) -> list[tuple[Posture, list[str]]]:
     if total > MOST_POSTURES:
         found = [_sampled(library, motion, body, total / MOST_POSTURES) for motion in library.motions]
     used = {step.posture for motion in library.motions for step in motion.steps}
-    for loose in library.postures:
-        if loose.name not in used:
-            posture = Posture.stack([transferred(loose.posture, library.actor, body)])
-            found.append((posture, [loose.name]))
+    loose = [each for each in library.postures if each.name not in used]
+    if loose:
+        found.append((Posture.stack([each.posture for each in loose]), [each.name for each in loose]))
     return found
 
 
@@ -270,16 +254,23 @@ def _sampled(
 ) -> tuple[Posture, list[str]]:
     """A motion at steps of time in which its points move about `STEP_M` times `spacing`."""
     whole = motion.duration_s if motion.cyclic else motion.steps[-1].time_s
-    fine = np.linspace(0.0, whole, int(np.clip(np.ceil(whole * MOST_RATE) + 1, 3, MOST_POSTURES)))
-    posture = sample_motion(library, motion, body, fine)
+    around, knots = np.arange(len(motion.steps)), np.array([step.time_s for step in motion.steps])
+    if motion.cyclic:
+        around = np.arange(-NEIGHBORS, len(knots) + NEIGHBORS)
+    cycle, steps = np.divmod(around, len(knots))
+    away_s = knots[steps] + cycle * whole
+    posed = Posture.stack([library.by_name[motion.steps[step].posture].posture for step in steps])
+    posed = yawed_at(posed, cycle * motion.travel[2], posed.translation)  # each cycle turns by as much
+
+    def at(time_s: Array) -> Posture:
+        alone = len(posed.translation) == 1
+        return posed[np.zeros(len(time_s), dtype=np.intp)] if alone else cubic_spline(posed, away_s, time_s)
+
+    posture = at(np.linspace(0.0, whole, int(np.clip(np.ceil(whole * MOST_RATE) + 1, 3, MOST_POSTURES))))
     points = body.points(body.pose(posture)) - posture.translation[:, None]
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=-1).mean(axis=1).sum())
     rate = np.clip(length / STEP_M / max(whole, 1e-6), 8.0, MOST_RATE) / spacing
     count = int(np.clip(np.ceil(whole * rate), 3, MOST_POSTURES))
-    step = whole / count if motion.cyclic else whole / (count - 1)
-    time = step * np.arange(count)
-    away = np.abs(time[:, None] - np.array([entry.time_s for entry in motion.steps]))
-    if motion.cyclic:
-        away = np.minimum(away, whole - away)
-    names = [motion.steps[int(i)].posture for i in away.argmin(axis=1)]
-    return sample_motion(library, motion, body, time), names
+    time_s = np.linspace(0.0, whole, count, endpoint=not motion.cyclic)
+    nearest = np.abs(time_s[:, None] - away_s).argmin(axis=1)
+    return at(time_s), [motion.steps[steps[own]].posture for own in nearest]

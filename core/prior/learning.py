@@ -6,10 +6,10 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body
-from ..body.posture import Posture, headings_rad, turned_and_shifted
+from ..body.posture import Posture, headings_rad, turned_and_shifted, yaw_rotation
+from ..body.skeleton import SIDES
 from ..errors import InputError
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep
-from .motion_playback import ankle_heights, shape_vectors
 from .texts import LONGEST_NAME, identifier_from
 
 FEWEST, MOST = 10, 40  # default bounds of the number of postures
@@ -132,3 +132,27 @@ def _tags(body: Body, posture: Posture) -> list[tuple[str, ...]]:
     higher = [left - right > 0.08, right - left > 0.08]  # [m], of a foot that is lifted
     words = np.select(higher, ["left foot up", "right foot up"], "")
     return [(str(word),) if word else () for word in words]
+
+
+def shape_vectors(body: Body, posture: Posture) -> Array:
+    """Shape vectors (F, 3 P); their distance is the root mean square distance of the points [m].
+
+    They are the principal points relative to the ground below the hips, the performer facing -Y.
+    """
+    points = body.points(body.pose(posture))
+    ground = posture.translation * [1.0, 1.0, 0.0]
+    turn = yaw_rotation(-headings_rad(posture))
+    seen = (points - ground[..., None, :]) @ np.swapaxes(turn, -1, -2)
+    return np.asarray(seen.reshape(*posture.batch, -1) / np.sqrt(points.shape[-2]))
+
+
+def ankle_heights(body: Body, posture: Posture) -> Array:
+    """Heights (F, 2) of the left and the right ankle over those of feet flat on z = 0 [m].
+
+    Ankles tell the floor's height, as soles do not: the skeleton's feet, rigid with the shins, point into the
+    floor at the end of a step.
+    """
+    points = body.points(body.pose(posture))
+    ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
+    below = [0.36 * body.actor.segments_m[f"foot.{side}"] for side in SIDES]
+    return np.asarray(points[..., ankles, 2] - below)

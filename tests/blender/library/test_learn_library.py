@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
+from keymark.core.prior.learning import shape_vectors
 from keymark.core.prior.library import read_library
-from keymark.core.prior.motion_playback import shape_vectors
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature

@@ -11,9 +11,8 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture, headings_rad, turned_and_shifted
 from keymark.core.body.skeleton import SIDES
 from keymark.core.errors import InputError
-from keymark.core.prior.learning import LibraryMetadata, learn_library, on_floor
+from keymark.core.prior.learning import LibraryMetadata, ankle_heights, learn_library, on_floor
 from keymark.core.prior.library import read_library, write_library
-from keymark.core.prior.motion_playback import ankle_heights
 
 BODY = Body(Actor.from_stature(1.8))
 COLUMN = {name: place for place, name in enumerate(BODY.skeleton.dof_names)}

@@ -1,7 +1,7 @@
 """What is believed beforehand, number by number."""
 
 import numpy as np
-from _libraries import random_posture
+from _libraries import random_posture, sample_motion
 from _performances import stepping
 from _recorded import assert_recorded
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film
@@ -22,8 +22,7 @@ from keymark.core.prior.keyframes import (
     with_offset,
     with_turns,
 )
-from keymark.core.prior.learning import LibraryMetadata, learn_library, spread_frames
-from keymark.core.prior.motion_playback import sample_motion, shape_vectors
+from keymark.core.prior.learning import LibraryMetadata, learn_library, shape_vectors, spread_frames
 from keymark.core.prior.registry import SHIPPED, find_library
 from keymark.core.prior.transfer import transferred
 

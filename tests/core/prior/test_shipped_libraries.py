@@ -8,13 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from _libraries import ACTOR
+from _libraries import ACTOR, sample_motion
 from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body, Pose
 from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture
 from keymark.core.prior.library import Library, LibraryMotion, read_library
-from keymark.core.prior.motion_playback import sample_motion
 
 SHIPPED = Path(__file__).resolve().parents[3] / "presets" / "keyframes"
 KINDS = {"aerobic", "balance", "jumping", "kicking", "punching", "reaching", "running", "squatting_lifting"}
