@@ -219,28 +219,26 @@ class FrameCosts:
         `tables` has costs (N, L) of each limb's parts, `limbs` (N, 4) the best ones: arms count for balance.
         """
         weights = mass_weights(HUMAN).astype(np.float32)
-        level = self.stances.features.points[stance, :, :2] * weights[:, None]
-        mass = level[:, TRUNK_POINTS].sum(axis=1)
+        trunk = self.stances.features.points[stance][:, TRUNK_POINTS, :2]
+        mass = (trunk * weights[TRUNK_POINTS, None]).sum(axis=1)
         choices = {}
         for column, limb in enumerate(LIMBS):
             turn, origin = self.stances.frame_of(limb, stance)
-            features = self.stances.limbs[limb]
-            own = weights[limb_points(limb)]
+            level = np.swapaxes(turn[:, :2], -1, -2)
+            features, own = self.stances.limbs[limb], weights[limb_points(limb)]
+            shares = (features.points * own[:, None]).sum(axis=1)  # (L, 3) of the center of mass
             if limb not in LEGS:
-                points = features.points[limbs[:, column]] @ np.swapaxes(turn, -1, -2) + origin[:, None]
-                mass = mass + (points[..., :2] * own[:, None]).sum(axis=1)
+                mass += (shares[limbs[:, column], None] @ level)[:, 0] + own.sum() * origin[:, :2]
                 continue
             height = self.foot_heights(limb, stance, places)
             table = tables[limb] if self.floor_m is None else tables[limb] + below_cost(height)
             index = likeliest(table, height)
-            points = np.einsum("nij,ncqj->ncqi", turn[:, :2], features.points[index])
-            sole = features.soles.mean(axis=1)[index]
             choices[limb] = LegChoices(
                 index,
                 np.take_along_axis(table, index, axis=1),
                 np.take_along_axis(height, index, axis=1),
-                np.einsum("nij,ncj->nci", turn[:, :2], sole),
-                (points * own[:, None]).sum(axis=2),
+                features.soles.mean(axis=1)[index] @ level,
+                shares[index] @ level,
             )
         left, right = (choices[limb] for limb in LEGS)
         if self.floor_m is None:
