@@ -154,10 +154,9 @@ def _candidates(
         row = int(np.searchsorted(given.sampled, frame))
         own = composed_candidates(
             composed.stances,
-            composed.states[row],
-            composed.path.posterior[row],
+            *composed.asked[row],
             fitted[int(frame)],
-            int(composed.path.stance[row]) // HEADINGS,
+            int(composed.stance[row]) // HEADINGS,
             float(explained[row]),
         )
         found.append(MatchedFrame(int(frame) + given.first, own))

@@ -19,6 +19,8 @@ from ..body.skeleton import SIDES
 from ..camera.camera import Camera
 from ..estimate.performer_placement import SAME_FLOOR_M, place_standing, standing_ankle_m
 from ..estimate.sigma import SIZE_STD, place_depth_std_m
+from ..estimate.windows import windows
+from ..numerics.vectors import columns_at
 from ..prior.library import Library
 from ..progress import Part, scaled
 from .clip_input import PosingInput, tempering
@@ -77,8 +79,9 @@ class Composition:
     """Postures of T frames, put together from parts."""
 
     stances: StanceFeatures
-    path: ComposedPath
-    states: list[FrameStates]
+    stance: IndexArray  # (T,) the likeliest
+    asked: dict[int, tuple[FrameStates, SingleArray]]
+    """By the row of each frame whose posture is asked for: its states, and their probabilities."""
     posture: Posture  # (T,)
     floor_m: float  # height of the floor
 
@@ -108,33 +111,64 @@ def compose_frames(
         floor_m = floor_height_m(given, stances, rough, floor_open)
     floor_seen_m = None if set(LEGS) <= set(given.unseen) else floor_m  # feet never seen tell no place
     yield 0.1
+    # Seconds that are composed together, and those on either side that are looked at besides: a posture
+    # depends on those of a second about it.
+    length, margin = (round(one / float(np.median(np.diff(time_s)))) for one in (20.0, 2.0))
+    spans = list(windows(len(sampled), length, margin))
+    rows = np.searchsorted(sampled, given.keyframes)
+    stance, asked, pieces = [], {}, []
+    for number, span in enumerate(spans):
+        begun, ended = (0.1 + 0.9 * (number + end) / len(spans) for end in (0, 1))
+        looking = _likeliest(given, stances, np.arange(span.first, span.last), rough, rounds, floor_seen_m)
+        states, path = yield from scaled(looking, begun, ended)
+        pieces.append(mean_postures(stances, states, path)[span.kept])
+        stance.append(path.stance[span.kept])
+        for row in rows[(rows >= span.keep_first) & (rows < span.keep_last)]:
+            asked[int(row)] = states[row - span.first], path.posterior[row - span.first]
+    posture = Posture.concatenate(pieces)
+    if floor_seen_m is not None and not len(given.posed.frames):
+        posture = _on_floor(given, posture, floor_seen_m)
+    posture = rested(given.body, posture, given.unseen)
+    return Composition(stances, np.concatenate(stance), asked, posture, floor_m)
+
+
+def _likeliest(
+    given: PosingInput,
+    stances: StanceFeatures,
+    own: IndexArray,
+    rough: Array,
+    rounds: Sequence[Sequence[float]],
+    floor_m: float | None,
+) -> Part[tuple[list[FrameStates], ComposedPath]]:
+    """The likeliest path through some rows in a row of the frames that are looked at, and its states.
+
+    `rough`: (T,) distances of all rows, about which shares of them are tried, in `rounds`.
+    """
+    camera, evidence, sampled, time_s = given.camera, given.evidence, given.sampled[own], given.time_s[own]
+    rough = rough[own]
     for turn, shares in enumerate(rounds):
-        begun, ended = (0.1 + 0.9 * (turn + end) / len(rounds) for end in (0, 1))
+        begun, ended = ((turn + end) / len(rounds) for end in (0, 1))
         searched = begun + 0.85 * (ended - begun)
         is_last = turn == len(rounds) - 1
         # The first round is for the place; exchanged sides are tried where it is known.
         rows = np.unique(np.append(np.arange(0, len(sampled), 1 if is_last else 2), len(sampled) - 1))
         weight, posed = tempering(time_s[rows]), given.posed
-        costs = frame_costs(camera, evidence, stances, sampled[rows], floor_seen_m)
+        costs = frame_costs(camera, evidence, stances, sampled[rows], floor_m)
         for index, frame in enumerate(posed.frames):
             for row in np.flatnonzero(sampled[rows] == frame):
                 hips, points = posed.hips[index], posed.points[index]
                 costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, weight)
         others: list[FrameCosts] = []
         if is_last and evidence.keypoints.names:
-            others = frame_costs(camera, evidence.exchanged(), stances, sampled[rows], floor_seen_m)
+            others = frame_costs(camera, evidence.exchanged(), stances, sampled[rows], floor_m)
         states = yield from scaled(_states(costs, others, rough[rows], shares), begun, searched)
         step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
         leading = best_path(stances, states, costs, others, time_s[rows], weight, step_m)
         path = yield from scaled(leading, searched, ended)
         if not is_last:
-            hips = np.stack([np.interp(time_s, time_s[rows], column) for column in path.hips.T], axis=-1)
-            hips = np.stack([_smoothed(column, time_s) for column in hips.T], axis=-1)
+            hips = _smoothed(columns_at(time_s, time_s[rows], path.hips), time_s)
             rough = np.array([camera.depth(at, int(frame)) for at, frame in zip(hips, sampled, strict=True)])
-    posture = mean_postures(stances, states, path)
-    if floor_seen_m is not None and not len(given.posed.frames):
-        posture = _on_floor(given, posture, floor_seen_m)
-    return Composition(stances, path, states, rested(given.body, posture, given.unseen), floor_m)
+    return states, path
 
 
 def _on_floor(given: PosingInput, posture: Posture, floor_m: float) -> Posture:
@@ -260,7 +294,8 @@ def rough_depths(
 
 
 def _smoothed(values: Array, time_s: Array) -> Array:
-    """Running medians over 0.6 s to either side, and then means."""
-    near = np.abs(time_s[:, None] - time_s) < 0.6
-    median = np.array([np.median(values[own]) for own in near])
-    return np.array([median[own].mean() for own in near])
+    """Running medians of values (T, ...) over 0.6 s to either side, and then means."""
+    first, last = np.searchsorted(time_s, time_s - 0.6, "right"), np.searchsorted(time_s, time_s + 0.6)
+    near = list(zip(first, last, strict=True))
+    median = np.array([np.median(values[a:b], axis=0) for a, b in near])
+    return np.array([median[a:b].mean(axis=0) for a, b in near])
