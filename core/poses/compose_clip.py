@@ -295,7 +295,6 @@ def rough_depths(
 
 def _smoothed(values: Array, time_s: Array) -> Array:
     """Running medians of values (T, ...) over 0.6 s to either side, and then means."""
-    first, last = np.searchsorted(time_s, time_s - 0.6, "right"), np.searchsorted(time_s, time_s + 0.6)
-    near = list(zip(first, last, strict=True))
-    median = np.array([np.median(values[a:b], axis=0) for a, b in near])
-    return np.array([median[a:b].mean(axis=0) for a, b in near])
+    near = [np.flatnonzero(np.abs(time_s - at) < 0.6) for at in time_s]
+    median = np.array([np.median(values[own], axis=0) for own in near])
+    return np.array([median[own].mean(axis=0) for own in near])
