@@ -98,7 +98,7 @@ def _path(twist: Array, swing: Array, looks: Array, time_s: Array) -> IndexArray
         between[:LOOKS, :LOOKS] = np.minimum(0.5 * jump**2, 4.0)
         between[LOOKS, :LOOKS] = between[:LOOKS, LOOKS] = 0.5
         steps.append(between)
-    return cheapest_path(list(own), steps)
+    return cheapest_path(list(own), steps.__getitem__)
 
 
 def _apart(first: Array, second: Array) -> Array:

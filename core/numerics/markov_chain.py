@@ -3,41 +3,23 @@
 States have costs (negative log likelihoods), and so have the steps between those of two times.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
 
-
-@dataclass(frozen=True, eq=False)
-class Steps:
-    """T - 1 arrays (J, K) of costs of steps, made when they are asked for: the memory of one is needed."""
-
-    count: int  # T - 1
-    cost: Callable[[int], SingleArray]  # of the steps from the states of a time to those of the next
-
-    def __iter__(self) -> Iterator[SingleArray]:
-        """The costs in the order of time."""
-        return map(self.cost, range(self.count))
-
-    def __reversed__(self) -> Iterator[SingleArray]:
-        """The costs, the latest first."""
-        return map(self.cost, reversed(range(self.count)))
+Step = Callable[[int], Any]
+"""Gives the costs (J, K) of the steps from the states of a time to those of the next. It is asked again and
+again, so that the memory of one time is needed."""
 
 
-def cheapest_path(
-    own: Sequence[Array | SingleArray], steps: Steps | Sequence[Array | SingleArray]
-) -> IndexArray:
-    """(T,) the states of the cheapest path (Viterbi 1967).
-
-    `own`: T arrays (K,) of the states' costs; `steps`: T - 1 arrays (J, K) of the steps' from each state to
-    each next.
-    """
+def cheapest_path(own: Sequence[Array | SingleArray], step: Step) -> IndexArray:
+    """(T,) the states of the cheapest path (Viterbi 1967); `own` are T arrays (K,) of the states' costs."""
     total, sources = own[0], []
-    for step, cost in zip(steps, own[1:], strict=True):
-        through = total[:, None] + step
+    for at, cost in enumerate(own[1:]):
+        through = total[:, None] + step(at)
         source = through.argmin(axis=0)
         sources.append(source)
         total = through[source, np.arange(len(cost))] + cost
@@ -54,7 +36,7 @@ def exchanged_path(own: Array, stays: Array, turns: Array) -> BoolArray:
     from a frame as it was, and with an exchange.
     """
     steps = np.stack([np.stack([stays, turns], axis=-1), np.stack([turns, stays], axis=-1)], axis=-2)
-    return cheapest_path(list(own), list(steps)).astype(bool)
+    return cheapest_path(list(own), list(steps).__getitem__).astype(bool)
 
 
 NOBODY = -1
@@ -124,21 +106,16 @@ def cheapest_track(
     return track
 
 
-def cheapest_pairs(
-    own: Sequence[SingleArray],
-    first: Steps | Sequence[SingleArray],
-    second: Steps | Sequence[SingleArray],
-) -> tuple[IndexArray, IndexArray]:
+def cheapest_pairs(own: Sequence[SingleArray], first: Step, second: Step) -> tuple[IndexArray, IndexArray]:
     """The cheapest path of pairs whose halves step each on their own: rows and columns (T,).
 
-    `own`: T arrays (J, K) of the pairs' costs; `first` and `second`: T - 1 arrays (J, J') and (K, K') of the
-    steps' costs.
+    `own` are T arrays (J, K) of the pairs' costs.
     """
     total, sources = own[0], []
-    for one, other, cost in zip(first, second, own[1:], strict=True):
-        through = total[:, None, :] + one[:, :, None]  # (J, J', K)
+    for at, cost in enumerate(own[1:]):
+        through = total[:, None, :] + first(at)[:, :, None]  # (J, J', K)
         row = through.argmin(axis=0)
-        nearer = through.min(axis=0)[:, :, None] + other  # (J', K, K')
+        nearer = through.min(axis=0)[:, :, None] + second(at)  # (J', K, K')
         column = nearer.argmin(axis=1)
         sources.append((row, column))
         total = nearer.min(axis=1) + cost
@@ -152,16 +129,17 @@ def cheapest_pairs(
     return found[:, 0], found[:, 1]
 
 
-def path_posteriors(own: Sequence[SingleArray], steps: Steps | Sequence[SingleArray]) -> list[SingleArray]:
+def path_posteriors(own: Sequence[SingleArray], step: Step) -> list[SingleArray]:
     """T arrays (K,) of the states' probabilities given all times (forward-backward)."""
     forward = [_normalized(np.exp(own[0].min() - own[0]))]
-    for step, cost in zip(steps, own[1:], strict=True):
-        forward.append(_normalized((forward[-1] @ np.exp(-step)) * np.exp(cost.min() - cost)))
+    for at, cost in enumerate(own[1:]):
+        forward.append(_normalized((forward[-1] @ np.exp(-step(at))) * np.exp(cost.min() - cost)))
     backward = np.ones_like(own[-1])
     found = [forward[-1]]
-    for before, step, later in zip(forward[-2::-1], reversed(steps), own[:0:-1], strict=True):
-        backward = _normalized(np.exp(-step) @ (backward * np.exp(later.min() - later)))
-        found.append(_normalized(before * backward))
+    for at in reversed(range(len(own) - 1)):
+        later = own[at + 1]
+        backward = _normalized(np.exp(-step(at)) @ (backward * np.exp(later.min() - later)))
+        found.append(_normalized(forward[at] * backward))
     return found[::-1]
 
 

@@ -29,7 +29,7 @@ from .candidates import MatchedFrame, composed_candidates
 from .clip_input import PosingInput, posing_input, stretch_of, tempering
 from .compose_clip import Composition, compose_frames
 from .found_poses import FoundPoses
-from .frame_likelihood import frame_likelihoods
+from .frame_likelihood import frame_likelihood
 from .match_evidence import marker_moments
 from .part_features import HEADINGS
 
@@ -136,9 +136,9 @@ def _explained(given: PosingInput, posture: Posture) -> tuple[Array, Array]:
         (T, A) how far each is off in standard deviations of performers' differences; NaN where not seen.
     """
     places = marker_moments(given.body, given.evidence, posture).centroid + posture.translation[:, None]
-    likelihoods = frame_likelihoods(given.camera, given.evidence, given.sampled)
     shares, off = np.zeros(len(given.sampled)), np.full(places.shape[:2], np.nan)
-    for row, seen in enumerate(likelihoods):
+    for row, frame in enumerate(given.sampled):
+        seen = frame_likelihood(given.camera, given.evidence, int(frame))
         if seen.visible.any():
             residual = np.einsum("aki,ai->ak", seen.rows, places[row] - seen.location)
             off[row, seen.visible] = np.linalg.norm(residual, axis=-1)[seen.visible]

@@ -26,7 +26,7 @@ from ..progress import Part, scaled
 from .clip_input import PosingInput, tempering
 from .composed_path import ComposedPath, best_path
 from .composed_states import LEGS, FrameCosts, FrameStates, PosedCosts
-from .frame_likelihood import frame_likelihoods
+from .frame_likelihood import frame_likelihood
 from .match_evidence import MatchEvidence
 from .part_features import StanceFeatures, stance_features
 from .part_pools import TORSO, part_dofs, part_pools
@@ -218,8 +218,8 @@ def frame_costs(
 ) -> list[FrameCosts]:
     """What some frames say of stances and limbs."""
     # Deviation of a composed body, relative to that of another performer's posture.
-    likelihoods = frame_likelihoods(camera, evidence, frames, 0.4)
-    return [FrameCosts(each, stances, floor_m) for each in likelihoods]
+    seen = (frame_likelihood(camera, evidence, int(frame), 0.4) for frame in frames)
+    return [FrameCosts(each, stances, floor_m) for each in seen]
 
 
 def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array, floor_open: bool) -> float:

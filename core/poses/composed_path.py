@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray, single
 from ..body.human import HUMAN, LIMBS
-from ..numerics.markov_chain import Steps, cheapest_pairs, cheapest_path, path_posteriors
+from ..numerics.markov_chain import Step, cheapest_pairs, cheapest_path, path_posteriors
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..progress import Part
 from .composed_states import LEGS, FrameCosts, FrameStates
@@ -54,16 +54,15 @@ def best_path(
     """
     own, duration_s = [np.float32(tempering) * each.cost for each in states], np.diff(time_s)
 
-    def step_cost(at: int) -> SingleArray:
+    def step(at: int) -> SingleArray:
         after = at + 1
         return _step_cost(
             stances, states[at], states[after], costs[after], float(duration_s[at]), depth_step_m
         )
 
-    steps = Steps(len(duration_s), step_cost)
-    best = cheapest_path(own, steps)
+    best = cheapest_path(own, step)
     yield 0.2
-    posterior = path_posteriors(own, steps)
+    posterior = path_posteriors(own, step)
     yield 0.5
     stance = np.array([each.stance[row] for each, row in zip(states, best, strict=True)])
     hips = np.array([each.hips[row] for each, row in zip(states, best, strict=True)])
@@ -93,7 +92,7 @@ def limb_paths(
     # Speed of elbows, wrists, knees and ankles [m/s], and how rough the pool is [m].
     variances = single((2.0 * duration_s) ** 2 + 0.09**2)
 
-    def steps(limb: str, kept: Sequence[IndexArray | slice]) -> Steps:
+    def steps(limb: str, kept: Sequence[IndexArray | slice]) -> Step:
         def points(row: int) -> SingleArray:
             turn, origin = stances.frame_of(limb, stance[[row]])
             return stances.limbs[limb].points[kept[row]] @ turn[0].T + origin[0]
@@ -102,7 +101,7 @@ def limb_paths(
             moved = squared_distances(points(at), points(at + 1))
             return multivariate_cost(moved / variances[at], DEGREES, 3)
 
-        return Steps(len(duration_s), cost)
+        return cost
 
     found = np.empty((len(stance), len(LIMBS)), dtype=np.intp)
     posterior: dict[str, Array] = {}

@@ -58,17 +58,10 @@ class FrameLikelihood:
         return multivariate_cost((off[0] + off[1] * np.float32(2.0) + off[2]) / variance, DEGREES, 3)
 
 
-def frame_likelihoods(
-    camera: Camera, evidence: MatchEvidence, frames: IndexArray, scale: float = 1.0
-) -> list[FrameLikelihood]:
-    """What some frames show.
-
-    `scale` is the deviation of the postures that are compared, relative to another performer's.
-    """
-    return [_frame_likelihood(camera, evidence, int(frame), scale) for frame in frames]
-
-
-def _frame_likelihood(camera: Camera, evidence: MatchEvidence, frame: int, scale: float) -> FrameLikelihood:
+def frame_likelihood(
+    camera: Camera, evidence: MatchEvidence, frame: int, scale: float = 1.0
+) -> FrameLikelihood:
+    """What a frame shows; `scale` is the deviation of what is compared, relative to another performer's."""
     tracks, markers = evidence.tracks, len(evidence.segments)
     rotation, location = camera.pose(frame)
     right, up, backward = rotation.T

@@ -9,7 +9,6 @@ from _performances import jitter_mm, seen_by_network
 from keymark.core.arrays import Array
 from keymark.core.numerics.markov_chain import (
     NOBODY,
-    Steps,
     cheapest_pairs,
     cheapest_path,
     cheapest_track,
@@ -163,7 +162,7 @@ def test_the_cheapest_path_is_the_cheapest_of_all() -> None:
             return float(sum(row[i] for row, i in zip(rows, path, strict=True)) + moved)
 
         best = min(product(range(ROWS), repeat=FRAMES), key=cost)
-        assert tuple(cheapest_path(rows, steps)) == best
+        assert tuple(cheapest_path(rows, steps.__getitem__)) == best
 
 
 def test_the_cheapest_pairs_are_the_cheapest_of_all() -> None:
@@ -180,7 +179,7 @@ def test_the_cheapest_pairs_are_the_cheapest_of_all() -> None:
 
         every = list(product(range(ROWS), repeat=FRAMES))
         best = min(product(every, every), key=cost)
-        found = cheapest_pairs(own, first, second)
+        found = cheapest_pairs(own, first.__getitem__, second.__getitem__)
         assert (tuple(found[0]), tuple(found[1])) == best
 
 
@@ -233,7 +232,7 @@ def test_probabilities_are_those_of_all_paths() -> None:
         cost += sum(step[a, b] for step, a, b in zip(steps, path[:-1], path[1:], strict=True))
         for frame, row in enumerate(path):
             total[frame][row] += np.exp(-cost)
-    for found, wanted in zip(path_posteriors(rows, steps), total, strict=True):
+    for found, wanted in zip(path_posteriors(rows, steps.__getitem__), total, strict=True):
         assert np.allclose(found, wanted / wanted.sum(), atol=1e-4)
 
 
@@ -257,9 +256,9 @@ def test_costs_of_steps_are_not_kept() -> None:
         most = max(most, len(alive))
         return made
 
-    steps = Steps(40, cost)
-    np.testing.assert_array_equal(cheapest_path(own, steps), cheapest_path(own, fixed))
-    for found, wanted in zip(path_posteriors(own, steps), path_posteriors(own, fixed), strict=True):
+    kept = fixed.__getitem__
+    np.testing.assert_array_equal(cheapest_path(own, cost), cheapest_path(own, kept))
+    for found, wanted in zip(path_posteriors(own, cost), path_posteriors(own, kept), strict=True):
         np.testing.assert_array_equal(found, wanted)
     assert most <= 3
 
