@@ -8,9 +8,10 @@ forward into the next stretches. Who of them is the performer is chosen later, a
 """
 
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import chain
 
 import numpy as np
@@ -57,7 +58,7 @@ def find_people(clip: Clip, network: PoseNetwork, closer: CloserLook | None = No
         InputError: It is a picture, has no frames, or nobody is in it.
     """
     yield Progress(DETECTING, 0.0)
-    with PeopleFinder(clip, network, closer) as finder:
+    with PeopleFinder(clip, lambda: (network, closer)) as finder:
         for index, _, picture in clip.frames():
             finder.add(index, picture)
             yield Progress(DETECTING, min((index + 1) / clip.frame_count, 1.0))
@@ -67,18 +68,23 @@ def find_people(clip: Clip, network: PoseNetwork, closer: CloserLook | None = No
 class PeopleFinder:
     """Looks for everyone in the pictures of a clip while these are read one after the other."""
 
-    def __init__(self, clip: Clip, network: PoseNetwork, closer: CloserLook | None = None) -> None:
+    def __init__(self, clip: Clip, load: Callable[[], tuple[PoseNetwork, CloserLook | None]]) -> None:
+        """Begin with a clip; its first picture has the networks loaded, which take their time."""
         refuse_picture(clip)
         self.count = 0
         """Frames so far."""
         self._clip = clip
         self._every = max(1, round(clip.fps / LOOKS_A_SECOND))
         self._halvings = max(0, (max(clip.size) - 1) // LARGEST_SIDE_PX).bit_length()
-        self._closer, self._tracking = closer, _Tracking(network, closer)
+        self._load = load
         self._looked: list[int] = []  # frames that are looked at
         self._last: Image | None = None  # the last picture, where it is not
         self._pool = ThreadPoolExecutor(1)
         self._waiting: deque[Future[None]] = deque()
+
+    @cached_property
+    def _tracking(self) -> "_Tracking":
+        return _Tracking(*self._load())
 
     def __enter__(self) -> "PeopleFinder":
         return self
@@ -105,24 +111,24 @@ class PeopleFinder:
         path, size = self._clip.path, self._clip.size
         if self._last is not None:
             self._look(self._last)
+        if not self._looked:
+            raise InputError(f"{path}: holds no frame that can be decoded; it must be a video or images")
         self._waiting.append(self._pool.submit(self._tracking.end_stretch))
         while self._waiting:
             self._waiting.popleft().result()
-        if not self._looked:
-            raise InputError(f"{path}: holds no frame that can be decoded; it must be a video or images")
         tracks = _believed(self._tracking.seen)
         if not tracks:
             raise InputError(
                 f"{path}: nobody is seen in any of its {self.count} frames; it must show a person, at "
                 "least from the head to the hips and not too small"
             )
-        (first, *_), beside = tracks[0].values(), None if self._closer is None else self._closer.beside
+        (first, *_), closer = tracks[0].values(), self._tracking.closer
         frames = [SeenPeople.nobody(len(first.pixel))] * self.count
         looked = np.array(self._looked)
         for track in tracks:
             _fill(frames, looked, track, size, 0.5**self._halvings)
         people = People(LAYOUT.names, NAME, size, tuple(frames))
-        return people if beside is None else beside.people(people)
+        return people if closer is None or closer.beside is None else closer.beside.people(people)
 
 
 def refuse_picture(clip: Clip) -> None:
@@ -137,7 +143,7 @@ class _Tracking:
     """Whom pictures show that come one after the other."""
 
     def __init__(self, network: PoseNetwork, closer: CloserLook | None) -> None:
-        self._network, self._closer = network, closer
+        self._network, self.closer = network, closer
         self._tracks = 0
         self._pictures: list[Image] = []  # of the stretch at hand
         self._seen: list[list[_Sighting]] = []
@@ -164,7 +170,7 @@ class _Tracking:
         if not any(self._seen):
             self._look(last // 2)
         self._people = self._seen[last]
-        self.seen += self._seen if self._closer is None else self._looked_at(self._closer)
+        self.seen += self._seen if self.closer is None else self._looked_at(self.closer)
         self._pictures, self._seen = [], []
 
     def _looked_at(self, closer: CloserLook) -> list[list[_Sighting]]:

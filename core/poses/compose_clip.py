@@ -147,7 +147,8 @@ def _likeliest(
     camera, evidence, sampled, time_s = given.camera, given.evidence, given.sampled[own], given.time_s[own]
     rough = rough[own]
     for turn, shares in enumerate(rounds):
-        begun, ended = ((turn + end) / len(rounds) for end in (0, 1))
+        # The second of two rounds takes three times as long: all frames, and exchanged sides.
+        begun, ended = (((turn + end) / len(rounds)) ** 2 for end in (0, 1))
         searched = begun + 0.85 * (ended - begun)
         is_last = turn == len(rounds) - 1
         # The first round is for the place; exchanged sides are tried where it is known.

@@ -80,4 +80,4 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
     return libraries, asked, take.keyframes, take.reference, inputs.method == "map"
 
 
-STAGE = Stage("pose", pose, _uses, lambda inputs: 0.0 if inputs.libraries is None else 6.0)
+STAGE = Stage("pose", pose, _uses, lambda inputs: 0.0 if inputs.libraries is None else 2.3)

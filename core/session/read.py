@@ -23,14 +23,13 @@ class WatchedReading(Reading):
 
 def read(session: Session) -> Job[Reading]:
     """Read the clip, or what is still known of it; the method is checked before this takes its time."""
-    take, kept = session.inputs.take, session.inputs.kept
-    check_method(take, session.inputs.method)
-    if not session.inputs.detects:
+    inputs = session.inputs
+    take, kept = inputs.take, inputs.kept
+    check_method(take, inputs.method)
+    if not inputs.detects:
         return (yield from read_footage(take, kept))
     clip = open_footage(take.clip, take.fps, take.camera.resolution)
-    with PeopleFinder(
-        clip, PoseNetwork(), CloserLook(session.inputs.network, session.inputs.hands)
-    ) as finder:
+    with PeopleFinder(clip, lambda: (PoseNetwork(), CloserLook(inputs.network, inputs.hands))) as finder:
         reading = yield from read_footage(take, kept, finder.add, DETECTING)
         if not finder.count:  # it is known already, and was not decoded
             return reading
@@ -45,4 +44,4 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
     return key, clip, take.contours, expected, *inputs.closer
 
 
-STAGE = Stage("read", read, _uses, lambda inputs: 6.0 if inputs.detects and inputs.kept is None else 1.5)
+STAGE = Stage("read", read, _uses, lambda inputs: 5.5 if inputs.detects and inputs.kept is None else 1.5)

@@ -21,4 +21,4 @@ def make_motion(session: Session) -> Job[Reconstruction]:
     return replace(made, motion=replace(motion, posture=posture))
 
 
-STAGE = Stage("reconstruct", make_motion, lambda inputs: (inputs.method, inputs.hands), lambda _inputs: 2.5)
+STAGE = Stage("reconstruct", make_motion, lambda inputs: (inputs.method, inputs.hands), lambda _inputs: 2.0)

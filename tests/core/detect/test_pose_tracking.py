@@ -98,7 +98,7 @@ def test_between_looks_everything_moves_on_along_a_curve() -> None:
 def test_pictures_are_let_go_of_once_they_were_looked_at() -> None:
     alive: list[weakref.ref[np.ndarray]] = []
     most = 0
-    with PeopleFinder(drawn([[]] * 2), cast(Any, FakeNetwork())) as finder:
+    with PeopleFinder(drawn([[]] * 2), lambda: (cast(Any, FakeNetwork()), None)) as finder:
         for index in range(6 * STRETCH):
             picture = draw_people(SIZE, [(160.0, 120.0, 50.0)])
             finder.add(index, picture)
