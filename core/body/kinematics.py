@@ -1,7 +1,7 @@
 """Forward kinematics and Jacobians of an actor's skeleton, over any batch of postures."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 
@@ -185,6 +185,8 @@ class SegmentMotion:
     turn: Mapping[str, Array]  # (F, 3, 3) in the world from the T pose that faces -Y, by segment
     start: Mapping[str, Array]  # (F, 3) by segment: its joint nearer to the trunk [m]
     end: Mapping[str, Array]  # (F, 3) by segment: its other end [m]
+    fingers: Mapping[str, Array] = field(default_factory=dict)
+    """(F, 3) flexions of fingers' joints by name as `index.L` [rad]; none where they are not known."""
 
 
 def segment_motion(body: Body, posture: Posture, time_s: Array, extremities: Extremities) -> SegmentMotion:

@@ -1,9 +1,10 @@
 """The turn of hands that a crop shows, by a network that sees 21 points of one (Zhang et al. 2020).
 
 Every hand is looked at as it is and mirrored, since the network takes a palm for the back of a hand now and
-then, but seldom in both. A hand is twelve numbers: its wrist [px], and of each look the turn as a rotation
-vector [rad] in axes of the line of sight (x right, y down, z away), how sure it is that there is a hand, and
-that it is the side's, 0 to 1. At rest it points to the performer's side, palm down, thumb forward.
+then, but seldom in both. A hand is 22 numbers: its wrist [px], and of each look the turn as a rotation vector
+[rad] in axes of the line of sight (x right, y down, z away), how sure it is that there is a hand, and that it
+is the side's, 0 to 1, and the curls of its fingers [rad], the thumb's first. At rest it points to the
+performer's side, palm down, thumb forward.
 """
 
 from pathlib import Path
@@ -11,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..arrays import Array, Image, SingleArray
+from ..body.fingers import MIDDLE, RESTING, WRIST, curls_of, palm_of
 from ..body.rotations import exponential, logarithm
 from ..body.skeleton import SIDES
 from ..numerics.vectors import unit
@@ -23,15 +25,11 @@ SIDE, POINTS = 224, 21  # of the network's input, and of its points
 CROP_HANDS = 1.6  # side of a crop, in lengths of a hand, and then in sizes of what is seen of it
 LENGTH_M = 0.19
 SMALLEST_PX = 35.0  # length of a hand that shows nothing
-WRIST, INDEX, MIDDLE, LITTLE = 0, 5, 9, 17  # and knuckles
 OUTPUTS = ("Identity", "Identity_1", "Identity_2", "Identity_3")
-RESTING = {"L": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, -1.0, 0.0]])}
-RESTING["R"] = RESTING["L"] * [-1.0, 1.0, 1.0]
-"""Axes of a hand that rests, as columns: along it, toward the thumb, out of its back."""
 
 
 def no_hands(people: int) -> Array:
-    """(H, 2, 12) of people whose hands were not looked at."""
+    """(H, 2, 22) of people whose hands were not looked at."""
     return np.full((people, len(SIDES), HAND_NUMBERS), np.nan)
 
 
@@ -42,7 +40,7 @@ class HandNetwork:
         self._session = network_session(model, "hands")
 
     def __call__(self, picture: Image, pose: Pose) -> Array:
-        """(2, 12) a person's hands in a picture (height, width, 3), blue first; NaN where too small."""
+        """(2, 22) a person's hands in a picture (height, width, 3), blue first; NaN where too small."""
         hands = no_hands(1)[0]
         for row, side in enumerate(SIDES):
             crop = _first_crop(pose, side)
@@ -53,7 +51,7 @@ class HandNetwork:
             hands[row, :2] = np.mean([pixel[WRIST] for pixel, *_ in looks], axis=0)
             hands[row, 2:] = np.concatenate(
                 [
-                    [*logarithm(hand_turn(place, side)), there, _of(side, left)]
+                    [*logarithm(hand_turn(place, side)), there, _of(side, left), *curls_of(place, side)]
                     for _, place, there, left in looks
                 ]
             )
@@ -83,11 +81,7 @@ def _of(side: str, left: float) -> float:
 
 def hand_turn(points: Array, side: str) -> Array:
     """(3, 3) turn from rest of a hand by its 21 points (21, 3), in the axes of these."""
-    along = unit(points[MIDDLE] - points[WRIST])
-    across = points[INDEX] - points[LITTLE]
-    across = unit(across - across @ along * along)
-    back = np.cross(across, along) if side == "L" else np.cross(along, across)
-    return np.column_stack([along, across, back]) @ RESTING[side].T
+    return palm_of(points, side) @ RESTING[side].T
 
 
 def _first_crop(pose: Pose, side: str) -> Crop:

@@ -66,7 +66,7 @@ def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
 
 
 FACE_NUMBERS = 6  # of a face, as `face` explains them
-HAND_NUMBERS = 12  # of a hand, as `hands` does
+HAND_NUMBERS = 22  # of a hand, as `hands` does
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ class Keypoints:
     notes: tuple[str, ...] = ()
     """Sentences on who of several people was taken, and on what the sources' files leave open."""
     face: Array | None = None  # (F, 6) faces as in `face`, NaN where not looked at; None where nowhere
-    hands: Array | None = None  # (F, 2, 12) hands, left and right, as in `hands`, likewise
+    hands: Array | None = None  # (F, 2, 22) hands, left and right, as in `hands`, likewise
 
     def __post_init__(self) -> None:
         unknown = set(self.names) - set(BODY_POINTS)
@@ -177,7 +177,7 @@ class SeenPeople:
     score: Array  # (H, N) 0 to 1, 0 where not seen
     hint_m: Array  # (H, N, 3) as in `Keypoints`
     face: Array | None = None  # (H, 6) as in `Keypoints`
-    hands: Array | None = None  # (H, 2, 12) likewise
+    hands: Array | None = None  # (H, 2, 22) likewise
 
     @classmethod
     def nobody(cls, points: int) -> "SeenPeople":

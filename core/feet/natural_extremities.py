@@ -11,9 +11,10 @@ from types import MappingProxyType
 import numpy as np
 
 from ..arrays import Array
+from ..body.fingers import Hands
 from ..body.kinematics import Body, Extremities, Pose
 from ..body.posture import Posture
-from ..body.rotations import exponential, hinge
+from ..body.rotations import exponential, hinge, logarithm
 from ..body.skeleton import SIDES
 from ..numerics.vectors import gaussian, usual_step
 from .contacts import Contact, find_contacts, speeds
@@ -186,9 +187,13 @@ def _above_ground(bend: Array, over: Array, ahead: Array, palm: Array) -> Array:
 
 
 def natural_extremities(
-    body: Body, posture: Posture, time_s: Array, contacts: Sequence[Contact] | None = None
+    body: Body,
+    posture: Posture,
+    time_s: Array,
+    contacts: Sequence[Contact] | None = None,
+    hands: Hands | None = None,
 ) -> Extremities:
-    """Hands that hang relaxed, and feet that lie flat, roll and never pass the ground, in F postures.
+    """Hands that are seen or hang relaxed, feet that lie flat, roll and never pass the ground, in F postures.
 
     `contacts` are rests of the ankles, 0 the left and 1 the right; they are found where not given.
     """
@@ -197,5 +202,9 @@ def natural_extremities(
     rests = find_contacts(shins.ankle, time_s) if contacts is None else contacts
     ground = ground_of(body, pose, time_s, rests)
     feet = foot_turns(shins, Soles.of(body), ground, time_s)
-    hands = hand_turns(body, pose, ground.lowest_m, time_s)
-    return Extremities(MappingProxyType({**feet, **hands}))
+    turns = hand_turns(body, pose, ground.lowest_m, time_s)
+    if hands is not None:
+        for row, (name, hanging) in enumerate(turns.items()):
+            apart = logarithm(np.swapaxes(hanging, -1, -2) @ exponential(hands.bend[:, row]))
+            turns[name] = hanging @ exponential(hands.sure[:, row, None] * apart)
+    return Extremities(MappingProxyType({**feet, **turns}))

@@ -1,8 +1,9 @@
-"""Palms that face where they are seen to: the forearms' pronation, which moves none of the principal points.
+"""Hands as they are seen: the forearms' pronation, how hands are bent, and the curls of their fingers.
 
-What is believed is a path through the looks at a hand over time, by Viterbi: they may be of another hand,
-take the palm for the back, or jump. A look is believed as far as its mirror image says the same. Between and
-instead of such looks the pronation stays as it was estimated, as at keyframes that a person has posed.
+None of it moves a principal point. What is believed is a path through the looks at a hand over time, by
+Viterbi: they may be of another hand, take the palm for the back, or jump. A look is believed as far as its
+mirror image says the same. Between and instead of such looks the pronation stays as it was estimated, as at
+keyframes that a person has posed, and fingers are relaxed.
 """
 
 from collections.abc import Sequence
@@ -11,9 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import Array, IndexArray
+from ..body.fingers import FINGERS, RELAXED_RAD, Hands
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.rotations import exponential, to_quaternions
+from ..body.rotations import exponential, hinge, logarithm, to_quaternions
 from ..body.skeleton import SIDES
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
@@ -31,56 +33,68 @@ POSED_S = 0.3  # time from a posed keyframe in which it comes back
 LARGEST_RAD = np.radians(100.0)
 
 
-def seen_palms(
+def seen_hands(
     body: Body,
     posture: Posture,
     time_s: Array,
     keypoints: Keypoints,
     camera: Camera,
     posed: Sequence[int] = (),
-) -> Posture:
-    """The postures (F,) with palms as hands are seen; `posed` are frames of keyframes that a person posed."""
+) -> tuple[Posture, Hands | None]:
+    """The postures (F,) with palms as hands are seen, and how these are bent and closed; None of no looks.
+
+    `posed` are frames of keyframes that a person posed.
+    """
     if keypoints.hands is None:
-        return posture
+        return posture, None
     angles, apart_s = np.array(posture.angles), np.full(len(time_s), np.inf)
     for index in posed:
         apart_s = np.minimum(apart_s, np.abs(time_s - time_s[index]))
     free = np.clip(apart_s / POSED_S, 0.0, 1.0)
     pose, skeleton = body.pose(posture), body.skeleton
+    shape = (len(time_s), len(SIDES))
+    curls = np.broadcast_to(RELAXED_RAD, (*shape, len(FINGERS))).copy()
+    bend, sure = np.zeros((*shape, 3)), np.zeros(shape)
     for row, side in enumerate(SIDES):
         joint = skeleton.joint_index(f"forearm.{side}")
         column = skeleton.hinge_joints.index(joint)
-        forearm = pose.rotation[:, skeleton.joints[joint].parent]
+        forearm, axis = pose.rotation[:, skeleton.joints[joint].parent], skeleton.hinge_axes[column]
         hands = np.asarray(keypoints.hands)[:, row]
         seen = np.flatnonzero(np.isfinite(hands).all(axis=-1))
         if not len(seen):
             continue
-        twist, swing, looks = _twists(hands[seen], camera, seen, forearm[seen], skeleton.hinge_axes[column])
-        path = _path(twist, swing, looks, time_s[seen])
+        turn, looks = _looks(hands[seen], camera, seen, forearm[seen])
+        twist = _twists(turn, axis)
+        swing = logarithm(hinge(-axis, twist) @ turn)
+        path = _path(twist, np.linalg.norm(swing, axis=-1), looks, time_s[seen])
         kept = np.flatnonzero(path < LOOKS)
-        sure = np.exp(-0.5 * (_apart(looks[:, 0, :3], looks[:, 1, :3])[kept] / AGREEING_RAD) ** 2)
-        sure *= looks[kept, path[kept], 3]
-        believed = twist[kept, path[kept]]
-        weight = np.exp(-0.5 * ((time_s[:, None] - time_s[seen[kept]]) / SMOOTH_S) ** 2) * sure
+        believed = kept, path[kept]
+        doubt = _apart(looks[:, 0, :3], looks[:, 1, :3])[kept] / AGREEING_RAD
+        weight = np.exp(-0.5 * ((time_s[:, None] - time_s[seen[kept]]) / SMOOTH_S) ** 2)
+        weight = weight * np.exp(-0.5 * doubt**2) * looks[believed][:, 3]
+        share = weight / (weight.sum(axis=1, keepdims=True) + NATURAL)
         natural = angles[:, column]
-        off = believed - natural[:, None]
-        change = (weight * off).sum(axis=1) / (weight.sum(axis=1) + NATURAL)
+        change = (share * (twist[believed] - natural[:, None])).sum(axis=1)
         angles[:, column] = np.clip(natural + free * change, -LARGEST_RAD, LARGEST_RAD)
-    return replace(posture, angles=angles)
+        sure[:, row] = share.sum(axis=1)
+        mean = weight / np.maximum(weight.sum(axis=1, keepdims=True), 1e-12)
+        bend[:, row] = mean @ swing[believed]
+        curls[:, row] += share @ (looks[believed][:, 5:] - RELAXED_RAD)
+    return replace(posture, angles=angles), Hands(curls, bend, sure)
 
 
-def _twists(
-    hands: Array, camera: Camera, frame: IndexArray, forearm: Array, axis: Array
-) -> tuple[Array, Array, Array]:
-    """(S, 2) pronation and bend of the hand by each look [rad], and the looks (S, 2, 5)."""
-    looks = hands[:, 2:].reshape(-1, LOOKS, 5)
-    axes = viewer_axes(camera, hands[:, :2], frame)
-    turn = axes[:, None] @ exponential(looks[..., :3]) @ FACING
-    own = to_quaternions(np.swapaxes(forearm, -1, -2)[:, None] @ turn)
-    along = own[..., 1:] @ axis
-    length = np.hypot(own[..., 0], along)
-    twist = 2.0 * np.arctan2(along, own[..., 0])
-    return np.angle(np.exp(1j * twist)), 2.0 * np.arccos(np.clip(length, 0.0, 1.0)), looks
+def _looks(hands: Array, camera: Camera, frame: IndexArray, forearm: Array) -> tuple[Array, Array]:
+    """(S, 2, 3, 3) turn of the hand in a forearm without pronation by each look, and the looks (S, 2, 10)."""
+    looks = hands[:, 2:].reshape(len(hands), LOOKS, -1)
+    turn = viewer_axes(camera, hands[:, :2], frame)[:, None] @ exponential(looks[..., :3]) @ FACING
+    return np.swapaxes(forearm, -1, -2)[:, None] @ turn, looks
+
+
+def _twists(turn: Array, axis: Array) -> Array:
+    """(...) turns (..., 3, 3) about an axis alone [rad]."""
+    own = to_quaternions(turn)
+    twist = 2.0 * np.arctan2(own[..., 1:] @ axis, own[..., 0])
+    return np.asarray(np.angle(np.exp(1j * twist)))
 
 
 def _path(twist: Array, swing: Array, looks: Array, time_s: Array) -> IndexArray:

@@ -37,7 +37,7 @@ class StickFigure:
 def stick_figure(motion: Motion) -> StickFigure:
     """The lines of a motion's performer: arms and legs with hands and feet, hips, shoulders and spine."""
     body, pose = motion.body, motion.body.pose(motion.posture)
-    extremities = natural_extremities(body, motion.posture, motion.time_s)
+    extremities = natural_extremities(body, motion.posture, motion.time_s, hands=motion.hands)
     by_name = dict(zip(body.skeleton.point_names, np.swapaxes(motion.points, 0, 1), strict=True))
     limbs = []
     for side in ("L", "R"):

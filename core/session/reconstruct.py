@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ..estimate.reconstruct import Reconstruction, reconstruct
-from ..feet.palms import seen_palms
+from ..feet.palms import seen_hands
 from ..progress import Job
 from .pose import Posed
 from .session import Session, Stage
@@ -17,8 +17,8 @@ def make_motion(session: Session) -> Job[Reconstruction]:
         return made
     motion, take = made.motion, posed.seen.take
     own = [key.index for key in take.keyframes if key.is_posed]
-    posture = seen_palms(motion.body, motion.posture, motion.time_s, made.keypoints, take.camera, own)
-    return replace(made, motion=replace(motion, posture=posture))
+    posture, hands = seen_hands(motion.body, motion.posture, motion.time_s, made.keypoints, take.camera, own)
+    return replace(made, motion=replace(motion, posture=posture, hands=hands))
 
 
 STAGE = Stage("reconstruct", make_motion, lambda inputs: (inputs.method, inputs.hands), lambda _inputs: 2.0)

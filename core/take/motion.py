@@ -11,9 +11,11 @@ import numpy as np
 from .. import MOST_FRAMES
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.actor import Actor
+from ..body.fingers import FINGERS, Hands
 from ..body.human import HUMAN, LIMBS
 from ..body.kinematics import Body
 from ..body.posture import Posture, posture_to_json, rounded
+from ..body.skeleton import SIDES
 from ..errors import ConversionError, shown
 from ..files.json_file import read_json, write_json
 from ..files.kinds import ByName, Choice, Items, Kind, NumberArray, Whole, number_array, refuse
@@ -47,6 +49,8 @@ class Motion:
     """Indices of the frames in which the performer is not there."""
     unseen: tuple[str, ...] = ()
     """Limbs that are never seen and rest, as in `LIMBS`."""
+    hands: Hands | None = None
+    """How hands are bent and closed, as they are seen; None where none was looked at."""
 
     @property
     def scene_frames(self) -> Array:
@@ -72,6 +76,7 @@ class Motion:
         return replace(
             self,
             posture=self.posture[_nearest(there)],
+            hands=None if self.hands is None else self.hands[_nearest(there)],
             points=np.where(there[:, None, None], self.points, np.nan),
             point_covariance=np.where(there[:, None, None, None], self.point_covariance, np.nan),
             empty=tuple(np.flatnonzero(~there).tolist()),
@@ -87,6 +92,7 @@ class Motion:
             self,
             time_s=self.time_s[there],
             posture=self.posture[there],
+            hands=None if self.hands is None else self.hands[there],
             points=self.points[there],
             point_covariance=self.point_covariance[there],
             keyframe_indices=tuple(int(index[key]) for key in self.keyframe_indices if there[key]),
@@ -112,6 +118,11 @@ LARGEST_NUMBER = 1e15
 SIGNIFICANT_DIGITS = 6
 UPPER = (np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2]))
 """Rows and columns of xx, xy, xz, yy, yz, zz: the upper triangle of a covariance matrix."""
+
+
+FINGER_NAMES = tuple(f"{finger}.{side}" for side in SIDES for finger in FINGERS)
+LISTS = ("points", "posture", "sigma_m", "covariance_mm2", "curls_rad", "wrists_rad", "hands_seen")
+"""Fields with lists over the frames by name."""
 
 
 class Diagnostic(Kind):
@@ -168,16 +179,34 @@ class MotionFile(Record):
         tuple[Annotated[str, Choice(LIMBS)], ...], Items("limbs", 0, len(LIMBS), unique="limb")
     ] = ()
     """Limbs that are never seen: they rest, and characters keep their own."""
+    curls_rad: Annotated[Mapping[str, Array], _lists(FINGER_NAMES)] = field(default_factory=dict)
+    """Mean flexion of each finger's joints, toward the palm: F numbers [rad] each; only where hands were
+    looked at, as the two below."""
+    wrists_rad: Annotated[Mapping[str, Array], _lists(SIDES, 3)] = field(default_factory=dict)
+    """Turn of each hand in its forearm's frame as a rotation vector: F times [x, y, z] [rad] each."""
+    hands_seen: Annotated[Mapping[str, Array], _lists(SIDES)] = field(default_factory=dict)
+    """How far each hand is to be believed, 0 to 1: F numbers each."""
 
     ORDER = (
         *("fps", "frame_start", "frame_count", "method", "keyframes", "time_s", "points", "sigma_m"),
-        *("covariance_mm2", "posture", "actor", "diagnostics", "unseen"),
+        *(
+            "covariance_mm2",
+            "posture",
+            "actor",
+            "diagnostics",
+            "unseen",
+            "curls_rad",
+            "wrists_rad",
+            "hands_seen",
+        ),
     )
 
     def mistake(self) -> str:
         """See `Record`."""
         rows = {"time_s": self.time_s}
-        for name in ("points", "posture", "sigma_m", "covariance_mm2"):
+        if len({bool(own) for own in (self.curls_rad, self.wrists_rad, self.hands_seen)}) > 1:
+            return "curls_rad, wrists_rad and hands_seen are together or left out"
+        for name in LISTS:
             rows |= {f"{name}.{key}": array for key, array in getattr(self, name).items()}
         for name, array in rows.items():
             if len(array) != self.frame_count:
@@ -187,7 +216,7 @@ class MotionFile(Record):
         empty = np.isnan(self.points["head"]).any(axis=-1)
         if empty.all():
             return "points is null in every frame; a motion has a place in one frame or more"
-        for name in ("points", "posture", "sigma_m", "covariance_mm2"):
+        for name in LISTS:
             for key, array in getattr(self, name).items():
                 if (np.isnan(array).reshape(len(array), -1).any(axis=1) != empty).any():
                     return f"{name}.{key} is null in other frames than points.head; null is for all or none"
@@ -217,6 +246,18 @@ def write_motion(motion: Motion, path: Path) -> None:
         spread = _rows(_significant(np.swapaxes(covariance, 0, 1)), empty)
         uncertainty["sigma_m"] = dict(zip(names, _rows(rounded(motion.sigma_m.T), empty), strict=True))
         uncertainty["covariance_mm2"] = dict(zip(names, spread, strict=True))
+    hands: dict[str, Any] = {}
+    if motion.hands is not None:
+        curls, bend, sure = (
+            np.swapaxes(own, 0, 1) for own in (motion.hands.curls, motion.hands.bend, motion.hands.sure)
+        )
+        curls = np.swapaxes(curls, 1, 2).reshape(len(FINGER_NAMES), -1)
+        for name, keys, own in (
+            ("curls_rad", FINGER_NAMES, curls),
+            ("wrists_rad", SIDES, bend),
+            ("hands_seen", SIDES, sure),
+        ):
+            hands[name] = dict(zip(keys, _rows(rounded(own), empty), strict=True))
     file = MotionFile(
         fps=motion.fps,
         frame_start=motion.frame_start,
@@ -230,6 +271,7 @@ def write_motion(motion: Motion, path: Path) -> None:
         diagnostics={name: _significant(rows) for name, rows in sorted(motion.diagnostics.items())},
         unseen=motion.unseen,
         **uncertainty,
+        **hands,
     )
     write_json(path, file.to_json())
 
@@ -256,7 +298,17 @@ def read_motion(path: Path) -> Motion:
         diagnostics=MappingProxyType(dict(file.diagnostics)),
         empty=tuple(np.flatnonzero(~there).tolist()),
         unseen=file.unseen,
+        hands=_hands_of(file, _nearest(there)),
     )
+
+
+def _hands_of(file: MotionFile, frames: IndexArray) -> Hands | None:
+    if not file.curls_rad:
+        return None
+    curls, bend, sure = (
+        np.stack(list(lists.values()), axis=1) for lists in (file.curls_rad, file.wrists_rad, file.hands_seen)
+    )
+    return Hands(curls.reshape(len(sure), len(SIDES), -1), bend, sure)[frames]
 
 
 def _has_covariance(motion: Motion) -> bool:

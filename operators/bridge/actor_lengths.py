@@ -1,21 +1,25 @@
 """An actor's lengths, read from an armature's bones in any rest pose, and set."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 
 import bpy
 import numpy as np
+from mathutils import Vector
 
 from ...core.arrays import Array
 from ...core.body.actor import Actor
+from ...core.body.fingers import FINGER_BONES
 from ...core.body.kinematics import Body
 from ...core.body.rotations import hinge
 from ...core.body.skeleton import Placement, Skeleton
 from ...core.errors import InputError
-from .armature import ActorBones, BoneModel, bone_models, editing
+from .actor_bones import color_bones
+from .armature import ActorBones, BoneModel, bone_models, editing, finger_models
 from .object_space import object_space
 
+MODES = ("OBJECT", "POSE")  # from which bones may be edited for a moment
 ANY_STATURE_M = 1.7  # stature of the actor from which bone axes are taken; they do not depend on it
 
 
@@ -54,6 +58,8 @@ def skeleton_bones(armature_object: bpy.types.Object, skeleton: Skeleton) -> tup
 def read_bones(armature_object: bpy.types.Object, skeleton: Skeleton) -> ActorBones:
     """An armature's bones with any location, even scale, rest pose and rotation modes; raises as above."""
     models, bones = skeleton_bones(armature_object, skeleton), armature_object.data.bones
+    if has_fingers(armature_object):
+        models += finger_models(Body(Actor.from_stature(ANY_STATURE_M), skeleton))
     rest = {model.name: np.array(bones[model.name].matrix_local, dtype=np.float64) for model in models}
     modes = {model.name: armature_object.pose.bones[model.name].rotation_mode for model in models}
     return ActorBones(models, rest, modes, object_space(armature_object))
@@ -144,6 +150,54 @@ def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:
         for model in models:
             edit_bones[model.name].head = heads[model.name]
             edit_bones[model.name].tail = tails[model.name]
+        if has_fingers(armature_object):
+            _place_fingers(edit_bones, body, axes, scale)
+
+
+def has_fingers(armature_object: bpy.types.Object) -> bool:
+    """Whether an actor has bones for its fingers."""
+    return set(FINGER_BONES) <= set(armature_object.data.bones.keys())
+
+
+def add_fingers(armature_object: bpy.types.Object, body: Body) -> None:
+    """Give an actor bones for its fingers, each of which bends about its X alone, where it has none.
+
+    One from another file, or one that is being edited, stays as it is.
+    """
+    data, active = armature_object.data, bpy.context.view_layer.objects.active
+    kept = armature_object.library or data.library or data.override_library
+    if has_fingers(armature_object) or kept or (active is not None and active.mode not in MODES):
+        return
+    axes = {model.name: model.axes for model in skeleton_bones(armature_object, body.skeleton)}
+    models = finger_models(body)
+    with _edited(armature_object) as edit_bones:
+        for model in models:
+            edit_bones.new(model.name).parent = edit_bones[str(model.parent)]
+        _place_fingers(edit_bones, body, axes, object_space(armature_object).scale)
+    color_bones(data.bones[model.name] for model in models)
+    for model in models:
+        for collection in data.bones[str(model.parent)].collections:
+            collection.assign(data.bones[model.name])
+        bone = armature_object.pose.bones[model.name]
+        bone.rotation_mode, bone.lock_rotation = "XYZ", (False, True, True)
+        bone.lock_location = bone.lock_scale = (True, True, True)
+
+
+def _place_fingers(
+    edit_bones: "bpy.types.bpy_prop_collection[bpy.types.EditBone]",
+    body: Body,
+    axes: Mapping[str, Array],
+    scale: float,
+) -> None:
+    for model in finger_models(body):
+        hand = edit_bones[f"hand.{model.name[-1]}"]
+        frame = np.array(hand.matrix)[:3, :3] @ axes[hand.name].T
+        wrist = body.local(body.skeleton.segment(hand.name).start)
+        bone = edit_bones[model.name]
+        bone.head, bone.tail = (
+            np.array(hand.head) + frame @ (end - wrist) / scale for end in (model.start, model.end)
+        )
+        bone.align_roll(Vector(frame @ model.axes[:, 2]))
 
 
 @contextmanager
@@ -154,7 +208,7 @@ def _edited(
     scene = armature_object.users_scene[0]
     layer = bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
     active = layer.objects.active
-    if active is not None and active.mode not in ("OBJECT", "POSE"):
+    if active is not None and active.mode not in MODES:
         raise InputError(f"leave the mode that '{active.name}' is in first (Tab)")
     mode = "OBJECT" if active is None else active.mode
     hidden = armature_object.hide_get(view_layer=layer)

@@ -22,10 +22,11 @@ import numpy as np
 from mathutils import Vector
 
 from ...core.arrays import Array
+from ...core.body.fingers import finger_bones
 from ...core.body.human import side_of
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
-from ...core.body.skeleton import JointKind, Segment, Skeleton
+from ...core.body.skeleton import SIDES, JointKind, Segment, Skeleton
 from .actor_bones import color_bones
 from .object_space import ObjectSpace
 
@@ -104,6 +105,23 @@ def bones_at_rest(body: Body) -> ActorBones:
     hinges = set(body.skeleton.hinge_joints)
     modes = {model.name: HINGE_ORDER if hinges & {*model.chain} else "QUATERNION" for model in models}
     return ActorBones(models, rest, modes, ObjectSpace(np.eye(3), np.zeros(3), 1.0))
+
+
+def finger_models(body: Body) -> tuple[BoneModel, ...]:
+    """Bones of the fingers, which an actor has once a motion shows them; their X is what they bend about."""
+    models = []
+    for side in SIDES:
+        hand = body.skeleton.segment(f"hand.{side}")
+        wrist, parent = body.local(hand.start), hand.name
+        length = float(np.linalg.norm(body.local(hand.end) - wrist))
+        for name, start, end, axis in finger_bones(side):
+            along = (end - start) / np.linalg.norm(end - start)
+            axes = np.column_stack([axis, along, np.cross(axis, along)])
+            ends = wrist + length * start, wrist + length * end
+            above = hand.name if ".1." in name else parent
+            models.append(BoneModel(name, above, hand.joint, (), axes, *ends))
+            parent = name
+    return tuple(models)
 
 
 def _chain(skeleton: Skeleton, segment: Segment) -> tuple[int, ...]:

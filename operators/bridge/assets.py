@@ -104,7 +104,7 @@ def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
     """Write a motion into an empty Action: a GENERATED key for each frame and channel."""
     motion = motion.without_absence()
     frames = scene_frames(motion.time_s, motion.frame_start, motion.fps)
-    extremities = natural_extremities(motion.body, motion.posture, motion.time_s)
+    extremities = natural_extremities(motion.body, motion.posture, motion.time_s, hands=motion.hands)
     columns = posture_columns(bones_at_rest(motion.body), motion.posture, extremities)
     write_keys(channelbag_for(action), columns, frames, MOTION)
     action.use_frame_range = True

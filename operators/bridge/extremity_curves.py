@@ -1,4 +1,4 @@
-"""Curves of hands and feet: which the animator has posed, and what a motion has turned by itself.
+"""Curves of hands, fingers and feet: which the animator has posed, and what a motion has turned by itself.
 
 Storing a keyframe keys them too, as they stand: at rest, they count as not posed.
 """
@@ -9,39 +9,35 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.body.fingers import FINGER_BONES
+from ...core.body.human import HUMAN
 from ...core.body.kinematics import extremity_names
-from ...core.body.skeleton import Skeleton
 from .actions import curves_of
 from .keys import MOTION, copy_as_generated, ensure_fcurve, unchanged_frames
 from .rotation_modes import ALL_PATHS, bone_path, rotation_path
 
 AT_REST = {"rotation_quaternion": (None, 0.0, 0.0, 0.0), "rotation_axis_angle": (0.0, None, None, None)}
 """Values of channels that do not turn a bone, None for any; Euler angles are all zero."""
+EXTREMITIES = (*extremity_names(HUMAN), *FINGER_BONES)
 SAME_VALUE = 1e-4  # channels that differ by less [rad, m] are the same
-
-
-def extremity_paths(skeleton: Skeleton) -> dict[str, str]:
-    """Names of hands and feet by the data paths of their channels."""
-    return {
-        bone_path(name, channel): name
-        for name in extremity_names(skeleton)
-        for channel in (*ALL_PATHS, "location")
-    }
+EXTREMITY_PATHS = {
+    bone_path(name, channel): name for name in EXTREMITIES for channel in (*ALL_PATHS, "location")
+}
+"""Their names by the data paths of their channels."""
 
 
 def posed_extremities(
-    armature_object: bpy.types.Object, skeleton: Skeleton, keyframe_action: bpy.types.Action | None
+    armature_object: bpy.types.Object, keyframe_action: bpy.types.Action | None
 ) -> frozenset[str]:
     """Names of the hands and feet that the animator has keyed away from rest in the Action of keyframes."""
     if keyframe_action is None:
         return frozenset()
-    shown = _shown_curves(armature_object, skeleton, keyframe_action)
+    shown = _shown_curves(armature_object, keyframe_action)
     return frozenset(name for name, curves in shown.items() if any(map(_leaves_rest, curves)))
 
 
 def turned_extremities(
     armature_object: bpy.types.Object,
-    skeleton: Skeleton,
     action: bpy.types.Action,
     keyframe_action: bpy.types.Action | None,
 ) -> dict[str, Array]:
@@ -49,9 +45,9 @@ def turned_extremities(
 
     What is posed in the keyframe Action, the motion only copies. A frame has such a key in every curve.
     """
-    posed = posed_extremities(armature_object, skeleton, keyframe_action)
+    posed = posed_extremities(armature_object, keyframe_action)
     found = {}
-    for name, curves in _shown_curves(armature_object, skeleton, action).items():
+    for name, curves in _shown_curves(armature_object, action).items():
         turns = [curve for curve in curves if not curve.data_path.endswith(".location")]
         if name not in posed and turns:
             frames, *others = (unchanged_frames(curve, MOTION) for curve in turns)
@@ -63,21 +59,18 @@ def turned_extremities(
 
 def copy_posed_extremities(
     armature_object: bpy.types.Object,
-    skeleton: Skeleton,
     source: bpy.types.Action,
     posed: Collection[str],
     channelbag: bpy.types.ActionChannelbag,
 ) -> None:
     """Copy the curves of some hands and feet as GENERATED keys; where the animator has a key, that stays."""
-    paths = extremity_paths(skeleton)
     for (path, index), curve in curves_of(source, armature_object).items():
-        if paths.get(path) in posed:
-            copy_as_generated(curve, ensure_fcurve(channelbag, path, index, paths[path]))
+        if EXTREMITY_PATHS.get(path) in posed:
+            copy_as_generated(curve, ensure_fcurve(channelbag, path, index, EXTREMITY_PATHS[path]))
 
 
 def straighten_extremities(
     armature_object: bpy.types.Object,
-    skeleton: Skeleton,
     action: bpy.types.Action,
     keyframe_action: bpy.types.Action | None,
     frame: float,
@@ -88,8 +81,8 @@ def straighten_extremities(
     under the next Action, and would be keyed with the next pose. What is posed in the keyframe Action stays.
     """
     given = curves_of(action, armature_object)
-    posed = posed_extremities(armature_object, skeleton, keyframe_action)
-    for name in set(extremity_names(skeleton)) - posed:
+    posed = posed_extremities(armature_object, keyframe_action)
+    for name in set(EXTREMITIES) - posed:
         bone = armature_object.pose.bones.get(name)
         if bone is None:
             continue
@@ -104,12 +97,12 @@ def straighten_extremities(
 
 
 def _shown_curves(
-    armature_object: bpy.types.Object, skeleton: Skeleton, action: bpy.types.Action
+    armature_object: bpy.types.Object, action: bpy.types.Action
 ) -> dict[str, list[bpy.types.FCurve]]:
-    """The curves that move each hand and foot: those of its rotation mode, and of its location."""
+    """The curves that move each of them: those of its rotation mode, and of its location."""
     curves = curves_of(action, armature_object)
     found = {}
-    for name in extremity_names(skeleton):
+    for name in EXTREMITIES:
         bone = armature_object.pose.bones.get(name)
         if bone is not None:
             paths = {bone_path(name, rotation_path(bone.rotation_mode)), bone_path(name, "location")}

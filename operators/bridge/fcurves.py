@@ -4,15 +4,16 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.body.fingers import finger_turns
 from ...core.body.kinematics import RIGID, Extremities
 from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
 from ...core.feet.natural_extremities import natural_extremities
 from ...core.take.motion import Motion
 from .actions import assign_action, channelbag_for
-from .actor_lengths import read_bones, skeleton_bones
+from .actor_lengths import add_fingers, read_bones, skeleton_bones
 from .armature import ActorBones
-from .extremity_curves import copy_posed_extremities, extremity_paths, posed_extremities
+from .extremity_curves import EXTREMITY_PATHS, copy_posed_extremities, posed_extremities
 from .keys import MOTION, Column, remove_generated_keys, write_keys
 from .rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
 
@@ -72,21 +73,26 @@ def write_motion(
 
     A group for each bone, a GENERATED key for each frame and channel, in the bone's own rotation mode.
     Written again into the same Action, it replaces only such keys; the animator's stay and win their frames.
-    Hands and feet that are posed in `keyframe_action` move as their curves there say, the others naturally.
+    Hands, fingers and feet that are posed in `keyframe_action` move as their curves there say, the others as
+    they are seen or naturally.
     `frames` (F,) are scene frames; the motion's own by default.
     """
     skeleton = motion.body.skeleton
-    posed = posed_extremities(armature_object, skeleton, keyframe_action)
+    posed = posed_extremities(armature_object, keyframe_action)
     frames = (motion.scene_frames if frames is None else frames)[motion.there]
     shown = motion.without_absence()  # no keys where the performer is not there
-    natural = natural_extremities(shown.body, shown.posture, shown.time_s).without(posed)
-    columns = posture_columns(read_bones(armature_object, skeleton), shown.posture, natural)
+    turns = natural_extremities(shown.body, shown.posture, shown.time_s, hands=shown.hands).turns
+    if shown.hands is not None:
+        add_fingers(armature_object, shown.body)
+        turns = {**turns, **finger_turns(shown.hands)}
+    extremities = Extremities(turns).without(posed)
+    columns = posture_columns(read_bones(armature_object, skeleton), shown.posture, extremities)
     if action is None:
         action = bpy.data.actions.new(f"{armature_object.name} Motion")
     channelbag = channelbag_for(action, armature_object)
-    remove_generated_keys(channelbag, [*moved_paths(armature_object, skeleton), *extremity_paths(skeleton)])
+    remove_generated_keys(channelbag, [*moved_paths(armature_object, skeleton), *EXTREMITY_PATHS])
     write_keys(channelbag, columns, frames, MOTION)
     if keyframe_action is not None:
-        copy_posed_extremities(armature_object, skeleton, keyframe_action, posed, channelbag)
+        copy_posed_extremities(armature_object, keyframe_action, posed, channelbag)
     assign_action(armature_object, action)
     return action

@@ -116,7 +116,7 @@ def finish_motion(
         InputError: The Action has no motion of the actor, or the armature is not an actor's.
     """
     body = read_body(armature_object, HUMAN)
-    turned = turned_extremities(armature_object, body.skeleton, action, keyframe_action)
+    turned = turned_extremities(armature_object, action, keyframe_action)
     rig = read_rig(armature_object, body, turned)
     frames = motion_frames(armature_object, action, body)
     exact = posed_indices(armature_object, keyframe_action, body.skeleton, frames)
@@ -141,7 +141,10 @@ def finish_motion(
     if turned:
         contacts = planted.contacts or None
         natural = natural_extremities(body, planted.posture, time_s, contacts)
-        where = {name: np.isin(frames, np.round(own, 3)) for name, own in turned.items()}
+        # Planting moves legs and feet: hands and fingers stay as they were turned.
+        where = {
+            name: np.isin(frames, np.round(own, 3)) for name, own in turned.items() if name.startswith("foot")
+        }
         values = _replaced(armature_object, rig, values, planted.posture, where, natural)
         for held, bone in zip(values, rig.bones, strict=True):
             if bone.name in where and bone.mode == "QUATERNION":

@@ -14,7 +14,7 @@ from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
 from ...core.prior.keyframes import Keyframe, Matched
 from .actions import channelbag_for, curves_of, existing_channelbag
-from .actor_lengths import read_bones, skeleton_bones
+from .actor_lengths import read_bones
 from .armature import BoneModel
 from .fcurves import moved_paths, posture_columns
 from .keys import (
@@ -95,7 +95,7 @@ def _channels(
     armature_object: bpy.types.Object, skeleton: Skeleton
 ) -> Iterator[tuple[BoneModel, str, int, float]]:
     """Bone, data path, array index and value of all channels, in the bones' present rotation modes."""
-    for model in skeleton_bones(armature_object, skeleton):
+    for model in read_bones(armature_object, skeleton).models:
         bone = armature_object.pose.bones[model.name]
         for channel in (rotation_path(bone.rotation_mode), *(("location",) if model.is_root else ())):
             for index, value in enumerate(getattr(bone, channel)):

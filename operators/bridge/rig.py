@@ -7,6 +7,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.body_volume import sole_offsets
+from ...core.body.fingers import FINGER_BONES
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
@@ -18,9 +19,11 @@ from ...core.progress import run, within
 from ...core.take.motion import Motion
 from .actions import curves_of
 from .actor_lengths import read_body, read_bones
-from .armature import ActorBones, BoneModel, bone_models
+from .armature import ActorBones, BoneModel, bone_models, finger_models
 from .fcurves import moved_paths
 from .rotation_modes import bone_path, posture_from_frames, rotation_path
+
+LEVER_M = 0.2  # at whose end a point shows the turn of a finger's bone
 
 
 def read_rig(armature_object: bpy.types.Object, body: Body, extremities: Collection[str] = ()) -> Rig:
@@ -35,23 +38,27 @@ def rig_of(resting: ActorBones, body: Body, extremities: Collection[str] = ()) -
     feet that are not named are rigid with their limbs.
     """
     axes, rest, space = {model.name: model.axes for model in resting.models}, resting.rest, resting.space
-    models = bone_models(body)
+    models = tuple(model for model in (*bone_models(body), *finger_models(body)) if model.name in axes)
     turning = [model for model in models if model.chain or model.name in extremities]
+    starts = {model.name: model.start for model in turning if not model.chain}
     names = [model.name for model in turning]
+    carried = {model.name: str(model.parent) for model in models}
     bones = []
     for model in turning:
         own = rest[model.name][:3, :3]
+        above = str(model.parent) if model.parent in names else carried.get(str(model.parent))
         if model.parent is None:
             left = space.rotation @ own
             origin, location_axes = space.to_world(rest[model.name][:3, 3]), space.scale * left
         else:
             # The bone's joint in its parent's joint's frame; a hand's is the wrist, a foot's the ankle.
-            origin, location_axes = body.offsets[model.chain[0]] if model.chain else model.start, None
+            start = model.start - starts.get(above, 0.0)
+            origin, location_axes = body.offsets[model.chain[0]] if model.chain else start, None
             left = axes[model.parent] @ rest[model.parent][:3, :3].T @ own
         bones.append(
             RigBone(
                 name=model.name,
-                parent=-1 if model.parent is None else names.index(model.parent),
+                parent=-1 if model.parent is None else names.index(above),
                 mode=resting.modes[model.name],
                 left=left,
                 right=axes[model.name].T,
@@ -70,7 +77,10 @@ def _fixed_points(
     if not model.chain:
         kind, _, side = model.name.partition(".")
         heel = [sole_offsets(body)[SIDES.index(side), 0]] if kind == "foot" else []
-        return np.stack([model.end - model.start, *heel])
+        along = model.end - model.start
+        if model.name in FINGER_BONES:  # the end of a lever, so that the tolerance holds its turn
+            along = LEVER_M * along / np.linalg.norm(along)
+        return np.stack([along, *heel])
     leaves = [m.end for m in models if m.parent == model.name and not m.chain and m.name not in turning]
     return np.stack([model.end, *leaves])
 

@@ -9,7 +9,6 @@ from bpy.app.handlers import persistent
 from numpy.typing import ArrayLike
 
 from ...core.arrays import BoolArray
-from ...core.body.human import HUMAN
 from ..bridge.actions import assign_action
 from ..bridge.keys import keys_changed
 from ..bridge.object_space import evaluated
@@ -43,7 +42,7 @@ def straighten_unposed(take: bpy.types.PropertyGroup) -> None:
     shown = None if data is None else data.action
     if shown is not None and shown in (take.motion_action, take.finish.action):
         frame = float(bpy.context.scene.frame_current_final)
-        straighten_extremities(take.armature, HUMAN, shown, take.keyframe_action, frame)
+        straighten_extremities(take.armature, shown, take.keyframe_action, frame)
 
 
 def new_keyframe_action(armature_object: bpy.types.Object) -> bpy.types.Action:

@@ -1,13 +1,15 @@
 """The motion that a character is to perform: an Action of a Keymark actor, hands and feet included."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
 import numpy as np
 
 from ....core.arrays import Array
+from ....core.body.fingers import finger_flexions
 from ....core.body.human import HUMAN
-from ....core.body.kinematics import Extremities, SegmentMotion, extremity_names, segment_motion
+from ....core.body.kinematics import Extremities, SegmentMotion, segment_motion
 from ....core.feet.natural_extremities import natural_extremities
 from ....core.files.paths import absolute_path, real_path
 from ....core.progress import Job, Progress, within
@@ -15,6 +17,7 @@ from ....core.take.motion import Motion
 from ..actions import existing_channelbag
 from ..actor_lengths import read_body
 from ..blend_files import check_blend, load_blocks
+from ..extremity_curves import EXTREMITIES
 from ..footage import set_scene_range
 from ..result_files import set_look
 from ..rig import present_frames, read_rig, read_values, shown_postures
@@ -39,9 +42,7 @@ def read_source(
     curves = channelbag.fcurves if channelbag is not None else ()
     paths = {curve.data_path for curve in curves if not curve.mute and not curve.is_empty}
     keyed = tuple(
-        name
-        for name in extremity_names(HUMAN)
-        if any(bone_path(name, channel) in paths for channel in ALL_PATHS)
+        name for name in EXTREMITIES if any(bone_path(name, channel) in paths for channel in ALL_PATHS)
     )
     rig = read_rig(armature_object, body, keyed)
     scene = next(iter(armature_object.users_scene), bpy.context.scene)
@@ -57,7 +58,8 @@ def read_source(
     index = {bone.name: number for number, bone in enumerate(rig.bones)}
     turns = {name: shown.local(rig, index[name], slice(None)) for name in keyed}
     extremities = Extremities({**natural.turns, **turns})
-    return segment_motion(body, posture, np.asarray(time_s), extremities), frames
+    segments = segment_motion(body, posture, np.asarray(time_s), extremities)
+    return replace(segments, fingers=finger_flexions(turns)), frames
 
 
 # --- Camera and clip of a result, copied out of its motion.blend into another scene

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from ....core.body.fingers import finger_flexions, finger_turns
 from ....core.body.kinematics import SegmentMotion, segment_motion
 from ....core.errors import ConversionError, InputError, KeymarkError, describe_unexpected
 from ....core.feet.natural_extremities import natural_extremities
@@ -221,8 +222,10 @@ def _draw(
 def motion_segments(motion: Motion) -> SegmentMotion:
     """The segments of a motion, with natural feet and hands, in frames in which the performer is there."""
     motion = motion.without_absence()
-    extremities = natural_extremities(motion.body, motion.posture, motion.time_s)
-    return segment_motion(motion.body, motion.posture, motion.time_s, extremities)
+    extremities = natural_extremities(motion.body, motion.posture, motion.time_s, hands=motion.hands)
+    segments = segment_motion(motion.body, motion.posture, motion.time_s, extremities)
+    turns = {} if motion.hands is None else finger_turns(motion.hands)
+    return replace(segments, fingers=finger_flexions(turns))
 
 
 def keyed_limbs(character_map: CharacterMap, settings: CharacterSettings) -> Mapping[str, str]:

@@ -115,9 +115,9 @@ def test_hands_and_feet_keyed_at_rest_are_not_posed(actor: bpy.types.Object) -> 
     keyframes = bpy.data.actions.new("Keyframes")
     actor.pose.bones["foot.L"].rotation_euler = (0.2, 0.0, 0.0)
     store_pose(actor, keyframes, HUMAN, 1.0)
-    assert posed_extremities(actor, HUMAN, keyframes) == {"foot.L"}
+    assert posed_extremities(actor, keyframes) == {"foot.L"}
     action = write_motion(actor, swaying(actor), keyframe_action=keyframes)
-    assert set(turned_extremities(actor, HUMAN, action, keyframes)) == {"foot.R", "hand.L", "hand.R"}
+    assert set(turned_extremities(actor, action, keyframes)) == {"foot.R", "hand.L", "hand.R"}
 
 
 def test_a_shown_motions_hands_and_feet_are_not_stored(actor: bpy.types.Object) -> None:
@@ -125,12 +125,12 @@ def test_a_shown_motions_hands_and_feet_are_not_stored(actor: bpy.types.Object) 
     bpy.context.scene.frame_set(20)
     actor.pose.bones["hand.R"].rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
     assert tuple(actor.pose.bones["hand.L"].rotation_quaternion) != (1.0, 0.0, 0.0, 0.0)
-    straighten_extremities(actor, HUMAN, action, None, 20.0)
+    straighten_extremities(actor, action, None, 20.0)
     assert tuple(actor.pose.bones["hand.L"].rotation_quaternion) == (1.0, 0.0, 0.0, 0.0)
     assert tuple(actor.pose.bones["foot.L"].rotation_euler) == (0.0, 0.0, 0.0)
     keyframes = bpy.data.actions.new("Keyframes")
     store_pose(actor, keyframes, HUMAN, 20.0)
-    assert posed_extremities(actor, HUMAN, keyframes) == {"hand.R"}
+    assert posed_extremities(actor, keyframes) == {"hand.R"}
 
 
 @pytest.mark.parametrize("tolerance_m", [None, 0.01])

@@ -54,7 +54,7 @@ def take(
     result.keyframe_action = bpy.data.actions.new("Keyframes")
     for frame in POSED:
         scene.frame_set(frame)
-        straighten_extremities(actor, HUMAN, result.motion_action, None, frame)
+        straighten_extremities(actor, result.motion_action, None, frame)
         store_pose(actor, result.keyframe_action, HUMAN, frame)
     scene.frame_set(7)
     return result
