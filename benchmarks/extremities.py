@@ -19,13 +19,16 @@ from keymark.core.body.fingers import RELAXED_RAD, RESTING, curls_of, palm_of  #
 from keymark.core.body.kinematics import segment_motion  # noqa: E402
 from keymark.core.body.posture_fit import nearest_rotation  # noqa: E402
 from keymark.core.body.rotations import logarithm  # noqa: E402
+from keymark.core.detect.closer_look import CloserLook  # noqa: E402
 from keymark.core.detect.keypoint_file import write_keypoints  # noqa: E402
+from keymark.core.detect.pose_network import PoseNetwork  # noqa: E402
+from keymark.core.detect.pose_tracking import find_people  # noqa: E402
 from keymark.core.estimate.reconstruct import Reconstruction  # noqa: E402
 from keymark.core.feet.natural_extremities import natural_extremities  # noqa: E402
 from keymark.core.prior.registry import find_libraries  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
-from keymark.core.session.see import Sight  # noqa: E402
+from keymark.core.take.clip_check import open_footage  # noqa: E402
 from keymark.core.take.conversion_settings import ConversionSettings  # noqa: E402
 from keymark.core.take.description import describe  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
@@ -80,26 +83,26 @@ def spread_deg(head: Array, trunk: Array) -> float:
     return float(np.sqrt(np.mean(angles_deg(np.broadcast_to(middle, against.shape), against) ** 2)))
 
 
-def motion_of(folder: Path, kept: Path, closely: bool) -> Motion:
-    """The motion of a take that nobody has posed, of the keypoints kept, with faces and hands or without."""
-    settings = ConversionSettings(library="auto", hands=closely)
-    description = describe(folder)
-    libraries = find_libraries(EVERY_LIBRARY, [ROOT / "presets" / "keyframes"])
-    if kept.is_file():
-        settings = replace(settings, keypoints=(kept,))
-    session = run(convert(description, settings, libraries))
-    if not kept.is_file():
-        people = session[Sight].people[0]
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        write_keypoints(kept, people, 1, description.fields.values["fps"])
+def detected(folder: Path) -> tuple[Path, Path]:
+    """The files of a clip's keypoints with faces and hands, and without; made once."""
+    kept = OUTPUT / "extremities" / f"{folder.name}.json"
+    plain = kept.with_suffix(".plain.json")
+    if not plain.is_file():
+        values = describe(folder).fields.values
+        clip = open_footage(folder / "clip.mp4", values["fps"], tuple(values["camera"]["resolution"]))
+        people = run(find_people(clip, PoseNetwork(), CloserLook()))
         frames = tuple(replace(one, face=None, hands=None) for one in people.frames)
-        write_keypoints(plain_of(kept), replace(people, frames=frames), 1, description.fields.values["fps"])
-    return session[Reconstruction].motion
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        write_keypoints(kept, people, 1, values["fps"])
+        write_keypoints(plain, replace(people, frames=frames), 1, values["fps"])
+    return kept, plain
 
 
-def plain_of(kept: Path) -> Path:
-    """The file of the same keypoints without faces and hands."""
-    return kept.with_suffix(".plain.json")
+def motion_of(folder: Path, keypoints: Path) -> Motion:
+    """The motion of a take that nobody has posed, by a file of keypoints."""
+    settings = ConversionSettings(library="auto", keypoints=(keypoints,))
+    libraries = find_libraries(EVERY_LIBRARY, [ROOT / "presets" / "keyframes"])
+    return run(convert(describe(folder), settings, libraries))[Reconstruction].motion
 
 
 def measure(folder: Path) -> Row:
@@ -111,10 +114,8 @@ def measure(folder: Path) -> Row:
     )
     points = np.array([[one["hands"][side] for side in "LR"] for one in full["frames"]])
     palm = np.stack([world @ palm_of(points[:, row], side) for row, side in enumerate("LR")], axis=1)
-    curls = np.stack([curls_of(points[:, row], side) for row, side in enumerate("LR")], axis=1)
-    kept = OUTPUT / "extremities" / f"{folder.name}.json"
-    seen = motion_of(folder, kept, True)
-    rule = motion_of(folder, plain_of(kept), False)
+    curls = curls_of(points)
+    seen, rule = (motion_of(folder, keypoints) for keypoints in detected(folder))
     parts = {}
     for name, motion in (("seen", seen), ("rule", rule)):
         turns = natural_extremities(motion.body, motion.posture, motion.time_s, hands=motion.hands)

@@ -20,8 +20,8 @@ SHARES = np.array([1.08, 1.11, 0.81])
 RELAXED_RAD = np.radians([25.0, 25.0, 28.0, 30.0, 32.0])  # curls of a hand that hangs
 THUMB_PAD = (0.5, -0.87)  # where its pad faces, out of the palm and across it toward the thumb
 RESTING = {  # axes of a hand at rest, as `palm_axes` has them
-    "L": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
-    "R": np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
+    "L": np.diag([1.0, -1.0, -1.0]),
+    "R": np.diag([-1.0, -1.0, -1.0]),
 }
 SHAPES = {
     "thumb": ((0.12, 0.12), (0.75, 0.66), (0.24, 0.18, 0.15)),
@@ -79,13 +79,17 @@ def flexions(bones: Array, axis: Array) -> Array:
     return np.asarray(np.arctan2(sine, (before * after).sum(axis=-1)))
 
 
-def curls_of(points: Array, side: str) -> Array:
-    """(..., 5) curls of a hand's fingers by its 21 points (..., 21, 3) [rad]."""
-    palm, found = palm_of(points, side), []
-    for number, finger in enumerate(FINGERS):
-        bones = np.diff(points[..., [WRIST, *range(4 * number + 1, 4 * number + 5)], :], axis=-2)
-        along = bones[..., 1, :] if finger == "thumb" else palm[..., 0]
-        found.append(flexions(bones, flexion_axis(finger, along, palm)).mean(axis=-1))
+def curls_of(points: Array) -> Array:
+    """(..., 5) curls of a hand's fingers by its 21 points (..., 21, 3) [rad], each in its own plane.
+
+    Networks see that plane better than how it stands on the palm.
+    """
+    found = []
+    for number in range(len(FINGERS)):
+        chain = points[..., [WRIST, *range(4 * number + 1, 4 * number + 5)], :]
+        bones = unit(np.diff(chain, axis=-2))
+        axis = unit(cross(bones[..., :-1, :], bones[..., 1:, :]).sum(axis=-2))
+        found.append(flexions(bones, axis).mean(axis=-1))
     return np.stack(found, axis=-1)
 
 

@@ -16,7 +16,7 @@ from ..body.fingers import MIDDLE, RESTING, WRIST, curls_of, palm_of
 from ..body.rotations import exponential, logarithm
 from ..body.skeleton import SIDES
 from ..numerics.vectors import unit
-from .keypoints import HAND_NUMBERS
+from .keypoints import FACING, HAND_NUMBERS
 from .network_file import FOLDER, network_input, network_session
 from .pose_network import LAYOUT, Crop, Pose
 
@@ -51,7 +51,7 @@ class HandNetwork:
             hands[row, :2] = np.mean([pixel[WRIST] for pixel, *_ in looks], axis=0)
             hands[row, 2:] = np.concatenate(
                 [
-                    [*logarithm(hand_turn(place, side)), there, _of(side, left), *curls_of(place, side)]
+                    [*logarithm(hand_turn(place, side)), there, _of(side, left), *curls_of(place)]
                     for _, place, there, left in looks
                 ]
             )
@@ -81,7 +81,7 @@ def _of(side: str, left: float) -> float:
 
 def hand_turn(points: Array, side: str) -> Array:
     """(3, 3) turn from rest of a hand by its 21 points (21, 3), in the axes of these."""
-    return palm_of(points, side) @ RESTING[side].T
+    return palm_of(points, side) @ (FACING @ RESTING[side]).T
 
 
 def _first_crop(pose: Pose, side: str) -> Crop:

@@ -65,6 +65,8 @@ def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
     return np.minimum(scores / certain, 1.0), (note,)
 
 
+FACING = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""Turn of whoever at rest faces the viewer, in axes x right, y down, z away."""
 FACE_NUMBERS = 6  # of a face, as `face` explains them
 HAND_NUMBERS = 22  # of a hand, as `hands` does
 

@@ -18,9 +18,9 @@ from ..body.posture import Posture
 from ..body.rotations import exponential, hinge, logarithm, to_quaternions
 from ..body.skeleton import SIDES
 from ..camera.camera import Camera
-from ..detect.keypoints import Keypoints
+from ..detect.keypoints import FACING, Keypoints
 from ..numerics.markov_chain import cheapest_path
-from ..terms.head import FACING, viewer_axes
+from ..terms.head import viewer_axes
 
 LOOKS = 2
 UNSEEN_COST = 4.0  # of believing neither look

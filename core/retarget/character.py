@@ -10,13 +10,18 @@ from itertools import pairwise
 import numpy as np
 
 from ..arrays import Array
+from ..body.fingers import FINGERS
 from ..body.skeleton import SIDES
 
 MIDDLE = ("hips", "spine", "neck", "head")
-CHAINS = ("spine", "neck")  # roles that several bones may share, from the hips upward
+TRUNK_CHAINS = ("spine", "neck")  # roles that several bones may share, from the hips upward
 ARM = ("shoulder", "upper_arm", "forearm", "hand")
 LEG = ("thigh", "shin", "foot", "toe")
-ROLES = (*MIDDLE, *(f"{part}.{side}" for side in SIDES for part in (*ARM, *LEG)))
+HANDS = {side: tuple(f"{finger}.{side}" for finger in FINGERS) for side in SIDES}
+"""Roles of each hand's fingers, which have up to three bones from the knuckle on."""
+FINGER_ROLES = (*HANDS["L"], *HANDS["R"])
+CHAINS = (*TRUNK_CHAINS, *FINGER_ROLES)
+ROLES = (*MIDDLE, *(f"{part}.{side}" for side in SIDES for part in (*ARM, *LEG)), *FINGER_ROLES)
 """All roles, the trunk's first."""
 REQUIRED = (
     "hips",

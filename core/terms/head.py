@@ -15,13 +15,11 @@ from ..body.posture_fit import nearest_rotation
 from ..body.rotations import exponential, logarithm, right_jacobian_inverse, smallest
 from ..camera.camera import Camera
 from ..detect.keypoints import FACE as FACE_POINTS
-from ..detect.keypoints import Keypoints
+from ..detect.keypoints import FACING, Keypoints
 from .keypoints import FACE
 from .state import ClipState
 from .term import Rows, Term
 
-FACING = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-"""Turn of a head that faces the viewer, in axes x right, y down, z away."""
 FLIP = np.diag([1.0, -1.0, -1.0])  # between these and the camera's own
 PRESENT = 0.98  # a face that is less sure is none
 NEAR_STD_RAD, ASIDE_STD_RAD, POINTS_STD_RAD = np.radians([7.0, 25.0, 16.0])

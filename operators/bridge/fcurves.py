@@ -34,9 +34,9 @@ def posture_columns(bones: ActorBones, postures: Posture, extremities: Extremiti
         frames[model.name] = frame
         if model.name in extremities.turns:
             frames[model.name] = frames[model.name] @ extremities.turns[model.name]
-        elif not model.chain:
-            continue
         axes[model.name] = posed = np.asarray(bones.space.rotation.T @ frames[model.name] @ model.axes)
+        if not model.chain and model.name not in extremities.turns:
+            continue
         rest, mode = bones.rest[model.name], bones.modes[model.name]
         turn, channels = rest[:3, :3], {}
         if model.parent is None:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import bpy
 
-from ...core.retarget.character import CHAINS, LIMBS, MIDDLE, ROLES, SOURCES
+from ...core.retarget.character import HANDS, LIMBS, MIDDLE, ROLES, SOURCES, TRUNK_CHAINS
 from ...core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting
 from ...core.retarget.maps.character_map import Switch as SwitchControl
 from ..shell.declared_properties import declared_property
@@ -20,7 +20,11 @@ KINDS = (
     ("INT", "Integer", "A whole number"),
     ("BOOL", "Switch", "On or off"),
 )
-PARTS = {"trunk": MIDDLE, **{limb: LIMBS[limb] for limb in ("arm.L", "arm.R", "leg.L", "leg.R")}}
+PARTS = {
+    "trunk": MIDDLE,
+    **{limb: LIMBS[limb] for limb in ("arm.L", "arm.R", "leg.L", "leg.R")},
+    **{f"fingers.{side}": roles for side, roles in HANDS.items()},
+}
 """Roles of the parts of the body, as the panel shows them."""
 PART_TITLES = {
     "trunk": "Trunk",
@@ -28,6 +32,8 @@ PART_TITLES = {
     "arm.R": "Right Arm",
     "leg.L": "Left Leg",
     "leg.R": "Right Leg",
+    "fingers.L": "Left Fingers",
+    "fingers.R": "Right Fingers",
 }
 
 
@@ -232,7 +238,7 @@ def _show_role(shown: bpy.types.PropertyGroup, name: str, character_map: Charact
         entry.control = control if control not in (None, bone) else ""
         if found is not None and found.shares:
             entry.share = found.shares[number]
-    shown.uneven = name in CHAINS and found is not None and bool(found.shares)
+    shown.uneven = name in TRUNK_CHAINS and found is not None and bool(found.shares)
     shown.source = found.source if found is not None else "you"
     shown.confidence = found.confidence if found is not None else 1.0
     shown.doubt = doubt

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from ...take.character_settings import LimbKeys, RetargetOptions, RootMotion
-from ..character import JOINTS, LIMBS, ROLES, Character
+from ..character import FINGER_ROLES, JOINTS, LIMBS, ROLES, Character
 from ..maps.character_map import CharacterMap
 
 
@@ -14,13 +14,14 @@ class ControlKind(Enum):
     FK = "fk"  # it turns a bone, and places it where it can and must
     HIPS = "hips"  # it turns and places the hips
     GOAL = "goal"  # hand or foot follow it by inverse kinematics
+    FINGER = "finger"  # it bends a bone of a finger
     TOE = "toe"  # it turns the toes while the leg is in IK
     POLE = "pole"  # elbow or knee point to it
     ROOT = "root"  # it carries the whole character
     CARRIER = "carrier"  # it places hips that are connected to it, whose own location Blender ignores
 
 
-IN_FK = (ControlKind.FK, ControlKind.HIPS)
+IN_FK = (ControlKind.FK, ControlKind.HIPS, ControlKind.FINGER)
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class PlannedControl:
     name: str
     kind: ControlKind
     bone: str  # the bone with a role that it moves; for a pole the one that begins at elbow or knee
-    limb: str | None = None  # the limb of `roles.LIMBS` whose inverse kinematics it belongs to
+    limb: str | None = None  # the limb of `LIMBS` whose inverse kinematics it belongs to, or is carried by
 
 
 def planned_controls(
@@ -53,9 +54,11 @@ def planned_controls(
             not_in_fk.update(JOINTS[limb] if ik.toe is None else (*JOINTS[limb], last))
     for role in ROLES:
         if role in character_map.roles and role not in not_in_fk:
-            kind = ControlKind.HIPS if role == "hips" else ControlKind.FK
+            kind, limb = ControlKind.HIPS if role == "hips" else ControlKind.FK, None
+            if role in FINGER_ROLES:
+                kind, limb = ControlKind.FINGER, f"arm.{role[-1]}"
             pairs = zip(character_map.keyed_bones(role), character_map.bones(role), strict=True)
-            wanted += [(control, kind, bone, None) for control, bone in pairs]
+            wanted += [(control, kind, bone, limb) for control, bone in pairs]
     if character is not None and "hips" not in character_map.left_alone:
         hips = next((name for name in character_map.keyed_bones("hips") if name in character.index), None)
         bone = None if hips is None else character.bone(hips)

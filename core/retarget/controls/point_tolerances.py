@@ -10,7 +10,7 @@ from ...arrays import Array, BoolArray
 from ...feet.contacts import over_lowest
 from ...keys.tolerances import FLOOR_M, NEAR_FLOOR_M, RESTING_M
 from ...numerics.vectors import across, unit
-from ..character import LIMBS, MIDDLE, Character
+from ..character import FINGER_ROLES, LIMBS, MIDDLE, Character
 from ..character_motion import CharacterMotion
 from ..maps.character_map import CharacterMap
 
@@ -43,6 +43,11 @@ def held_points(
     size = 0.15 * float(np.ptp([bone.head for bone in trunk], axis=0).max()) if trunk else 0.0
     for place in size * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]):
         found += [HeldPoint(bone.name, place, PointKind.BODY, None) for bone in trunk]
+    # Twice that far along a finger's bone the tolerance holds its turn within some degrees.
+    for bone in [character.bone(name) for role in FINGER_ROLES for name in character_map.bones(role)]:
+        way = bone.tail - bone.head
+        place = (2.0 * size * unit(way)) @ bone.rest[:3, :3]
+        found.append(HeldPoint(bone.name, place, PointKind.BODY, None))
     for limb, roles in LIMBS.items():
         chain = [role for role in roles if role in character_map.roles]
         bones = [character.bone(str(character_map.bone(role))) for role in chain]

@@ -23,6 +23,7 @@ from .control_spaces import NOTHING
 from .control_targets import leg_on_body
 from .point_tolerances import CARRIED_SHARE, SWITCH_M, HeldPoint, PointKind, ToleranceRules
 
+AFTER_BODY = (ControlKind.GOAL, ControlKind.TOE, ControlKind.POLE, ControlKind.FINGER)
 Toleranced = tuple[Array, Array | Callable[[Array], Array]]
 """A point (3,) in its control's axes [m], and its tolerance (F,), or that from its path (F, 3) in the
 armature's."""
@@ -93,8 +94,9 @@ def control_stages(
     above = [{control.space.turner, control.space.carrier} for control in controls]
     later: list[bool] = []
     for control, over in zip(controls, above, strict=True):
-        in_ik = control.plan.kind in (ControlKind.GOAL, ControlKind.TOE, ControlKind.POLE)
-        later.append(in_ik or any(later[other] for other in over if other != NOTHING))
+        later.append(
+            control.plan.kind in AFTER_BODY or any(later[other] for other in over if other != NOTHING)
+        )
     chains = []
     for leg, (carrier, members) in legs.items():
         others = [index for index in range(len(controls)) if index not in members and not later[index]]
@@ -222,7 +224,9 @@ def _reduce_following(
             control.name: bones[control.plan.bone] @ np.linalg.inv(motion.offsets[control.name])
             for control in controls
         }
-    channels = control_channels(motion.controls, {**motion.wanted, **own}, motion.size, known)
+    channels = motion.channels
+    if any(control.plan.kind is not ControlKind.FINGER for control in controls):
+        channels = control_channels(motion.controls, {**motion.wanted, **own}, motion.size, known)
 
     def held(point: HeldPoint, path: Array) -> Array:
         if carrier is not None:

@@ -18,7 +18,7 @@ from ...files.json_file import read_json, write_readable_json
 from ...files.kinds import ByName, Choice, Items, Kind, Never, Number, Text, first_twice, refuse
 from ...files.records import Object, Record
 from ...prior.texts import LONGEST_LINE, LONGEST_NAME, LONGEST_TEXT, SPDX, Tags, line
-from ..character import CHAINS, LIMBS, ROLES, SOURCES
+from ..character import CHAINS, LIMBS, ROLES, SOURCES, TRUNK_CHAINS
 
 MOST_BONES, MOST_SETTINGS, MOST_SOLE_POINTS = 100, 1000, 1000
 """Most bones of one role; settings; points of one sole."""
@@ -92,7 +92,8 @@ class RoleBones(Record):
     STRICT = True
 
     bones: Bones
-    """One bone; for spine and neck one or several, from the hips upward. They say where the joints are."""
+    """One bone; for spine and neck one or several, from the hips upward, for a finger up to three, from the
+    knuckle. They say where the joints are."""
     confidence: Share = 1.0
     """Probability that these are the right bones, 0 to 1."""
     source: Annotated[str, Choice(SOURCES)] = "you"
@@ -116,8 +117,16 @@ class OneBone(RoleBones):
 
     bones: Annotated[tuple[BoneName], replace(BONES, most=1)]
     """The role's bone."""
-    shares: Annotated[tuple[()], Never(f"shares is for {listed(CHAINS)} alone; leave it out")] = ()
-    """Of chains alone."""
+    shares: Annotated[tuple[()], Never(f"shares is for {listed(TRUNK_CHAINS)} alone; leave it out")] = ()
+    """Of spine and neck alone."""
+
+
+@dataclass(frozen=True)
+class FingerBones(OneBone):
+    """The bones of a finger."""
+
+    bones: Annotated[tuple[BoneName, ...], replace(BONES, most=3)]
+    """From the knuckle to the tip, the thumb's from the wrist."""
 
 
 @dataclass(frozen=True)
@@ -194,7 +203,11 @@ Roles = Annotated[
         "bones by role",
         names=ROLES,
         empty="a character map has roles, hips first",
-        exceptions={role: Object(OneBone, makes=RoleBones) for role in ROLES if role not in CHAINS},
+        exceptions={
+            role: Object(FingerBones if role in CHAINS else OneBone, makes=RoleBones)
+            for role in ROLES
+            if role not in TRUNK_CHAINS
+        },
     ),
 ]
 Ik = Annotated[
@@ -319,7 +332,7 @@ class CharacterMap(Record):
         """Share of the turn that each of a chain's bones takes."""
         bones = self.bones(role)
         given = self.roles[role].shares if role in self.roles else ()
-        if role not in CHAINS or given:
+        if role not in TRUNK_CHAINS or given:
             return given or (1.0,) * len(bones)
         return tuple((number + 1) / len(bones) for number in range(len(bones)))
 

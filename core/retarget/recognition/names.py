@@ -90,6 +90,15 @@ MECHANISM_WORDS = frozenset(
 )
 """Words of bones that steer others and move no flesh."""
 
+FINGER_WORDS = {
+    "thumb": {"thumb", "親指"},
+    "index": {"index", "人指", "人差指"},
+    "middle": {"middle", "mid", "中指"},
+    "ring": {"ring", "薬指"},
+    "pinky": {"pinky", "pinkie", "little", "小指"},
+}
+"""Of `OTHER_WORDS` those that tell fingers apart."""
+
 OTHER_WORDS = frozenset(
     """end nub tip site eff effector socket attach slot grip holster prop weapon sword gun shield blade bow
     finger thumb index middle ring pinky pinkie little mid metacarpal carpal meta knuckle nail

@@ -9,13 +9,14 @@ from ...arrays import Array
 from ...body.human import HUMAN
 from ...body.mirror import other_side
 from ...errors import InputError, shown
-from ..character import ARM, CHAINS, LEG, REQUIRED, ROLES, Character
+from ..character import ARM, CHAINS, LEG, REQUIRED, ROLES, TRUNK_CHAINS, Character
 from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap, RoleBones
 from ..maps.presets import Preset, find_preset
 from .bones import candidate_bones
 from .facing import Facing, find_facing, find_root
 from .figure import Figure, best_figure
+from .fingers import find_fingers
 from .names import CLEAR, read_name
 from .symmetry import Frame, find_frames
 
@@ -74,6 +75,8 @@ def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -
     hands = [role for role in ("hand.L", "hand.R") if role not in character_map.roles]
     if hands:
         doubts.append(f"{' and '.join(hands)} not found: the forearm is the last bone of the arm")
+    fingers = find_fingers(character, character_map)
+    character_map = replace(character_map, roles={**character_map.roles, **fingers})
     if character_map.root is None:
         up = find_stance(character, character_map)[2]
         character_map = replace(character_map, root=find_root(character, character_map, up))
@@ -187,7 +190,7 @@ def _merged(
     """The preset's map with its roles held against the figure's, and what is doubtful about them."""
     kept = dict(preset.roles)
     if _neck_carries_arms(character, preset):  # the trunk as names and shape say
-        trunk = (*CHAINS, "head")
+        trunk = (*TRUNK_CHAINS, "head")
         kept = {role: bones for role, bones in kept.items() if role not in trunk}
         kept |= {role: roles[role] for role in trunk if role in roles}
     taken = {bone for bones in kept.values() for bone in bones.bones}

@@ -19,7 +19,7 @@ from ...body.kinematics import SegmentMotion
 from ...body.skeleton import SIDES
 from ...feet.fading import ease
 from ...numerics.vectors import unit
-from ..character import LONG_BONES
+from ..character import FINGER_ROLES, LONG_BONES
 from .rest_body import RestBody
 
 
@@ -79,7 +79,7 @@ def bone_turns(body: RestBody, turn: Mapping[str, Array], alignment: Mapping[str
     found: list[Array] = []
     chest = turn["chest" if body.is_moved("spine") else "pelvis"]
     for bone in body.bones:
-        if not body.is_moved(bone.role):
+        if not body.is_moved(bone.role) or bone.role in FINGER_ROLES:
             still = np.broadcast_to(np.eye(3), chest.shape)
             found.append(found[bone.carrier] if bone.carrier >= 0 else still)
             continue

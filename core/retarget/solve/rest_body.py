@@ -15,7 +15,7 @@ import numpy as np
 from ...arrays import Array
 from ...body.skeleton import SIDES
 from ...errors import InputError, shown
-from ..character import JOINTS, LIMBS, LONG_BONES, MIDDLE, Character
+from ..character import FINGER_ROLES, JOINTS, LIMBS, LONG_BONES, MIDDLE, Character
 from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap
 from ..maps.map_registry import check_map
@@ -53,8 +53,9 @@ class RestBody:
         check_map(character_map, character)
         stance = find_stance(character, character_map)
         bones: list[RestBone] = []
-        for role in (*MIDDLE, *chain.from_iterable(LIMBS.values())):
-            for number, name in enumerate(character_map.bones(role)):
+        for role in (*MIDDLE, *chain.from_iterable(LIMBS.values()), *FINGER_ROLES):
+            handless = role in FINGER_ROLES and f"hand.{role[-1]}" not in character_map.roles
+            for number, name in enumerate(() if handless else character_map.bones(role)):
                 played = next((bone.role for bone in bones if bone.name == name), None)
                 if played is not None:
                     raise InputError(
@@ -148,7 +149,7 @@ def _carrier(character: Character, bones: list[RestBone], role: str, name: str) 
     """
     if not bones or role in ("spine", "neck", "head"):
         return len(bones) - 1
-    limb = next(roles for roles in LIMBS.values() if role in roles)
+    limb = next((roles for roles in LIMBS.values() if role in roles), (role, f"hand.{role[-1]}"))
     inner = [index for index, bone in enumerate(bones) if bone.role in limb]
     if inner:
         return inner[-1]

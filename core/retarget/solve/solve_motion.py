@@ -14,11 +14,12 @@ from ...feet.fading import ease, smooth_above, smoothed
 from ...feet.ground import Ground
 from ...progress import Job, Progress
 from ...take.character_settings import Placement, RetargetOptions, RootMotion
-from ..character import JOINTS, LIMBS, Character
+from ..character import FINGER_ROLES, JOINTS, LIMBS, Character
 from ..character_motion import CharacterMotion, HandGoal, Similarity
 from ..maps.character_map import CharacterMap
 from .body_frames import bone_turns, joint_places, rest_alignment
 from .feet import FootPath, plan_foot, toe_bends
+from .fingers import finger_bends
 from .foot_shape import FootShape, foot_shape, performer_ground, rest_floor_m, sole_points
 from .hands import above_floor, floor_goals, hand_goals, reach
 from .rest_body import RestBody, rest_notes
@@ -135,6 +136,14 @@ class Solution:
                 self._turn(role, above_floor(turn, solved.end[:, 2] - floor_m, along))
         return goals
 
+    def bend_fingers(self) -> None:
+        """Bend the fingers on the hands where these are now."""
+        bends = finger_bends(self.body, self.source.fingers)
+        for index, bone in enumerate(self.body.bones):
+            if bone.role in FINGER_ROLES:
+                carried = self.turns[bone.carrier]
+                self.turns[index] = np.asarray(carried @ bends[index]) if index in bends else carried
+
     def _turn(self, role: str, turn: Array) -> None:
         if self.body.is_moved(role):
             self.turns[self.body.first[role]] = np.asarray(turn @ self.alignment[role])
@@ -227,6 +236,7 @@ def solve_motion(
     solution.plant(feet, shapes)
     yield Progress("Reaching with hands", 0.6)
     hands = solution.reach_with_hands() if arms else {}
+    solution.bend_fingers()
     yield Progress("Going over the ground", 0.8)
     way, root, notes = _root_motion(solution, options)
     to_world = object_space

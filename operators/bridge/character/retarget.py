@@ -10,7 +10,7 @@ from ....core.body.kinematics import SegmentMotion
 from ....core.errors import InputError
 from ....core.feet.ground import IN_FLOOR_M, floor_notes
 from ....core.progress import Job, Progress, run, stretch, within
-from ....core.retarget.character import Character
+from ....core.retarget.character import FINGER_ROLES, Character
 from ....core.retarget.character_motion import CharacterMotion, Similarity, find_stance
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
 from ....core.retarget.controls.control_plan import ControlKind, limb_keys, planned_controls
@@ -154,6 +154,9 @@ def retarget(
     if placed:
         require_placeable(armature_object)
     character_map, lacking = complete_map(armature_object, character, character_map)
+    unknown = [role for role in FINGER_ROLES if role in character_map.roles and role not in source.fingers]
+    alone = tuple(dict.fromkeys((*character_map.left_alone, *unknown)))
+    character_map = replace(character_map, left_alone=alone)
     there = Similarity(here.rotation, here.location, here.scale)
     motion = yield from stretch(solve_motion(character, character_map, source, options, there), 0.0, SOLVED)
     yield Progress("Finding how the controls act", SOLVED)

@@ -7,9 +7,9 @@ import pytest
 from _scene import CAMERA
 from keymark.core.body.rotations import exponential, logarithm, smallest
 from keymark.core.detect.face import CHIN, HALVES, POINTS, SIDE, TOP, FaceNetwork
-from keymark.core.detect.keypoints import FACE, Keypoints
+from keymark.core.detect.keypoints import FACE, FACING, Keypoints
 from keymark.core.detect.pose_network import LAYOUT, Crop, Pose
-from keymark.core.terms.head import FACING, FLIP, NEAR_STD_RAD, POINTS_STD_RAD, ObservedHeads, _usual
+from keymark.core.terms.head import FLIP, NEAR_STD_RAD, POINTS_STD_RAD, ObservedHeads, _usual
 
 MIDDLE, SIZE_PX = np.array([300.0, 200.0]), 80.0
 

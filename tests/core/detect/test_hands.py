@@ -4,18 +4,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from keymark.core.body.fingers import INDEX, LITTLE, MIDDLE, RESTING, WRIST, curls_of
 from keymark.core.body.rotations import exponential
-from keymark.core.detect.hands import (
-    INDEX,
-    LITTLE,
-    MIDDLE,
-    POINTS,
-    RESTING,
-    SIDE,
-    WRIST,
-    HandNetwork,
-    hand_turn,
-)
+from keymark.core.detect.hands import POINTS, SIDE, HandNetwork, hand_turn
+from keymark.core.detect.keypoints import FACING
 from keymark.core.detect.pose_network import LAYOUT, Crop, Pose
 
 MIDDLE_PX, SIZE_PX = np.array([300.0, 200.0]), 400.0
@@ -26,7 +18,7 @@ def resting(side: str) -> np.ndarray:
     points = np.random.default_rng(2).uniform(-0.01, 0.01, (POINTS, 3))
     points[WRIST], points[MIDDLE] = (0.0, 0.0, 0.0), (0.09, 0.0, 0.0)
     points[INDEX], points[LITTLE] = (0.09, 0.03, 0.0), (0.08, -0.04, 0.0)
-    return points @ RESTING[side].T
+    return points @ (FACING @ RESTING[side]).T
 
 
 class Session:
@@ -74,9 +66,10 @@ def test_both_looks_tell_the_turn(side: str, monkeypatch: pytest.MonkeyPatch) ->
     pose = Pose(MIDDLE_PX + 400.0 * hint[:, :2], np.ones(len(hint)), hint, 0.9, Crop(MIDDLE_PX, 500.0))
     hand = network(np.zeros((4, 4, 3), dtype=np.uint8), pose)["LR".index(side)]
     np.testing.assert_allclose(hand[:2], MIDDLE_PX, atol=1e-6)
-    for look in (hand[2:7], hand[7:]):
+    for look in (hand[2:12], hand[12:]):
         np.testing.assert_allclose(exponential(look[:3]), turn, atol=1e-6)
-        np.testing.assert_allclose(look[3:], (0.8, 0.9))
+        np.testing.assert_allclose(look[3:5], (0.8, 0.9))
+        np.testing.assert_allclose(look[5:], curls_of(resting(side)), atol=1e-6)
     assert not np.allclose(hand_turn(resting(side), "R" if side == "L" else "L"), np.eye(3))
     small = Pose(MIDDLE_PX + 100.0 * hint[:, :2], np.ones(len(hint)), hint, 0.9, Crop(MIDDLE_PX, 500.0))
     assert np.isnan(network(np.zeros((4, 4, 3), dtype=np.uint8), small)).all()

@@ -23,7 +23,7 @@ from _keypoints import (
 )
 from keymark.core.arrays import Array
 from keymark.core.detect.keypoint_file import read_keypoints, write_keypoints
-from keymark.core.detect.keypoints import People, SeenPeople
+from keymark.core.detect.keypoints import HAND_NUMBERS, People, SeenPeople
 from keymark.core.detect.layouts import Layout
 from keymark.core.errors import InputError
 
@@ -166,7 +166,7 @@ def test_own_file_is_read_back(tmp_path: Path) -> None:
         hint[1:2] = np.nan
         face = np.round(generator.uniform(0.0, 1.0, (count, 6)), 4)
         face[2:3] = np.nan
-        hands = np.round(generator.uniform(0.0, 1.0, (count, 2, 12)), 4)
+        hands = np.round(generator.uniform(0.0, 1.0, (count, 2, HAND_NUMBERS)), 4)
         hands[1:2, 0] = hands[2:3] = np.nan
         frames.append(SeenPeople(pixel, score, hint, *((face, hands) if count else (None, None))))
     people = People(("head", "heel.L"), "a detector", SIZE, tuple(frames), by_hand=True)

@@ -5,7 +5,7 @@ import pytest
 from _scene import BODY
 from keymark.core.body.body_volume import sole_offsets, standing_posture
 from keymark.core.body.kinematics import RIGID, Extremities, segment_ends, segment_turn
-from keymark.core.body.mirror import mirrored, mirrored_actor
+from keymark.core.body.mirror import mirrored, other_side
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import logarithm
 from keymark.core.feet.natural_extremities import (
@@ -152,7 +152,8 @@ def test_the_mirror_image_has_mirrored_feet(step: Posture) -> None:
     lean = np.zeros((90, len(NAMES)))
     lean[:, NAMES.index("hip.L.rotation_y")], lean[:, NAMES.index("hip.R.rotation_z")] = 0.15, 0.2
     leaning = step.plus(lean)
-    opposite = type(BODY)(mirrored_actor(BODY.actor))
+    lengths = {other_side(name): length for name, length in BODY.actor.segments_m.items()}
+    opposite = type(BODY)(type(BODY.actor)(lengths))
     given = natural_extremities(BODY, leaning, times(step)).turns
     flipped = natural_extremities(opposite, mirrored(leaning), times(step)).turns
     signs = np.outer([-1.0, 1.0, 1.0], [-1.0, 1.0, 1.0])

@@ -7,12 +7,11 @@ import pytest
 from _characters import plain_character, plain_map, renamed
 from keymark.core.arrays import Array
 from keymark.core.body.rotations import hinge
-from keymark.core.retarget.character import ROLES, Character, CharacterBone
+from keymark.core.retarget.character import LIMBS, ROLES, Character, CharacterBone
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Switch
 from keymark.core.retarget.maps.mirroring import _other_names, mirrored_map
 
-LEFT = tuple(role for role in ROLES if role.endswith(".L"))
-RIGHT = tuple(role for role in ROLES if role.endswith(".R"))
+LEFT, RIGHT = (LIMBS[f"arm.{side}"] + LIMBS[f"leg.{side}"] for side in "LR")
 
 
 def only_left(character_map: CharacterMap) -> CharacterMap:

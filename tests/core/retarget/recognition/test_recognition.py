@@ -19,7 +19,7 @@ from _varied import Varied, build, nameless, varied
 from keymark.core.arrays import Array
 from keymark.core.body.posture import yaw_rotation
 from keymark.core.errors import InputError
-from keymark.core.retarget.character import ROLES, Character
+from keymark.core.retarget.character import FINGER_ROLES, ROLES, Character
 from keymark.core.retarget.character_motion import find_stance
 from keymark.core.retarget.recognition.facing import find_root
 from keymark.core.retarget.recognition.recognize import Recognition, recognize
@@ -57,9 +57,9 @@ def shared_truth(name: str) -> dict[str, tuple[str, ...]]:
 
 
 def wrong_roles(found: Recognition, truth: Mapping[str, tuple[str, ...]]) -> list[str]:
-    """Roles that other bones play than they should, and those that should not be there."""
+    """Roles that other bones play than they should, and those that should not be there; fingers aside."""
     given = found.character_map
-    return [role for role in ROLES if given.bones(role) != truth.get(role, ())]
+    return [role for role in ROLES if role not in FINGER_ROLES and given.bones(role) != truth.get(role, ())]
 
 
 def plain_truth(character: Character) -> dict[str, tuple[str, ...]]:
