@@ -15,7 +15,7 @@ load_project()
 
 from keymark.core.api import convert  # noqa: E402
 from keymark.core.arrays import Array  # noqa: E402
-from keymark.core.body.fingers import RELAXED_RAD, RESTING, curls_of, palm_of  # noqa: E402
+from keymark.core.body.fingers import RELAXED_RAD, RESTING, SURE, curls_of, palm_of  # noqa: E402
 from keymark.core.body.kinematics import segment_motion  # noqa: E402
 from keymark.core.body.posture_fit import nearest_rotation  # noqa: E402
 from keymark.core.body.rotations import logarithm  # noqa: E402
@@ -34,8 +34,7 @@ from keymark.core.take.description import describe  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
 
 GIVEN = ROOT.parent / "shared" / "heads"
-LARGE_PX, SURE = 45.0, 0.5
-"""Length of a hand from which it is expected to be seen, and how sure it then is."""
+LARGE_PX = 45.0  # length of a hand from which it is expected to be seen
 
 
 @dataclass(frozen=True)

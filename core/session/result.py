@@ -184,6 +184,7 @@ def write_take_files(
     fields: dict[str, object] = {"//found": list(findings(session, description)), "floor_m": floor_m}
     fields |= {} if session.inputs.shot is None else {"shot": list(session.inputs.shot)}
     fields |= {} if session.inputs.performer is None else {"performer": session.inputs.performer}
+    fields |= {} if session.inputs.hands else {"hands": False}
     write_take(take, folder, evidence, fields)
 
 

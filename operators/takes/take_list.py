@@ -124,7 +124,8 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
         folder.mkdir(parents=True, exist_ok=True)
         has = evidence_of(take)
         # A camera that stands still brings contours, unless the take says that they are not followed.
-        write_take(take, folder, has if has and not take.contours else None)
+        more = {} if scene_take.follow.use_hands else {"hands": False}
+        write_take(take, folder, has if has and not take.contours else None, more)
         for note in notes:
             warn(self, note)
         self.report({"INFO"}, f"Saved the take in {folder}")

@@ -38,6 +38,7 @@ class OpenedTake:
     time_s: Array  # (F,) time of each frame [s]
     kinds: tuple[str, ...]  # The kinds of evidence that it is held against; it may have more
     notes: tuple[str, ...]  # Sentences to report
+    hands: bool  # whether hands are looked at
 
 
 def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTake:
@@ -58,7 +59,8 @@ def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTa
     rate = rate_note(take, clip)
     notes = (*take.notes, *(note for people in take.keypoints for note in people.notes))
     kinds = description.settings.evidence or EVIDENCE
-    return OpenedTake(take, time_s, kinds, (*notes, *([rate] if rate else [])))
+    hands = description.settings.hands is not False
+    return OpenedTake(take, time_s, kinds, (*notes, *([rate] if rate else [])), hands)
 
 
 def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, opened: OpenedTake) -> None:
@@ -75,6 +77,7 @@ def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, open
     settings.camera, settings.clip = camera_object, scene.active_clip
     armature_object = add_actor(context, settings, take.body)
     settings.stature = take.body.actor.stature_m
+    settings.follow.use_hands = opened.hands
     _add_evidence(settings, opened)
     if take.keyframes:
         action = settings.keyframe_action = new_keyframe_action(armature_object)

@@ -54,11 +54,11 @@ def planned_controls(
             not_in_fk.update(JOINTS[limb] if ik.toe is None else (*JOINTS[limb], last))
     for role in ROLES:
         if role in character_map.roles and role not in not_in_fk:
-            kind, limb = ControlKind.HIPS if role == "hips" else ControlKind.FK, None
+            kind, arm = ControlKind.HIPS if role == "hips" else ControlKind.FK, None
             if role in FINGER_ROLES:
-                kind, limb = ControlKind.FINGER, f"arm.{role[-1]}"
+                kind, arm = ControlKind.FINGER, f"arm.{role[-1]}"
             pairs = zip(character_map.keyed_bones(role), character_map.bones(role), strict=True)
-            wanted += [(control, kind, bone, limb) for control, bone in pairs]
+            wanted += [(control, kind, bone, arm) for control, bone in pairs]
     if character is not None and "hips" not in character_map.left_alone:
         hips = next((name for name in character_map.keyed_bones("hips") if name in character.index), None)
         bone = None if hips is None else character.bone(hips)

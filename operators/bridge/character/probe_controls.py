@@ -81,6 +81,7 @@ def probe_controls(
     kept = _steady(armature_object, planned, find_spaces(posed), notes)
     posed, followed = chosen(posed, kept), followed[:, kept]
     planned = [planned[index] for index in kept]
+    spaces = _on_goals(armature_object, planned, find_spaces(posed))
     controls = ordered_controls(
         [
             Control(
@@ -90,7 +91,7 @@ def probe_controls(
                 turns=plan.kind not in (ControlKind.POLE, ControlKind.CARRIER),
                 displaced=plan.name in displaced,
             )
-            for plan, space in zip(planned, find_spaces(posed), strict=True)
+            for plan, space in zip(planned, spaces, strict=True)
         ]
     )
     offsets = _offsets(armature_object, posed, followed, planned, size, notes)
@@ -197,6 +198,25 @@ def _steady(
                 "kinematics, and is not keyed; name its control in the character map"
             )
     return kept
+
+
+def _on_goals(
+    armature_object: bpy.types.Object, planned: Sequence[PlannedControl], spaces: Sequence[ControlSpace]
+) -> list[ControlSpace]:
+    """The spaces with fingers on the goals of hands that are keyed by these alone: they were probed in FK."""
+    found = list(spaces)
+    turning = {plan.bone for plan in planned if plan.kind in IN_FK}
+    for index, (plan, space) in enumerate(zip(planned, spaces, strict=True)):
+        on_finger = space.turner != NOTHING and planned[space.turner].kind is ControlKind.FINGER
+        if plan.kind is not ControlKind.FINGER or on_finger:
+            continue
+        for at, goal in enumerate(planned):
+            if goal.kind is ControlKind.GOAL and goal.limb == plan.limb and goal.bone not in turning:
+                on, own = _rests(armature_object, [goal.name, plan.name])
+                rest = np.linalg.inv(on) @ own
+                placed = replace(space, turner=at, turn=rest[:3, :3])
+                found[index] = placed.placed_by_turner(rest[:3, 3])
+    return found
 
 
 def _placed(

@@ -18,7 +18,9 @@ pytestmark = pytest.mark.usefixtures("registered")
 def clip(tmp_path: Path) -> Path:
     """A clip of a shoot, with a description of its own that says next to nothing."""
     shoot = write_shoot(tmp_path / "shoot", 1, 8)
-    (shoot / "day1" / "take01.take.json").write_text('{"actor": {"height_m": 1.76}}', encoding="utf-8")
+    (shoot / "day1" / "take01.take.json").write_text(
+        '{"actor": {"height_m": 1.76}, "hands": false}', encoding="utf-8"
+    )
     return shoot / "day1" / "take01.mp4"
 
 
@@ -33,7 +35,8 @@ def test_a_clip_of_a_shoot_opens_and_is_saved_to_stand_alone(clip: Path, chosen:
     assert alone.clip.read_bytes() == clip.read_bytes()
     assert alone.camera.matrix_world == pytest.approx(before.camera.matrix_world, abs=1e-6)
     assert {style.name for style in alone.markers} == {style.name for style in before.markers}
-    assert "actor" in json.loads((tmp_path / "saved" / "take.json").read_text(encoding="utf-8"))
+    saved = json.loads((tmp_path / "saved" / "take.json").read_text(encoding="utf-8"))
+    assert "actor" in saved and saved["hands"] is take.follow.use_hands is False
 
 
 def test_the_description_beside_a_clip_can_be_dropped(clip: Path) -> None:
