@@ -11,8 +11,10 @@ import numpy as np
 from _characters import full_map, full_record
 from _libraries import small_library
 from _synthetic_take import BODY, SIZE, true_postures, write_json, write_keypoints, write_synthetic_take
+from keymark.core.body.fingers import Hands
 from keymark.core.body.posture import posture_to_json
 from keymark.core.detect.keypoint_file import read_keypoints
+from keymark.core.detect.keypoints import HAND_NUMBERS
 from keymark.core.prior.library import read_library
 from keymark.core.retarget.maps.character_map import read_character_map
 from keymark.core.retarget.retarget_record import read_retarget_record
@@ -138,8 +140,8 @@ def _keypoints() -> dict[str, Any]:
     value |= {"size": list(SIZE), "frame_start": 1, "fps": 30.0, "note": "free text"}
     value |= {"second": {"detector": "Another", "names": ["heel.R"], "digest": "0a", "motion": False}}
     face = [[12.0, 22.0, 0.1 * frame, -0.2, 0.0, 0.99] for frame in range(FRAMES)]
-    look = [0.1, -0.2, 0.3, 0.98, 0.9]
-    hands = [[[40.0, 22.0, *look, *look], [None] * 12] for _ in range(FRAMES)]
+    look = [0.1, -0.2, 0.3, 0.98, 0.9, 0.4, 0.5, 0.6, 0.7, 0.8]
+    hands = [[[40.0, 22.0, *look, *look], [None] * HAND_NUMBERS] for _ in range(FRAMES)]
     last: dict[str, list[Any]] = {"frames": frames, "world": world, "face": face, "hands": hands}
     return value | {name: [*rows[:-1], None] for name, rows in last.items()}
 
@@ -169,6 +171,7 @@ def _motion(folder: Path) -> dict[str, Any]:
         keyframe_indices=(0, 4, 7),
         method="map",
         diagnostics={"cost": np.arange(8.0), "quality": np.full((FRAMES, 5), np.nan)},
+        hands=Hands(np.full((FRAMES, 2, 5), 0.5), np.full((FRAMES, 2, 3), 0.1), np.full((FRAMES, 2), 0.9)),
     )
     write_motion(motion, folder / "valid_motion.json")
     return _read(folder / "valid_motion.json")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, BoolArray, IndexArray
 from ..numerics.vectors import unit
 from .rotations import cross, hinge, logarithm
 
@@ -44,7 +44,7 @@ class Hands:
     bend: Array  # (F, 2, 3) turn of the hand in the forearm's frame as a rotation vector [rad]
     sure: Array  # (F, 2) how far both are to be believed, 0 to 1
 
-    def __getitem__(self, frames: slice | Array) -> "Hands":
+    def __getitem__(self, frames: slice | IndexArray | BoolArray) -> "Hands":
         """Those of some frames."""
         return Hands(self.curls[frames], self.bend[frames], self.sure[frames])
 

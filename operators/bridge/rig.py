@@ -46,7 +46,7 @@ def rig_of(resting: ActorBones, body: Body, extremities: Collection[str] = ()) -
     bones = []
     for model in turning:
         own = rest[model.name][:3, :3]
-        above = str(model.parent) if model.parent in names else carried.get(str(model.parent))
+        above = str(model.parent) if model.parent in names else carried.get(str(model.parent), "")
         if model.parent is None:
             left = space.rotation @ own
             origin, location_axes = space.to_world(rest[model.name][:3, 3]), space.scale * left

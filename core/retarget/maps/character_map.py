@@ -111,22 +111,27 @@ class RoleBones(Record):
         return f"shares is {shown(shares)}; it must be {valid}"
 
 
+UNSHARED = Never(f"shares is for {listed(TRUNK_CHAINS)} alone; leave it out")
+
+
 @dataclass(frozen=True)
 class OneBone(RoleBones):
     """The bone of a role that is no chain."""
 
     bones: Annotated[tuple[BoneName], replace(BONES, most=1)]
     """The role's bone."""
-    shares: Annotated[tuple[()], Never(f"shares is for {listed(TRUNK_CHAINS)} alone; leave it out")] = ()
+    shares: Annotated[tuple[()], UNSHARED] = ()
     """Of spine and neck alone."""
 
 
 @dataclass(frozen=True)
-class FingerBones(OneBone):
+class FingerBones(RoleBones):
     """The bones of a finger."""
 
     bones: Annotated[tuple[BoneName, ...], replace(BONES, most=3)]
     """From the knuckle to the tip, the thumb's from the wrist."""
+    shares: Annotated[tuple[()], UNSHARED] = ()
+    """Of spine and neck alone."""
 
 
 @dataclass(frozen=True)

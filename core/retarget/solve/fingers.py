@@ -20,9 +20,9 @@ def finger_bends(body: RestBody, wanted: Mapping[str, Array]) -> dict[int, Array
     found: dict[int, Array] = {}
     for side in "LR":
         palm = _palm(body, side)
-        for finger in FINGERS if palm is not None else ():
+        for finger in FINGERS:
             role = f"{finger}.{side}"
-            if role not in wanted or not body.is_moved(role):
+            if palm is None or role not in wanted or not body.is_moved(role):
                 continue
             bones = range(body.first[role], body.last[role] + 1)
             joints = [body.joint(f"hand.{side}"), *(body.bones[bone].head for bone in bones)]

@@ -11,6 +11,7 @@ import pytest
 from _performances import stepping, write_mhr70
 from _synthetic_take import BODY, edit_json, true_postures
 from keymark.core.arrays import Array
+from keymark.core.body.fingers import Hands
 from keymark.core.body.human import HUMAN
 from keymark.core.errors import ConversionError, InputError
 from keymark.core.take.motion import Motion, read_motion, write_motion
@@ -39,6 +40,7 @@ def motion() -> Motion:
         (0, 4, 9),
         "map",
         {"quality": quality, "posing_scale": np.array(1.25)},
+        hands=Hands(*(random.random((FRAMES, 2, *shape)) for shape in ((5,), (3,), ()))),
     )
 
 
@@ -54,6 +56,11 @@ def test_a_motion_is_read_back(motion: Motion, tmp_path: Path) -> None:
     assert np.allclose(back.point_covariance, motion.point_covariance, rtol=1e-5, atol=1e-12)
     assert np.allclose(back.diagnostics["quality"], motion.diagnostics["quality"], rtol=1e-5, equal_nan=True)
     assert back.diagnostics["posing_scale"] == pytest.approx(1.25)
+    assert back.hands is not None and motion.hands is not None
+    for name in ("curls", "bend", "sure"):
+        np.testing.assert_allclose(getattr(back.hands, name), getattr(motion.hands, name), atol=1e-6)
+    write_motion(replace(motion, hands=None), tmp_path / "motion.json")
+    assert read_motion(tmp_path / "motion.json").hands is None
 
 
 def test_the_file_is_what_other_programs_expect(motion: Motion, tmp_path: Path) -> None:
