@@ -6,7 +6,7 @@ footage and from any other side, where depth shows. The one that the frame has i
 
 import bpy
 import numpy as np
-from bpy.types import Context, PropertyGroup, Scene
+from bpy.types import Context, PropertyGroup
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
@@ -14,15 +14,13 @@ from ..shell.results import LruCache
 from ..shell.take_state import TakeState
 from ..shell.takes import find_take, redraw_footage
 from . import drawing
-from .drawing import CANDIDATE_COLORS, CORE, GHOST, TALL_M, Color, Item, Label, Stroke, Style, body_scale
+from .drawing import CANDIDATE_COLORS, CORE, GHOST, TALL_M, Item, Label, Stroke, Style, body_scale, faded
 from .figures import limb_lines
 from .views import motion_view
 
 _points: "LruCache[Array]" = LruCache()
 """(N, 13, 3) points of a found keyframe's candidates, by what they depend on."""
-
-
-_looked_at: tuple[float, int] | None = None
+_looked_at: tuple[float, int] = (np.nan, 0)
 """Scene frame, and the candidate there whose button the mouse was over last."""
 
 
@@ -35,42 +33,25 @@ def look_at(context: Context, candidate: int) -> None:
         redraw_footage(context)
 
 
-def looked_at(scene: Scene) -> int:
-    """The candidate of the current frame whose button the mouse was over last; -1 for none."""
-    frame, candidate = _looked_at or (None, -1)
-    return candidate if frame == scene.frame_current_final else -1
-
-
-def candidate_color(index: int) -> Color:
-    """A candidate's color in the user's theme."""
-    red, green, blue = bpy.context.preferences.themes[0].collection_color[index % CANDIDATE_COLORS].color
-    return (red, green, blue, GHOST)
-
-
 def draw(context: Context) -> list[Item]:
     """The figure of the candidate, at a frame that nobody has decided on."""
     scene = context.scene
     settings, take = scene.keymark.overlays, find_take(scene)
     if take is None or not settings.show_candidates or context.screen.is_animation_playing:
         return []
-    candidate = looked_at(scene)
-    if candidate < 0 or take.armature is None or not TakeState(take).shows_keyframes:
+    frame, candidate = _looked_at
+    state = TakeState(take)
+    if frame != scene.frame_current_final or take.armature is None or not state.shows_keyframes:
         return []
-    match, view = _shown(take, scene.frame_current_final), motion_view(context, take)
+    place, view = state.match_at(frame), motion_view(context, take)
+    match = take.matching.matches[place] if place >= 0 else None
+    if match is None or len(match.candidates) < 2 or state.of_match(match) != "FOUND":
+        match = state.offered_at(frame)
     # The frame may have got other candidates since.
     if match is None or view is None or candidate == match.chosen or candidate >= len(match.candidates):
         return []
     positions = view.project(candidate_points(take.armature, match))
     return picture(positions, candidate, match.chosen, settings)
-
-
-def _shown(take: PropertyGroup, frame: float) -> PropertyGroup | None:
-    """What there is to choose from at a scene frame: a found keyframe's candidates, or those offered."""
-    place = TakeState(take).match_at(frame)
-    match = take.matching.matches[place] if place >= 0 else None
-    if match is not None and len(match.candidates) > 1 and TakeState(take).of_match(match) == "FOUND":
-        return match
-    return TakeState(take).offered_at(frame)
 
 
 def candidate_points(armature_object: bpy.types.Object, match: PropertyGroup) -> Array:
@@ -100,7 +81,8 @@ def picture(positions: Array, candidate: int, chosen: int, settings: PropertyGro
     tall_px = float(np.ptp(np.nan_to_num(figure[:, 1])))
     style = Style(settings.opacity, scale, body_scale(np.array([tall_px / TALL_M]), scale))
     width = style.limb * style.width * style.body_scale
-    color = style.color(candidate_color(candidate))
+    themed = bpy.context.preferences.themes[0].collection_color[candidate % CANDIDATE_COLORS].color
+    color = style.color(faded(themed, GHOST))
     lines, sides = limb_lines(HUMAN.point_names, figure)
     items: list[Item] = [
         Stroke(lines, color, width, GHOST * style.halo),

@@ -5,7 +5,7 @@ For draw functions of `registry`, which has enabled blending. Colors are red, gr
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import ClassVar, Literal
 
@@ -16,8 +16,8 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 from numpy.typing import ArrayLike
 
-from ...core.arrays import Array, SingleArray
-from ...core.body.human import LIGHT, Rgb, side_of
+from ...core.arrays import Array
+from ...core.body.human import LIGHT, side_of
 from .figures import triangles
 
 Color = tuple[float, float, float, float]
@@ -40,52 +40,6 @@ def faded(color: Sequence[float], opacity: float) -> Color:
     return (red, green, blue, (alpha[0] if alpha else 1.0) * opacity)
 
 
-def lines(segments: Array, color: ArrayLike, width: float = 1.5, halo: float = 0.0) -> None:
-    """Draw straight segments (S, 2, 2) in region pixels, or (S, 2, 3) in space; colors are (4,) or (S, 4).
-
-    `halo` is the opacity of a dark edge on both sides.
-    """
-    if not len(segments):
-        return
-    if halo > 0.0:
-        _polyline(segments, faded(HALO, halo), width + 2.0 * 1.25)
-    _polyline(segments, color, width)
-
-
-def _polyline(segments: Array, color: ArrayLike, width: float) -> None:
-    colors = np.asarray(color, dtype=np.float32)
-    kind = "POLYLINE_SMOOTH_COLOR" if colors.ndim > 1 else "POLYLINE_UNIFORM_COLOR"
-    shader = gpu.shader.from_builtin(kind)
-    each = np.repeat(colors, 2, axis=0) if colors.ndim > 1 else colors
-    batch = _batch(shader, "LINES", segments, each)
-    shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
-    shader.uniform_float("lineWidth", width * ui_scale())
-    batch.draw(shader)
-
-
-def polygons(corners: ArrayLike, color: ArrayLike) -> None:
-    """Fill convex polygons (N, K, D), without those that are not finite; colors are (4,) or (N, 4)."""
-    points = np.asarray(corners, dtype=np.float64)
-    colors = np.asarray(color, dtype=np.float32)
-    whole = np.isfinite(points).all(axis=(-2, -1))
-    if not whole.any():
-        return
-    if colors.ndim > 1:
-        colors = np.repeat(colors[whole], 3 * (points.shape[-2] - 2), axis=0)
-    shader = gpu.shader.from_builtin("SMOOTH_COLOR" if colors.ndim > 1 else "UNIFORM_COLOR")
-    _batch(shader, "TRIS", triangles(points[whole]), colors).draw(shader)
-
-
-def _batch(shader: gpu.types.GPUShader, kind: str, points: Array, colors: SingleArray) -> gpu.types.GPUBatch:
-    """Points (..., D) with one color (4,), or one each, as a batch of a shader that is now in use."""
-    flat = np.zeros((points.size // points.shape[-1], 3), dtype=np.float32)  # polylines take no plane ones
-    flat[:, : points.shape[-1]] = points.reshape(-1, points.shape[-1])
-    batch = batch_for_shader(shader, kind, {"pos": flat} | ({"color": colors} if colors.ndim > 1 else {}))
-    if colors.ndim == 1:
-        shader.uniform_float("color", tuple(colors.tolist()))
-    return batch
-
-
 def texture(pixels: ArrayLike) -> gpu.types.GPUTexture:
     """Upload a picture (height, width, 4) of red, green, blue, alpha in sRGB, 0 to 1, top row first.
 
@@ -95,30 +49,6 @@ def texture(pixels: ArrayLike) -> gpu.types.GPUTexture:
     height, width, _ = rows.shape
     data = gpu.types.Buffer("FLOAT", rows.size, rows.ravel())
     return gpu.types.GPUTexture((width, height), format="RGBA8", data=data)
-
-
-def text(
-    words: str,
-    x: float,
-    y: float,
-    color: Color = INK,
-    size: float = TEXT_SIZE,
-    align: Literal["left", "middle", "right"] = "left",
-) -> None:
-    """Draw a line of text, outlined so that it reads on any background.
-
-    `x` is the position of the part of it that `align` names, `y` the base line [region px]; `size` is in
-    points, scaled with the user interface.
-    """
-    blf.size(FONT, size * ui_scale())
-    blf.color(FONT, *color)
-    blf.enable(FONT, blf.SHADOW)
-    blf.shadow(FONT, 6, 0.0, 0.0, 0.0, color[3])
-    blf.shadow_offset(FONT, 0, 0)
-    blf.position(FONT, round(x - ALIGNMENTS[align] * blf.dimensions(FONT, words)[0]), round(y), 0.0)
-    blf.draw(FONT, words)
-    blf.disable(FONT, blf.SHADOW)
-    gpu.state.blend_set("ALPHA")  # blf disables blending, which would make later items opaque
 
 
 def text_size(words: str, size: float = TEXT_SIZE) -> tuple[float, float]:
@@ -131,12 +61,9 @@ def text_size(words: str, size: float = TEXT_SIZE) -> tuple[float, float]:
 # --- Style of the overlays
 
 
-def _opaque(rgb: Rgb) -> Color:
-    red, green, blue = (level / 255.0 for level in rgb)
-    return (red, green, blue, 1.0)
-
-
-SIDES: Mapping[str, Color] = {side: _opaque(rgb) for side, rgb in LIGHT.items()}
+SIDES: Mapping[str, Color] = {
+    side: (red / 255.0, green / 255.0, blue / 255.0, 1.0) for side, (red, green, blue) in LIGHT.items()
+}
 LEFT, RIGHT, MIDDLE = SIDES["L"], SIDES["R"], SIDES[""]
 """Colors of the performer's sides, and of what has none."""
 CORE: Color = (0.08, 0.08, 0.08, 1.0)  # color of the core of a hollow line
@@ -207,10 +134,24 @@ def side_color(name: str) -> Color:
     return SIDES[side_of(name)]
 
 
-def paler(color: tuple[float, float, float]) -> tuple[float, float, float]:
-    """A color nearer to white."""
-    red, green, blue = (0.5 + (1.0 - 0.5) * np.asarray(color, dtype=np.float64)).tolist()
-    return (red, green, blue)
+# --- Items
+
+
+def _draw(kind: str, corners: Array, color: ArrayLike, **uniforms: ArrayLike) -> None:
+    """Draw lines or triangles (N, K, 2) of one color (4,), or of N colors (N, 4)."""
+    colors = np.asarray(color, dtype=np.float32)
+    points = np.zeros((corners.size // 2, 3), dtype=np.float32)  # polylines take no plane ones
+    points[:, :2] = corners.reshape(-1, 2)
+    contents, look = {"pos": points}, "UNIFORM_COLOR"
+    if colors.ndim > 1:
+        contents["color"], look = np.repeat(colors, len(points) // len(colors), axis=0), "SMOOTH_COLOR"
+    else:
+        uniforms["color"] = colors.tolist()
+    shader = gpu.shader.from_builtin(f"POLYLINE_{look}" if kind == "LINES" else look)
+    batch = batch_for_shader(shader, kind, contents)
+    for name, value in uniforms.items():
+        shader.uniform_float(name, value)
+    batch.draw(shader)
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,8 +160,15 @@ class Stroke:
 
     segments: Array  # (S, 2, 2) region pixels
     color: ArrayLike  # (4,) for all, or (S, 4)
-    width: float
-    halo: float = 0.0  # opacity of the dark edge
+    width: float = 1.5
+    halo: float = 0.0  # opacity of a dark edge on both sides
+
+    def draw(self) -> None:
+        """Draw the edges, then the lines."""
+        edges = [(faded(HALO, self.halo), self.width + 2.0 * 1.25)] if self.halo > 0.0 else []
+        for color, width in [*edges, (self.color, self.width)] if len(self.segments) else []:
+            size = gpu.state.viewport_get()[2:]
+            _draw("LINES", self.segments, color, viewportSize=size, lineWidth=width * ui_scale())
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,6 +177,12 @@ class Fill:
 
     corners: Array  # (N, K, 2) region pixels
     color: ArrayLike  # (4,) for all, or (N, 4)
+
+    def draw(self) -> None:
+        """Draw those that are finite."""
+        whole, colors = np.isfinite(self.corners).all(axis=(-2, -1)), np.asarray(self.color)
+        if whole.any():
+            _draw("TRIS", triangles(self.corners[whole]), colors[whole] if colors.ndim > 1 else colors)
 
 
 @dataclass(frozen=True)
@@ -242,6 +196,18 @@ class Label:
     align: Literal["left", "middle", "right"] = "left"
     size: float = TEXT_SIZE  # in points, scaled with the user interface
 
+    def draw(self) -> None:
+        """Draw it, outlined so that it reads on any background."""
+        width, _ = text_size(self.words, self.size)
+        blf.color(FONT, *self.color)
+        blf.enable(FONT, blf.SHADOW)
+        blf.shadow(FONT, 6, 0.0, 0.0, 0.0, self.color[3])
+        blf.shadow_offset(FONT, 0, 0)
+        blf.position(FONT, round(self.x - ALIGNMENTS[self.align] * width), round(self.y), 0.0)
+        blf.draw(FONT, self.words)
+        blf.disable(FONT, blf.SHADOW)
+        gpu.state.blend_set("ALPHA")  # blf disables blending, which would make later items opaque
+
 
 @dataclass(frozen=True, eq=False)
 class Picture:
@@ -251,50 +217,38 @@ class Picture:
     corners: Array  # (N, 3, 2) region pixels
     shares: Array  # (N, 3, 2) the same in the texture: of its width from the left, of its height from the top
 
+    def draw(self) -> None:
+        """Draw it as it is."""
+        points = np.zeros((self.corners.size // 2, 3), dtype=np.float32)
+        points[:, :2] = self.corners.reshape(-1, 2)
+        # Textures begin at the bottom.
+        ends = (self.shares.reshape(-1, 2) * [1.0, -1.0] + [0.0, 1.0]).astype(np.float32)
+        shader = gpu.shader.from_builtin("IMAGE_COLOR")
+        batch = batch_for_shader(shader, "TRIS", {"pos": points, "texCoord": ends})
+        shader.uniform_sampler("image", self.texture)
+        shader.uniform_float("color", (1.0, 1.0, 1.0, 1.0))
+        batch.draw(shader)
+
 
 Item = Stroke | Fill | Label | Picture
 
 
-def paint(items: Iterable[Item]) -> None:
-    """Draw all items, the first at the bottom; alike neighbors in one draw call."""
-    for item in merged(items):
-        if isinstance(item, Stroke):
-            lines(item.segments, item.color, item.width, item.halo)
-        elif isinstance(item, Fill):
-            polygons(item.corners, item.color)
-        elif isinstance(item, Picture):
-            _draw_picture(item)
-        else:
-            text(item.words, item.x, item.y, item.color, item.size, item.align)
-
-
-def _draw_picture(picture: Picture) -> None:
-    vertices = np.zeros((picture.corners.size // 2, 3), dtype=np.float32)
-    vertices[:, :2] = picture.corners.reshape(-1, 2)
-    # Textures begin at the bottom.
-    ends = (picture.shares.reshape(-1, 2) * [1.0, -1.0] + [0.0, 1.0]).astype(np.float32)
-    shader = gpu.shader.from_builtin("IMAGE_COLOR")
-    batch = batch_for_shader(shader, "TRIS", {"pos": vertices, "texCoord": ends})
-    shader.uniform_sampler("image", picture.texture)
-    shader.uniform_float("color", (1.0, 1.0, 1.0, 1.0))
-    batch.draw(shader)
-
-
 def merged(items: Iterable[Item]) -> list[Item]:
-    """Merge neighboring lines of one thickness, and neighboring polygons of equally many corners."""
+    """Items to draw, the first at the bottom, with alike neighbors as one: a draw call each takes time.
+
+    Lines of one thickness are alike, and polygons of equally many corners.
+    """
     done: list[Item] = []
     for _, group in groupby(items, key=_kind):
-        alike = list(group)
-        first = alike[0]
-        if isinstance(first, Stroke) and len(alike) > 1:
-            parts = [(item.segments, item.color) for item in alike if isinstance(item, Stroke)]
-            done.append(Stroke(*_joined(parts), first.width, first.halo))
-        elif isinstance(first, Fill) and len(alike) > 1:
-            done.append(
-                Fill(*_joined([(item.corners, item.color) for item in alike if isinstance(item, Fill)]))
-            )
-        else:
-            done += alike
+        first, *others = group
+        if not others or isinstance(first, Label | Picture):
+            done += [first, *others]
+            continue
+        field = "segments" if isinstance(first, Stroke) else "corners"
+        parts = [(getattr(item, field), getattr(item, "color", None)) for item in (first, *others)]
+        colors = [np.broadcast_to(np.asarray(color, dtype=np.float64), (len(at), 4)) for at, color in parts]
+        together = {field: np.concatenate([at for at, _ in parts]), "color": np.concatenate(colors)}
+        done.append(replace(first, **together))
     return done
 
 
@@ -302,10 +256,3 @@ def _kind(item: Item) -> tuple[object, ...]:
     if isinstance(item, Stroke):
         return ("stroke", item.width, item.halo)
     return ("fill", item.corners.shape[-2]) if isinstance(item, Fill) else (type(item).__name__,)
-
-
-def _joined(parts: list[tuple[Array, ArrayLike]]) -> tuple[Array, Array]:
-    """Concatenated points, and a color for each."""
-    points = np.concatenate([part for part, _ in parts])
-    colors = [np.broadcast_to(np.asarray(color, dtype=np.float64), (len(part), 4)) for part, color in parts]
-    return points, np.concatenate(colors)

@@ -3,8 +3,6 @@
 Points are region pixels unless stated otherwise. A point that is not finite breaks a line.
 """
 
-from functools import cache
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -29,39 +27,29 @@ def dashes(points: ArrayLike, dash: float, gap: float, *, closed: bool = False) 
     if closed and len(line):
         line = np.concatenate([line, line[:1]])
     finite = np.isfinite(line).all(axis=-1)
-    runs = [line] if finite.all() else np.split(line, np.flatnonzero(np.diff(finite)) + 1)
-    parts = [_dashed_run(run, dash, gap) for run in runs if len(run) > 1 and np.isfinite(run[0]).all()]
-    return np.concatenate(parts) if parts else np.empty((0, 2, line.shape[-1]))
-
-
-def _dashed_run(line: Array, dash: float, gap: float) -> Array:
-    steps = line[1:] - line[:-1]
-    along = np.zeros(len(line))
-    np.cumsum(np.sqrt(np.einsum("nd,nd->n", steps, steps)), out=along[1:])
-    period = max(dash + gap, along[-1] / 1000)
-    if along[-1] == 0.0:
-        return np.empty((0, 2, line.shape[-1]))
-    share = dash / (dash + gap)
-    starts = np.arange(0.0, along[-1], period)
-    cuts = np.sort(np.concatenate([along, starts, starts + share * period]))
-    cuts = cuts[: np.searchsorted(cuts, along[-1], side="right")]
-    middles = 0.5 * (cuts[1:] + cuts[:-1])
-    inked = ((middles / period) % 1.0 < share) & (cuts[1:] > cuts[:-1])
-    at = np.stack([np.interp(cuts, along, column) for column in line.T], axis=-1)
-    return np.stack([at[:-1], at[1:]], axis=1)[inked]
+    parts = [np.empty((0, 2, line.shape[-1]))]
+    for run in [line] if finite.all() else np.split(line, np.flatnonzero(np.diff(finite)) + 1):
+        steps = np.linalg.norm(np.diff(run, axis=0), axis=-1)
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        if not along[-1] > 0.0:  # a point, or what is not finite
+            continue
+        period, share = max(dash + gap, along[-1] / 1000), dash / (dash + gap)
+        starts = np.arange(0.0, along[-1], period)
+        cuts = np.sort(np.concatenate([along, starts, starts + share * period]))
+        cuts = cuts[: np.searchsorted(cuts, along[-1], side="right")]
+        middles = 0.5 * (cuts[1:] + cuts[:-1])
+        inked = ((middles / period) % 1.0 < share) & (cuts[1:] > cuts[:-1])
+        at = np.stack([np.interp(cuts, along, column) for column in run.T], axis=-1)
+        parts.append(np.stack([at[:-1], at[1:]], axis=1)[inked])
+    return np.concatenate(parts)
 
 
 def circles(centers: ArrayLike, radii: ArrayLike, corners: int = 24) -> Array:
     """(N, corners, 2) circles around centers (N, 2) with radii (N,) or one for all."""
     middle = np.asarray(centers, dtype=np.float64).reshape(-1, 1, 2)
     reach = np.broadcast_to(np.asarray(radii, dtype=np.float64), middle.shape[:1])
-    return middle + reach[:, None, None] * _unit_circle(corners)
-
-
-@cache
-def _unit_circle(corners: int) -> Array:
     turn = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
-    return np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    return middle + reach[:, None, None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
 
 
 def diamonds(centers: ArrayLike, radius: float) -> Array:
@@ -91,8 +79,6 @@ def squares(centers: Array, size: float) -> Array:
 
 
 NECK, PELVIS = "neck", "pelvis"  # the middle between the shoulders, and between the hips
-
-
 LIMBS = (
     ("", "head", NECK),
     ("", NECK, PELVIS),
@@ -121,6 +107,4 @@ def limb_lines(names: tuple[str, ...], positions: Array) -> tuple[Array, NDArray
 
 
 UPRIGHT = np.array([[1.0, 0.0], [0.0, 1.0]])
-
-
 SLANTING = np.array([[1.0, 1.0], [1.0, -1.0]]) / 2.0**0.5

@@ -1,28 +1,13 @@
 """Legend in a corner of a region."""
 
-from dataclasses import dataclass
 from enum import Enum
 from functools import lru_cache
 
 import numpy as np
 from bpy.types import Area, Region
 
-from ...core.arrays import Array
-from .drawing import (
-    CORE,
-    LEFT,
-    MIDDLE,
-    RIGHT,
-    SOURCES,
-    THROWN_OUT,
-    Color,
-    Fill,
-    Item,
-    Label,
-    Stroke,
-    Style,
-    text_size,
-)
+from . import drawing
+from .drawing import Color, Fill, Item, Label, Stroke, Style, text_size
 from .figures import SLANTING, UPRIGHT, circles, dashes, diamonds, segments, squares
 
 GROUND = (0.0, 0.0, 0.0, 0.35)
@@ -32,37 +17,24 @@ VIEW_NAME = 40.0  # height of Blender's two lines on the view in the same corner
 THIN, THICK = 1.5, 3.6
 
 
-@dataclass(frozen=True)
-class Look:
-    """What a sample looks like."""
-
-    figure: str = ""  # line, limb, ring, cross or diamond; empty for none
-    color: Color = MIDDLE
-    dashed: bool = False
-    dotted: bool = False
-    hollow: bool = False
-    slanting: bool = False
-    framed: bool = False
-
-
 class Sample(Enum):
-    """The sample at the start of a row."""
+    """The sample at the start of a row: its figure, none where empty, and its color."""
 
-    NONE = Look()
-    SOLID = Look("line")
-    DASHED = Look("line", dashed=True)
-    PAST = Look("line", dotted=True)
-    FUTURE = Look("line", dashed=True, dotted=True)
-    LEFT = Look("limb", LEFT)
-    RIGHT = Look("limb", RIGHT, hollow=True)
-    RING = EXPECTED = Look("ring")
-    DIAMOND = Look("diamond")
-    SOURCE_1 = Look("cross", SOURCES[0])
-    SOURCE_2 = Look("cross", SOURCES[1])
-    SOURCE_3 = Look("cross", SOURCES[2])
-    SOURCE_4 = Look("cross", SOURCES[3])
-    THROWN_OUT = Look("cross", THROWN_OUT, slanting=True)
-    SWAPPED = Look("cross", framed=True)
+    NONE = "", drawing.MIDDLE
+    SOLID = "line", drawing.MIDDLE
+    DASHED = "dashed line", drawing.MIDDLE
+    PAST = "dotted line", drawing.MIDDLE
+    FUTURE = "dashed dotted line", drawing.MIDDLE
+    LEFT = "limb", drawing.LEFT
+    RIGHT = "hollow limb", drawing.RIGHT
+    RING = EXPECTED = "ring", drawing.MIDDLE
+    DIAMOND = "diamond", drawing.MIDDLE
+    SOURCE_1 = "cross", drawing.SOURCES[0]
+    SOURCE_2 = "cross", drawing.SOURCES[1]
+    SOURCE_3 = "cross", drawing.SOURCES[2]
+    SOURCE_4 = "cross", drawing.SOURCES[3]
+    THROWN_OUT = "slanting cross", drawing.THROWN_OUT
+    SWAPPED = "framed cross", drawing.MIDDLE
 
 
 SOURCE_SAMPLES = (Sample.SOURCE_1, Sample.SOURCE_2, Sample.SOURCE_3, Sample.SOURCE_4)
@@ -85,7 +57,7 @@ def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Ite
     y -= len(rows) * LINE * style.scale
     for row, (sample, words) in enumerate(reversed(rows)):
         base = y + row * LINE * style.scale
-        drawn = _sample(sample.value, x, base + 4.0 * style.scale, style)  # the letters' middle
+        drawn = _sample(*sample.value, x, base + 4.0 * style.scale, style)  # the letters' middle
         strokes += [item for item in drawn if isinstance(item, Stroke)]
         fills += [item for item in drawn if isinstance(item, Fill)]
         indent = (SAMPLE + GAP_AFTER) * style.scale if drawn else 0.0
@@ -99,31 +71,31 @@ def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Ite
     return (Fill(ground, style.color(GROUND)), *strokes, *fills, *labels)
 
 
-def _sample(look: Look, x: float, y: float, style: Style) -> list[Item]:
-    color, scale = style.color(look.color), style.scale
+def _sample(figure: str, color: Color, x: float, y: float, style: Style) -> list[Item]:
+    color, scale = style.color(color), style.scale
     line = np.array([[x, y], [x + SAMPLE * scale, y]])
     middle = line.mean(axis=0, keepdims=True)
-
-    def thin(parts: Array) -> Stroke:
-        return Stroke(parts, color, THIN, style.halo)
-
-    if look.figure == "limb":
-        core = Stroke(line[None], style.color(CORE), style.core * THICK)
-        return [Stroke(line[None], color, THICK, style.halo), *([core] if look.hollow else [])]
-    if look.figure == "ring":
-        return [thin(segments(circles(middle, style.joint * scale, 16), closed=True))]
-    if look.figure == "cross":
-        arms = style.joint * scale * (SLANTING if look.slanting else UPRIGHT)
-        square = segments(squares(middle, 1.1 * style.joint * scale), closed=True)
-        return [thin(middle + np.stack([-arms, arms], axis=1)), *([thin(square)] if look.framed else [])]
-    if look.figure == "diamond":
-        marks = diamonds(middle, style.diamond * scale)
-        return [thin(segments(marks, closed=True)), Fill(marks, color)]
-    if look.figure == "line":
-        dots = circles(np.linspace(line[0], line[1], 5)[1:-1], (style.dot + 1.0) * scale, 8)
-        drawn = dashes(line, style.dash * scale, style.gap * scale) if look.dashed else line[None]
-        return [thin(drawn), *([Fill(dots, color)] if look.dotted else [])]
-    return []
+    thin, fills = [], []
+    if "limb" in figure:
+        core = Stroke(line[None], style.color(drawing.CORE), style.core * THICK)
+        return [Stroke(line[None], color, THICK, style.halo), *([core] if "hollow" in figure else [])]
+    if "ring" in figure:
+        thin.append(segments(circles(middle, style.joint * scale, 16), closed=True))
+    if "cross" in figure:
+        arms = style.joint * scale * (SLANTING if "slanting" in figure else UPRIGHT)
+        thin.append(middle + np.stack([-arms, arms], axis=1))
+    if "framed" in figure:
+        thin.append(segments(squares(middle, 1.1 * style.joint * scale), closed=True))
+    if "diamond" in figure:
+        fills.append(diamonds(middle, style.diamond * scale))
+        thin.append(segments(fills[0], closed=True))
+    if "line" in figure:
+        dashed = dashes(line, style.dash * scale, style.gap * scale)
+        thin.append(dashed if "dashed" in figure else line[None])
+    if "dotted" in figure:
+        fills.append(circles(np.linspace(line[0], line[1], 5)[1:-1], (style.dot + 1.0) * scale, 8))
+    strokes = [Stroke(parts, color, THIN, style.halo) for parts in thin]
+    return [*strokes, *(Fill(corners, color) for corners in fills)]
 
 
 def corner(area: Area, region: Region, scale: float) -> tuple[float, float]:

@@ -1,90 +1,28 @@
-"""Outlines of regions, paths of points and keypoints as items: what is drawn of a motion beside its body.
+"""Paths of points and keypoints as items: what is drawn of a motion beside its body and markers.
 
-Observed regions are solid, predicted ones dashed. A keypoint is a cross where it is seen, a ring where the
+A keypoint is a cross where it is seen, a ring where the
 motion puts it; shapes tell apart what colors do: one that is not believed is a slanting cross, one that its
 source saw on the other side of the body a cross in a square.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...core.arrays import Array, BoolArray, IndexArray
 from ...core.detect.keypoints import mirrored_point
-from .drawing import (
-    INK,
-    MIDDLE,
-    PATH_FRAMES,
-    SOURCES,
-    THROWN_OUT,
-    Fill,
-    Item,
-    Label,
-    Stroke,
-    Style,
-    paler,
-    side_color,
-)
+from .drawing import MIDDLE, PATH_FRAMES, SOURCES, THROWN_OUT, Fill, Item, Stroke, Style, side_color
 from .figures import SLANTING, UPRIGHT, circles, dashes, diamonds, segments, squares
 
 if TYPE_CHECKING:
     from ...core.review.compared_keypoints import ComparedKeypoints
-    from ...core.review.review import Review
     from ..follow.frame_keypoints import FrameKeypoints
 
 
-MarkerColor = tuple[float, float, float]
-
-
-def hidden_markers(review: "Review", index: int) -> list[int]:
-    """Indices of the markers that were not found in a frame."""
-    return np.flatnonzero(~np.isfinite(review.observed[index]).all(axis=-1).any(axis=-1)).tolist()
-
-
-def observed_outlines(
-    review: "Review", index: int, to_region: Callable[[Array], Array], colors: list[MarkerColor], style: Style
-) -> list[Item]:
-    """A solid outline of each region that was found."""
-    outlines = to_region(review.observed[index])
-    return [
-        Stroke(segments(outline, closed=True), style.color(color), style.width, style.halo)
-        for outline, color in zip(outlines, colors, strict=True)
-    ]
-
-
-def predicted_outlines(
-    review: "Review", index: int, to_region: Callable[[Array], Array], colors: list[MarkerColor], style: Style
-) -> list[Item]:
-    """A dashed, paler outline of each region that the motion predicts; that of a hidden marker is named."""
-    outlines = to_region(review.predicted[index])
-    items: list[Item] = []
-    hidden = hidden_markers(review, index)
-    for marker, (outline, color) in enumerate(zip(outlines, colors, strict=True)):
-        whole = outline[np.isfinite(outline).all(axis=-1)]
-        if not len(whole):
-            continue
-        parts = dashes(whole, style.dash * style.scale, style.gap * style.scale, closed=True)
-        items.append(Stroke(parts, style.color(paler(color)), style.width, style.halo))
-        if marker in hidden:
-            x, y = whole[:, 0].max() + style.gap * style.scale, whole[:, 1].mean()
-            words = f"{review.marker_names[marker]} hidden"
-            items.append(Label(words, float(x), float(y), style.color(INK)))
-    return items
-
-
-def predicted_contours(
-    review: "Review", index: int, to_region: Callable[[Array], Array], style: Style
-) -> list[Item]:
-    """The contour lines of the body that the motion predicts, dashed."""
-    lines = to_region(review.contours[index])
-    parts = [dashes(line, style.dash * style.scale, style.gap * style.scale) for line in lines]
-    return [Stroke(np.concatenate(parts), style.color(MIDDLE), style.width, style.halo)] if parts else []
-
-
-# --- Paths of points over time
+ToRegion = Callable[[Array], Array]
+ARM, RING = 5.5, 3.5  # half-length of a cross's arms, and radius of a ring [px]
 
 
 def window(index: int, frame_count: int) -> IndexArray:
@@ -117,10 +55,6 @@ def paths(
     items += [Stroke(segments(mark, closed=True), color, 1.5, style.halo) for mark, color in pairs]
     items += [Fill(mark, color) for mark, color in pairs]
     return items
-
-
-ToRegion = Callable[[Array], Array]
-ARM, RING = 5.5, 3.5  # half-length of a cross's arms, and radius of a ring [px]
 
 
 def source_color(sources: Sequence[str], source: str, style: Style) -> tuple[float, ...]:
@@ -179,20 +113,14 @@ def not_yet_compared(
     found = []
     for each in seen:
         pixel = each.pixel.copy()
-        for column, same in enumerate(_same_points(tuple(each.names), tuple(keypoints.names))):
+        for column, name in enumerate(each.names):
+            sides = name, mirrored_point(name)
+            same = [point for point, known in enumerate(keypoints.names) if known in sides]
             apart = np.linalg.norm(pixel[:, column, None] - keypoints.seen[index, same], axis=-1)
             pixel[(apart < 0.5).any(axis=1), column] = np.nan
         if np.isfinite(pixel).any():
             found.append(replace(each, pixel=pixel))
     return tuple(found)
-
-
-@lru_cache(maxsize=16)
-def _same_points(names: tuple[str, ...], known: tuple[str, ...]) -> tuple[list[int], ...]:
-    """For each name the indices of the known ones that are of its body point, on either side."""
-    return tuple(
-        [i for i, other in enumerate(known) if other in (name, mirrored_point(name))] for name in names
-    )
 
 
 def _crosses(places: Array, shown: BoolArray, colors: Array, directions: Array, style: Style) -> Stroke:

@@ -146,18 +146,28 @@ def hatched(mask: Image) -> SingleArray:
 # --- Masks of the frame that the scene goes to
 
 
+_cost_s = 0.0
+"""How long the masks of the last frame took to make."""
+
+
+def is_fast(cost_s: float, scene: Scene) -> bool:
+    """Whether masks take no more than their share of a frame's time, so that playback keeps its speed."""
+    return cost_s <= LARGEST_SHARE * scene.render.fps_base / scene.render.fps
+
+
 @persistent
 def _frame_changed(scene: Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
-    """Make the masks of the scene's current frame."""
+    """Make the masks of the scene's current frame; in playback only where the last ones were fast."""
+    global _cost_s
     if not bpy.context.window_manager.keymark_show_masks or bpy.app.is_job_running("RENDER"):
         return
     played = any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
-    if played and not _cost.is_fast(scene):
+    if played and not is_fast(_cost_s, scene):
         return  # `draw` shows none that are of another frame
     try:
         started = monotonic()
         update_masks(scene)
-        _cost.last_s = monotonic() - started
+        _cost_s = monotonic() - started
     except KeymarkError:
         clear_previews()  # the clip is missing, which the operator that shows masks reports
 
@@ -165,21 +175,9 @@ def _frame_changed(scene: Scene, _depsgraph: bpy.types.Depsgraph | None = None) 
 @persistent
 def _stopped(scene: Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Make the masks that playback has left out."""
-    _cost.last_s = 0.0
+    global _cost_s
+    _cost_s = 0.0
     _frame_changed(scene)
-
-
-class Cost:
-    """How long the masks of a frame took to make."""
-
-    last_s = 0.0
-
-    def is_fast(self, scene: Scene) -> bool:
-        """Whether they take no more than their share of a frame's time, so that playback keeps its speed."""
-        return self.last_s <= LARGEST_SHARE * scene.render.fps_base / scene.render.fps
-
-
-_cost = Cost()
 
 
 def register() -> None:

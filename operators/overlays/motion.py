@@ -14,34 +14,11 @@ from ..shell.footage_view import FootageView, footage_view
 from ..shell.results import review_of
 from ..shell.take_state import TakeState
 from ..shell.takes import find_take
-from .drawing import (
-    CORE,
-    PATH_POINTS,
-    SIDES,
-    TALL_M,
-    UNCERTAIN_M,
-    Fill,
-    Item,
-    Stroke,
-    Style,
-    body_scale,
-    side_color,
-    ui_scale,
-)
-from .figures import circles, limb_lines, segments
+from . import drawing
+from .drawing import Fill, Item, Label, Stroke, Style, body_scale, side_color, ui_scale
+from .figures import circles, dashes, limb_lines, segments
 from .legend import SOURCE_SAMPLES, Row, Sample, corner, legend
-from .marks import (
-    all_sources,
-    compared_marks,
-    hidden_markers,
-    not_yet_compared,
-    observed_outlines,
-    paths,
-    predicted_contours,
-    predicted_outlines,
-    seen_marks,
-    window,
-)
+from .marks import all_sources, compared_marks, not_yet_compared, paths, seen_marks, window
 from .views import MotionView, motion_view
 
 if TYPE_CHECKING:
@@ -57,10 +34,10 @@ def skeleton(
     a ring, in a dashed circle as large as its standard deviation.
     """
     names, sigma = review.point_names, review.sigma_m[index]
-    uncertain, seen = sigma > UNCERTAIN_M, np.isfinite(positions).all(axis=-1)
+    uncertain, seen = sigma > drawing.UNCERTAIN_M, np.isfinite(positions).all(axis=-1)
     colors = np.array([style.color(side_color(name)) for name in names])
     lines, sides = limb_lines(names, positions)
-    limb_colors = np.array([style.color(SIDES[side]) for side in sides.tolist()]).reshape(-1, 4)
+    limb_colors = np.array([style.color(drawing.SIDES[side]) for side in sides.tolist()]).reshape(-1, 4)
     width = style.limb * style.width * style.body_scale
     rims = circles(positions, style.size(style.joint), 16)
     radii = sigma * pixels_per_meter
@@ -68,7 +45,7 @@ def skeleton(
     around = segments(circles(positions[vague], radii[vague], 48), closed=True)[::2]
     return [
         Stroke(lines, limb_colors, width, style.halo),
-        Stroke(lines[sides == "R"], style.color(CORE), style.core * width),
+        Stroke(lines[sides == "R"], style.color(drawing.CORE), style.core * width),
         Stroke(segments(rims[seen], closed=True), np.repeat(colors[seen], 16, axis=0), 1.5, style.halo),
         Fill(rims[seen & ~uncertain], colors[seen & ~uncertain]),
         Stroke(around, np.repeat(colors[vague], 24, axis=0), 1.0, style.halo),
@@ -86,6 +63,18 @@ class Shown:
     review: "Review"
     index: int  # index in the clip of the scene's current frame
 
+    @property
+    def hidden(self) -> list[int]:
+        """Indices of the markers that were not found."""
+        seen = np.isfinite(self.review.observed[self.index]).all(axis=-1).any(axis=-1)
+        return np.flatnonzero(~seen).tolist()
+
+    @property
+    def colors(self) -> list[tuple[float, float, float]]:
+        """The colors of all markers."""
+        chosen = {marker.name: tuple(marker.color) for marker in self.take.markers}
+        return [chosen.get(name, (0.8, 0.8, 0.8)) for name in self.review.marker_names]
+
 
 Part = tuple[list[Item], list[Row]]
 
@@ -93,7 +82,7 @@ Part = tuple[list[Item], list[Row]]
 def _paths(what: Shown, view: MotionView, style: Style) -> Part:
     review = what.review
     frames = window(what.index, len(review.frames))
-    chosen = [point for point, name in enumerate(review.point_names) if name in PATH_POINTS]
+    chosen = [point for point, name in enumerate(review.point_names) if name in drawing.PATH_POINTS]
     names = [review.point_names[point] for point in chosen]
     positions = np.swapaxes(view.point_positions(review, frames)[:, chosen], 0, 1)
     rows = [(Sample.PAST, "Path so far"), (Sample.FUTURE, "Path to come"), (Sample.DIAMOND, "Keyframe")]
@@ -101,26 +90,39 @@ def _paths(what: Shown, view: MotionView, style: Style) -> Part:
 
 
 def _observed(what: Shown, view: MotionView, style: Style) -> Part:
+    """A solid outline of each marker's region that was found."""
     assert view.footage is not None
-    review, index = what.review, what.index
-    hidden = [review.marker_names[marker] for marker in hidden_markers(review, index)]
+    hidden = [what.review.marker_names[marker] for marker in what.hidden]
     rows = [(Sample.NONE, f"Hidden: {', '.join(hidden)}")] if hidden else []
-    rows += [(Sample.SOLID, "Marker as seen")] if review.marker_names else []
-    return observed_outlines(review, index, view.footage.to_region, _marker_colors(what), style), rows
+    rows += [(Sample.SOLID, "Marker as seen")] if what.review.marker_names else []
+    outlines = view.footage.to_region(what.review.observed[what.index])
+    return [
+        Stroke(segments(outline, closed=True), style.color(color), style.width, style.halo)
+        for outline, color in zip(outlines, what.colors, strict=True)
+    ], rows
 
 
 def _predicted(what: Shown, view: MotionView, style: Style) -> Part:
+    """A dashed, paler outline of each region and of the body's contours; that of a hidden marker is named."""
     assert view.footage is not None
-    review, index, to_region = what.review, what.index, view.footage.to_region
+    review, to_region = what.review, view.footage.to_region
+    dash, gap = style.dash * style.scale, style.gap * style.scale
+    items: list[Item] = []
     rows = [(Sample.DASHED, "Marker as the motion predicts it")] if review.marker_names else []
     rows += [(Sample.DASHED, "Contour as the motion predicts it")] if review.contours.shape[1] else []
-    items = predicted_outlines(review, index, to_region, _marker_colors(what), style)
-    return items + predicted_contours(review, index, to_region, style), rows
-
-
-def _marker_colors(what: Shown) -> list[tuple[float, float, float]]:
-    chosen = {marker.name: tuple(marker.color) for marker in what.take.markers}
-    return [chosen.get(name, (0.8, 0.8, 0.8)) for name in what.review.marker_names]
+    for marker, outline in enumerate(to_region(review.predicted[what.index])):
+        whole = outline[np.isfinite(outline).all(axis=-1)]
+        if not len(whole):
+            continue
+        red, green, blue = what.colors[marker]
+        pale = style.color((0.5 + 0.5 * red, 0.5 + 0.5 * green, 0.5 + 0.5 * blue))
+        items.append(Stroke(dashes(whole, dash, gap, closed=True), pale, style.width, style.halo))
+        if marker in what.hidden:
+            words, y = f"{review.marker_names[marker]} hidden", float(whole[:, 1].mean())
+            items.append(Label(words, float(whole[:, 0].max()) + gap, y, style.color(drawing.INK)))
+    for line in to_region(review.contours[what.index]):
+        items.append(Stroke(dashes(line, dash, gap), style.color(drawing.MIDDLE), style.width, style.halo))
+    return items, rows
 
 
 def _skeleton(what: Shown, view: MotionView, style: Style) -> Part:
@@ -130,7 +132,7 @@ def _skeleton(what: Shown, view: MotionView, style: Style) -> Part:
     if state.keyed.all and state.actor is not None and state.shows_keyframes:
         positions = view.project(joint_places(state.actor))  # of what is stored, not of the earlier motion
     rows = [(Sample.LEFT, "Performer's left"), (Sample.RIGHT, "Performer's right")]
-    rows += [(Sample.RING, "Uncertain point")] if (review.sigma_m[index] > UNCERTAIN_M).any() else []
+    rows += [(Sample.RING, "Uncertain point")] if (review.sigma_m[index] > drawing.UNCERTAIN_M).any() else []
     return skeleton(review, index, positions, view.pixels_per_meter(review, index), style), rows
 
 
@@ -228,7 +230,7 @@ def picture_keypoints(
     scale = ui_scale()
     rows = np.concatenate([view.to_region(each.pixel)[..., 1].ravel() for each in seen])
     height = np.ptp(rows[np.isfinite(rows)]) if np.isfinite(rows).any() else np.nan
-    style = Style(settings.opacity, scale, body_scale(np.array([height / TALL_M]), scale))
+    style = Style(settings.opacity, scale, body_scale(np.array([height / drawing.TALL_M]), scale))
     sources = all_sources(None, seen)
     items = seen_marks(seen, view.to_region, sources, style)
     if settings.show_legend:

@@ -14,9 +14,9 @@ class KEYMARK_PT_overlays(Popover, bpy.types.Panel):
 
     def draw(self, context: Context) -> None:
         layout, settings = self.layout, context.scene.keymark.overlays
-        for name, sentence in registry.failures().items():
+        for overlay, sentence in registry.FAILURES.items():
             layout.label(text="Switched off after an error:", icon="ERROR")
-            layout.label(text=name)
+            layout.label(text=overlay.name)
             layout.label(text=sentence)
         column = layout.column()
         column.prop(settings, "only_character")

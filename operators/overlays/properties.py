@@ -1,16 +1,19 @@
 """Properties of the overlays. Blender's own overlay switch hides all of them in the 3D viewport."""
 
+from functools import partial
+
 import bpy
 from bpy.types import Context, PropertyGroup
 
 from ..shell.fields import Number, Switch
+from ..shell.takes import FOOTAGE_EDITORS, redraw_editors
 
 
 def _changed(_settings: PropertyGroup, context: Context) -> None:
     from . import registry  # only now: panels and properties are registered before there is anything to draw
 
-    registry.try_again()
-    registry.redraw(context)
+    registry.FAILURES.clear()
+    redraw_editors(context, *FOOTAGE_EDITORS, "DOPESHEET_EDITOR")
 
 
 def _only_character(settings: PropertyGroup, context: Context) -> None:
@@ -20,8 +23,7 @@ def _only_character(settings: PropertyGroup, context: Context) -> None:
     _changed(settings, context)
 
 
-def _switch(name: str, description: str, default: bool = True) -> bool:
-    return Switch(name, description, default=default, update=_changed)
+_switch = partial(Switch, default=True, update=_changed)
 
 
 class KEYMARK_PG_overlays(bpy.types.PropertyGroup):

@@ -11,12 +11,10 @@ from bpy.types import Context
 
 from ...core.errors import KeymarkError
 from ..shell.job_progress import job_is_running
-from ..shell.takes import FOOTAGE_EDITORS, redraw_editors
 from . import candidates, mask, motion, timeline, tools
-from .drawing import Item, paint
+from .drawing import Item, merged
 
 DrawFunction = Callable[[Context], Iterable[Item]]
-
 DRAGGING = "keymark.drag_joints"
 logger = logging.getLogger(__name__)
 
@@ -56,7 +54,8 @@ OVERLAYS = (
 """All overlays; those of one editor are drawn in this order."""
 
 _handlers: list[tuple[Overlay, Any]] = []
-_failures: dict[Overlay, str] = {}
+FAILURES: dict[Overlay, str] = {}
+"""Messages of unexpected failures: these overlays are switched off."""
 
 
 def guarded(overlay: Overlay) -> Callable[[], None]:
@@ -66,37 +65,23 @@ def guarded(overlay: Overlay) -> Callable[[], None]:
     """
 
     def handler() -> None:
-        if overlay in _failures or (not overlay.correcting and job_is_running(bpy.context, DRAGGING)):
+        if overlay in FAILURES or (not overlay.correcting and job_is_running(bpy.context, DRAGGING)):
             return
         if overlay.of_performer and bpy.context.scene.keymark.overlays.only_character:
             return
         gpu.state.blend_set("ALPHA")
         try:
-            paint(overlay.draw(bpy.context))
+            for item in merged(overlay.draw(bpy.context)):
+                item.draw()
         except KeymarkError:
             pass  # a camera of an unsupported type, for example: nothing can be drawn until that is changed
         except Exception as error:
-            _failures[overlay] = str(error) or type(error).__name__
+            FAILURES[overlay] = str(error) or type(error).__name__
             logger.exception("Keymark's overlay '%s' failed and is switched off", overlay.name)
         finally:
             gpu.state.blend_set("NONE")
 
     return handler
-
-
-def failures() -> dict[str, str]:
-    """Messages of the failures, by name of the disabled overlay."""
-    return {overlay.name: sentence for overlay, sentence in _failures.items()}
-
-
-def try_again() -> None:
-    """Enable overlays that failed."""
-    _failures.clear()
-
-
-def redraw(context: Context) -> None:
-    """Redraw every editor that shows an overlay."""
-    redraw_editors(context, *FOOTAGE_EDITORS, "DOPESHEET_EDITOR")
 
 
 def register() -> None:
@@ -114,4 +99,4 @@ def unregister() -> None:
     while _handlers:
         overlay, handler = _handlers.pop()
         getattr(bpy.types, overlay.space).draw_handler_remove(handler, "WINDOW")
-    _failures.clear()
+    FAILURES.clear()

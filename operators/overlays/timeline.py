@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from bpy.types import Context, PropertyGroup, Region, Scene
+from bpy.types import Context, PropertyGroup, Scene
 
 from ...core.arrays import Array, BoolArray
 from ..bridge.scene_frames import scene_frames
@@ -20,60 +20,19 @@ CONFIDENCE_COLORS = np.array([[0.90, 0.42, 0.10], [0.93, 0.83, 0.35], [0.22, 0.5
 FINEST_PX = 1.5  # frames nearer than this are drawn as one
 
 
-def joined(x: Array, values: Array, *, lowest: bool) -> tuple[Array, Array]:
-    """Merge frames at rising positions (F,) too close to tell apart; their lowest or highest value is kept.
+def in_view(x: Array, values: Array, width: float, pick: np.ufunc) -> tuple[Array, Array]:
+    """Frames at rising positions (F,) that a region shows, and one on each side, with their values.
 
-    A long clip then takes no longer to draw.
+    Of those too close to tell apart `pick` keeps the lowest or the highest value: a long clip then takes no
+    longer to draw.
     """
+    first, last = np.searchsorted(x, (0.0, width))
+    x, values = (each[max(0, int(first) - 1) : int(last) + 1] for each in (x, values))
     if len(x) < 2 or x[-1] - x[0] >= FINEST_PX * (len(x) - 1):
         return x, values
     column = np.floor((x - x[0]) / FINEST_PX).astype(np.intp)
     starts = np.flatnonzero(np.diff(column, prepend=-1))
-    pick = np.fmin if lowest else np.fmax
     return x[starts], pick.reduceat(values, starts)
-
-
-def in_view(x: Array, width: float) -> slice:
-    """The frames at increasing positions (F,) that a region of this width shows, and one on each side."""
-    first, last = np.searchsorted(x, (0.0, width))
-    return slice(max(0, int(first) - 1), int(last) + 1)
-
-
-def graph(x: Array, values: Array, floor: float, height: float) -> tuple[Array, Array]:
-    """A curve (N, 2) of values 0 to 1 at positions (N,), and the pieces (N - 1, 4, 2) of the area under it.
-
-    NaN leaves a gap; `floor` is the height of 0, `height` the distance from 0 to 1.
-    """
-    top = floor + height * values
-    area = polygons((x[:-1], floor), (x[1:], floor), (x[1:], top[1:]), (x[:-1], top[:-1]))
-    return np.stack([x, top], axis=-1), area
-
-
-def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Array, Array]:
-    """A bar (N, 4, 2) and its opaque color (N, 4) a frame: the higher and bluer, the higher its confidence.
-
-    NaN leaves a gap; `height` is that of a bar of confidence 1.
-    """
-    middles = 0.5 * (x[1:] + x[:-1])
-    reach = 0.5 * (x[1] - x[0]) if len(x) > 1 else 2.0
-    left = np.concatenate([[x[0] - reach], middles])
-    right = np.concatenate([middles, [x[-1] + reach]])
-    top = floor + height * confidence
-    bottom = np.where(np.isfinite(top), floor, np.nan)
-    bars = polygons((left, bottom), (right, bottom), (right, top), (left, top))
-    return bars, np.column_stack([confidence_color(confidence), np.ones(len(x))])
-
-
-def confidence_color(confidence: Array) -> Array:
-    """Colors (N, 3) of confidences (N,)."""
-    share = np.nan_to_num(np.clip((confidence - DOUBTFUL) / (1.0 - DOUBTFUL), 0.0, 1.0))
-    return np.stack([np.interp(share, (0.0, 0.5, 1.0), column) for column in CONFIDENCE_COLORS.T], axis=-1)
-
-
-def pointers(x: Array, tip: float, size: float) -> Array:
-    """(N, 3, 2) triangles that point down to a height at positions (N,)."""
-    half, top = 0.6 * size, tip + size
-    return polygons((x, tip), (x + half, top), (x - half, top))
 
 
 MODES = ("TIMELINE", "DOPESHEET", "ACTION")
@@ -116,19 +75,9 @@ class Timeline:
     sizes: Sizes
 
     @property
-    def strip_floor(self) -> float:
-        """Bottom of the strip [px]."""
-        return self.sizes.foot * self.pixel
-
-    @property
     def floor(self) -> float:
         """Bottom of the graph [px]."""
         return (self.sizes.foot + self.sizes.strip + self.sizes.gap) * self.pixel
-
-    @property
-    def top(self) -> float:
-        """Top of the graph [px]."""
-        return self.floor + self.height
 
     def frame_x(self, frames: Array) -> Array:
         """Horizontal positions (F,) of frames [px]."""
@@ -140,8 +89,12 @@ class Timeline:
         return float(np.clip(0.6 * apart, 0.4 * size * self.pixel, size * self.pixel))
 
 
-def timeline_of(region: Region, pixel: float) -> Timeline | None:
-    """The layout of a region of Timeline or Dope Sheet; None where it is too low to draw into."""
+def draw(context: Context) -> list[Item]:
+    """What a take has to show in Timeline and Dope Sheet; nothing where the region is too low."""
+    take, region, pixel = find_take(context.scene), context.region, ui_scale()
+    shown = context.space_data.mode in MODES and context.scene.keymark.overlays.show_timeline
+    if take is None or not shown:
+        return []
     # Positions are whole pixels: far apart, they still give an exact scale.
     far = 100_000.0
     start, end = (region.view2d.view_to_region(frame, 0.0, clip=False)[0] for frame in (-far, far))
@@ -150,16 +103,9 @@ def timeline_of(region: Region, pixel: float) -> Timeline | None:
         height = min(sizes.graph, region.height / pixel - taken)
         if height >= sizes.least and end > start:
             middle, scale = 0.5 * (start + end), (end - start) / (2.0 * far)
-            return Timeline(middle, scale, region.width, height * pixel, pixel, sizes)
-    return None
-
-
-def draw(context: Context) -> list[Item]:
-    """What a take has to show in Timeline and Dope Sheet."""
-    take, timeline = find_take(context.scene), None
-    if context.space_data.mode in MODES and context.scene.keymark.overlays.show_timeline:
-        timeline = timeline_of(context.region, ui_scale())
-    return [] if take is None or timeline is None else picture(context.scene, take, timeline)
+            timeline = Timeline(middle, scale, region.width, height * pixel, pixel, sizes)
+            return picture(context.scene, take, timeline)
+    return []
 
 
 def picture(scene: Scene, take: PropertyGroup, timeline: Timeline) -> list[Item]:
@@ -198,43 +144,47 @@ def relative(speed: Array) -> Array:
 
 
 def speed_graph(frames: Array, speed: Array, timeline: Timeline) -> list[Item]:
-    """The sum of the speeds of what is followed as a translucent graph."""
-    x = timeline.frame_x(frames)
-    shown = in_view(x, timeline.width)
-    x, values = joined(x[shown], relative(speed)[shown], lowest=False)
+    """The sum of the speeds of what is followed as a translucent graph; NaN leaves a gap."""
+    x, values = in_view(timeline.frame_x(frames), relative(speed), timeline.width, np.fmax)
     if len(x) < 2:
         return []
-    line, area = graph(x, values, timeline.floor, timeline.height)
-    items: list[Item] = [Fill(area, faded(SPEED, 0.28)), Stroke(segments(line), faded(SPEED, 0.9), 1.2)]
+    floor, top = timeline.floor, timeline.floor + timeline.height * values
+    area = polygons((x[:-1], floor), (x[1:], floor), (x[1:], top[1:]), (x[:-1], top[:-1]))
+    line = segments(np.stack([x, top], axis=-1))
+    items: list[Item] = [Fill(area, faded(SPEED, 0.28)), Stroke(line, faded(SPEED, 0.9), 1.2)]
     if timeline.sizes == ROOMY:
-        words = "Speed in the footage"
-        items.append(Label(words, 6.0 * timeline.pixel, timeline.top - 13.0 * timeline.pixel))
+        y = floor + timeline.height - 13.0 * timeline.pixel
+        items.append(Label("Speed in the footage", 6.0 * timeline.pixel, y))
     return items
 
 
 def confidence_strip(frames: Array, confidence: Array, timeline: Timeline) -> list[Item]:
-    """Confidence of each frame as bars, on a dark background against which heights are read."""
-    x = timeline.frame_x(frames)
-    shown = in_view(x, timeline.width)
-    x, values = joined(x[shown], confidence[shown], lowest=True)
+    """A bar a frame on a dark ground, the higher and bluer, the more confident; NaN leaves a gap."""
+    x, values = in_view(timeline.frame_x(frames), confidence, timeline.width, np.fmin)
     if not len(x):
         return []
-    floor, height = timeline.strip_floor, timeline.sizes.strip * timeline.pixel
-    bars, colors = strip(x, values, floor, height)
-    (left, right), top = bars[[0, -1], [0, 1], 0], floor + height
-    ground = np.array([[(left, floor), (right, floor), (right, top), (left, top)]])
-    return [Fill(ground, GROUND), Fill(bars, colors)]
+    floor, height = timeline.sizes.foot * timeline.pixel, timeline.sizes.strip * timeline.pixel
+    reach = 0.5 * (x[1] - x[0]) if len(x) > 1 else 2.0
+    edges = np.concatenate([[x[0] - reach], 0.5 * (x[1:] + x[:-1]), [x[-1] + reach]])
+    left, right, top = edges[:-1], edges[1:], floor + height * values
+    bottom = np.where(np.isfinite(top), floor, np.nan)
+    bars = polygons((left, bottom), (right, bottom), (right, top), (left, top))
+    share = np.nan_to_num(np.clip((values - DOUBTFUL) / (1.0 - DOUBTFUL), 0.0, 1.0))
+    levels = [np.interp(share, (0.0, 0.5, 1.0), column) for column in CONFIDENCE_COLORS.T]
+    (first, last), high = edges[[0, -1]], floor + height
+    ground = np.array([[(first, floor), (last, floor), (last, high), (first, high)]])
+    return [Fill(ground, GROUND), Fill(bars, np.column_stack([*levels, np.ones(len(x))]))]
 
 
 def weak_pointers(frames: Array, timeline: Timeline) -> list[Item]:
     """Triangles over the graph that point at frames worth another keyframe, and a line down to the strip."""
     if not len(frames):
         return []
-    x = timeline.frame_x(frames)
-    tip = timeline.top + timeline.pixel
-    marks = pointers(x, tip, timeline.fitting(x, timeline.sizes.pointer))
+    x, tip = timeline.frame_x(frames), timeline.floor + timeline.height + timeline.pixel
+    size = timeline.fitting(x, timeline.sizes.pointer)
+    marks = polygons((x, tip), (x + 0.6 * size, tip + size), (x - 0.6 * size, tip + size))
     return [
-        Stroke(polygons((x, timeline.strip_floor), (x, tip)), faded(WEAK, 0.45), 1.0),
+        Stroke(polygons((x, timeline.sizes.foot * timeline.pixel), (x, tip)), faded(WEAK, 0.45), 1.0),
         Stroke(segments(marks, closed=True), WEAK, 1.0, 0.8),
         Fill(marks, WEAK),
     ]

@@ -1,41 +1,24 @@
 """Overlays of running tools: joints to drag, lines that tell the camera, requests for clicks."""
 
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from bpy.types import Context
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
+from ...core.camera.camera_evidence import FloorGrid, floor_grid
 from ..bridge.camera_placement import still_camera
 from ..bridge.object_space import joint_places
 from ..footage.camera_view import free_box
-from ..footage.drawn_lines import Drawing, current_camera, running
+from ..footage.drawn_lines import current_camera, running
 from ..footage.found_camera import HINTS, is_found, values
 from ..shell.footage_clicks import WorldInRegion
 from ..shell.footage_view import FootageView, footage_view, shown_request
+from ..shell.results import LruCache
 from ..shell.takes import find_take, footage_of
-from .drawing import (
-    GHOST,
-    INK,
-    Color,
-    Fill,
-    Item,
-    Label,
-    Stroke,
-    faded,
-    side_color,
-    text_size,
-    ui_scale,
-)
+from .drawing import GHOST, INK, Color, Fill, Item, Label, Stroke, faded, side_color, text_size, ui_scale
 from .figures import circles, segments
-
-if TYPE_CHECKING:
-    from ...core.camera.camera import Camera
-    from ...core.camera.camera_evidence import FloorGrid
-
 
 # --- Joints that can be dragged
 
@@ -133,7 +116,14 @@ def draw_camera_lines(context: Context) -> list[Item]:
     # What the lines say of the camera stands at the lower edge of the picture.
     left = max(0.0, float(view.top_left[0]))
     bottom = max(0.0, float((view.top_left + view.extent)[1]))
-    for number, sentence in enumerate(reversed(_sentences(tool))):
+    if tool.fit is None:
+        rows = ["No line yet: the grid shows the camera as it is"]
+    elif not is_found(tool.fit):
+        rows = ["This says nothing of the camera yet"]
+    else:
+        rows = [values(tool.fit), f"Lines are {tool.fit.misfit_px:.1f} px off"]
+        rows += [HINTS[name] for name in tool.fit.kept if name in ("height", "tilt", "roll")]
+    for number, sentence in enumerate(reversed(rows)):
         items.append(Label(sentence, left + 14.0 * scale, bottom + (14.0 + 18.0 * number) * scale))
     return items
 
@@ -144,20 +134,12 @@ def _view(context: Context) -> FootageView | None:
     return None if take is None else footage_view(context.scene, take, context.area, context.region)
 
 
-def _sentences(tool: Drawing) -> list[str]:
-    if tool.fit is None:
-        return ["No line yet: the grid shows the camera as it is"]
-    if not is_found(tool.fit):
-        return ["This says nothing of the camera yet"]
-    rows = [values(tool.fit), f"Lines are {tool.fit.misfit_px:.1f} px off"]
-    return rows + [HINTS[name] for name in tool.fit.kept if name in ("height", "tilt", "roll")]
-
-
 # --- The floor
 
 
 GRID: Color = (0.55, 0.95, 1.0, 0.9)
 HORIZON: Color = (1.0, 0.85, 0.45, 0.9)
+_grids: LruCache[FloorGrid] = LruCache(4)
 
 
 def draw_floor_grid(context: Context) -> list[Item]:
@@ -170,7 +152,10 @@ def draw_floor_grid(context: Context) -> list[Item]:
     if view is None:
         return []
     camera = current_camera(tool) or still_camera(footage_of(context.scene, take))
-    grid = _grid(_key(camera))
+    lens = (camera.lens_mm, camera.sensor_width_mm, *camera.resolution, camera.shift_x, camera.shift_y)
+    key = repr((lens, tuple(camera.distortion), np.asarray(camera.matrix_world).tolist()))
+    grid = _grids.known(key, lambda: floor_grid(camera))
+    assert grid is not None
     opacity = settings.opacity
     colors = np.tile(np.array(faded(GRID, opacity)), (len(grid.lines), 1))
     colors[:, 3] /= 1.0 + 2.0 * np.minimum(grid.depth_m / 8.0, 2.0)  # a third at 8 m
@@ -178,24 +163,6 @@ def draw_floor_grid(context: Context) -> list[Item]:
         Stroke(view.to_region(grid.lines), colors, 1.2),
         Stroke(view.to_region(grid.horizon), faded(HORIZON, opacity), 1.2, 0.3),
     ]
-
-
-def _key(camera: "Camera") -> tuple[float | int, ...]:
-    flat: Array = np.asarray(camera.matrix_world)
-    lens = (camera.lens_mm, camera.sensor_width_mm, *camera.resolution, camera.shift_x, camera.shift_y)
-    return (*lens, *camera.distortion, *flat.ravel().tolist())
-
-
-@lru_cache(maxsize=4)
-def _grid(key: tuple[float | int, ...]) -> "FloorGrid":
-    """The grid of a camera; the same from one redraw to the next."""
-    from ...core.camera.camera import Camera
-    from ...core.camera.camera_evidence import floor_grid
-
-    lens_mm, sensor_width_mm, width, height, shift_x, shift_y, k1, k2, k3, *pose = key
-    size = (int(width), int(height))
-    matrix = np.array(pose).reshape(4, 4)
-    return floor_grid(Camera(lens_mm, sensor_width_mm, size, matrix, shift_x, shift_y, (k1, k2, k3)))
 
 
 # --- What an operator asks for

@@ -50,7 +50,7 @@ ORANGE = (1.0, 0.5, 0.0, 1.0)
 
 def test_a_line_has_its_color_and_its_dark_edge(drawn: Drawn) -> None:
     line = np.array([[[8.0, 32.0], [88.0, 32.0]]])
-    picture = drawn(lambda: drawing.lines(line, ORANGE, 6.0, halo=1.0))
+    picture = drawn(lambda: drawing.Stroke(line, ORANGE, 6.0, halo=1.0).draw())
     assert picture[32, 48] == pytest.approx(ORANGE, abs=0.01)
     assert picture[35, 48, :3] == pytest.approx(0.0, abs=0.2)
     assert picture[35, 48, 3] > 0.2
@@ -60,7 +60,7 @@ def test_a_line_has_its_color_and_its_dark_edge(drawn: Drawn) -> None:
 def test_each_segment_may_have_a_color(drawn: Drawn) -> None:
     pair = np.array([[[8.0, 16.0], [88.0, 16.0]], [[8.0, 48.0], [88.0, 48.0]]])
     colors = [(1.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0)]
-    picture = drawn(lambda: drawing.lines(pair, colors, 4.0))
+    picture = drawn(lambda: drawing.Stroke(pair, colors, 4.0).draw())
     assert picture[16, 48] == pytest.approx(colors[0], abs=0.01)
     assert picture[48, 48] == pytest.approx(colors[1], abs=0.01)
 
@@ -70,11 +70,11 @@ def test_polygons_are_filled_and_unfinished_ones_left_out(drawn: Drawn) -> None:
         [[[5.0, 5.0]], [[np.nan, 5.0]], [[60.0, 30.0]]]
     )
     colors = [(1.0, 0.0, 0.0, 1.0), (0.0, 1.0, 0.0, 1.0), (0.0, 0.0, 1.0, 0.5)]
-    picture = drawn(lambda: drawing.polygons(boxes, colors))
+    picture = drawn(lambda: drawing.Fill(boxes, colors).draw())
     assert picture[15, 15] == pytest.approx(colors[0], abs=0.01)
     assert picture[40, 70, 2:] == pytest.approx([0.5, 0.5], abs=0.01)
     assert picture[..., 1].max() == 0.0
-    one = drawn(lambda: drawing.polygons(boxes[:1], ORANGE))
+    one = drawn(lambda: drawing.Fill(boxes[:1], ORANGE).draw())
     assert one[15, 15] == pytest.approx(ORANGE, abs=0.01)
     assert one[40, 70, 3] == 0.0
 
@@ -89,7 +89,7 @@ def test_a_texture_begins_at_the_bottom(drawn: Drawn) -> None:
 
 
 def test_words_are_light_with_a_dark_outline(drawn: Drawn) -> None:
-    picture = drawn(lambda: drawing.text("Hidden", 90.0, 30.0, size=14.0, align="right"))
+    picture = drawn(lambda: drawing.Label("Hidden", 90.0, 30.0, size=14.0, align="right").draw())
     inked = picture[..., 3] > 0.5
     assert picture[inked, :3].max() > 0.9
     assert picture[inked, :3].min() < 0.1
@@ -100,14 +100,21 @@ def test_words_are_light_with_a_dark_outline(drawn: Drawn) -> None:
     assert 6 < height < 24
 
 
-def test_nothing_to_draw_is_no_failure(drawn: Drawn) -> None:
+@pytest.mark.parametrize(
+    "nothing",
+    [
+        drawing.Stroke(np.empty((0, 2, 2)), ORANGE, halo=1.0),
+        drawing.Fill(np.empty((0, 4, 2)), ORANGE),
+        drawing.Fill(np.full((2, 4, 2), np.nan), np.ones((2, 4))),
+    ],
+)
+def test_nothing_to_draw_is_no_failure(drawn: Drawn, nothing: drawing.Item) -> None:
+    assert drawn(nothing.draw).max() == 0.0
 
-    def nothing() -> None:
-        drawing.lines(np.empty((0, 2, 2)), ORANGE, halo=1.0)
-        drawing.polygons(np.empty((0, 4, 2)), ORANGE)
-        drawing.polygons(np.full((2, 4, 2), np.nan), np.ones((2, 4)))
 
-    assert drawn(nothing).max() == 0.0
+def paint(preview: Preview, view: FootageView) -> None:
+    for item in mask_overlay.mask_items(preview, view):
+        item.draw()
 
 
 def test_fading_keeps_the_hue() -> None:
@@ -125,7 +132,7 @@ def test_masks_lie_where_the_view_shows_their_pixels(
     coverage[4:12, 4:14] = 1.0
     mask = ColorMask("trunk", (0.0, 1.0, 0.0), coverage, mask_outlines(coverage, 4.0))
     preview = Preview(SimpleNamespace(), ("trunk",), (mask.color,), masks=(mask,))
-    picture = drawn(lambda: drawing.paint(mask_overlay.mask_items(preview, view)))
+    picture = drawn(lambda: paint(preview, view))
     inside = view.to_region([[36.0, 32.0], [22.0, 22.0], [48.0, 42.0]])
     outside = view.to_region([[100.0, 100.0], [74.0, 32.0], [130.0, 20.0]])
     for x, y in inside:
@@ -144,11 +151,11 @@ def test_a_texture_is_made_anew_only_for_other_masks(drawn: Drawn) -> None:
         for level in (0.0, 1.0)
     ]
     preview = Preview(SimpleNamespace(), ("a",), ((1.0, 0.0, 0.0),), masks=masks[0])
-    drawn(lambda: drawing.paint(mask_overlay.mask_items(preview, view)))
+    drawn(lambda: paint(preview, view))
     first = mask_overlay._textures["masks 0.5"][1]
-    drawn(lambda: drawing.paint(mask_overlay.mask_items(preview, view)))
+    drawn(lambda: paint(preview, view))
     assert mask_overlay._textures["masks 0.5"][1] is first
     preview.masks = masks[1]
-    assert drawn(lambda: drawing.paint(mask_overlay.mask_items(preview, view)))[32, 48, 0] > 0.5
+    assert drawn(lambda: paint(preview, view))[32, 48, 0] > 0.5
     mask_overlay.unregister()
     assert not mask_overlay._textures

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from keymark.operators.overlays.figures import circles, dashes, diamonds, segments, triangles
-from keymark.operators.overlays.mask import LARGEST_SHARE, Cost
+from keymark.operators.overlays.mask import LARGEST_SHARE, is_fast
 
 
 def lengths(parts: np.ndarray) -> np.ndarray:
@@ -70,11 +70,8 @@ def test_triangles_cover_a_convex_polygon() -> None:
     assert len(triangles([[[0, 0], [1, 0], [np.nan, 1], [0, 1]]])) == 0
 
 
-@pytest.mark.parametrize(("share", "is_fast"), [(0.5 * LARGEST_SHARE, True), (2.0 * LARGEST_SHARE, False)])
 @pytest.mark.parametrize("fps", [24, 60])
-def test_masks_that_slow_playback_down_are_left_out(share: float, is_fast: bool, fps: int) -> None:
+def test_masks_that_slow_playback_down_are_left_out(fps: int) -> None:
     scene = SimpleNamespace(render=SimpleNamespace(fps=fps, fps_base=1.001))
-    cost = Cost()
-    assert cost.is_fast(scene)
-    cost.last_s = share * 1.001 / fps
-    assert cost.is_fast(scene) is is_fast
+    costs = [share * LARGEST_SHARE * 1.001 / fps for share in (0.0, 0.5, 2.0)]
+    assert [is_fast(cost, scene) for cost in costs] == [True, True, False]

@@ -1,6 +1,5 @@
 """Keypoints over the footage, with a motion and before there is one, without a screen."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import bpy
@@ -10,21 +9,15 @@ from _performances import made_up_keypoints, made_up_review
 from keymark.core.review.review import Review
 from keymark.operators.follow.frame_keypoints import FrameKeypoints
 from keymark.operators.overlays import motion
-from keymark.operators.overlays import motion as keypoint_overlay
 from keymark.operators.overlays.drawing import SOURCES, THROWN_OUT, Label, Stroke, Style
-from keymark.operators.overlays.marks import (
-    all_sources,
-    compared_marks,
-    not_yet_compared,
-    predicted_contours,
-    seen_marks,
-)
+from keymark.operators.overlays.marks import all_sources, compared_marks, not_yet_compared, seen_marks
 from keymark.operators.overlays.views import ClipView
 from keymark.operators.shell import takes
 from keymark.operators.shell.footage_view import FootageView
 
 STYLE = Style(opacity=1.0, scale=1.0)
 FOOTAGE = FootageView(None, (160, 120), np.array([10.0, 490.0]), np.array([640.0, -480.0]), None)
+VIEW = ClipView(FOOTAGE, np.eye(4), SimpleNamespace(focal_px=400.0))
 KEYPOINTS = made_up_keypoints()
 ALL = all_sources(KEYPOINTS, ())
 
@@ -94,8 +87,7 @@ def context_of() -> SimpleNamespace:
 def rows(scene: bpy.types.Scene, frame: int) -> list[str]:
     """The legend's words in a frame, from the top down."""
     scene.frame_set(frame)
-    view = ClipView(FOOTAGE, np.eye(4), SimpleNamespace(focal_px=400.0))
-    items = motion.picture(context_of(), motion.shown(scene), view, scene.keymark.overlays)
+    items = motion.picture(context_of(), motion.shown(scene), VIEW, scene.keymark.overlays)
     return [item.words for item in items if isinstance(item, Label)][::-1]
 
 
@@ -122,24 +114,24 @@ def test_without_markers_the_legend_says_nothing_of_them(
     assert not any("ontour" in words for words in rows(scene, 1))
 
 
-def test_contours_are_dashed_where_the_motion_puts_them() -> None:
+def test_contours_are_dashed_where_the_motion_puts_them(scene: bpy.types.Scene) -> None:
     review = made_up_review()
-    (stroke,) = predicted_contours(review, 0, FOOTAGE.to_region, STYLE)
+    scene.frame_set(1)
+    strokes, _ = motion.PARTS["predicted"](motion.shown(scene), VIEW, STYLE)
+    strokes = [stroke for stroke in strokes if isinstance(stroke, Stroke)][len(review.marker_names) :]
     whole = np.linalg.norm(np.diff(FOOTAGE.to_region(review.contours[0]), axis=1), axis=-1).sum()
-    inked = np.linalg.norm(np.diff(stroke.segments, axis=1), axis=-1).sum()
+    inked = sum(np.linalg.norm(np.diff(stroke.segments, axis=1), axis=-1).sum() for stroke in strokes)
     assert inked == pytest.approx(0.6 * whole, rel=0.05)
-    marked = replace(review, contours=review.contours[:, :0])
-    assert predicted_contours(marked, 0, FOOTAGE.to_region, STYLE) == []
 
 
 def test_keypoints_are_drawn_before_there_is_a_motion(registered: None) -> None:
     settings = bpy.context.scene.keymark.overlays
     seen = (seen_by("a detector", **{"head": (80.0, 10.0), "ankle.L": (82.0, 100.0)}),)
-    items = keypoint_overlay.picture_keypoints(context_of(), seen, FOOTAGE, settings)
+    items = motion.picture_keypoints(context_of(), seen, FOOTAGE, settings)
     assert centers(items[0]) == pytest.approx(FOOTAGE.to_region(seen[0].pixel[0]))
     assert [item.words for item in items if isinstance(item, Label)] == ["Keypoint of a detector"]
     far = (seen_by("a detector", **{"head": (80.0, 50.0), "ankle.L": (82.0, 60.0)}),)
-    small = keypoint_overlay.picture_keypoints(context_of(), far, FOOTAGE, settings)[0]
+    small = motion.picture_keypoints(context_of(), far, FOOTAGE, settings)[0]
     assert np.ptp(small.segments[0], axis=0).max() < np.ptp(items[0].segments[0], axis=0).max()
     nobody = (FrameKeypoints("a detector", ("head",), np.full((1, 1, 2), np.nan), np.zeros((1, 1))),)
-    assert len(keypoint_overlay.picture_keypoints(context_of(), nobody, FOOTAGE, settings)[0].segments) == 0
+    assert len(motion.picture_keypoints(context_of(), nobody, FOOTAGE, settings)[0].segments) == 0

@@ -15,13 +15,11 @@ from keymark.operators.overlays.timeline import (
     ROOMY,
     SLIM,
     Timeline,
-    confidence_color,
-    graph,
+    confidence_strip,
     in_view,
-    joined,
     picture,
     relative,
-    strip,
+    speed_graph,
 )
 from keymark.operators.shell.results import keep_reading, keep_review, keep_speed
 from keymark.operators.shell.take_state import TakeState
@@ -116,32 +114,24 @@ def test_weak_frames_point_until_they_are_posed(take: bpy.types.PropertyGroup) -
     assert triangle[0, 0] == pytest.approx(110.0) and triangle[0, 1] < triangle[1:, 1].min()
 
 
-def test_a_long_clip_is_drawn_no_finer_than_can_be_seen() -> None:
+def test_a_long_clip_is_drawn_no_finer_than_can_be_seen_and_no_further() -> None:
     x, values = np.linspace(0.0, 300.0, 3000), np.full(3000, 0.9)
     values[1234] = 0.1
-    places, lowest = joined(x, values, lowest=True)
+    places, lowest = in_view(x, values, 300.0, np.fmin)
     assert len(places) <= 201 and lowest.min() == 0.1
-    assert joined(x, values, lowest=False)[1].min() == 0.9
-    assert len(joined(x[:10] * 100.0, values[:10], lowest=True)[0]) == 10
-
-
-def test_only_what_the_region_shows_is_drawn() -> None:
-    x = np.arange(-100.0, 500.0, 10.0)
-    shown = x[in_view(x, 200.0)]
+    assert in_view(x, values, 300.0, np.fmax)[1].min() == 0.9
+    assert len(in_view(x[:10] * 100.0, values[:10], 300.0, np.fmin)[0]) == 10
+    shown, _ = in_view(np.arange(-100.0, 500.0, 10.0), np.zeros(60), 200.0, np.fmin)
     assert (shown[0], shown[-1]) == (-10.0, 200.0)
 
 
-def test_figures_keep_gaps() -> None:
-    values = np.array([0.5, np.nan, 1.0])
-    bars, _ = strip(np.arange(3.0), values, 0.0, 10.0)
-    assert np.isnan(bars).any((1, 2)).tolist() == [False, True, False]
-    _, area = graph(np.arange(3.0), values, 0.0, 10.0)
-    assert np.isnan(area).any((1, 2)).all()
-
-
-def test_colors_and_heights_stay_in_range() -> None:
-    colors = confidence_color(np.array([-1.0, 0.0, 0.75, 1.0, np.nan]))
-    assert colors.min() >= 0.0 and colors.max() <= 1.0
+def test_figures_keep_gaps_and_their_range() -> None:
+    frames, values = np.arange(5.0), np.array([0.5, np.nan, 1.0, -1.0, 0.75])
+    _, bars = confidence_strip(frames, values, VIEW)
+    assert np.isnan(bars.corners).any((1, 2)).tolist() == [False, True, False, False, False]
+    assert bars.color.min() >= 0.0 and bars.color.max() <= 1.0
+    area, *_ = speed_graph(frames, values, VIEW)
+    assert np.isnan(area.corners).any((1, 2)).tolist() == [True, True, False, False]
     heights = relative(np.array([0.0, 1.0, 1.0, 50.0, np.nan]))
     assert np.nanmax(heights) <= 1.0 and np.isnan(heights[-1])
 
