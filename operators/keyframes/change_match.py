@@ -1,5 +1,6 @@
 """Found keyframes and offered poses: jump to them, take a candidate, accept, remove."""
 
+from collections.abc import Callable
 from math import degrees
 
 import bpy
@@ -12,13 +13,13 @@ from ..bridge.scene_frames import show_frame
 from ..overlays.candidates import look_at
 from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.contradictions import note_contradictions
-from ..shell.fields import Choice, Integer, Switch
+from ..shell.fields import Integer, Switch
 from ..shell.keyed_frames import show_keyframes
 from ..shell.requirements import actor, idle, matches, of_take
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take
 from .corrections import LIMBS
-from .found_keyframes import match_here, undecided_matches
+from .found_keyframes import directions, known_matches, match_here, neighbor
 from .store_keyframe import improve_neighbors
 
 
@@ -28,13 +29,8 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
     bl_label = "Jump to Found Keyframe"
     requirements = (matches,)
 
-    direction: Choice(
-        "Direction",
-        "Direction from the current frame; from the last one it goes to the first",
-        items=[
-            ("NEXT", "Next", "Go to the next found keyframe"),
-            ("PREVIOUS", "Previous", "Go to the previous found keyframe"),
-        ],
+    direction: directions(
+        "found keyframe", "Direction from the current frame; from the last one it goes to the first"
     )
     only_doubtful: Switch("Only Doubtful", "Go to doubtful ones only, the most doubtful first", default=False)
 
@@ -59,9 +55,9 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
             wanted = places[0 if at is None else (at + step) % len(places)]
         else:  # the nearest one, around the ends
             frames = [match.frame for match in take.matching.matches]
-            after = [place for place, frame in enumerate(frames) if frame > now + 1e-3]
-            before = [place for place, frame in enumerate(frames) if frame < now - 1e-3]
-            wanted = (after or [0])[0] if self.direction == "NEXT" else (before or [len(frames) - 1])[-1]
+            end = frames[0 if self.direction == "NEXT" else -1]
+            nearest = neighbor(frames, now, self.direction)
+            wanted = frames.index(end if nearest is None else nearest)
         take.matching.shown_match = wanted
 
 
@@ -118,11 +114,10 @@ class KEYMARK_OT_remove_found(BaseOperator, bpy.types.Operator):
     requirements = (actor, matches, idle)
 
     def run(self, context: Context) -> None:
-        """Remove their keys and entries; what the animator has decided on stays."""
         from .found_result import clear_found
 
         scene, take = context.scene, active_take(context.scene)
-        if not undecided_matches(take):
+        if not known_matches(take, by_hand=False):
             raise Unchanged("all found keyframes are yours by now; nothing was removed")
         count = clear_found(take)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
@@ -140,7 +135,11 @@ def candidate_title(match: PropertyGroup, candidate: PropertyGroup) -> str:
     Postures that were composed have the name of one that they resemble, which often is the same for all and
     tells a person little: instead the limbs are named that are elsewhere.
     """
-    turn = _turn(degrees(candidate.turned))
+    angle_deg, turn = degrees(candidate.turned), ""  # hardly seen
+    if abs(angle_deg) > 180.0 - NOTICEABLE_TURN_DEG:
+        turn = "Turned round"
+    elif abs(angle_deg) >= NOTICEABLE_TURN_DEG:
+        turn = f"{abs(angle_deg):.0f}° {'left' if angle_deg > 0.0 else 'right'}"
     if match.library != COMPOSED:
         named = str(candidate.name)
         return f"{turn}, {named}" if turn else named[:1].upper() + named[1:]
@@ -156,32 +155,18 @@ def candidate_title(match: PropertyGroup, candidate: PropertyGroup) -> str:
     return "As found" if candidate == match.candidates[0] else "Nearly as found"
 
 
-def _turn(angle_deg: float) -> str:
-    """Words for a turn to the left; none where it is hardly seen."""
-    if abs(angle_deg) < NOTICEABLE_TURN_DEG:
-        return ""
-    if abs(angle_deg) > 180.0 - NOTICEABLE_TURN_DEG:
-        return "Turned round"
-    return f"{abs(angle_deg):.0f}° {'left' if angle_deg > 0.0 else 'right'}"
-
-
 class CandidateOperator(BaseOperator):
     """Base of operators that take one of what a frame may show, which is drawn while their tooltip is."""
 
     candidate: Integer("Candidate", "Index of the posture; 0 is the one that was likeliest", default=0, min=0)
 
-    @classmethod
-    def source(cls, take: PropertyGroup) -> PropertyGroup:
-        """What has the candidates; raises InputError where there is nothing."""
-        raise NotImplementedError
+    source: Callable[[PropertyGroup], PropertyGroup | None]
+    """What has the candidates at the current frame of a take."""
 
     @classmethod
     def description(cls, context: Context, properties: OperatorProperties) -> str:
-        try:
-            source = cls.source(active_take(context.scene))
-        except InputError:
-            return str(cls.__doc__)
-        if properties.candidate >= len(source.candidates):
+        source = cls.source(active_take(context.scene))
+        if source is None or properties.candidate >= len(source.candidates):
             return str(cls.__doc__)
         look_at(context, properties.candidate)
         return f"{candidate_title(source, source.candidates[properties.candidate])}. {cls.__doc__}"
@@ -189,6 +174,9 @@ class CandidateOperator(BaseOperator):
     def chosen(self, take: PropertyGroup) -> PropertyGroup:
         """What has the candidates, if the wanted one is among them."""
         source = self.source(take)
+        if source is None:
+            frame = take.id_data.frame_current_final
+            raise InputError(f"frame {frame:g} offers no poses; fit it to the footage first")
         count = len(source.candidates)
         if self.candidate >= count:
             raise InputError(
@@ -206,12 +194,13 @@ class KEYMARK_OT_replace_match(CandidateOperator, bpy.types.Operator):
     source = staticmethod(match_here)
 
     def run(self, context: Context) -> None:
-        from .match_edits import key_candidate
+        from ..bridge.keyframes import candidate_posture
+        from .found_result import key_matches
 
         take = active_take(context.scene)
         match = self.chosen(take)
         match.chosen, match.by_hand = self.candidate, True
-        key_candidate(take, match)
+        key_matches(take, [round(match.frame, 3)], [candidate_posture(match.candidate)])
         show_frame(context.scene, match.frame)
         frame, number = float(match.frame), self.candidate + 1
         note_contradictions(take, frame, ())
@@ -226,13 +215,7 @@ class KEYMARK_OT_show_offered(CandidateOperator, bpy.types.Operator):
     bl_label = "Show Candidate"
     requirements = (actor, idle)
 
-    @classmethod
-    def source(cls, take: PropertyGroup) -> PropertyGroup:
-        frame = take.id_data.frame_current_final
-        offered = TakeState(take).offered_at(frame)
-        if offered is None:
-            raise InputError(f"frame {frame:g} offers no poses; fit it to the footage first")
-        return offered
+    source = staticmethod(lambda take: TakeState(take).offered_at(take.id_data.frame_current_final))
 
     def run(self, context: Context) -> None:
         from ..bridge.keyframes import candidate_posture

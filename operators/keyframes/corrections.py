@@ -1,5 +1,6 @@
 """A corrected pose: how a correction is set and kept; copying a neighbor, turning, flipping depth."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -7,8 +8,12 @@ import bpy
 import numpy as np
 from bpy.types import Context, OperatorProperties, PropertyGroup, Scene
 
+from ...core.arrays import Array
 from ...core.body.human import HUMAN, TRUNK, limb_of
+from ...core.camera.camera import Camera
 from ...core.errors import InputError
+from ..bridge.camera_placement import read_camera
+from ..bridge.scene_frames import at_scene_frame, pose_of, restore_pose, showing_action
 from ..follow.evidence import scene_evidence
 from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.fields import SKIP_SAVE, Choice, Switch
@@ -18,16 +23,12 @@ from ..shell.requirements import actor, camera, footage, idle, keyframes
 from ..shell.results import reading_of
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of, redraw_footage
-from .found_keyframes import known_matches
+from .found_keyframes import known_matches, neighbor
 from .store_keyframe import SAME_POSE, key_pose, note_corrected
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from ...core.arrays import Array
     from ...core.body.kinematics import Body
     from ...core.body.posture import Posture
-    from ...core.camera.camera import Camera
     from ...core.poses.turned import Turned
 
 
@@ -43,10 +44,8 @@ def shown_pose(take: PropertyGroup) -> "tuple[Body, Posture]":
     return body, read_posture(take.armature, body).posture
 
 
-def camera_now(scene: Scene, take: PropertyGroup) -> "Camera":
+def camera_now(scene: Scene, take: PropertyGroup) -> Camera:
     """The take's camera as it stands in the current frame."""
-    from ..bridge.camera_placement import read_camera
-
     return read_camera(footage_of(scene, take), np.array([scene.frame_current_final]))
 
 
@@ -83,7 +82,7 @@ def put_right(
     body: "Body",
     found: "Posture",
     shown: "Posture",
-    places: "Mapping[str, Array]",
+    places: Mapping[str, Array],
     held: str,
 ) -> "Posture":
     """A posture `shown` after points were set in the camera's view, leaning as is likeliest now.
@@ -101,9 +100,8 @@ def put_right(
     confidence = 0.5 if match is None else match.confidence  # even odds where it was corrected before
     libraries = named_libraries(take.matching.library_name)
     camera, floor_m = camera_now(scene, take), take.matching.known_floor_m
-    return picture_depth.put_right(
-        body, camera, 0, found, shown, places, confidence, libraries, floor_m, held
-    )
+    pair = found, shown
+    return picture_depth.put_right(body, camera, 0, *pair, places, confidence, libraries, floor_m, held)
 
 
 DIRECTIONS = (
@@ -125,27 +123,22 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
         return {name: text for name, _, text in DIRECTIONS}[properties.direction]
 
     def run(self, context: Context) -> None:
-        """Copy everything but the place."""
         from ...core.body.posture import Posture
         from ..bridge.pose import read_posture
-        from ..bridge.scene_frames import at_scene_frame, showing_action
 
         take, scene = active_take(context.scene), context.scene
         now, keyed = scene.frame_current_final, TakeState(take).keyed.all
-        if self.direction == "NEXT":
-            neighbor = min((frame for frame in keyed if frame > now + SAME_FRAME), default=None)
-        else:
-            neighbor = max((frame for frame in keyed if frame < now - SAME_FRAME), default=None)
-        if neighbor is None:
+        beside = neighbor(keyed, now, self.direction, SAME_FRAME)
+        if beside is None:
             side = "after" if self.direction == "NEXT" else "before"
             raise Unchanged(f"there is no keyframe {side} this frame")
         body, here = shown_pose(take)
         with showing_action(take.armature, take.keyframe_action), at_scene_frame(scene) as go_to:
-            go_to(neighbor)
+            go_to(beside)
             there = read_posture(take.armature, body).posture
         posture = Posture(HUMAN, here.translation, there.rotations, there.angles)
-        set_corrected(self, context, take, posture, in_depth=not TakeState(take).depth_is_found(neighbor))
-        self.report({"INFO"}, f"Pose of frame {neighbor:g}, at the place of this one")
+        set_corrected(self, context, take, posture, in_depth=not TakeState(take).depth_is_found(beside))
+        self.report({"INFO"}, f"Pose of frame {beside:g}, at the place of this one")
 
 
 FACINGS = (
@@ -195,7 +188,7 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
         fitted = next((each for each in found if facing_of(each, seen) is facing), None)
         chosen = fitted or min(ways, key=lambda way: way.strain).posture
         set_corrected(self, context, take, chosen, in_depth=True)
-        title = {name: title for name, title, _ in FACINGS}[self.facing]
+        title = self.facing.title()
         fits = f"Turned and fitted: {title}"
         self.report({"INFO"}, f"Turned: {title}; not fitted to the footage" if fitted is None else fits)
 
@@ -206,7 +199,6 @@ def _fitted(context: Context, take: PropertyGroup, ways: "list[Turned]") -> "lis
     The actor's pose is as before.
     """
     from ..bridge.pose import write_posture
-    from ..bridge.scene_frames import pose_of, restore_pose
     from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
 
     found: list[tuple[float, Posture]] = []
@@ -227,13 +219,7 @@ def _fitted(context: Context, take: PropertyGroup, ways: "list[Turned]") -> "lis
 # --- Flipping the depth of a part of the body
 
 
-LIMBS = {
-    "arm.L": "left arm",
-    "arm.R": "right arm",
-    "leg.L": "left leg",
-    "leg.R": "right leg",
-    TRUNK: "trunk",
-}
+LIMBS = {"arm.L": "left arm", "arm.R": "right arm", "leg.L": "left leg", "leg.R": "right leg", TRUNK: "trunk"}
 """Names of the parts of the body, the performer's own left and right."""
 
 
@@ -321,9 +307,8 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
                 way = f": way {number} of {count - 1}" if number else " as it was"
                 words.append(f"{LIMBS[limb].title()}{way}")
         if not words:
-            self.report(
-                {"WARNING"}, "The selected part lies flat in the picture, or its joints allow no other way"
-            )
+            flat = "The selected part lies flat in the picture, or its joints allow no other way"
+            self.report({"WARNING"}, flat)
             return {"CANCELLED"}
         set_corrected(self, context, take, posture, in_depth=True)
         self.report({"INFO"}, "; ".join(words))

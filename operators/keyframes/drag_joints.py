@@ -10,7 +10,8 @@ from bpy.types import Context, Event, PropertyGroup, Scene
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN, limb_of
-from ..bridge.object_space import joint_places
+from ..bridge.object_space import evaluated, joint_places
+from ..bridge.scene_frames import Pose, pose_of, restore_pose
 from ..follow.marker_properties import segment_title
 from ..overlays.marks import window
 from ..overlays.tools import Handles, show_handles, show_keys
@@ -26,7 +27,6 @@ from .corrections import DRAGGING, camera_now, put_right, set_corrected, shown_p
 if TYPE_CHECKING:
     from ...core.body.kinematics import Body
     from ...core.body.posture import Posture
-    from ..bridge.scene_frames import Pose
 
 
 @dataclass
@@ -39,7 +39,7 @@ class JointDrag:
     position: Array  # (2,) where the view showed it [px]
     body: "Body"
     posture: "Posture"  # The posture at the beginning
-    pose: "Pose"  # The channels of the actor's bones at the beginning, to restore them
+    pose: Pose  # The channels of the actor's bones at the beginning, to restore them
     mouse: tuple[int, int]  # Where the mouse was last, in the window [px]
     moved: Array = field(default_factory=lambda: np.zeros(2))
     """How far it has been dragged across the view [px]."""
@@ -80,9 +80,6 @@ class JointDrag:
 
     def restore(self, take: PropertyGroup) -> None:
         """Give the actor the pose from which the drag began."""
-        from ..bridge.object_space import evaluated
-        from ..bridge.scene_frames import restore_pose
-
         restore_pose(take.armature, self.pose)
         evaluated(take.armature)
 
@@ -261,8 +258,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         joint = self._handles.hovered
         if joint is None:
             return
-        from ..bridge.scene_frames import pose_of
-
         with reported(self):
             body, posture = shown_pose(take)
             start = body.points(body.pose(posture))[HUMAN.point_names.index(joint)]

@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from bpy.types import Context, Event, PropertyGroup
 
+from ...core.prior.texts import COMPOSED
 from ..follow.evidence import scene_evidence
 from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
@@ -24,8 +25,7 @@ if TYPE_CHECKING:
 
 def offer_poses(take: PropertyGroup, frame: float, candidates: Sequence["Candidate"]) -> None:
     """Offer candidates at a scene frame, the one that the actor shows first, in place of all others."""
-    from ...core.prior.texts import COMPOSED
-    from .match_edits import add_candidate
+    from .found_result import add_candidate
 
     offered = take.offered
     offered.candidates.clear()
@@ -61,10 +61,13 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: Context, event: Event) -> set[str]:
-        """Fit the pose, and enter Pose Mode, so that the animator can correct it."""
+        """Fit the pose, and enter Pose Mode, to correct it, if nothing else is edited."""
         finished = self.execute(context)
-        if finished == {"FINISHED"}:
-            _to_pose_mode(context, active_take(context.scene).armature)
+        actor, layer = active_take(context.scene).armature, context.view_layer
+        free = layer.objects.active is None or layer.objects.active.mode == "OBJECT"
+        if finished == {"FINISHED"} and actor.mode != "POSE" and free and actor.visible_get(view_layer=layer):
+            layer.objects.active = actor
+            bpy.ops.object.mode_set(mode="POSE")
         return finished
 
     def run(self, context: Context) -> None:
@@ -72,8 +75,7 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
         from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
         from ..library.registry_files import all_libraries
 
-        scene = context.scene
-        take = active_take(scene)
+        scene, take = context.scene, active_take(context.scene)
         frame = frame_in_footage(footage_of(scene, take), scene_evidence(take), reading_of(take))
         libraries = () if self.start == "POSE" else all_libraries()
         known, floor_m = known_matches(take), take.matching.known_floor_m
@@ -90,10 +92,8 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
             advice = "check what else looks like it, or pose the frame"
             self.report({"WARNING"}, f"No plausible pose explains {names} here; {advice}")
         elif not np.isfinite(found.residual_px).any():
-            sentence = (
-                "Seen from the camera, the body hides the markers that this frame shows; check the pose"
-            )
-            self.report({"WARNING"}, sentence)
+            hidden = "Seen from the camera, the body hides the markers that this frame shows; check the pose"
+            self.report({"WARNING"}, hidden)
         elif len(found.candidates) > 1:
             sure = f"{found.candidates[0].confidence:.0%} sure, {len(found.candidates) - 1} more in the panel"
             self.report({"INFO"}, f"{sure}; look at it from the side too, then store it")
@@ -101,14 +101,3 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
             off = f"Off by {float(np.nanmean(found.residual_px)):.1f} pixels"
             advice = "look at it from the side too, as little tells the depth, then store it"
             self.report({"INFO"}, f"{off}; {advice}")
-
-
-def _to_pose_mode(context: Context, armature_object: bpy.types.Object) -> None:
-    """Make the actor active, in Pose Mode, if it is visible and no other object is being edited."""
-    layer = context.view_layer
-    active = layer.objects.active
-    if armature_object.mode == "POSE" or (active is not None and active.mode != "OBJECT"):
-        return
-    if armature_object.visible_get(view_layer=layer):
-        layer.objects.active = armature_object
-        bpy.ops.object.mode_set(mode="POSE")

@@ -1,31 +1,79 @@
-"""Keyframes found in a take's footage, and how they are written into the scene."""
+"""Keyframes found in a take's footage: their candidates stored, their postures keyed on the actor."""
 
 from collections.abc import Sequence
+from math import pi
 
 import bpy
 import numpy as np
+from bpy.types import PropertyGroup
+from numpy.typing import ArrayLike
 
 from ...core.arrays import Array
-from ...core.body.human import HUMAN
+from ...core.body.actor import Actor
+from ...core.body.human import HUMAN, TRUNK, limb_of
+from ...core.body.kinematics import Body
+from ...core.body.posture import Posture, headings_rad, yaw_rotation
 from ...core.markers.reading import Reading
 from ...core.poses.found_poses import FoundPoses
 from ...core.prior.keyframes import Keyframe
 from ...core.session.place import Placed
 from ...core.session.pose import Posed
+from ..bridge.actions import assign_action
 from ..bridge.footage_camera import set_still_pose
-from ..bridge.keyframes import remove_keyframes, take_over
+from ..bridge.keyframes import candidate_posture, remove_keyframes, take_over, write_matched
 from ..shell.base_operator import capitalized
 from ..shell.contradictions import note_contradictions
-from ..shell.keyed_frames import has_frame
+from ..shell.keyed_frames import has_frame, new_keyframe_action, straighten_unposed
 from ..shell.results import keep_reading
 from ..shell.take_state import TakeState
 from ..shell.takes import actor_of, take_by_identifier
-from .found_keyframes import undecided_matches
-from .match_edits import add_candidate, add_match, key_matches
+from .found_keyframes import known_matches
+from .found_properties import PLACE_VALUES
 from .scene_session import SceneSession
 
+ANYBODY = Body(Actor.from_stature(1.7))  # The body on which candidates are compared; its size hardly matters
+ELSEWHERE_M = 0.15
+"""Distance between joints of two candidates above which anybody sees that a limb is elsewhere [m]."""
 
-def write_poses(scene: bpy.types.Scene, made: SceneSession) -> bpy.types.PropertyGroup:
+
+def add_match(take: PropertyGroup, frame: float, library: str) -> PropertyGroup:
+    """Add a found keyframe without candidates, in order of frame; others may move in memory."""
+    matches = take.matching.matches
+    place = sum(match.frame < frame for match in matches)
+    match = matches.add()
+    match.frame, match.library = frame, library
+    matches.move(len(matches) - 1, place)
+    return matches[place]
+
+
+def add_candidate(
+    match: PropertyGroup, posture: Posture, name: str, mirrored: bool, confidence: float
+) -> None:
+    """Add a posture that a found keyframe's frame may show; the first one added is the one it has."""
+    candidate = match.candidates.add()
+    candidate.name, candidate.mirrored, candidate.confidence = name, mirrored, confidence
+    vector = posture.to_vector()
+    candidate.place, candidate.turns = vector[:PLACE_VALUES], vector[PLACE_VALUES:]
+    first = candidate_posture(match.candidates[0])
+    own, other = headings_rad(Posture.stack([posture, first])).tolist()
+    candidate.turned = (own - other + pi) % (2.0 * pi) - pi
+    # Limbs whose joints are elsewhere on the body than those of the first, which may face another way.
+    here, there = (ANYBODY.points(ANYBODY.pose(each)) - each.translation for each in (posture, first))
+    distance = np.linalg.norm(here @ yaw_rotation(other - own).T - there, axis=-1)
+    away = zip(HUMAN.point_names, distance > ELSEWHERE_M, strict=True)
+    candidate.limbs = " ".join(sorted({limb_of(name) for name, far in away if far} - {TRUNK}))
+
+
+def key_matches(take: PropertyGroup, frames: ArrayLike, postures: Sequence[Posture]) -> None:
+    """Key postures at scene frames (K,) as found ones, and assign the keyframes to the actor."""
+    actor = actor_of(take)
+    take.keyframe_action = take.keyframe_action or new_keyframe_action(actor)
+    write_matched(actor, take.keyframe_action, np.asarray(frames), postures)
+    straighten_unposed(take)
+    assign_action(actor, take.keyframe_action)
+
+
+def write_poses(scene: bpy.types.Scene, made: SceneSession) -> PropertyGroup:
     """Key what was found beside what is decided, in place of what was found earlier; returns the take.
 
     Where the world was moved so that the floor is z = 0, the camera is.
@@ -42,11 +90,8 @@ def write_poses(scene: bpy.types.Scene, made: SceneSession) -> bpy.types.Propert
         take.proposals.clear()
         for each in found.frames:
             take.proposals.add().frame = round(float(frames[each.index]))
-    free = [
-        key
-        for key in posed.seen.take.keyframes
-        if key.matched is not None and not has_frame(sorted(decided), float(frames[key.index]))
-    ]
+    sought = [key for key in posed.seen.take.keyframes if key.matched is not None]
+    free = [key for key in sought if not has_frame(sorted(decided), float(frames[key.index]))]
     write_found(take, frames, free, found)
     before, camera = made.session[Placed].seen.take.camera, posed.seen.take.camera
     if not np.array_equal(before.matrix_world, camera.matrix_world):
@@ -54,7 +99,7 @@ def write_poses(scene: bpy.types.Scene, made: SceneSession) -> bpy.types.Propert
     return take
 
 
-def clear_found(take: bpy.types.PropertyGroup) -> int:
+def clear_found(take: PropertyGroup) -> int:
     """Remove the found keyframes that nobody has decided on; returns how many had keys.
 
     What the animator has posed meanwhile, or changed of them, stays and is theirs for good. What they chose
@@ -64,7 +109,7 @@ def clear_found(take: bpy.types.PropertyGroup) -> int:
         InputError: The take has no actor, or it lacks bones.
     """
     actor, matching = actor_of(take), take.matching
-    undecided = tuple(undecided_matches(take))
+    undecided = tuple(known_matches(take, by_hand=False))
     if take.keyframe_action is not None:
         take_over(actor, take.keyframe_action, HUMAN, TakeState(take).posed)
         remove_keyframes(actor, take.keyframe_action, HUMAN, undecided)
@@ -79,7 +124,7 @@ def clear_found(take: bpy.types.PropertyGroup) -> int:
 
 
 def write_found(
-    take: bpy.types.PropertyGroup, clip_frames: Array, keyframes: Sequence[Keyframe], found: FoundPoses
+    take: PropertyGroup, clip_frames: Array, keyframes: Sequence[Keyframe], found: FoundPoses
 ) -> None:
     """Key found postures, in order of frame, and store what is known of them; none may have an entry yet.
 

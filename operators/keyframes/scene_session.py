@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ...core.arrays import Array
-from ...core.progress import stretch
+from ...core.body.actor import Actor
+from ...core.camera.camera import Camera
+from ...core.progress import Job, stretch
+from ..bridge.camera_placement import read_camera
+from ..bridge.scene_frames import scene_frames
 from ..follow.evidence import scene_evidence
 from ..shell.results import MADE, reading_of
 from ..shell.take_state import digest_of
 from ..shell.takes import footage_of
 
 if TYPE_CHECKING:
-    from ...core.camera.camera import Camera
-    from ...core.progress import Job
     from ...core.session.session import Session
     from ..bridge.keyframes import Matches
 
@@ -36,23 +38,20 @@ class SceneSession:
     def frames(self) -> Array:
         """(F,) scene frames of the clip's, once that was read."""
         from ...core.markers.reading import Reading
-        from ..bridge.scene_frames import scene_frames
 
         take = self.session.inputs.take
         return scene_frames(self.session[Reading].tracks.time_s, take.frame_start, take.fps)
 
 
 def clip_session(
-    scene: bpy.types.Scene, settings: bpy.types.PropertyGroup, camera: "Camera | None" = None, **wanted: Any
-) -> "Job[SceneSession]":
+    scene: bpy.types.Scene, settings: bpy.types.PropertyGroup, camera: Camera | None = None, **wanted: Any
+) -> Job[SceneSession]:
     """Read what the session of a take starts from before there is an actor: it is of average proportions.
 
     `camera` is the scene's where None. `wanted`: further fields of core's `Inputs`.
     """
-    from ...core.body.actor import Actor
     from ...core.body.kinematics import Body
     from ...core.session.session import Inputs, Session
-    from ..bridge.camera_placement import read_camera
     from ..bridge.take_from_scene import clip_frames, scene_take
 
     identifier, body = settings.identifier, Body(Actor.from_stature(settings.stature))
@@ -66,7 +65,7 @@ def clip_session(
 
 def read_session(
     scene: bpy.types.Scene, settings: bpy.types.PropertyGroup, matches: "Matches", **wanted: Any
-) -> "Job[SceneSession]":
+) -> Job[SceneSession]:
     """Read what the session of a take starts from; the scene stays as it is.
 
     Keyframes among `matches` count as found. `wanted`: further fields of core's `Inputs`.
@@ -86,12 +85,10 @@ def read_session(
 
 def go_on(
     made: SceneSession, last: str, keep: "Callable[[str, SceneSession], None]" = lambda _stage, _made: None
-) -> "Job[SceneSession]":
+) -> Job[SceneSession]:
     """The session after all stages up to `last`; those with the same input as before are not run again."""
     from ...core.session.stages import reach
 
-    def kept(stage: str, session: "Session") -> None:
-        keep(stage, replace(made, session=session))
-
-    session = yield from stretch(reach(made.session, last, MADE, kept), READ, 1.0)
+    reached = reach(made.session, last, MADE, lambda stage, now: keep(stage, replace(made, session=now)))
+    session = yield from stretch(reached, READ, 1.0)
     return replace(made, session=session)

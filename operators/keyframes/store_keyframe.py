@@ -12,6 +12,7 @@ from ...core.body.human import HUMAN
 from ...core.errors import KeymarkError
 from ...core.progress import run
 from ..bridge.actions import assign_action
+from ..bridge.scene_frames import at_scene_frame, scene_frames, showing_action
 from ..follow.evidence import followed_markers
 from ..follow.marker_properties import ignored_regions
 from ..shell.base_operator import BaseOperator, warn
@@ -22,7 +23,7 @@ from ..shell.requirements import actor, idle
 from ..shell.results import MADE, reading_of
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of
-from .found_keyframes import known_matches, undecided_matches
+from .found_keyframes import known_matches
 from .scene_session import read_session
 
 if TYPE_CHECKING:
@@ -40,36 +41,28 @@ def improve_neighbors(context: Context, take: PropertyGroup, frame: float) -> in
     To be called within the same operator, so that one undo takes both back. Posed keyframes, and those whose
     candidate a person chose, never change; none does where the footage was not read as it is followed now.
     """
-    if not undecided_matches(take):
+    reading = reading_of(take)
+    if not known_matches(take, by_hand=False) or reading is None or take.clip_state.missing:
         return 0
-    # The correction holds even where nothing can be found around it.
-    with suppress(KeymarkError), _waiting(context):
-        reading = _reading(context.scene, take)
-        return 0 if reading is None else _pose_anew(context.scene, take, reading, frame)
-    return 0
-
-
-def _reading(scene: Scene, take: PropertyGroup) -> "Reading | None":
-    """The kept reading, if it is of this footage, these markers and these ignored regions."""
     from ...core.markers.reading import of_same_footage, reading_key
 
-    reading = reading_of(take)
-    if reading is None or take.clip_state.missing:
-        return None
-    footage = footage_of(scene, take)
-    key = reading_key(footage.path, footage.rate, followed_markers(take), None, ignored_regions(take))
-    return reading if of_same_footage(reading.key, key) else None
+    # The correction holds even where nothing can be found around it.
+    with suppress(KeymarkError), _waiting(context):
+        footage = footage_of(context.scene, take)
+        markers, ignored = followed_markers(take), ignored_regions(take)
+        if of_same_footage(reading.key, reading_key(footage.path, footage.rate, markers, None, ignored)):
+            return _pose_anew(context.scene, take, reading, frame)
+    return 0
 
 
 def _pose_anew(scene: Scene, settings: PropertyGroup, reading: "Reading", frame: float) -> int:
     from ...core.poses.clip import pose_clip
     from ...core.poses.clip_input import section_around, take_around
     from ...core.session.stages import seen_in
-    from ..bridge.scene_frames import scene_frames
     from ..library.registry_files import named_libraries
     from .found_result import write_found
 
-    known = run(read_session(scene, settings, undecided_matches(settings))).session.inputs.take
+    known = run(read_session(scene, settings, known_matches(settings, by_hand=False))).session.inputs.take
     frames = scene_frames(reading.tracks.time_s, known.frame_start, known.fps)
     corrected = int(np.argmin(np.abs(frames - frame)))
     section = section_around(reading.tracks.time_s, corrected, known.keyframes)
@@ -113,7 +106,6 @@ def note_corrected(take: PropertyGroup, frame: float, in_depth: bool) -> None:
 def _depth_found(take: PropertyGroup, body: "Body", posture: "Posture", frame: float) -> bool:
     """Whether the pose shown has the depth that was found: corrected in the picture alone, or as keyed."""
     from ..bridge.pose import read_posture
-    from ..bridge.scene_frames import at_scene_frame, showing_action
 
     if take.keyframe_action is None or not TakeState(take).depth_is_found(frame):
         return False
@@ -153,14 +145,11 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         from ..bridge.keyframes import NOTICEABLE_M
         from ..bridge.pose import read_posture
 
-        scene = context.scene
-        take = active_take(scene)
-        armature_object = take.armature
-        body = read_body(armature_object, HUMAN)
-        read = read_posture(armature_object, body)
+        take, frame = active_take(context.scene), context.scene.frame_current_final
+        body = read_body(take.armature, HUMAN)
+        read = read_posture(take.armature, body)
         if take.keyframe_action is None:
-            take.keyframe_action = new_keyframe_action(armature_object)
-        frame = scene.frame_current_final
+            take.keyframe_action = new_keyframe_action(take.armature)
         switched = not TakeState(take).shows_keyframes
         straighten_unposed(take)
         was_found = frame in known_matches(take)

@@ -23,7 +23,7 @@ from ..follow.marker_properties import add_ignored_regions
 from ..follow.marker_styles import set_marker_color
 from ..footage.load_footage import hide_startup_cube
 from ..footage.take_footage import look_through_camera, show_range
-from ..keyframes.match_edits import add_candidate, add_match
+from ..keyframes.found_result import add_candidate, add_match
 from ..shell.base_operator import warn
 from ..shell.keyed_frames import new_keyframe_action
 from ..shell.notices import give_notices

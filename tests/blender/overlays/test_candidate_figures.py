@@ -10,7 +10,7 @@ from keymark.core.body.human import HUMAN
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.camera_placement import read_camera
 from keymark.operators.keyframes.change_match import KEYMARK_OT_replace_match
-from keymark.operators.keyframes.match_edits import add_candidate, add_match, key_matches
+from keymark.operators.keyframes.found_result import add_candidate, add_match, key_matches
 from keymark.operators.overlays import candidates, views
 from keymark.operators.overlays.drawing import Label, Stroke, candidate_icon
 from keymark.operators.shell.footage_view import FootageView
