@@ -6,7 +6,7 @@ describe them). Each part of the body has a color histogram, and so has the back
 always occludes it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import cv2
@@ -26,12 +26,7 @@ BLUR = gaussian_filter1d(np.eye(LEVELS), 1.0, axis=0, truncate=3.0)
 """Smoothing matrix of a histogram along one axis."""
 UNSEEN_LOG_DENSITY = float(np.log(UNSEEN / (CELLS * CELL_VOLUME)))
 """Log density of a color that was never seen on any surface."""
-MARGIN_PX = 5  # error of a predicted body: pixels nearer to it do not count as background
-HIGHEST = 255  # replaces occluded levels, so that they are sorted last
-SPARSE = 2  # sampling step, in rows and columns, of the background's histogram
 STEADY = 6.0  # standard deviation below which a background pixel is static, in levels
-DARKEST, BRIGHTEST, LIGHT_DEVIATION = 0.55, 1.1, 0.15  # of the light on the background, relative to usual
-CHANGED = 0.1  # prior share of pixels that differ from the background's usual color
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,8 +45,7 @@ class Appearance:
         `labels` are as in `learn_appearance`.
         """
         nothing = np.ones(labels[0].shape, dtype=np.bool_)
-        seen = [_seen(image, label, nothing, parts) for image, label in zip(images, labels, strict=True)]
-        own = _log_densities(_counts(seen, parts)[:-1])
+        own = _log_densities(_counts(images, labels, [nothing] * len(images), parts)[:-1])
         return replace(self, parts=np.concatenate([own, self.parts[-1:]]))
 
     def where_steady(self) -> "Appearance":
@@ -80,11 +74,11 @@ class Appearance:
         seen = [pixels[..., channel].astype(np.float64) for channel in range(3)]
         power = usual[0] * usual[0] + usual[1] * usual[1] + usual[2] * usual[2]
         light = usual[0] * seen[0] + usual[1] * seen[1] + usual[2] * seen[2]
-        light = np.clip(light / np.maximum(power, 1.0), DARKEST, BRIGHTEST)
+        light = np.clip(light / np.maximum(power, 1.0), 0.55, 1.1)  # relative to usual
         squared = sum((s - light * u) ** 2 for s, u in zip(seen, usual, strict=True)) / deviation**2
-        squared += ((light - 1.0) / LIGHT_DEVIATION) ** 2
+        squared += ((light - 1.0) / 0.15) ** 2
         here = np.exp(-0.5 * squared) / (deviation**3 * (2.0 * np.pi) ** 1.5)
-        mixed = (1.0 - CHANGED) * here + CHANGED * np.exp(anywhere)
+        mixed = 0.9 * here + 0.1 * np.exp(anywhere)  # a tenth of all pixels differs from the usual color
         # Blends at an edge are equally unlikely on either side, and must favor neither.
         mixed = np.log((1.0 - UNSEEN) * mixed + np.exp(UNSEEN_LOG_DENSITY))
         return np.where(self.known[row, column], mixed, anywhere)
@@ -95,36 +89,34 @@ def learn_appearance(images: list[Image], labels: list[NDArray[np.int8]], parts:
 
     `labels` are, for each frame, (rows, columns) the visible part of the body, `NO_PART` for none.
     """
-    wide = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * MARGIN_PX + 1, 2 * MARGIN_PX + 1))
+    # A predicted body is off by 5 pixels: those nearer to it do not count as background.
+    wide = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (11, 11))
     body = np.stack([cv2.dilate((label != NO_PART).astype(np.uint8), wide) for label in labels]) > 0
-    seen = [_seen(image, label, near, parts) for image, label, near in zip(images, labels, body, strict=True)]
-    counts = _counts(seen, parts)
-    stack = np.stack(images)
+    densities, stack = _log_densities(_counts(images, labels, body, parts)), np.stack(images)
     color = _median(stack, ~body)
     distance = _median(np.stack([cv2.absdiff(image, color) for image in stack]), ~body)
-    # That of the most variable channel.
-    spread = 1.48 * np.maximum(np.maximum(distance[..., 0], distance[..., 1]), distance[..., 2]).astype(
-        np.float32
-    )
+    spread = 1.48 * distance.max(axis=-1).astype(np.float32)  # that of the most variable channel
     # Frames that must show a pixel's background for its Gaussian to be known.
     known = np.count_nonzero(~body, axis=0) >= 3
     steady = bool(known.any() and np.mean(spread[known] < STEADY) >= 0.9)
     deviation = np.clip(spread, 3.0, 12.0)  # of a background pixel, in levels
-    return Appearance(_log_densities(counts), color.astype(np.float32), deviation, known, steady)
+    return Appearance(densities, color.astype(np.float32), deviation, known, steady)
 
 
-def _seen(image: Image, label: NDArray[np.int8], near: BoolArray, parts: int) -> IndexArray:
-    """Histogram cells of pixels inside parts and well outside them, offset by each part's index."""
-    kernel, shifted = np.ones((3, 3), dtype=np.uint8), (label + 1).astype(np.uint8)
-    interior = np.asarray(cv2.erode(shifted, kernel) == cv2.dilate(shifted, kernel))
-    rows, columns = np.nonzero(interior & (label != NO_PART))
-    inside = label[rows, columns].astype(np.intp) * CELLS + _cells(image[rows, columns])
-    sparse = slice(None, None, SPARSE), slice(None, None, SPARSE)
-    return np.concatenate([inside, parts * CELLS + _cells(image[sparse][~near[sparse]])])
+def _counts(
+    images: list[Image], labels: list[NDArray[np.int8]], body: Iterable[BoolArray], parts: int
+) -> IndexArray:
+    """(O + 1, cells) how often each color was seen inside each part and, last, well outside the body.
 
-
-def _counts(seen: list[IndexArray], parts: int) -> IndexArray:
-    """(O + 1, cells) how often each cell was seen on each part and, last, in the background."""
+    Of the background every other pixel counts.
+    """
+    seen, kernel = [], np.ones((3, 3), dtype=np.uint8)
+    for image, label, near in zip(images, labels, body, strict=True):
+        shifted = (label + 1).astype(np.uint8)
+        interior = np.asarray(cv2.erode(shifted, kernel) == cv2.dilate(shifted, kernel))
+        rows, columns = np.nonzero(interior & (label != NO_PART))
+        seen.append(label[rows, columns].astype(np.intp) * CELLS + _cells(image[rows, columns]))
+        seen.append(parts * CELLS + _cells(image[::2, ::2][~near[::2, ::2]]))
     return np.bincount(np.concatenate(seen), minlength=(parts + 1) * CELLS).reshape(parts + 1, CELLS)
 
 
@@ -150,27 +142,8 @@ def _log_densities(counts: IndexArray) -> Array:
 
 
 def _median(stack: Image, free: BoolArray) -> Image:
-    """Lower median over the free entries of the leading axis; `HIGHEST` where none is free."""
-    last = stack.copy()
-    last[~free] = HIGHEST
-    ordered = list(last)
-    # Comparing whole pictures at a time is many times as fast as sorting every pixel.
-    for i, j in _sorting_network(len(ordered)):
-        ordered[i], ordered[j] = np.minimum(ordered[i], ordered[j]), np.maximum(ordered[i], ordered[j])
+    """Lower median over the free entries of the leading axis; 255 where none is free."""
+    ordered = np.sort(np.where(free[..., None], stack, np.uint8(255)), axis=0)
     middle = np.maximum(np.count_nonzero(free, axis=0) - 1, 0) // 2
     rows, columns = np.indices(middle.shape, sparse=True)
-    return np.asarray(np.stack(ordered)[middle, rows, columns])
-
-
-def _sorting_network(count: int) -> Iterator[tuple[int, int]]:
-    """Yield the comparators of odd-even merge sort (Batcher 1968, *Sorting networks*)."""
-    merged = 1
-    while merged < count:
-        apart = merged
-        while apart:
-            for start in range(apart % merged, count - apart, 2 * apart):
-                for i in range(start, min(start + apart, count - apart)):
-                    if i // (2 * merged) == (i + apart) // (2 * merged):
-                        yield i, i + apart
-            apart //= 2
-        merged *= 2
+    return np.asarray(ordered[middle, rows, columns])

@@ -16,9 +16,7 @@ from ..numerics.markov_chain import cheapest_track
 from .moments import MOMENT_POWERS
 from .region_tracks import ExpectedRegions, Regions
 
-HIDDEN_COST = 2.5  # cost of each hidden frame: once hidden, a marker stays so for a while
 RESTART_COST = 10.0
-STEP_TAIL = 1.0  # scale of Student's t of the steps: a swung arm takes several large ones in a row
 STILL_STEP_PX = 1.5
 TAKEN_COST = 20.0
 
@@ -101,9 +99,8 @@ def _still(found: Candidates, frames: int) -> BoolArray:
     )
     around = np.zeros(len(cell), dtype=np.int64)
     for offset in np.ndindex(3, 3, 3):
-        neighbor = (
-            cell + np.ravel_multi_index(offset, tuple(sides)) - np.ravel_multi_index((1, 1, 1), tuple(sides))
-        )
+        one_step = np.ravel_multi_index((1, 1, 1), tuple(sides))
+        neighbor = cell + np.ravel_multi_index(offset, tuple(sides)) - one_step
         where = np.minimum(np.searchsorted(cell, neighbor), len(cell) - 1)
         around += np.where(cell[where] == neighbor, count[where], 0)
     return np.asarray(around[index] >= 0.5 * frames)
@@ -119,10 +116,11 @@ def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IndexArray:
     def step_costs(here: IndexArray, before: IndexArray) -> Array:
         gap = found.frame[here][:, None] - found.frame[before]
         squared = ((position[here][:, None] - position[before]) ** 2).sum(axis=-1) / gap**2
-        # A visible marker is visible in the next frame in 98 of 100 cases.
-        return np.asarray(np.where(gap > 1, 4.0, 0.0) + STEP_TAIL * np.log1p(0.5 * squared / STEP_TAIL))
+        # A visible marker is visible in the next frame in 98 of 100 cases; a swung arm takes several large
+        # steps in a row, as Student's t has them.
+        return np.asarray(np.where(gap > 1, 4.0, 0.0) + np.log1p(0.5 * squared))
 
-    absent = np.full(len(found.start) - 1, HIDDEN_COST)
+    absent = np.full(len(found.start) - 1, 2.5)  # once hidden, a marker stays so for a while
     # The speed bounds a path over a dozen hidden frames.
     return cheapest_track(found.start, unary, absent, RESTART_COST, 12, step_costs)
 
@@ -130,15 +128,7 @@ def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IndexArray:
 def region_costs(
     found: Candidates, clutter: BoolArray, usual_area: float, expected: ExpectedRegions | None, marker: int
 ) -> Array:
-    """Unary cost (N,) of each region as the marker, by area, color, clutter and expected position.
-
-    Args:
-        found: The regions.
-        clutter: (N,) whether a region is static clutter.
-        usual_area: Area of the marker in px.
-        expected: Expected regions of the markers.
-        marker: Index of the marker.
-    """
+    """Unary cost (N,) of each region as the marker, by area [px], color, clutter and position."""
     if not len(found.frame):
         return np.zeros(0)
     # Foreshortening and occlusion change areas by a factor of three.
@@ -196,7 +186,10 @@ def join_fragments(
     """
     frames = len(path)
     main = path[found.frame]  # (N,) of each region, the main one of its frame
-    gap = np.where(main >= 0, _box_gap(found.box, found.box[main]), np.inf)
+    left, top, right, bottom = found.box.T
+    across = np.maximum(left[main] - right, left - right[main])
+    down = np.maximum(top[main] - bottom, top - bottom[main])
+    gap = np.where(main >= 0, np.hypot(np.maximum(across, 0.0), np.maximum(down, 0.0)), np.inf)
     taken = np.flatnonzero((main == np.arange(len(main))) | ((gap <= reach_px) & (cost <= most_cost)))
     frame = found.frame[taken]
     moments, clipped = np.zeros((frames, 6)), np.zeros(frames, dtype=np.bool_)
@@ -227,10 +220,3 @@ def region_quality(own: MarkerRegion) -> Array:
     whole = np.minimum(np.minimum(ratio, 1.5 / ratio), 1.0)
     quality = whole * own.certainty * (0.5 + 0.5 * own.share) * np.where(own.clipped, 0.4, 1.0)
     return np.where(seen, np.clip(quality, 0.0, 1.0), 0.0)
-
-
-def _box_gap(box: Array, other: Array) -> Array:
-    """Distances between boxes (N, 4) and others (N, 4)."""
-    across = np.maximum(other[:, 0] - box[:, 2], box[:, 0] - other[:, 2])
-    down = np.maximum(other[:, 1] - box[:, 3], box[:, 1] - other[:, 3])
-    return np.asarray(np.hypot(np.maximum(across, 0.0), np.maximum(down, 0.0)))

@@ -1,13 +1,13 @@
 """Color learning: the markers' color distributions, from one sample each and frames of the clip."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
 import numpy as np
 
-from ..arrays import Array, BoolArray, Image, IndexArray, IntArray
+from ..arrays import Array, Image, IndexArray, IntArray
 from ..errors import InputError
 from ..files.digest import digest
 from ..video.clip import spread_frames
@@ -25,7 +25,6 @@ from .indexed_frames import LEARNING_NOISE_LEVELS, IndexedFrames
 from .region_tracks import Detections, ExpectedRegions, LearningRound, MarkerStyle
 
 SAMPLES = 12  # frames of the first learning; up to three times as many are kept later
-WIDEST_SPACING = 96  # frames between samples at most: light changes in seconds
 FARTHEST = 16.3  # squared distance: 99.9 % of a chi-squared with 3 degrees of freedom
 
 
@@ -70,7 +69,7 @@ class ColorLearner:
             self._learn()
             if not self._missing.size:
                 break
-        self._spacing = min(max(len(images) // len(self._samples), 1), WIDEST_SPACING)
+        self._spacing = min(max(len(images) // len(self._samples), 1), 96)  # light changes in seconds
 
     def watch(self, index: int, image: Image) -> None:
         """Sample a later image, (rows, columns, 3) of the clip's size, at the present spacing of samples.
@@ -82,7 +81,7 @@ class ColorLearner:
         self._samples.append((index, learning_image(measuring_image(image, self._times))))
         if len(self._samples) >= 3 * SAMPLES:
             self._samples = self._samples[2::3]
-            self._spacing = min(3 * self._spacing, WIDEST_SPACING)
+            self._spacing = min(3 * self._spacing, 96)
             self._learn()
 
     def learn_again(self, earlier: Detections) -> bool:
@@ -104,11 +103,8 @@ class ColorLearner:
         if self._learned is None:
             return {}
         counts = self._learned.background_counts
-        return {
-            marker: _complaint(self._styles[marker], counts)
-            for color in self._missing.tolist()
-            for marker in self.groups[color]
-        }
+        missing = [marker for color in self._missing.tolist() for marker in self.groups[color]]
+        return {marker: _complaint(self._styles[marker], counts) for marker in missing}
 
     @property
     def _missing(self) -> IndexArray:
@@ -118,11 +114,7 @@ class ColorLearner:
     def _learn(self) -> None:
         styles = [[self._styles[marker].color_srgb for marker in group] for group in self.groups]
         samples = [np.round(np.mean(colors, axis=0)).astype(int).tolist() for colors in styles]
-        allowed = None
-        if self._expected is not None:
-            allowed = [
-                self._allowed(index, image.shape[:2], self._expected) for index, image in self._samples
-            ]
+        allowed = [self._allowed(index, image.shape[:2]) for index, image in self._samples]
         masks: list[Image | None] = []
         if self._ignored is not None and self._ignored.regions:
             whole = [self._ignored.mask(index) for index, _ in self._samples]
@@ -134,9 +126,10 @@ class ColorLearner:
         self.learning_rounds.append(LearningRound(tuple(index for index, _ in self._samples), model_digest))
         self.samples.update(self._samples)
 
-    def _allowed(self, frame: int, shape: tuple[int, ...], expected: ExpectedRegions) -> Image | None:
-        """Masks of each color's expected regions on the learning grid, (C, rows, columns)."""
-        if frame >= len(expected.center):
+    def _allowed(self, frame: int, shape: tuple[int, ...]) -> Image | None:
+        """Masks of each color's expected regions (C, rows, columns) on the learning grid, if any."""
+        expected = self._expected
+        if expected is None or frame >= len(expected.center):
             return None
         masks = np.zeros((len(self.groups), *shape), dtype=np.uint8)
         step = self._size[0] / shape[1]
@@ -205,7 +198,7 @@ class LearnedColors:
 def learn_colors(
     images: Sequence[Image],
     samples_srgb: Sequence[Sequence[int]],
-    allowed: Sequence[Image | None] | None = None,
+    allowed: Sequence[Image | None] = (),
     ignored: Sequence[Image | None] = (),
 ) -> LearnedColors:
     """Learn each marker's color distribution and the background's histogram.
@@ -217,7 +210,7 @@ def learn_colors(
     Args:
         images: Sampled frames, (rows, columns, 3) uint8, on the learning grid.
         samples_srgb: One (red, green, blue) in 0..255 per marker.
-        allowed: Per image, (M, rows, columns) 1 where each marker may be, or None for everywhere.
+        allowed: Per image, (M, rows, columns) 1 where each marker may be, or None; empty for everywhere.
         ignored: Per image, the mask (rows, columns) of ignored pixels, or None; empty for none at all.
     """
     sampled = IndexedFrames(images, ignored)
@@ -231,19 +224,19 @@ def learn_colors(
         masks = sampled.regions(labels, core, len(initial))
         # Clutter of a marker's very color is kept out of the background too, or the marker would be lost.
         background = sampled.background_counts(masks)
-        if allowed is not None:
-            masks = [
-                own
-                if limits is None
-                else [mask.within(limit) for mask, limit in zip(own, limits, strict=True)]
-                for own, limits in zip(masks, allowed, strict=True)
-            ]
+        for own, limits in zip(masks, allowed, strict=False):
+            if limits is not None:
+                own[:] = [mask.within(limit) for mask, limit in zip(own, limits, strict=True)]
         found = np.array([sum(own[marker].area for own in masks) for marker in range(len(initial))])
         for marker, start in enumerate(initial):
             chroma, luma = sampled.colors([own[marker] for own in masks])
-            own = _near_sample(chroma, luma, start)
-            if np.count_nonzero(own) >= 40:
-                distributions[marker] = fit_distribution(chroma[own], luma[own], start)
+            # Colors far from the sample are blends at a border, or skin and wood under warm light; learning
+            # from them would widen and move the distribution round by round.
+            distance, _ = start.distance(chroma, luma, LEARNING_NOISE_LEVELS)
+            if len(distance):
+                near = distance <= np.clip(np.quantile(distance, 0.7), 2.4, FARTHEST)
+                if np.count_nonzero(near) >= 40:
+                    distributions[marker] = fit_distribution(chroma[near], luma[near], start)
     return LearnedColors(color_model(distributions, np.maximum(found, 1), background), found, background)
 
 
@@ -280,25 +273,6 @@ def fit_distribution(chroma: Array, luma: Array, start: ColorDistribution) -> Co
     # The frames between the sampled ones show other light, folds and blur; the background limits what this
     # admits.
     covariance += 0.2 * start.covariance
-    fitted = replace(
-        start,
-        log_luma=float(middle),
-        log_luma_deviation=deviation,
-        mean=center,
-        slope=slope,
-        covariance=covariance,
-    )
+    fitted = ColorDistribution(float(middle), deviation, center, slope, covariance)
     offset = fitted.mean - start.mean
     return fitted if offset @ np.linalg.solve(start.covariance, offset) <= FARTHEST else start
-
-
-def _near_sample(chroma: Array, luma: Array, start: ColorDistribution) -> BoolArray:
-    """Mark the pixels (N,) to learn from.
-
-    Colors far from the sample are blends at a border, or skin and wood under warm light; learning from them
-    would widen and move the distribution round by round.
-    """
-    distance, _ = start.distance(chroma, luma, LEARNING_NOISE_LEVELS)
-    if not len(distance):
-        return np.zeros(0, dtype=np.bool_)
-    return distance <= np.clip(np.quantile(distance, 0.7), 2.4, FARTHEST)

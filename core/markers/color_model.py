@@ -10,15 +10,14 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..arrays import Array, Image, IndexArray, Int32Array, SingleArray
 
-CELL_BITS = 6  # of each channel: 64³ cells hold a color to two levels, less than compression noise
-CELLS_PER_CHANNEL = 1 << CELL_BITS
-CELL_COUNT = CELLS_PER_CHANNEL**3
-CELL_WIDTH = 256 // CELLS_PER_CHANNEL
-
+SIDE = 64  # cells a channel: a cell holds a color to two levels, less than compression noise
+CELL_COUNT = SIDE**3
+LEVELS = np.arange(SIDE) * 4.0 + 1.5
+"""The center of each cell of a channel."""
 LUMA_OFFSET = 16.0  # levels added before dividing by luma: five times the noise of a dark pixel
 
 # Recommendation ITU-R BT.601, full range, as video decoders' 4:2:0 chroma is split.
@@ -45,25 +44,20 @@ def cell_volume(offset_luma: ArrayLike) -> Array:
     luma = np.asarray(offset_luma)
     # d(blue, red difference, luma) / d(b, g, r) has the determinant 0.564 · 0.713 · 0.587; the division
     # scales it.
-    return np.asarray(CELL_WIDTH**3 * BLUE_SCALE * RED_SCALE * LUMA_BGR[1] / luma**3)
+    return np.asarray(4**3 * BLUE_SCALE * RED_SCALE * LUMA_BGR[1] / luma**3)
 
 
 def cell_index(image: Image) -> IndexArray:
     """The cell of every pixel, (rows, columns) in 0..CELL_COUNT-1, of a (rows, columns, 3) image."""
     packed = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2BGRA)).view("<u4")[..., 0]
-    cut, last = 8 - CELL_BITS, CELLS_PER_CHANNEL - 1
-    index = (packed >> cut) & last
-    index |= (packed >> 2 * cut) & (last << CELL_BITS)
-    index |= (packed >> 3 * cut) & (last << 2 * CELL_BITS)
+    index = (packed >> 2) & 0x3F | (packed >> 4) & 0xFC0 | (packed >> 6) & 0x3F000
     return index.astype(np.intp)
 
 
 def cell_colors(cells: Int32Array | None = None) -> Array:
     """Centers of cells, (..., 3) blue, green, red in levels; of all cells by default."""
-    index = np.arange(CELL_COUNT, dtype=np.int32) if cells is None else cells
-    last = CELLS_PER_CHANNEL - 1
-    levels = np.stack([index & last, index >> CELL_BITS & last, index >> 2 * CELL_BITS], axis=-1)
-    return np.asarray(levels * float(CELL_WIDTH) + (CELL_WIDTH - 1) / 2.0)
+    index = np.arange(CELL_COUNT) if cells is None else cells
+    return LEVELS[np.stack(np.unravel_index(index, (SIDE, SIDE, SIDE), order="F"), axis=-1)]
 
 
 def cell_chromaticity(cells: Int32Array) -> tuple[SingleArray, SingleArray]:
@@ -71,10 +65,9 @@ def cell_chromaticity(cells: Int32Array) -> tuple[SingleArray, SingleArray]:
 
     Single precision is plenty for a color and takes half the time.
     """
-    levels = np.arange(CELLS_PER_CHANNEL, dtype=np.float32) * CELL_WIDTH + (CELL_WIDTH - 1) / 2
-    last = CELLS_PER_CHANNEL - 1
-    blue, red = levels.take(cells & last), levels.take(cells >> 2 * CELL_BITS)
-    luma = levels.take(cells >> CELL_BITS & last) * np.float32(LUMA_BGR[1])
+    levels = LEVELS.astype(np.float32)
+    blue, green, red = (levels.take(cells >> shift & SIDE - 1) for shift in (0, 6, 12))
+    luma = green * np.float32(LUMA_BGR[1])
     luma += blue * np.float32(LUMA_BGR[0]) + red * np.float32(LUMA_BGR[2])
     offset_luma = luma + np.float32(LUMA_OFFSET)
     chroma = np.empty((len(cells), 2), dtype=np.float32)
@@ -84,7 +77,6 @@ def cell_chromaticity(cells: Int32Array) -> tuple[SingleArray, SingleArray]:
 
 
 ColorArray = Array | SingleArray
-
 NOISE_LEVELS = 5.0  # deviation of a decoded, smoothed color difference: sensor and compression
 OUTLIER_DISTANCE = 16.0  # squared distance past which no color is a marker's: 99.9 % of χ²
 BACKGROUND = 255  # label of pixels that are no marker's
@@ -141,11 +133,6 @@ class ColorModel:
     label: Image  # (CELL_COUNT,) uint8, index of the likeliest color of each cell, or BACKGROUND
     probability: Image  # (CELL_COUNT,) uint8, posterior probability in 1/255
 
-    def classify(self, image: Image) -> tuple[Image, Image]:
-        """Label and probability in 1/255, (rows, columns), of every pixel of an image."""
-        cells = cell_index(image)
-        return np.take(self.label, cells), np.take(self.probability, cells)
-
     def labels(self, image: Image) -> Image:
         """The label, (rows, columns), of every pixel of an image."""
         return np.take(self.label, cell_index(image))
@@ -159,7 +146,15 @@ def color_model(
     `pixel_counts` (M,) are the markers' in the frames in which `background_counts` (CELL_COUNT,) were
     counted.
     """
-    near = _cells_near(distributions)
+    # Tested by groups of two by two by two cells, within which colors change little.
+    red, green, blue = np.meshgrid(*[(LEVELS[::2] + LEVELS[1::2]) / 2.0] * 3, indexing="ij")
+    middle = chromaticity(np.stack([blue, green, red], axis=-1).reshape(-1, 3))
+    single = middle[0].astype(np.float32), middle[1].astype(np.float32)
+    groups = np.zeros(len(single[1]), dtype=np.bool_)
+    for distribution in distributions:
+        groups |= distribution.distance(*single)[0] < 2.0 * OUTLIER_DISTANCE
+    cells = groups.reshape(SIDE // 2, SIDE // 2, SIDE // 2)
+    near = np.flatnonzero(cells.repeat(2, axis=0).repeat(2, axis=1).repeat(2, axis=2)).astype(np.int32)
     chroma, luma = cell_chromaticity(near)
     counts = np.asarray(background_counts, dtype=np.float64)[near]
     likeliest, sureness = weigh(distributions, pixel_counts, counts, chroma, luma)
@@ -168,23 +163,6 @@ def color_model(
     label[near] = np.where(sureness >= 0.5, likeliest, BACKGROUND)
     probability[near] = np.round(255.0 * sureness)
     return ColorModel(tuple(distributions), label, probability)
-
-
-def _cells_near(distributions: Sequence[ColorDistribution]) -> NDArray[np.int32]:
-    """Cells, ascending, near any of the distributions.
-
-    Tested by groups of two by two by two cells, within which colors change little.
-    """
-    side = CELLS_PER_CHANNEL // 2
-    group = np.arange(side**3, dtype=np.int32)
-    levels = np.stack([group % side, group // side % side, group // side**2], axis=-1)
-    chroma, luma = chromaticity(levels * (2.0 * CELL_WIDTH) + (2 * CELL_WIDTH - 1) / 2.0)
-    chroma, luma = chroma.astype(np.float32), luma.astype(np.float32)
-    near = np.zeros((side, side, side), dtype=np.bool_)
-    for distribution in distributions:
-        near |= (distribution.distance(chroma, luma)[0] < 2.0 * OUTLIER_DISTANCE).reshape(near.shape)
-    cells = near.repeat(2, axis=0).repeat(2, axis=1).repeat(2, axis=2)
-    return np.flatnonzero(cells).astype(np.int32)
 
 
 def weigh(
@@ -215,9 +193,6 @@ def weigh(
         return label, np.nan_to_num(best / (total + unknown))
 
 
-APART = 0.08  # least difference in chromaticity of two suggested colors
-
-
 def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list[tuple[int, int, int]]:
     """Up to three colors (red, green, blue) found in the clip, the nearest to the sample first."""
     count = np.asarray(counts, dtype=np.float64)
@@ -228,7 +203,7 @@ def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list
     distance = np.linalg.norm(chroma - wanted, axis=1) + 0.1 * np.abs(np.log(luma / wanted_luma))
     chosen: list[int] = []
     for index in np.argsort(distance):
-        if all(np.linalg.norm(chroma[index] - chroma[other]) >= APART for other in chosen):
+        if all(np.linalg.norm(chroma[index] - chroma[other]) >= 0.08 for other in chosen):
             chosen.append(int(index))
         if len(chosen) == 3:
             break
@@ -241,7 +216,6 @@ def share_of_color(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> floa
     present = np.flatnonzero(count)
     wanted, wanted_luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
     chroma, luma = chromaticity(cell_colors(present.astype(np.int32)))
-    like = (np.linalg.norm(chroma - wanted, axis=1) < APART / 2.0) & (
-        np.abs(np.log(luma / wanted_luma)) < 0.25
-    )
+    like = np.linalg.norm(chroma - wanted, axis=1) < 0.04
+    like &= np.abs(np.log(luma / wanted_luma)) < 0.25
     return float(count[present[like]].sum() / max(count.sum(), 1.0))

@@ -21,8 +21,6 @@ from ..files.records import Record
 from ..video.working_image import halvings
 
 IGNORED = 255  # value of ignored pixels in a mask; of one made smaller, pixels from half of it on are ignored
-SUBPIXEL_BITS = 4
-SUBPIXELS = 1 << SUBPIXEL_BITS  # parts of a pixel in drawn coordinates
 
 Point = tuple[float, float]
 PixelBox = tuple[float, float, float, float]  # left, top, right, bottom in pixels of the footage
@@ -37,10 +35,6 @@ class IgnoredRegion:
     """Points of a brush's path, all pixels within the radius of which are ignored."""
     radius_px: float = 0.0  # the brush's radius
     frames: tuple[int, int] | None = None  # index of the first frame and of the last one; None for all
-
-    def holds_in(self, frame: int) -> bool:
-        """Whether it is ignored in a frame of the clip, by its index."""
-        return self.frames is None or self.frames[0] <= frame <= self.frames[1]
 
 
 @dataclass(frozen=True)
@@ -57,7 +51,9 @@ class IgnoredPixels:
         if not self.regions:
             return None
         index = frame if self.sampled is None else self.sampled[frame]
-        here = tuple(region for region in self.regions if region.holds_in(index))
+        all_frames = (index, index)
+        spans = [(region, region.frames or all_frames) for region in self.regions]
+        here = tuple(region for region, (first, last) in spans if first <= index <= last)
         return _mask(here, self.size) if here else None
 
 
@@ -89,17 +85,18 @@ def _draw(mask: Image, region: IgnoredRegion, step_px: float) -> None:
         mask[top:bottom, left:right] = IGNORED
         return
     # OpenCV counts from the center of the first pixel, Keymark from its corner.
-    path = np.round((np.array(region.stroke) / step_px - 0.5) * SUBPIXELS).astype(np.int32)
-    radius = max(round(region.radius_px / step_px * SUBPIXELS), SUBPIXELS // 2)
+    # It draws with sixteenths of a pixel (shift=4).
+    path = np.round((np.array(region.stroke) / step_px - 0.5) * 16).astype(np.int32)
+    radius = max(round(region.radius_px / step_px * 16), 8)
     for x, y in path.tolist():
-        cv2.circle(mask, (x, y), radius, (float(IGNORED),), -1, shift=SUBPIXEL_BITS)
+        cv2.circle(mask, (x, y), radius, (float(IGNORED),), -1, shift=4)
     for one, other in itertools.pairwise(path.astype(np.float64)):  # what the disc sweeps in between
         along = other - one
         length = float(np.linalg.norm(along))
         if length > 0.0:
             across = float(radius) / length * np.array([-along[1], along[0]])
             corners = np.round([one + across, other + across, other - across, one - across])
-            cv2.fillConvexPoly(mask, corners.astype(np.int32), (float(IGNORED),), shift=SUBPIXEL_BITS)
+            cv2.fillConvexPoly(mask, corners.astype(np.int32), (float(IGNORED),), shift=4)
 
 
 IGNORED_REGIONS = "ignored_regions"
@@ -150,8 +147,8 @@ def ignored_regions(
     Raises:
         InputError: One lies beside the picture.
     """
-    where = [f"{source}: {IGNORED_REGIONS}[{number}]" for number in range(len(regions))]
-    return tuple(_region(one, size, frame_start, at) for one, at in zip(regions, where, strict=True))
+    field = f"{source}: {IGNORED_REGIONS}"
+    return tuple(_region(one, size, frame_start, f"{field}[{i}]") for i, one in enumerate(regions))
 
 
 def ignored_region_fields(regions: Sequence[IgnoredRegion], frame_start: int) -> list[dict[str, Any]]:

@@ -9,21 +9,14 @@ from numpy.typing import NDArray
 
 from ..arrays import Array, Image, IndexArray, IntArray
 from ..video.working_image import smooth
-from .color_model import (
-    CELL_COUNT,
-    CELLS_PER_CHANNEL,
-    ColorDistribution,
-    cell_chromaticity,
-    cell_index,
-    weigh,
-)
+from .color_model import CELL_COUNT, SIDE, ColorDistribution, cell_chromaticity, cell_index, weigh
 from .ignored_regions import is_ignored
+from .moments import CROSS
 
 _Number = TypeVar("_Number", bound=np.generic)
 
 LEARNING_NOISE_LEVELS = 2.5  # less than in classification: pixels explained by noise alone teach nothing
 NO_MARKER = 255
-KERNEL = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
 # A Gaussian kernel of one cell's deviation, cut off after two.
 SPREAD = np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2) / np.sum(np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2))
 
@@ -38,12 +31,8 @@ class CroppedMask(NamedTuple):
 
     def within(self, whole: Image) -> "CroppedMask":
         """The intersection with a mask of the whole image."""
-        return _cropped(self.left, self.top, self.mask & self.crop(whole))
-
-    def interior(self) -> Image:
-        """The mask without its blended border, if enough of it remains."""
-        inner = cv2.erode(self.mask, KERNEL, borderType=cv2.BORDER_CONSTANT, borderValue=(0.0,))
-        return np.asarray(inner if cv2.countNonZero(inner) >= 0.25 * self.area else self.mask, dtype=np.uint8)
+        mask = self.mask & self.crop(whole)
+        return CroppedMask(self.left, self.top, mask, cv2.countNonZero(mask))
 
     def crop(self, image: NDArray[_Number]) -> NDArray[_Number]:
         """An image cropped to the mask's box."""
@@ -65,16 +54,12 @@ class IndexedFrames:
         rank = np.zeros(CELL_COUNT, dtype=np.intp)
         rank[self._table] = np.arange(len(self._table))
         self._images = [rank.take(cell) for cell in cells]
-        self._ignored = [
-            None if mask is None else is_ignored(mask) for mask in ignored or [None] * len(cells)
-        ]
+        masks = ignored or [None] * len(cells)
+        self._ignored = [None if mask is None else is_ignored(mask) for mask in masks]
 
     def near(self, distributions: Sequence[ColorDistribution]) -> Image:
         """Label each color of the table by the distribution in whose core it lies; 255 for none."""
-        pairs = [
-            distribution.distance(self._chroma, self._luma, LEARNING_NOISE_LEVELS)
-            for distribution in distributions
-        ]
+        pairs = [one.distance(self._chroma, self._luma, LEARNING_NOISE_LEVELS) for one in distributions]
         nearest = np.argmax([density for _, density in pairs], axis=0)
         distance = np.array([squared for squared, _ in pairs])[nearest, np.arange(len(nearest))]
         # 95 % of χ² with 3 degrees of freedom.
@@ -99,12 +84,13 @@ class IndexedFrames:
 
     def colors(self, masks: Sequence[CroppedMask]) -> tuple[Array, Array]:
         """Chromaticity (N, 2) and offset luma (N,) of the insides of masks, one a frame."""
-        inside = [
-            mask.crop(image)[mask.interior().view(np.bool_)]
-            for image, mask in zip(self._images, masks, strict=True)
-            if mask.area
-        ]
-        index = np.concatenate([*inside, np.zeros(0, dtype=np.intp)])
+        inside = [np.zeros(0, dtype=np.intp)]
+        for image, mask in zip(self._images, masks, strict=True):
+            if mask.area:  # without the blended border, if enough remains
+                inner = cv2.erode(mask.mask, CROSS, borderType=cv2.BORDER_CONSTANT, borderValue=(0.0,))
+                kept = inner if cv2.countNonZero(inner) >= 0.25 * mask.area else mask.mask
+                inside.append(mask.crop(image)[np.asarray(kept, dtype=np.bool_)])
+        index = np.concatenate(inside)
         return self._chroma[index].astype(np.float64), self._luma[index].astype(np.float64)
 
     def background_counts(self, masks: Sequence[Sequence[CroppedMask]]) -> Array:
@@ -116,9 +102,9 @@ class IndexedFrames:
                 covered[ignored] = 1
             for mask in placed:
                 mask.crop(covered)[:] |= mask.mask
-            near = cv2.dilate(covered, KERNEL, iterations=3)
+            near = cv2.dilate(covered, CROSS, iterations=3)
             total += np.bincount(image.ravel(), weights=1.0 - near.ravel(), minlength=len(self._table))
-        counts, side = np.zeros(CELL_COUNT), CELLS_PER_CHANNEL
+        counts, side = np.zeros(CELL_COUNT), SIDE
         counts[self._table] = total
         # Two channels are rows and columns of an image with as many channels as cells in the third.
         cube, edge = counts.reshape(side, side, side), cv2.BORDER_REPLICATE
@@ -141,8 +127,5 @@ def _core_regions(label: Image, image: IndexArray, core: Image, marker: int) -> 
     area = stats[:, cv2.CC_STAT_AREA]
     good = (strong >= np.maximum(4, 0.25 * area)) & (area <= 0.25 * label.size)
     good[0] = False
-    return _cropped(left, top, good.astype(np.uint8).take(np.asarray(number)))
-
-
-def _cropped(left: int, top: int, mask: Image) -> CroppedMask:
+    mask = good.astype(np.uint8).take(np.asarray(number))
     return CroppedMask(left, top, mask, cv2.countNonZero(mask))

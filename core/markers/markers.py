@@ -19,7 +19,6 @@ from .region_tracks import NO_REGIONS, Detections, ExpectedRegions, MarkerStyle,
 from .regions import find_regions
 
 STRETCH_BYTES = 100_000_000  # images buffered until the colors are learned: five seconds of video
-BATCH_SIZE = 4  # images segmented together: enough to amortize the overhead of each step
 
 
 def track_markers(
@@ -98,56 +97,38 @@ def _detect_regions(
     """Detect the regions of every frame; return them and the frames' times.
 
     The clip's first images are buffered, reduced, until the colors are learned from them; later ones are
-    segmented as they come.
+    segmented as they come, four together, which amortizes the overhead of each step.
     """
-    times = halvings(clip.size)
+    times, learned = halvings(clip.size), False
     longest = STRETCH_BYTES // (3 * (clip.size[0] >> times) * (clip.size[1] >> times))
     waiting: list[Image] = []
     regions: list[Regions] = []
     time_s: list[float] = []
+
+    def segment(halved: int, least: int) -> Generator[float, None, None]:
+        while len(waiting) >= least:
+            batch, first = waiting[:4], len(regions)
+            masks = [ignored.mask(first + number) for number in range(len(batch))] if ignored.regions else []
+            before = regions[-1] if regions else NO_REGIONS
+            regions.extend(find_regions(batch, halved, colors.model, before, masks))
+            del waiting[:4]
+            yield min((len(time_s) + len(regions)) / (2.0 * clip.frame_count), 1.0)
+
     for index, stamp, image in clip.frames():
+        if index == longest:
+            colors.learn(waiting)
+            learned = True
+            yield from segment(0, 1)
         time_s.append(stamp)
-        if index < longest:
-            waiting.append(measuring_image(image, times))
-        else:
-            if index == longest:
-                yield from _regions_of_stretch(waiting, colors, ignored, regions, clip.frame_count)
-            waiting.append(image)
+        waiting.append(image if learned else measuring_image(image, times))
+        if learned:
             colors.watch(index, image)
-            if len(waiting) == BATCH_SIZE:
-                masks = _masks(ignored, len(regions), len(waiting))
-                regions += find_regions(waiting, times, colors.model, regions[-1], masks)
-                waiting.clear()
+            yield from segment(times, 4)
         yield min((len(time_s) + len(regions)) / (2.0 * clip.frame_count), 1.0)
-    if len(time_s) <= longest:
-        yield from _regions_of_stretch(waiting, colors, ignored, regions, clip.frame_count)
-    elif waiting:
-        masks = _masks(ignored, len(regions), len(waiting))
-        regions += find_regions(waiting, times, colors.model, regions[-1], masks)
+    if not learned:
+        colors.learn(waiting)
+    yield from segment(times if learned else 0, 1)
     return regions, np.array(time_s)
-
-
-def _regions_of_stretch(
-    waiting: list[Image],
-    colors: ColorLearner,
-    ignored: IgnoredPixels,
-    regions: list[Regions],
-    frame_count: int,
-) -> Generator[float, None, None]:
-    """Learn the colors from buffered images on the measuring grid; append their regions, empty the buffer."""
-    colors.learn(waiting)
-    stretch = len(waiting)
-    while waiting:
-        before = regions[-1] if regions else NO_REGIONS
-        batch = waiting[:BATCH_SIZE]
-        regions += find_regions(batch, 0, colors.model, before, _masks(ignored, len(regions), len(batch)))
-        del waiting[:BATCH_SIZE]
-        yield min((stretch + len(regions)) / (2.0 * frame_count), 1.0)
-
-
-def _masks(ignored: IgnoredPixels, first: int, count: int) -> list[Image | None]:
-    """Masks of the ignored pixels of some successive frames; empty where none are ignored anywhere."""
-    return [ignored.mask(first + number) for number in range(count)] if ignored.regions else []
 
 
 def regions_of_frame(

@@ -41,14 +41,8 @@ def centroid_and_second_moment(moments: ArrayLike) -> tuple[Array, Array]:
     second = m[..., 3:6] / area
     x, y = centroid[..., 0], centroid[..., 1]
     cross = second[..., 1] - x * y
-    matrix = np.stack(
-        [
-            np.stack([second[..., 0] - x**2, cross], axis=-1),
-            np.stack([cross, second[..., 2] - y**2], axis=-1),
-        ],
-        axis=-2,
-    )
-    return centroid, matrix
+    matrix = np.stack([second[..., 0] - x**2, cross, cross, second[..., 2] - y**2], axis=-1)
+    return centroid, matrix.reshape(*matrix.shape[:-1], 2, 2)
 
 
 def characteristics(centroid: ArrayLike, second_moment: ArrayLike) -> Characteristics:
@@ -82,7 +76,6 @@ WEIGHT = np.diag([1.0 / 9.0, 1.0, 1.0]).astype(np.float32)
 """Luma varies within a surface by its shading, so it says less about coverage than chroma does."""
 SUM = np.ones((1, 3), dtype=np.float32)
 CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-REACH = (5, 5)  # sides, in halved pixels, of the squares that local colors are averaged over
 
 
 class Coverage(NamedTuple):
@@ -128,6 +121,7 @@ def _local_mean(color: SingleArray, weight: Image) -> tuple[SingleArray, BoolArr
     factor = weight.astype(np.float32)
     half = (weight.shape[1] // 2, weight.shape[0] // 2)
     weighted = cv2.resize(cv2.multiply(color, cv2.merge([factor] * 3)), half)
-    weighted, total = cv2.blur(weighted, REACH), cv2.blur(cv2.resize(factor, half), REACH)
+    # Over squares of five halved pixels.
+    weighted, total = cv2.blur(weighted, (5, 5)), cv2.blur(cv2.resize(factor, half), (5, 5))
     divisor = np.maximum(total, 1e-6)
     return np.asarray(cv2.divide(weighted, cv2.merge([divisor] * 3)), dtype=np.float32), total > 1e-6

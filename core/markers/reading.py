@@ -39,6 +39,7 @@ class Reading:
 
 Arrays = dict[str, NDArray[Any]]
 
+NOTICED = ("blank", "cuts", "changes", "repeated")
 TRACKED = ("centroid", "second_moment", "area", "quality", "clipped", "time_s")
 
 
@@ -49,22 +50,19 @@ def reading_arrays(reading: Reading) -> Arrays:
     arrays |= {
         "key": np.array(reading.key),
         "notes": _text(reading.notes),
-        "noticed.blank": np.array(findings.blank, dtype=np.int64),
-        "noticed.cuts": np.array(findings.cuts, dtype=np.int64),
-        "noticed.changes": np.array(findings.changes, dtype=np.int64),
-        "noticed.repeated": np.array(findings.repeated, dtype=np.int64),
+        **{f"noticed.{name}": np.array(getattr(findings, name), dtype=np.int64) for name in NOTICED},
         "noticed.rest": np.array([findings.frames, findings.interlaced], dtype=np.int64),
         "tracks.names": _text(tracks.names),
         "tracks.notes": _text(tracks.notes),
         "tracks.size": np.array(tracks.size),
     }
-    if reading.album is not None:
-        arrays |= {f"album.{name}": array for name, array in reading.album.to_arrays().items()}
-    if reading.glimpses is not None:
-        arrays |= {f"glimpses.{name}": array for name, array in reading.glimpses.to_arrays().items()}
-    if reading.detections is not None:
-        arrays |= {f"seen.{name}": array for name, array in _detections_arrays(reading.detections).items()}
-    return arrays
+    album, seen, glimpses = reading.album, reading.detections, reading.glimpses
+    parts = {
+        "album": {} if album is None else album.to_arrays(),
+        "glimpses": {} if glimpses is None else glimpses.to_arrays(),
+        "seen": {} if seen is None else _detections_arrays(seen),
+    }
+    return arrays | {f"{part}.{name}": array for part, own in parts.items() for name, array in own.items()}
 
 
 def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
@@ -79,10 +77,8 @@ def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
     album = Album.from_arrays(_under("album", arrays)) if "album.picture" in arrays else None
     seen = _detections(_under("seen", arrays), tracks) if "seen.start" in arrays else None
     frames, interlaced = arrays["noticed.rest"].tolist()
-    blank, cuts, changes, repeated = (
-        tuple(arrays[f"noticed.{name}"].tolist()) for name in ("blank", "cuts", "changes", "repeated")
-    )
-    findings = FrameFindings(frames, blank, cuts, changes, bool(interlaced), repeated)
+    noticed = {name: tuple(arrays[f"noticed.{name}"].tolist()) for name in NOTICED}
+    findings = FrameFindings(frames=frames, interlaced=bool(interlaced), **noticed)
     glimpses = Glimpses.from_arrays(_under("glimpses", arrays)) if "glimpses.picture" in arrays else None
     notes = tuple(arrays["notes"].tolist())
     return Reading(tracks, album, seen, notes, str(arrays["key"]), findings, glimpses)
@@ -195,40 +191,35 @@ def read_clip(
         seen = kept.detections
         same = seen is not None and of_same_footage(kept.key, key)
         if seen is not None and same and still_valid(seen, styles, expected, ignored):
-            tracks = _each_once(assign_detections(seen, styles, expected), kept.frame_findings)
+            tracks = without_tracks(assign_detections(seen, styles, expected), kept.frame_findings.repeated)
             return replace(kept, tracks=tracks, key=key)
     album, checks, glimpses = Album() if with_album else None, FrameChecks(), Glimpses.of(clip)
     watched = watch_clip(clip, checks, album, glimpses, watch)
-    if not styles:
-        time_s: list[float] = []
-        for _, stamp, _ in watched.frames():
-            time_s.append(stamp)
-            yield min(len(time_s) / clip.frame_count, 1.0)
-        tracks = RegionTracks.unmarked(np.array(time_s), clip.size)
-        findings = checks.findings()
-        if album is not None:
-            album.without(findings.repeated)
-        return Reading(tracks, album, key=key, frame_findings=findings, glimpses=glimpses)
+    seen = None
     try:
-        seen = yield from detect_markers(watched, styles, expected, ignored)
+        if styles:
+            seen = yield from detect_markers(watched, styles, expected, ignored)
+            yield 1.0
+        else:
+            time_s: list[float] = []
+            for _, stamp, _ in watched.frames():
+                time_s.append(stamp)
+                yield min(len(time_s) / clip.frame_count, 1.0)
     except InputError as error:
-        why = checks.nothing_seen()
+        why = checks.nothing_seen() if styles else None
         if why is not None:
             raise InputError(f"{clip.path}: {why}") from error
-        if clip.notes:
+        if styles and clip.notes:
             raise InputError("; ".join([str(error), *clip.notes])) from error
         raise
-    yield 1.0
     findings = checks.findings()
     if album is not None:
         album.without(findings.repeated)
-    tracks = _each_once(assign_detections(seen, styles, expected), findings)
+    if seen is None:
+        tracks = RegionTracks.unmarked(np.array(time_s), clip.size)
+    else:  # repeated pictures show no other moment
+        tracks = without_tracks(assign_detections(seen, styles, expected), findings.repeated)
     return Reading(tracks, album, seen, key=key, frame_findings=findings, glimpses=glimpses)
-
-
-def _each_once(tracks: RegionTracks, findings: FrameFindings) -> RegionTracks:
-    """The tracks without those of repeated pictures, which show no other moment."""
-    return without_tracks(tracks, findings.repeated)
 
 
 def without_tracks(tracks: RegionTracks, frames: Sequence[int]) -> RegionTracks:

@@ -10,14 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array, BoolArray, Image, IntArray, SingleArray
 from ..video.working_image import halvings, measuring_image, searching_factor, searching_image, smooth
-from .color_model import BACKGROUND, ColorModel
+from .color_model import BACKGROUND, ColorModel, cell_index
 from .ignored_regions import is_ignored, without
-from .moments import MOMENT_POWERS, PIXEL_VARIANCE, Coverage, coverage
+from .moments import CROSS, MOMENT_POWERS, PIXEL_VARIANCE, Coverage, coverage
 from .region_tracks import NO_REGIONS, Regions
 
 Box = tuple[int, int, int, int]
 
-MOST_BOXES = 12  # most boxes kept of each color in a frame, those with most pixels of it
 MARGIN = 6  # margin in px around a measured box: the border band, and enough background to know its color
 
 
@@ -30,8 +29,8 @@ def colored_boxes(label: Image, color: int, factor: int) -> list[Box]:
     part = np.ascontiguousarray(mask[y : y + rows, x : x + columns])
     _, _, stats, _ = cv2.connectedComponentsWithStats(part, connectivity=8, ltype=cv2.CV_16U)
     stats = stats[1:]
-    if len(stats) > MOST_BOXES:
-        stats = stats[np.argsort(-stats[:, cv2.CC_STAT_AREA], kind="stable")[:MOST_BOXES]]
+    if len(stats) > 12:  # those with most pixels of it are kept
+        stats = stats[np.argsort(-stats[:, cv2.CC_STAT_AREA], kind="stable")[:12]]
     return [
         ((x + a) * factor, (y + b) * factor, (x + a + c) * factor, (y + b + d) * factor)
         for a, b, c, d, _ in stats.tolist()
@@ -62,9 +61,6 @@ def _overlap(first: Box, second: Box, gap: int) -> bool:
     return across and first[1] - gap < second[3] and second[1] < first[3] + gap
 
 
-NO_COLOR = 254  # color index of the columns between panels; no pixel has it
-
-
 class Window(NamedTuple):
     """A window of an image to search for a color, in pixels of the image halved `times`."""
 
@@ -82,7 +78,7 @@ class Atlas(NamedTuple):
 
     picture: Image  # (rows, columns, 3) uint8, rows and columns even
     image: IntArray  # (columns,) int64, index of each column's image
-    color: Image  # (columns,) uint8, index of the color to search for; NO_COLOR between panels
+    color: Image  # (columns,) uint8, index of the color to search for; between panels 254, which no pixel has
     height: IntArray  # (columns,) rows in use
     shift: IntArray  # (2, columns) offset of a column, and of its rows, to the halved image
     scale: IntArray  # (columns,) pixels of the image to one of the atlas
@@ -96,10 +92,11 @@ def pack_windows(
 
     The masks are of images halved as the windows are; empty for none. Each window overlaps its image.
     """
-    height = _even(max(window.bottom - window.top for window in windows))
-    width = _even(sum(window.right - window.left + 1 for window in windows))
+    height = max(window.bottom - window.top for window in windows)
+    width = sum(window.right - window.left + 1 for window in windows)
+    height, width = height + height % 2, width + width % 2
     picture = np.zeros((height, width, 3), dtype=np.uint8)
-    color = np.full(width, NO_COLOR, dtype=np.uint8)
+    color = np.full(width, 254, dtype=np.uint8)
     image, used = np.zeros((2, width), dtype=np.int64)
     shift, scale = np.zeros((2, width), dtype=np.int64), np.ones(width, dtype=np.int64)
     ignored = np.zeros((height, width), dtype=np.uint8) if any(mask is not None for mask in masks) else None
@@ -131,12 +128,7 @@ def _cut(image: Image, window: Window, height: int) -> Image:
     return np.asarray(cv2.copyMakeBorder(cut, *around, cv2.BORDER_REPLICATE), dtype=np.uint8)
 
 
-def _even(number: int) -> int:
-    return number + number % 2
-
-
 FEWEST_PIXELS = 6
-CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 
 
 def find_regions(
@@ -213,7 +205,8 @@ def _components(atlas: Atlas, model: ColorModel) -> _Components:
 
     Specks and components without a sure core are left out.
     """
-    label, probability = model.classify(smooth(atlas.picture))
+    cells = cell_index(smooth(atlas.picture))
+    label, probability = model.label.take(cells), model.probability.take(cells)
     used = np.arange(len(label))[:, None] < atlas.height
     mask = ((label == atlas.color) & used).view(np.uint8)
     closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, CROSS)
@@ -260,7 +253,12 @@ def _measure(
     limits = np.array([shape[1], shape[0], shape[1], shape[0]])
     right, bottom = limits[:2, None] // atlas.scale
     inside = (x >= 0) & (y >= 0) & (x < right.take(column)) & (y < bottom.take(column))
-    moments = _moments(owner, covered.share * inside, x + 0.5, y + 0.5, len(found.certainty) + 1)[1:]
+    x, y, weight = x + 0.5, y + 0.5, covered.share * inside
+    terms = (weight, weight * x, weight * y, weight * x * x, weight * x * y, weight * y * y)  # eq. 1
+    count = len(found.certainty) + 1
+    sums = [np.bincount(owner, term, minlength=count)[1:] for term in terms]
+    moments = np.stack(sums, axis=-1).astype(np.float64)
+    moments[:, [3, 5]] += PIXEL_VARIANCE * moments[:, :1]
     first = found.box[:, 0]
     scale = atlas.scale[first] >> times
     moments = moments * scale[:, None] ** MOMENT_POWERS
@@ -278,18 +276,7 @@ def _measure(
     return [every.part(a, b) for a, b in itertools.pairwise(start)]
 
 
-def _moments(owner: NDArray[np.uint16], weight: SingleArray, x: Array, y: Array, count: int) -> Array:
-    """Raw moments (count, 6) of weighted unit squares about pixels by their owner (eq. 1)."""
-    weight_x, weight_y = weight * x, weight * y
-    terms = (weight, weight_x, weight_y, weight_x * x, weight_x * y, weight_y * y)
-    moments = np.stack([np.bincount(owner, term, minlength=count) for term in terms], axis=-1).astype(float)
-    moments[:, 3] += PIXEL_VARIANCE * moments[:, 0]
-    moments[:, 5] += PIXEL_VARIANCE * moments[:, 0]
-    return moments
-
-
 CORNERS = 32
-SUBSAMPLES = 2  # sample points a pixel along either axis, on which the edge of half coverage is found
 
 
 def ellipse_outline(centroid: ArrayLike, second_moment: ArrayLike, corners: int = CORNERS) -> Array:
@@ -311,9 +298,9 @@ def mask_outlines(mask: SingleArray, scale: float) -> list[Array]:
 
     `scale` are pixels of the image to one of the mask.
     """
-    fine = cv2.resize(mask, None, fx=SUBSAMPLES, fy=SUBSAMPLES, interpolation=cv2.INTER_LINEAR)
+    fine = cv2.resize(mask, None, fx=2, fy=2, interpolation=cv2.INTER_LINEAR)
     inside = (np.asarray(fine) >= 0.5).view(np.uint8)
     found, _ = cv2.findContours(inside, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)
     # OpenCV follows the centers of the outermost points that are inside.
-    outlines = [(contour[:, 0] + 0.5) * (scale / SUBSAMPLES) for contour in found if len(contour) > 2]
+    outlines = [(contour[:, 0] + 0.5) * (scale / 2) for contour in found if len(contour) > 2]
     return sorted(outlines, key=len, reverse=True)

@@ -37,7 +37,7 @@ def marker_warnings(
     """
     sentences = alike_warnings(name, likeness.alike)
     sentences += [
-        (f"{name} and {other} have colors too alike: {100.0 * share:.0f} % of {name} would pass for {other}")
+        f"{name} and {other} have colors too alike: {100.0 * share:.0f} % of {name} would pass for {other}"
         for other, share in likeness.claimed
         if share >= MUCH
     ]

@@ -20,19 +20,8 @@ from .color_model import (
     chromaticity,
 )
 
-LEAST_SHARE = 2e-4  # least share of the picture of a listed color
-HUES = (
-    (15, "red"),
-    (42, "orange"),
-    (70, "yellow"),
-    (165, "green"),
-    (200, "cyan"),
-    (255, "blue"),
-    (290, "purple"),
-    (340, "pink"),
-    (360, "red"),
-)
-"""Upper bound of each hue [degrees]."""
+HUES = "red 15, orange 42, yellow 70, green 165, cyan 200, blue 255, purple 290, pink 340, red 360"
+"""Hues with their upper bounds [degrees]."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +36,8 @@ class StrongColor:
         """Common name of its hue."""
         red, green, blue = self.color_srgb
         degrees = 360.0 * rgb_to_hsv(red / 255.0, green / 255.0, blue / 255.0)[0]
-        return next(name for end, name in HUES if degrees <= end)
+        named = (one.split() for one in HUES.split(", "))
+        return next(name for name, end in named if degrees <= float(end))
 
 
 def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
@@ -61,7 +51,7 @@ def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
     chroma, luma = chromaticity(colors)
     strong = (np.linalg.norm(chroma, axis=1) > 0.2) & (luma > 25.0 + LUMA_OFFSET)
     colors, chroma = colors[strong], chroma[strong]
-    left, least = counts[present][strong], LEAST_SHARE * counts.sum()
+    left, least = counts[present][strong], 2e-4 * counts.sum()
     found: list[tuple[float, StrongColor]] = []
     while left.sum() > least:
         square = np.round(chroma / 0.04).astype(np.int64)
@@ -70,7 +60,7 @@ def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
         center = np.average(chroma[densest], axis=0, weights=left[densest])
         near = np.linalg.norm(chroma - center, axis=1) < 0.10
         share = float(left[near].sum() / counts.sum())
-        if share > LEAST_SHARE:
+        if share > 2e-4:
             blue, green, red = (round(weighted_median(channel, left[near])) for channel in colors[near].T)
             # Blends at borders are many and dull; a marker is small and strong.
             standing_out = float(np.linalg.norm(center)) * share**0.25

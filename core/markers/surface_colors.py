@@ -10,10 +10,8 @@ from ..arrays import Array, Image, IndexArray
 from .appearance import NO_PART, UNSEEN, histogram_cells
 
 BANDS = 6  # bands of a part's length
-BITS = 4  # coarser than whole parts' colors: a band has a sixth of their pixels
-BAND_LEVELS = 1 << BITS
+BAND_LEVELS = 16  # coarser than whole parts' colors: a band has a sixth of their pixels
 CELLS = BAND_LEVELS**3
-SHARED = 0.25  # share of a band's colors that are the whole part's: folds and shadows wander
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,14 +42,14 @@ def learn_band_colors(
         background += np.bincount(cell[label == NO_PART], minlength=CELLS)
     own = counts.reshape(count, BANDS, CELLS)
     whole = _densities(own.sum(axis=1))
-    bands = (1.0 - SHARED) * _densities(own) + SHARED * whole[:, None]
+    bands = 0.75 * _densities(own) + 0.25 * whole[:, None]  # folds and shadows wander
     anything = 0.5 * (whole.mean(axis=0) + _densities(background))
     return BandColors(np.log(bands), np.log(whole), np.log(anything))
 
 
 def band_cells(pixels: Image) -> IndexArray:
     """Histogram cell of pixels (..., 3)."""
-    return histogram_cells(pixels, BITS)
+    return histogram_cells(pixels, 4)
 
 
 def _densities(counts: Array) -> Array:
