@@ -19,18 +19,11 @@ from .file_lock import HIDDEN, LOCK, file_lock
 from .json_file import WORK, write_atomically
 from .paths import regular_file_size
 
-DIGITS = 32
-SAMPLES = 16
-"""Of a file's content, spread evenly, for its fingerprint."""
 SAMPLE_BYTES = 65536
 
 
 def digest(*parts: object) -> str:
-    """A digest of numbers, text, bytes, arrays and tuples of these; only equal values have equal digests.
-
-    Raises:
-        TypeError: A part is of another kind.
-    """
+    """A digest of numbers, text, bytes, arrays and tuples of these; only equal values have equal digests."""
     hashed = hashlib.sha256()
     for part in parts:
         if isinstance(part, np.ndarray):
@@ -45,16 +38,16 @@ def digest(*parts: object) -> str:
             hashed.update(f"{type(part).__name__} {len(text)}:".encode() + text)
         else:
             raise TypeError(f"a {type(part).__name__} has no digest")
-    return hashed.hexdigest()[:DIGITS]
+    return hashed.hexdigest()[:32]
 
 
 def file_fingerprint(path: Path) -> str:
-    """A quick digest of a file: its size, its modification time and samples of its content."""
+    """A quick digest of a file: its size, its modification time and 16 samples, spread over its content."""
     regular_file_size(path, "a file that can be read")
     state = path.stat()
     samples = []
     with path.open("rb") as file:
-        for offset in np.linspace(0, max(state.st_size - SAMPLE_BYTES, 0), SAMPLES).astype(int):
+        for offset in np.linspace(0, max(state.st_size - SAMPLE_BYTES, 0), 16).astype(int):
             file.seek(int(offset))
             samples.append(file.read(SAMPLE_BYTES))
             if state.st_size <= SAMPLE_BYTES:
@@ -91,7 +84,7 @@ class ArrayCache:
         """The arrays under a key; None where there are none, or none that can be read."""
         if not _KEY.fullmatch(key):
             return None
-        path = self._path(key)
+        path = self.folder / (key + SUFFIX)
         try:
             with np.load(path, allow_pickle=False) as file:
                 arrays = {name: file[name] for name in file.files}
@@ -102,13 +95,7 @@ class ArrayCache:
         return arrays
 
     def save(self, key: str, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Write arrays of numbers, truth values or text under a key, replacing an older entry.
-
-        An entry larger than the whole cache is not written.
-
-        Raises:
-            ValueError: The key has another form, or an array holds Python objects.
-        """
+        """Write arrays of numbers, truth values or text under a key, unless the cache could not hold them."""
         if not _KEY.fullmatch(key):
             raise ValueError(f"the key {key!r} is not of lower-case letters, digits and hyphens")
         for name, array in arrays.items():
@@ -116,11 +103,9 @@ class ArrayCache:
                 raise ValueError(f"{name} holds Python objects, which are not kept")
         if sum(array.nbytes for array in arrays.values()) > self.largest_bytes:
             return
-        write_atomically(self._path(key), lambda beside: np.savez(beside, **arrays))
-        self._evict(self._path(key))
-
-    def _path(self, key: str) -> Path:
-        return self.folder / f"{key}{SUFFIX}"
+        path = self.folder / (key + SUFFIX)
+        write_atomically(path, lambda beside: np.savez(beside, **arrays))
+        self._evict(path)
 
     def _evict(self, newest: Path) -> None:
         """Remove the least recently used files until the rest fits, and those that were never finished."""
@@ -131,7 +116,9 @@ class ArrayCache:
                 if path.suffix == SUFFIX:
                     found.append((state.st_mtime, state.st_size, path))
                 elif path.name.startswith(HIDDEN) and path.is_dir():
-                    _remove_abandoned(path)
+                    lock = path.with_name(path.name.removesuffix(WORK) + LOCK)
+                    with suppress(BusyError), file_lock(lock, f"{path}: is being written"):
+                        shutil.rmtree(path, ignore_errors=True)
         total = sum(size for _, size, _ in found)
         for _, size, path in sorted(found):
             if total <= self.largest_bytes:
@@ -140,10 +127,3 @@ class ArrayCache:
                 with suppress(OSError):
                     path.unlink()
                 total -= size
-
-
-def _remove_abandoned(folder: Path) -> None:
-    """Remove the folder of a file that was never finished, unless its writer is alive."""
-    lock = folder.with_name(folder.name.removesuffix(WORK) + LOCK)
-    with suppress(BusyError), file_lock(lock, f"{folder}: is being written"):
-        shutil.rmtree(folder, ignore_errors=True)

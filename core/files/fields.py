@@ -35,18 +35,18 @@ class InheritedFields(dict[str, Any]):
         merged = InheritedFields()
         merged.update(self)
         merged.sources.update(self.sources)
+        dropped: list[str] = []
         for groups in ALTERNATIVES:
             for group in groups:
-                if all(patch.get(name) is None for name in group):
-                    continue
-                for other in (name for each in groups if each != group for name in each):
-                    if other not in patch:
-                        merged._drop(other)
+                if any(patch.get(name) is not None for name in group):
+                    others = (name for each in groups if each != group for name in each)
+                    dropped += [name for name in others if name not in patch]
+        dropped += [name for name, value in patch.items() if value is None and name in self]
+        for name in dropped:
+            merged.pop(name, None)
+            merged.sources.pop(name, None)
         for name, value in patch.items():
-            if name.startswith(COMMENT_PREFIX):
-                continue
-            if value is None and name in self:
-                merged._drop(name)
+            if name.startswith(COMMENT_PREFIX) or (value is None and name in self):
                 continue
             merged.sources[name] = location
             if isinstance(value, Mapping):
@@ -56,10 +56,6 @@ class InheritedFields(dict[str, Any]):
             else:
                 merged[name] = value
         return merged
-
-    def _drop(self, name: str) -> None:
-        self.pop(name, None)
-        self.sources.pop(name, None)
 
 
 def child_location(location: str, name: str) -> str:

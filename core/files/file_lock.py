@@ -17,7 +17,6 @@ from ..errors import BusyError
 
 HIDDEN = ".keymark-"
 LOCK = ".lock"
-DIGITS = 16
 ATTEMPTS = 200
 _NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP}
 
@@ -37,26 +36,25 @@ def hidden_prefix(name: str) -> str:
     """Beginning of the names of all hidden files of a file or folder: short, however long its own name is."""
     if sys.platform in ("win32", "darwin"):  # where names that differ in case are one
         name = unicodedata.normalize("NFC", name).casefold()
-    return HIDDEN + hashlib.sha256(os.fsencode(name)).hexdigest()[:DIGITS]
+    return HIDDEN + hashlib.sha256(os.fsencode(name)).hexdigest()[:16]
 
 
 @contextmanager
 def file_lock(file: Path, busy_message: str, wait: bool = False) -> Iterator[None]:
     """Hold a lock while the block runs. Where a file system has no locks, the block runs without.
 
-    Args:
-        file: The lock's own file; it is made with its parents and removed afterwards.
-        busy_message: The error's sentence where another holds the lock.
-        wait: Whether to wait for the lock instead.
-
-    Raises:
-        BusyError: Another process or thread holds it.
-        OSError: The file cannot be made.
+    The lock's own file is made with its parents and removed afterwards. Where another holds the lock,
+    `BusyError` says so by the message, or else it is waited for.
     """
     try:
         descriptor = _acquire(file, busy_message, wait)
     except KeyboardInterrupt:  # perhaps after the file was made and before its descriptor was returned
-        _remove_idle(file)
+        with suppress(OSError):
+            descriptor = os.open(file, os.O_RDWR)
+            if _try_lock(descriptor, wait=False) and _is_same_file(file, descriptor):
+                _release(file, descriptor)
+            else:
+                os.close(descriptor)
         raise
     try:
         yield
@@ -79,15 +77,6 @@ def _release(file: Path, descriptor: int) -> None:
     if sys.platform == "win32":
         with suppress(OSError):
             file.unlink()
-
-
-def _remove_idle(file: Path) -> None:
-    with suppress(OSError):
-        descriptor = os.open(file, os.O_RDWR)
-        if _try_lock(descriptor, wait=False) and _is_same_file(file, descriptor):
-            _release(file, descriptor)
-        else:
-            os.close(descriptor)
 
 
 def _acquire(file: Path, busy_message: str, wait: bool) -> int:

@@ -16,19 +16,15 @@ from .file_lock import LOCK, file_lock, hidden_prefix
 from .paths import regular_file_size
 
 ENDING = ".json"
-MOST_FILES = 500
-"""Files read of one folder; further ones are ignored."""
-OURS = "keymark-"
-"""Beginning of the field `schema` of every format that such folders hold."""
 
 
 def json_files(folder: Path) -> list[Path]:
-    """The JSON files in a folder, by name; none where it is missing."""
+    """The first 500 JSON files in a folder, by name; none where it is missing."""
     try:
         files = [path for path in folder.iterdir() if path.suffix.lower() == ENDING and path.is_file()]
     except OSError:
         return []
-    return sorted(files)[:MOST_FILES]
+    return sorted(files)[:500]
 
 
 def is_path(name_or_path: str | Path) -> bool:
@@ -38,12 +34,6 @@ def is_path(name_or_path: str | Path) -> bool:
     return isinstance(name_or_path, Path) or parted or text.lower().endswith(ENDING)
 
 
-def is_other_format(value: Mapping[str, Any], schema: str) -> bool:
-    """Whether a file is of another of our formats, and thus no damaged one of this."""
-    own = value.get("schema")
-    return isinstance(own, str) and own.startswith(OURS) and own != schema
-
-
 DISK_ERRORS = frozenset(
     getattr(errno, name) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EIO") if hasattr(errno, name)
 )
@@ -51,11 +41,7 @@ DISK_ERRORS = frozenset(
 
 
 def fsync_path(path: Path) -> None:
-    """Wait until a file's content, or a folder's list of names, is on the disk, where the system can.
-
-    Raises:
-        OSError: The disk is full or broken.
-    """
+    """Wait until a file's content, or a folder's list of names, is on the disk; OSError if that is full."""
     if sys.platform == "win32" and path.is_dir():
         return
     try:
@@ -76,21 +62,13 @@ DEEPEST = 50
 MOST_LISTS = 4 * 10**6
 """Lists and objects of a file, each of which takes many times its two characters once it is read."""
 WORK = "-work"
-MOST_DIGITS = 15
-"""Integers of more digits have no exact float64."""
-
 _STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
 _SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 _NO_BRACKETS = re.compile(r"[^\[\]{}]+")
 
 
 def read_json(path: Path, largest_bytes: int = LARGEST_BYTES) -> dict[str, Any]:
-    """Read a JSON object.
-
-    Raises:
-        InputError: The file is missing, too large, not UTF-8, no JSON object, names a field
-            twice or holds a number that is not finite.
-    """
+    """Read a JSON object; an `InputError` says why it is none, see `parse_json`."""
     return parse_json(_read_text(path, largest_bytes), str(path))
 
 
@@ -99,41 +77,56 @@ def read_json_value(path: Path, largest_bytes: int = LARGEST_BYTES) -> Any:
 
     Programs write NaN for what they did not find; no other number that is not finite means anything.
     """
-    return _parse(_read_text(path, largest_bytes), str(path), _null_for_nan)
+    return _parse(_read_text(path, largest_bytes), str(path), nan_is_null=True)
 
 
 def parse_json(text: str, where: str) -> dict[str, Any]:
-    """The JSON object in a text, with finite numbers only.
+    """The JSON object in a text.
 
     Raises:
-        InputError: It is no JSON object, is nested too deeply, names a field twice or holds a number that is
-            not finite.
+        InputError: It is none, is nested too deeply, names a field twice or has a number that is not finite.
     """
-    value = _parse(text, where, _refuse_constant)
+    value = _parse(text, where)
     if not isinstance(value, dict):
         raise InputError(f"{where}: holds {shown(value)}; it must hold an object, {{...}}")
     return value
 
 
-def _parse(text: str, where: str, parse_constant: Callable[[str], Any]) -> Any:
-    """Any JSON value in a text; `parse_constant` gives the value of NaN and Infinity, or refuses it."""
-    _check_nesting(text, where)
+def _parse(text: str, where: str, nan_is_null: bool = False) -> Any:
+    """Any JSON value in a text; lists and objects are counted before memory is taken for them."""
+    count, depth = text.count("[") + text.count("{"), 0
+    if count > MOST_LISTS:
+        raise InputError(f"{where}: holds {count} lists and objects; at most {MOST_LISTS} are read")
+    for mark in _NO_BRACKETS.sub("", _STRING.sub("", text)) if count > DEEPEST else "":
+        depth += 1 if mark in "[{" else -1
+        if depth > DEEPEST:
+            deep = f"its lists and objects are nested too deeply; {DEEPEST} levels are read"
+            raise InputError(f"{where}: {deep}")
+
+    def constant(name: str) -> None:
+        if not nan_is_null or name != "NaN":
+            raise ValueError(f"{name} is no number in JSON; every number must be finite")
+
     try:
         value = json.loads(
             text,
             object_pairs_hook=_unique_fields,
-            parse_constant=parse_constant,
+            parse_constant=constant,
             parse_float=_float,
             parse_int=_int,
         )
+        if _SURROGATE.search(text) is not None:  # escapes can write halves of characters, UTF-8 cannot
+            json.dumps(value, ensure_ascii=False).encode()
     except json.JSONDecodeError as error:
         raise InputError(
             f"{where}: line {error.lineno}, column {error.colno} is no valid JSON ({error.msg})"
             f"{_reason(text, error)}"
         ) from error
+    except UnicodeEncodeError as error:
+        half = shown(error.object[error.start])
+        raise InputError(f"{where}: {half} is half of a character; texts must be valid Unicode") from error
     except ValueError as error:
         raise InputError(f"{where}: {error}") from error
-    _check_surrogates(text, value, where)
     return value
 
 
@@ -157,11 +150,7 @@ def _reason(text: str, error: json.JSONDecodeError) -> str:
 
 
 def write_json(path: Path, value: Any, indent: int | None = None) -> None:
-    """Write a value as strict JSON, atomically; the same value always gives the same bytes.
-
-    Raises:
-        ValueError: A number is NaN or infinite.
-    """
+    """Write a value as strict JSON, atomically; the same value always gives the same bytes."""
     separators = (",", ":") if indent is None else (",", ": ")
     text = json.dumps(value, indent=indent, separators=separators, allow_nan=False, ensure_ascii=False)
     _write_text(path, text)
@@ -178,10 +167,8 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
     """
     try:
         stem = path.parent / hidden_prefix(path.name)
-        busy_message = (
-            f"{path}: another process has been writing it for too long; try again when it has finished"
-        )
-        with file_lock(stem.with_name(stem.name + LOCK), busy_message, wait=True):
+        busy = f"{path}: another process has been writing it for too long; try again when it has finished"
+        with file_lock(stem.with_name(stem.name + LOCK), busy, wait=True):
             folder = stem.with_name(stem.name + WORK)
             try:
                 if os.path.lexists(folder):
@@ -204,42 +191,12 @@ def _read_text(path: Path, largest_bytes: int) -> str:
         with path.open("rb") as file:
             content = file.read(largest_bytes + 1)  # it may have grown since
         if len(content) > largest_bytes:
-            limit = largest_bytes / 2**20
-            raise InputError(
-                f"{path}: has {max(size, len(content)) / 2**20:.1f} MiB; at most {limit:g} are read"
-            )
+            has, limit = max(size, len(content)) / 2**20, largest_bytes / 2**20
+            raise InputError(f"{path}: has {has:.1f} MiB; at most {limit:g} are read")
         return content.decode("utf-8-sig")
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(f"{path}: cannot be read ({reason}); it must be {valid}") from error
-
-
-def _check_nesting(text: str, where: str) -> None:
-    """Refuse lists and objects that are too many or nested too deeply, before memory is taken for them."""
-    count = text.count("[") + text.count("{")
-    if count <= DEEPEST:
-        return
-    if count > MOST_LISTS:
-        raise InputError(f"{where}: holds {count} lists and objects; at most {MOST_LISTS} are read")
-    depth = 0
-    for mark in _NO_BRACKETS.sub("", _STRING.sub("", text)):
-        depth += 1 if mark in "[{" else -1
-        if depth > DEEPEST:
-            raise InputError(
-                f"{where}: its lists and objects are nested too deeply; {DEEPEST} levels are read"
-            )
-
-
-def _check_surrogates(text: str, value: Any, where: str) -> None:
-    """Refuse lone surrogates, halves of characters: escapes can write them, UTF-8 cannot."""
-    if _SURROGATE.search(text) is None:
-        return
-    try:
-        json.dumps(value, ensure_ascii=False).encode()
-    except UnicodeEncodeError as error:
-        raise InputError(
-            f"{where}: {shown(error.object[error.start])} is half of a character; texts must be valid Unicode"
-        ) from error
 
 
 def _unique_fields(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -251,15 +208,6 @@ def _unique_fields(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return fields
 
 
-def _refuse_constant(name: str) -> float:
-    raise ValueError(f"{name} is no number in JSON; every number must be finite")
-
-
-def _null_for_nan(name: str) -> None:
-    if name != "NaN":
-        _refuse_constant(name)
-
-
 def _float(text: str) -> float:
     value = float(text)
     if not isfinite(value):
@@ -268,8 +216,8 @@ def _float(text: str) -> float:
 
 
 def _int(text: str) -> int:
-    if len(text.lstrip("-")) > MOST_DIGITS:
-        raise ValueError(f"the whole number {text[:40]} is too large; at most {MOST_DIGITS} digits are read")
+    if len(text.lstrip("-")) > 15:  # which have an exact float64
+        raise ValueError(f"the whole number {text[:40]} is too large; at most 15 digits are read")
     return int(text)
 
 
@@ -287,12 +235,8 @@ def format_json(value: Any, depth: int = 0, before: int = 0) -> str:
     """A value as JSON text, one item a line.
 
     Short lists and objects stand in one line, and so do the components x, y and z of one quantity where names
-    of the object are compound ones: a change of one quantity is a change of one line.
-
-    Args:
-        value: A value that `json` can write.
-        depth: Spaces before its lines.
-        before: Characters before it in its line.
+    of the object are compound ones: a change of one quantity is a change of one line. `depth` are the spaces
+    before its lines, `before` the characters before it in its first line.
     """
     if not isinstance(value, Mapping | list | tuple) or not value:
         return _plain(value)

@@ -37,12 +37,7 @@ def real_path(path: Path) -> Path:
 
 
 def regular_file_size(path: Path, valid: str) -> int:
-    """The size of a regular file in bytes; the file is not opened, which alone could wait for ever.
-
-    Args:
-        path: The file.
-        valid: What it must be, to follow `it must be`.
-    """
+    """The size of a regular file in bytes; it is not opened, which alone could wait for ever."""
     try:
         state = path.stat()
     except FileNotFoundError as error:

@@ -170,11 +170,10 @@ def _documented(module: types.ModuleType) -> dict[str, dict[str, str]]:
 def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None, strict: bool = False) -> R:
     """Read a record from the fields of an object; `makes` and `strict` are those of `Object`."""
     known = declared(record)
-    if record.SCHEMA and fields.values.get("schema") != record.SCHEMA:
-        raise InputError(
-            f"{fields.where}: schema is {shown(fields.values.get('schema'))}; "
-            f'a {record.TITLE} has "{record.SCHEMA}" there'
-        )
+    schema = fields.values.get("schema")
+    if record.SCHEMA and schema != record.SCHEMA:
+        wanted = f'a {record.TITLE} has "{record.SCHEMA}" there'
+        raise InputError(f"{fields.where}: schema is {shown(schema)}; {wanted}")
     if record.VERSION:
         check_version(fields, record.VERSION)
     if strict or record.STRICT:

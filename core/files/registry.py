@@ -8,7 +8,7 @@ from typing import Any, Generic, TypeVar
 
 from ..errors import InputError, shown
 from .fields import listed
-from .json_file import is_other_format, json_files, read_json
+from .json_file import json_files, read_json
 from .records import Record
 
 R = TypeVar("R", bound=Record)
@@ -30,25 +30,10 @@ class Registered(Generic[R]):
 
     @property
     def valid(self) -> R:
-        """What the file holds.
-
-        Raises:
-            InputError: It is invalid.
-        """
+        """What the file holds; raises its `InputError` where it is invalid."""
         if self.content is None:
             raise InputError(self.problem)
         return self.content
-
-
-def read_registered(path: Path, record: type[R], largest_bytes: int) -> Registered[R] | None:
-    """What a file holds; None for one of another of Keymark's formats, which may lie in the same folder."""
-    try:
-        value = read_json(path, largest_bytes)
-        if is_other_format(value, record.SCHEMA):
-            return None
-        return Registered(path, record.from_json(value, str(path)))
-    except InputError as error:
-        return Registered(path, None, str(error))
 
 
 def registered_files(
@@ -68,13 +53,18 @@ def registered_files(
     for folder in folders:
         here: dict[str, Registered[R]] = {}
         for path in json_files(folder):
-            entry = read_registered(path, record, largest_bytes)
-            if entry is not None and entry.content is None:
-                broken.append(entry)
-            elif entry is not None:
-                name = key(entry.valid)
-                if name not in here or version(entry.valid) > version(here[name].valid):
-                    here[name] = entry
+            try:
+                value = read_json(path, largest_bytes)
+                schema = value.get("schema")
+                if isinstance(schema, str) and schema.startswith("keymark-") and schema != record.SCHEMA:
+                    continue  # another of Keymark's formats, which may lie in the same folder
+                entry = Registered(path, record.from_json(value, str(path)))
+            except InputError as error:
+                broken.append(Registered(path, None, str(error)))
+                continue
+            name = key(entry.valid)
+            if name not in here or version(entry.valid) > version(here[name].valid):
+                here[name] = entry
         found = here | found
     return tuple(sorted([*found.values(), *broken], key=lambda entry: (entry.title.casefold(), entry.path)))
 
@@ -89,10 +79,7 @@ def find_registered(
     """The file that has a name, as far as people can tell names apart, which `fold` makes equal.
 
     Valid ones come first, then those with an earlier of their names: a damaged file may have any name, and a
-    stranger's file any title.
-
-    Raises:
-        InputError: There is none; the sentence says which there are by their first names.
+    stranger's file any title. Where there is none, the error says which there are.
     """
     wanted = fold(text)
     ranks = [(entry, [fold(name) for name in names(entry)]) for entry in entries]

@@ -14,11 +14,7 @@ _COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")
 
 
 def read_saved_text(path: Path) -> str:
-    """The text of a file, in UTF-8 or UTF-16 with or without a byte order mark, or in Shift JIS.
-
-    Raises:
-        InputError: The file cannot be read.
-    """
+    """The text of a file, in UTF-8 or UTF-16 with or without a byte order mark, or in Shift JIS."""
     try:
         content = path.read_bytes()
     except OSError as error:
@@ -26,10 +22,8 @@ def read_saved_text(path: Path) -> str:
     for mark, encoding in MARKS.items():
         if content.startswith(mark):
             return content[len(mark) :].decode(encoding, errors="replace")
-    for place, encoding in (
-        (1, "utf-16-le"),
-        (0, "utf-16-be"),
-    ):  # ASCII, as files begin, has a zero in each pair of bytes
+    for place, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
+        # ASCII, as files begin, has a zero in each pair of bytes.
         if len(content) > 3 and not any(content[place:16:2]):
             return content.decode(encoding, errors="replace")
     for encoding in UNMARKED[:-1]:

@@ -4,7 +4,7 @@ The path is the cheapest one through all regions of the marker's color: it pays 
 the marker, and for frames in which it is hidden. Costs are negative logarithms of likelihood ratios.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,9 +13,10 @@ from scipy.ndimage import percentile_filter
 
 from ..arrays import Array, BoolArray, IndexArray, IntArray
 from ..numerics.markov_chain import cheapest_track
-from .moments import MOMENT_POWERS
+from .moments import MOMENT_POWERS, centroid_and_second_moment
 from .region_tracks import ExpectedRegions, Regions
 
+HIGHEST_FRAGMENT_COST = 10.0  # highest cost of a region that counts as a fragment of a marker
 RESTART_COST = 10.0
 STILL_STEP_PX = 1.5
 TAKEN_COST = 20.0
@@ -56,13 +57,6 @@ def gather_candidates(regions: Sequence[Regions], color: int, scale: float) -> C
         clipped=np.concatenate([found.clipped for found in regions])[own],
         start=np.searchsorted(frame, np.arange(len(regions) + 1)),
     )
-
-
-def typical_area(found: Candidates, clutter: BoolArray) -> float:
-    """Median area in px of each frame's largest region that is not clutter; 0 without any."""
-    largest = np.zeros(len(found.start) - 1)
-    np.maximum.at(largest, found.frame, np.where(clutter, 0.0, found.area))
-    return float(np.median(largest[largest > 0.0])) if np.any(largest > 0.0) else 0.0
 
 
 def static_clutter(found: Candidates) -> BoolArray:
@@ -220,3 +214,43 @@ def region_quality(own: MarkerRegion) -> Array:
     whole = np.minimum(np.minimum(ratio, 1.5 / ratio), 1.0)
     quality = whole * own.certainty * (0.5 + 0.5 * own.share) * np.where(own.clipped, 0.4, 1.0)
     return np.where(seen, np.clip(quality, 0.0, 1.0), 0.0)
+
+
+def assign_regions(
+    found: Sequence[Candidates],
+    groups: Sequence[Sequence[int]],
+    expected: ExpectedRegions | None,
+    choose: Callable[[Candidates, Array, float], IntArray],
+) -> dict[int, MarkerRegion]:
+    """Assign regions to markers in every frame; return each marker's by its index.
+
+    `found` and `groups` are the regions and the markers of each color. `choose` gives, of a color's regions,
+    their costs (N,) and the marker's length in px, the main region of each frame (F,), -1 where it is hidden.
+    """
+    alone = [len(group) == 1 for group in groups]
+    clutter = [
+        static_clutter(one) if single else np.zeros(len(one.frame), dtype=np.bool_)
+        for one, single in zip(found, alone, strict=True)
+    ]
+    usual = []
+    for one, still in zip(found, clutter, strict=True):  # each frame's largest, without clutter
+        largest = np.zeros(len(one.start) - 1)
+        np.maximum.at(largest, one.frame, np.where(still, 0.0, one.area))
+        usual.append(float(np.median(largest[largest > 0.0])) if np.any(largest > 0.0) else 0.0)
+    reach = 0.5 * float(np.sqrt(max(usual, default=0.0)))  # about the width of a limb that covers a marker
+    own = {}
+    for color, group in enumerate(groups):
+        one = found[color]
+        full = ~clutter[color] & (one.area >= 0.7 * usual[color])
+        length = 1.0  # of the marker in px: the long axis of regions of the usual size
+        if full.any():
+            _, second = centroid_and_second_moment(one.moments[full])
+            length = float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))
+        taken = np.zeros(len(one.frame), dtype=np.bool_)
+        for marker in group:
+            cost = region_costs(one, clutter[color], usual[color], expected, marker)
+            cost += rival_costs(one, taken, expected, marker, [other for other in group if other != marker])
+            path = choose(one, cost, length)
+            own[marker] = join_fragments(one, path, cost, reach, HIGHEST_FRAGMENT_COST)
+            taken[path[path >= 0]] = True
+    return own

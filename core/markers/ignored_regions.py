@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Annotated, Any
 
-import cv2
 import numpy as np
 
 from ..arrays import BoolArray, Image
@@ -18,7 +17,6 @@ from ..camera.camera_fields import LARGEST_SIDE_PX
 from ..errors import InputError, shown
 from ..files.kinds import Items, Number, Whole, refuse
 from ..files.records import Record
-from ..video.working_image import halvings
 
 IGNORED = 255  # value of ignored pixels in a mask; of one made smaller, pixels from half of it on are ignored
 
@@ -70,33 +68,32 @@ def without(label: Image, mask: Image, nothing: int) -> Image:
 @lru_cache(16)  # a session's, some hundred kilobytes each
 def _mask(regions: tuple[IgnoredRegion, ...], size: tuple[int, int]) -> Image:
     """The pixels of the measuring grid whose centers lie in any of the regions."""
-    times = halvings(size)
-    mask = np.zeros((size[1] >> times, size[0] >> times), dtype=np.uint8)
+    import cv2  # late: Blender registers without it
+
+    from ..video.working_image import halvings
+
+    step_px, ignored = 1 << halvings(size), (float(IGNORED),)
+    mask = np.zeros((size[1] // step_px, size[0] // step_px), dtype=np.uint8)
     for region in regions:
-        _draw(mask, region, float(1 << times))
+        if region.box is not None:
+            left, top, right, bottom = (max(round(value / step_px), 0) for value in region.box)
+            mask[top:bottom, left:right] = IGNORED
+            continue
+        # OpenCV counts from the center of the first pixel, Keymark from its corner. It draws with sixteenths
+        # of a pixel (shift=4).
+        path = np.round((np.array(region.stroke) / step_px - 0.5) * 16).astype(np.int32)
+        radius = max(round(region.radius_px / step_px * 16), 8)
+        for x, y in path.tolist():
+            cv2.circle(mask, (x, y), radius, ignored, -1, shift=4)
+        for one, other in itertools.pairwise(path.astype(np.float64)):  # what the disc sweeps in between
+            along = other - one
+            length = float(np.linalg.norm(along))
+            if length > 0.0:
+                across = float(radius) / length * np.array([-along[1], along[0]])
+                corners = np.round([one + across, other + across, other - across, one - across])
+                cv2.fillConvexPoly(mask, corners.astype(np.int32), ignored, shift=4)
     mask.setflags(write=False)
     return mask
-
-
-def _draw(mask: Image, region: IgnoredRegion, step_px: float) -> None:
-    """Fill a region in a mask (rows, columns), whose pixels are `step_px` pixels of the footage wide."""
-    if region.box is not None:
-        left, top, right, bottom = (max(round(value / step_px), 0) for value in region.box)
-        mask[top:bottom, left:right] = IGNORED
-        return
-    # OpenCV counts from the center of the first pixel, Keymark from its corner.
-    # It draws with sixteenths of a pixel (shift=4).
-    path = np.round((np.array(region.stroke) / step_px - 0.5) * 16).astype(np.int32)
-    radius = max(round(region.radius_px / step_px * 16), 8)
-    for x, y in path.tolist():
-        cv2.circle(mask, (x, y), radius, (float(IGNORED),), -1, shift=4)
-    for one, other in itertools.pairwise(path.astype(np.float64)):  # what the disc sweeps in between
-        along = other - one
-        length = float(np.linalg.norm(along))
-        if length > 0.0:
-            across = float(radius) / length * np.array([-along[1], along[0]])
-            corners = np.round([one + across, other + across, other - across, one - across])
-            cv2.fillConvexPoly(mask, corners.astype(np.int32), (float(IGNORED),), shift=4)
 
 
 IGNORED_REGIONS = "ignored_regions"

@@ -10,10 +10,9 @@ from ..arrays import Array, Image
 from ..errors import InputError
 from ..video.clip import Clip, FrameReader
 from ..video.working_image import halvings, measuring_image
-from .association import gather_candidates, region_quality, viterbi_path
+from .association import assign_regions, gather_candidates, region_quality, viterbi_path
 from .color_learning import ColorLearner, color_groups
 from .ignored_regions import IgnoredPixels, IgnoredRegion
-from .marker_check import assign_regions
 from .moments import centroid_and_second_moment
 from .region_tracks import NO_REGIONS, Detections, ExpectedRegions, MarkerStyle, Regions, RegionTracks
 from .regions import find_regions

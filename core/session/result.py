@@ -10,9 +10,9 @@ import numpy as np
 
 from ..errors import InputError
 from ..estimate.reconstruct import Reconstruction
-from ..files.commit import backup_name
 from ..files.digest import content_digest
 from ..files.json_file import read_json, write_json
+from ..files.output_folder import backup_name
 from ..poses.found_poses import FoundPoses, contradiction_notes
 from ..prior.library import library_digest
 from ..progress import run

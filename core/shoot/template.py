@@ -9,7 +9,7 @@ from ..arrays import Image
 from ..camera.camera import EYE_HEIGHT_M, default_camera_pose, guess_lens
 from ..errors import InputError, pluralize
 from ..files.fields import listed
-from ..markers.strong_colors import StrongColor, strong_colors
+from ..markers.color_model import StrongColor, strong_colors
 from ..prior.texts import EVERY_LIBRARY
 from ..progress import run
 from ..take.description import KEYFRAME_FILE, KEYPOINT_FILE, SCHEMA_VERSION, TAKE_FILE, sidecar_file

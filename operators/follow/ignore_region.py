@@ -1,13 +1,16 @@
 """The brush over regions of the picture that are never a marker."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any, ClassVar
 
 import bpy
 import numpy as np
 from bpy.types import Context, Event, PropertyGroup, Scene
 
 from ...core.errors import InputError
+from ...core.markers import ignored_regions
+from ...core.markers.ignored_regions import IgnoredRegion
+from ...core.progress import Job
 from ..shell.base_operator import reported
 from ..shell.fields import SKIP_SAVE, Entries, Number
 from ..shell.footage_view import FootageRequest, pixel_under
@@ -17,28 +20,22 @@ from .marker_search import MarkerSearch, search_markers, write_and_warn
 from .mask_previews import preview_of, show_masks, update_masks
 from .pick_marker_color import MarkerTool
 
-if TYPE_CHECKING:
-    from ...core.markers.ignored_regions import IgnoredRegion
-    from ...core.progress import Job
-
-
 Pixel = tuple[float, float]
-
-SMALLEST_PX = 1.0  # Smallest radius of the brush
 
 
 @dataclass
 class Brush:
-    """A brush at work."""
+    """A brush that draws strokes."""
 
+    at_work: "ClassVar[Brush | None]" = None
     width: int  # Width of the footage in px
     radius_px: float = 0.0  # Its radius in pixels of the footage; 0 for the usual one
-    strokes: "list[tuple[float, list[Pixel]]]" = field(default_factory=list)
+    strokes: list[tuple[float, list[Pixel]]] = field(default_factory=list)
     """Radius and points of each stroke."""
     is_down: bool = False
 
     def __post_init__(self) -> None:
-        self.radius_px = self.radius_px or max(0.03 * self.width, SMALLEST_PX)
+        self.radius_px = self.radius_px or max(0.03 * self.width, 1.0)
 
     def press(self, pixel: Pixel) -> None:
         self.strokes.append((self.radius_px, [pixel]))
@@ -46,37 +43,19 @@ class Brush:
 
     def move(self, pixel: Pixel) -> None:
         """Go on with the stroke; a long one goes on as another."""
-        from ...core.markers.ignored_regions import MOST_POINTS
-
         radius, points = self.strokes[-1]
         if np.hypot(pixel[0] - points[-1][0], pixel[1] - points[-1][1]) < 0.25 * radius:
             return  # nearer points would not be seen
-        if len(points) >= MOST_POINTS:
+        if len(points) >= ignored_regions.MOST_POINTS:
             self.strokes.append((radius, [points[-1]]))
         self.strokes[-1][1].append(pixel)
 
     def grow(self, steps: int) -> None:
         """Make it larger, or smaller with fewer than no steps."""
-        self.radius_px = float(np.clip(self.radius_px * 1.25**steps, SMALLEST_PX, 0.5 * self.width))
+        self.radius_px = float(np.clip(self.radius_px * 1.25**steps, 1.0, 0.5 * self.width))
 
-    def regions(self) -> "tuple[IgnoredRegion, ...]":
-        from ...core.markers.ignored_regions import IgnoredRegion
-
+    def regions(self) -> tuple[IgnoredRegion, ...]:
         return tuple(IgnoredRegion(stroke=tuple(points), radius_px=radius) for radius, points in self.strokes)
-
-
-_brush: Brush | None = None
-
-
-def take_brush(brush: Brush | None) -> None:
-    """Set the brush that is at work; None for none."""
-    global _brush
-    _brush = brush
-
-
-def brush_at_work() -> Brush | None:
-    """The brush that is at work; None for none."""
-    return _brush
 
 
 KEYS = "[  ]: Brush Size   |   Backspace: Back   |   Enter: Done   |   Esc: Cancel"
@@ -109,11 +88,11 @@ class KEYMARK_OT_ignore_region(MarkerTool, bpy.types.Operator):
         with reported(self):
             update_masks(context.scene)
         show_masks(context, preview_of(take) is not None)
-        take_brush(Brush(take.clip.size[0]))
+        Brush.at_work = Brush(take.clip.size[0])
 
     def modal(self, context: Context, event: Event) -> set[str]:
         """Brush until Enter, then look for the markers anew; Esc takes all strokes back."""
-        brush = brush_at_work()
+        brush = Brush.at_work
         if self._job is not None:
             return super().modal(context, event)
         if brush is None:  # another file was opened
@@ -131,26 +110,26 @@ class KEYMARK_OT_ignore_region(MarkerTool, bpy.types.Operator):
         return super().modal(context, event)
 
     def request(self, context: Context) -> tuple[FootageRequest, str]:
-        brush = brush_at_work()
+        brush = Brush.at_work
         radius = 0.0 if brush is None else brush.radius_px
         detail = "as a wall or a chair of a marker's color"
         return FootageRequest("Brush over what is no marker", detail, radius), KEYS
 
     def clicked(self, context: Context, pixel: Pixel) -> set[str]:
-        brush = brush_at_work()
+        brush = Brush.at_work
         if brush is not None:
             brush.press(pixel)
             redraw_footage(context)
         return {"RUNNING_MODAL"}
 
     def go_back(self, context: Context) -> None:
-        brush = brush_at_work()
+        brush = Brush.at_work
         if brush is not None and brush.strokes:
             brush.strokes.pop()
             brush.is_down = False
 
     def done(self, context: Context) -> set[str]:
-        brush = brush_at_work()
+        brush = Brush.at_work
         if brush is None or not brush.strokes:
             return super().done(context)
         self._brushed, self.radius = brush.regions(), brush.radius_px
@@ -162,26 +141,23 @@ class KEYMARK_OT_ignore_region(MarkerTool, bpy.types.Operator):
         return self.look(context)
 
     def cancel(self, context: Context) -> None:
-        take_brush(None)
+        Brush.at_work = None
         super().cancel(context)
 
-    def start(self, scene: Scene) -> "Job[MarkerSearch]":
-        brushed = self._from_path(active_take(scene)) if self._brushed is None else self._brushed
-        return search_markers(scene, more=brushed)
-
-    def finish(self, scene: Scene, result: MarkerSearch) -> None:
-        write_and_warn(self, scene, result, masks=self.masks_before is not None and result.check is not None)
-        self.report({"INFO"}, f"Brushed regions are never a marker: {len(result.more)} more")
-
-    def _from_path(self, take: PropertyGroup) -> "tuple[IgnoredRegion, ...]":
-        """The strokes that the properties say."""
+    def start(self, scene: Scene) -> Job[MarkerSearch]:
+        if self._brushed is not None:
+            return search_markers(scene, more=self._brushed)
         if not len(self.path):
             raise InputError("path is empty; give at least one pixel of the footage")
-        brush, stroke = Brush(take.clip.size[0], self.radius), None
+        brush, stroke = Brush(active_take(scene).clip.size[0], self.radius), None
         for point in self.path:
             if point.time != stroke:
                 brush.press(tuple(point.loc))
             else:
                 brush.strokes[-1][1].append(tuple(point.loc))
             stroke = point.time
-        return brush.regions()
+        return search_markers(scene, more=brush.regions())
+
+    def finish(self, scene: Scene, result: MarkerSearch) -> None:
+        write_and_warn(self, scene, result, masks=self.masks_before is not None and result.check is not None)
+        self.report({"INFO"}, f"Brushed regions are never a marker: {len(result.more)} more")

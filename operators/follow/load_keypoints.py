@@ -8,21 +8,22 @@ from typing import TYPE_CHECKING
 import bpy
 from bpy.types import Context, Event, PropertyGroup, Scene
 
+from ...core.detect.detector_formats import is_one_frame
 from ...core.errors import InputError
-from ...core.progress import run
+from ...core.files.json_file import read_json_value
+from ...core.progress import Job, run
+from ..bridge.scene_evidence import read_keypoint_file
 from ..shell.base_operator import BaseOperator, browse, chosen_path, remove_active, warn
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import footage, idle, keypoint_files
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of, redraw_footage, take_by_identifier
-from .evidence import add_keypoint_file, keypoint_path, scene_evidence
-from .frame_keypoints import clear_readings
+from .evidence import add_keypoint_file, clear_readings, keypoint_path, scene_evidence
 from .network import chosen_network
 
 if TYPE_CHECKING:
     from ...core.detect.keypoints import People
-    from ...core.progress import Job
 
 
 class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
@@ -55,11 +56,17 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
 
     def run(self, context: Context) -> None:
         """Read the keypoints and hold them against the clip, and only then add them to the take."""
-        from ..bridge.scene_evidence import read_keypoint_file
+        from ...core.detect.keypoint_file import LARGEST_BYTES
         from ..bridge.take_from_scene import clip_frames
 
-        take = active_take(context.scene)
-        path, source = _whole(chosen_path(self)), footage_of(context.scene, take)
+        take, path = active_take(context.scene), chosen_path(self)
+        source = footage_of(context.scene, take)
+        if not path.name:
+            raise InputError(
+                "filepath is empty; name the file of keypoints, or the folder with a file a frame"
+            )
+        if not path.is_dir() and is_one_frame(read_json_value(path, LARGEST_BYTES)):
+            path = path.parent
         frames = run(clip_frames(source, scene_evidence(take), reading_of(take)))
         size = source.clip.size[0], source.clip.size[1]
         people = read_keypoint_file(path, len(frames), size, source.rate, source.first_frame)
@@ -69,19 +76,6 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
         loaded = f"Loaded {len(people.names)} points of {people.source}"
         seen = sum(len(frame.pixel) > 0 for frame in people.frames)
         self.report({"INFO"}, f"{loaded}, in {seen} of {len(people.frames)} frames")
-
-
-def _whole(path: Path) -> Path:
-    """The folder of a detector that writes a file a frame, where one of its files was chosen."""
-    from ...core.detect.detector_formats import is_one_frame
-    from ...core.detect.keypoint_file import LARGEST_BYTES
-    from ...core.files.json_file import read_json_value
-
-    if path.is_dir():
-        return path
-    if not path.name:
-        raise InputError("filepath is empty; name the file of keypoints, or the folder with a file a frame")
-    return path.parent if is_one_frame(read_json_value(path, LARGEST_BYTES)) else path
 
 
 def follow_file(take: PropertyGroup, path: Path, replace: bool = False) -> None:
@@ -117,22 +111,6 @@ class Detected:
     frame_start: int
 
 
-def detect(scene: Scene) -> "Job[Detected]":
-    """Find everybody in the active take's clip; the scene stays as it is."""
-    from ...core.detect.closer_look import CloserLook
-    from ...core.detect.pose_network import PoseNetwork
-    from ...core.detect.pose_tracking import find_people
-    from ...core.take.clip_check import open_footage
-
-    take = active_take(scene)
-    identifier, source = take.identifier, footage_of(scene, take)
-    output, first = keypoint_output(take, source.path), source.first_frame
-    clip = open_footage(source.path, source.rate, (source.clip.size[0], source.clip.size[1]))
-    closer = CloserLook(chosen_network(), bool(take.follow.use_hands))
-    people = yield from find_people(clip, PoseNetwork(), closer)
-    return Detected(identifier, output, people, clip.fps, first)
-
-
 def keep_detected(scene: Scene, found: Detected) -> str:
     """Write the keypoints beside the clip and let the take follow them; returns a sentence on them."""
     from ...core.detect.keypoint_file import write_keypoints
@@ -151,8 +129,20 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
     bl_label = "Detect Keypoints"
     requirements = (footage, idle)
 
-    def start(self, scene: Scene) -> "Job[Detected]":
-        return detect(scene)
+    def start(self, scene: Scene) -> Job[Detected]:
+        """Find everybody in the active take's clip."""
+        from ...core.detect.closer_look import CloserLook
+        from ...core.detect.pose_network import PoseNetwork
+        from ...core.detect.pose_tracking import find_people
+        from ...core.take.clip_check import open_footage
+
+        take = active_take(scene)
+        identifier, source = take.identifier, footage_of(scene, take)
+        output, first = keypoint_output(take, source.path), source.first_frame
+        clip = open_footage(source.path, source.rate, (source.clip.size[0], source.clip.size[1]))
+        closer = CloserLook(chosen_network(), bool(take.follow.use_hands))
+        people = yield from find_people(clip, PoseNetwork(), closer)
+        return Detected(identifier, output, people, clip.fps, first)
 
     def finish(self, scene: Scene, result: Detected) -> None:
         self.report({"INFO"}, keep_detected(scene, result))

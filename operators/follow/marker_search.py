@@ -1,37 +1,110 @@
-"""The lists of markers and of what is never one, and the search for the markers in the footage."""
+"""A take's markers and what is never one: lists, styles, and the search for them in the footage."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import bpy
 from bpy.types import Context, PropertyGroup, Scene
 
-from ...core.errors import InputError
-from ...core.progress import within
+from ...core.errors import InputError, pluralize
+from ...core.markers.ignored_regions import IgnoredRegion
+from ...core.markers.region_tracks import MarkerStyle
+from ...core.progress import Job, within
 from ..bridge.footage import Footage
 from ..footage.take_footage import update_clip_digest
 from ..shell.base_operator import BaseOperator, Unchanged, call, capitalized, remove_active, warn
+from ..shell.footage_view import clip_index
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import footage, idle, markers, of_take, picked_color
-from ..shell.takes import active_take, ensure_take, footage_of, redraw_footage, take_by_identifier
-from .marker_properties import SEGMENTS, add_ignored_regions, clear_readouts, ignored_regions
-from .marker_styles import (
-    USUAL_SEGMENTS,
-    Rgb,
-    append_marker,
-    append_usual_markers,
-    set_marker_color,
-    styles_with_colors,
+from ..shell.results import reading_of
+from ..shell.takes import (
+    active_take,
+    ensure_take,
+    footage_of,
+    redraw_footage,
+    take_by_identifier,
+    unique_name,
 )
 from .mask_previews import keep_preview, preview_of, show_masks, update_masks
+from .properties import SEGMENTS, add_ignored_regions, clear_readouts, ignored_regions
 
 if TYPE_CHECKING:
-    from ...core.markers.ignored_regions import IgnoredRegion
     from ...core.markers.marker_check import MarkerCheck
-    from ...core.markers.region_tracks import MarkerStyle
-    from ...core.progress import Job
     from ...core.video.clip import ClipSamples
+
+Rgb = tuple[int, int, int]  # Red, green, blue in 0 to 255
+
+USUAL_SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
+"""The five segments whose markers help most, in the order in which they are offered."""
+
+
+def append_marker(take: PropertyGroup, segment: str) -> None:
+    """Add a marker with a unique name after its segment, and make it the active one."""
+    name = unique_name(segment, [marker.name for marker in take.markers])
+    marker = take.markers.add()
+    marker.segment, marker.name = segment, name
+    marker.named_after = segment
+    take.active_marker = len(take.markers) - 1
+
+
+def append_usual_markers(take: PropertyGroup) -> None:
+    """Add those of the usual five that are missing; the first of them becomes the active one."""
+    marked, first = {marker.segment for marker in take.markers}, len(take.markers)
+    for segment in USUAL_SEGMENTS:
+        if segment not in marked:
+            append_marker(take, segment)
+    take.active_marker = first
+
+
+def marker_styles(take: PropertyGroup) -> tuple[MarkerStyle, ...]:
+    """The styles of a take's markers; refused where two have one name or one segment."""
+    styles = []
+    for marker in take.markers:
+        red, green, blue = (round(float(value) * 255) for value in marker.color)
+        styles.append(MarkerStyle(marker.name, marker.segment, (red, green, blue)))
+    for kind in ("name", "segment"):
+        values = [getattr(style, kind) for style in styles]
+        twice = next((value for value in values if values.count(value) > 1), None)
+        if twice is not None:
+            raise InputError(f"two markers have the {kind} '{twice}'; each needs its own")
+    return tuple(styles)
+
+
+def styles_with_colors(take: PropertyGroup, colors: Mapping[str, Rgb]) -> tuple[MarkerStyle, ...]:
+    """The styles of a take's markers that have a color, once some are given new ones by their names.
+
+    A take without markers counts as one with the usual five.
+    """
+    styles, picked = marker_styles(take), {marker.name for marker in take.markers if marker.is_picked}
+    if not styles:
+        styles = tuple(MarkerStyle(segment, segment, (0, 0, 0)) for segment in USUAL_SEGMENTS)
+    unknown = set(colors) - {style.name for style in styles}
+    if unknown:
+        known = ", ".join(style.name for style in styles)
+        raise InputError(f"no marker is called '{min(unknown)}'; the markers are {known}")
+    return tuple(
+        replace(style, color_srgb=colors.get(style.name, style.color_srgb))
+        for style in styles
+        if style.name in colors or style.name in picked
+    )
+
+
+def set_marker_color(marker: PropertyGroup, color_srgb: Rgb) -> None:
+    """Set a marker's color from bytes."""
+    marker.color = [value / 255 for value in color_srgb]
+
+
+def markers_label(take: PropertyGroup) -> str:
+    """As in `4 of 5`, once the clip was read for these markers; before that how many there are."""
+    count = len(take.markers)
+    if not count or take.clip is None:
+        return ""
+    reading, index = reading_of(take), clip_index(take)
+    names = tuple(marker.name for marker in take.markers)
+    if reading is None or reading.tracks.names != names or not 0 <= index < reading.tracks.frame_count:
+        return pluralize(count, "marker")
+    return f"{int(reading.tracks.visible[index].sum())} of {count}"
 
 
 _samples: "dict[str, ClipSamples]" = {}
@@ -39,7 +112,7 @@ _samples: "dict[str, ClipSamples]" = {}
 
 
 def find_markers(
-    footage: Footage, styles: "tuple[MarkerStyle, ...]", ignored: "tuple[IgnoredRegion, ...]"
+    footage: Footage, styles: tuple[MarkerStyle, ...], ignored: tuple[IgnoredRegion, ...]
 ) -> "Job[MarkerCheck]":
     """Find markers in frames sampled over a clip, which are decoded once a session."""
     from ...core.markers.marker_check import check_markers
@@ -58,9 +131,7 @@ def find_markers(
     return (yield from within("Finding the markers", check, 0.7, 1.0))
 
 
-def _write_readouts(
-    take: PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck"
-) -> list[str]:
+def _write_readouts(take: PropertyGroup, styles: tuple[MarkerStyle, ...], check: "MarkerCheck") -> list[str]:
     """Store a check with the markers, and its colors for previews; return all warnings."""
     update_clip_digest(take)
     readouts = {readout.name: readout for readout in check.readouts}
@@ -87,15 +158,15 @@ class MarkerSearch:
 
     take: str  # The take's identifier
     colors: dict[str, Rgb]  # New colors, by the markers' names
-    more: "tuple[IgnoredRegion, ...]"  # Regions to be ignored from now on
-    styles: "tuple[MarkerStyle, ...]"
-    ignored: "tuple[IgnoredRegion, ...]"  # What was ignored before
+    more: tuple[IgnoredRegion, ...]  # Regions to be ignored from now on
+    styles: tuple[MarkerStyle, ...]
+    ignored: tuple[IgnoredRegion, ...]  # What was ignored before
     check: "MarkerCheck | None"  # None where no marker has a color
 
 
 def search_markers(
-    scene: Scene, colors: Mapping[str, Rgb] | None = None, more: "tuple[IgnoredRegion, ...]" = ()
-) -> "Job[MarkerSearch]":
+    scene: Scene, colors: Mapping[str, Rgb] | None = None, more: tuple[IgnoredRegion, ...] = ()
+) -> Job[MarkerSearch]:
     """Look for the active take's markers with new colors, or without more regions of the picture."""
     take, new = active_take(scene), dict(colors or {})
     source, identifier, ignored = footage_of(scene, take), take.identifier, ignored_regions(take)
@@ -105,11 +176,7 @@ def search_markers(
 
 
 def write_search(scene: Scene, found: MarkerSearch, masks: bool = False) -> list[str]:
-    """Store colors, regions and what was found of the markers, with their masks shown; return all warnings.
-
-    Raises:
-        InputError: The markers, or what is ignored, were changed while the job ran.
-    """
+    """Store colors, regions and what was found of the markers, and show their masks; return all warnings."""
     take, context = take_by_identifier(scene, found.take), bpy.context
     if (styles_with_colors(take, found.colors), ignored_regions(take)) != (found.styles, found.ignored):
         raise InputError("the markers were changed while they were looked for; nothing was stored, try again")
@@ -128,9 +195,7 @@ def write_search(scene: Scene, found: MarkerSearch, masks: bool = False) -> list
     return warnings
 
 
-def write_and_warn(
-    operator: bpy.types.Operator, scene: Scene, found: MarkerSearch, masks: bool = False
-) -> list[str]:
+def write_and_warn(operator: Any, scene: Scene, found: MarkerSearch, masks: bool = False) -> list[str]:
     """The same, with every warning reported."""
     return [warn(operator, sentence) for sentence in write_search(scene, found, masks)]
 
@@ -141,7 +206,7 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
     bl_label = "Check Markers"
     requirements = (footage, markers, picked_color, idle)
 
-    def start(self, scene: Scene) -> "Job[MarkerSearch]":
+    def start(self, scene: Scene) -> Job[MarkerSearch]:
         return search_markers(scene)
 
     def finish(self, scene: Scene, result: MarkerSearch) -> None:
@@ -149,13 +214,14 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
             self.report({"INFO"}, f"All {len(result.styles)} markers with a color are found well")
 
 
-def has_still_areas(take: PropertyGroup) -> bool:
-    """Whether the markers' readouts name any still area."""
-    return any(marker.has_readout(take) and len(marker.still_areas) for marker in take.markers)
+def still_boxes(take: PropertyGroup) -> tuple[Any, ...]:
+    """Boxes of the still areas that the markers' readouts name, each once."""
+    found = [marker for marker in take.markers if marker.has_readout(take)]
+    return tuple(dict.fromkeys(tuple(area.box) for marker in found for area in marker.still_areas))
 
 
 still_areas = of_take(
-    lambda state: has_still_areas(state.take),
+    lambda state: still_boxes(state.take),
     "Check the markers first; no still area of a marker's color is known",
 )
 
@@ -166,12 +232,8 @@ class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
     bl_label = "Ignore Still Areas"
     requirements = (footage, markers, still_areas, idle)
 
-    def start(self, scene: Scene) -> "Job[MarkerSearch]":
-        from ...core.markers.ignored_regions import IgnoredRegion
-
-        take = active_take(scene)
-        found = [marker for marker in take.markers if marker.has_readout(take)]
-        boxes = dict.fromkeys(tuple(area.box) for marker in found for area in marker.still_areas)
+    def start(self, scene: Scene) -> Job[MarkerSearch]:
+        boxes = still_boxes(active_take(scene))
         return search_markers(scene, more=tuple(IgnoredRegion(box=box) for box in boxes))
 
     def finish(self, scene: Scene, result: MarkerSearch) -> None:

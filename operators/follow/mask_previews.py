@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING
 from bpy.types import Context, PropertyGroup, Scene
 
 from ...core.arrays import Array, Image, SingleArray
-from ..bridge.footage import Footage
+from ...core.markers.ignored_regions import IgnoredPixels, IgnoredRegion
+from ...core.markers.region_tracks import MarkerStyle
 from ..shell.takes import find_take, footage_of, redraw_footage
-from .marker_properties import ignored_regions
+from .properties import ignored_regions
 
 if TYPE_CHECKING:
-    from ...core.markers.ignored_regions import IgnoredRegion
     from ...core.markers.marker_check import MarkerCheck
-    from ...core.markers.region_tracks import MarkerStyle
     from ...core.video.clip import FrameReader
 
 
@@ -45,49 +44,49 @@ class Preview:
 
 
 _previews: dict[object, Preview] = {}
-_picked: dict[str, Preview] = {}
+PICKED: dict[str, Preview] = {}
 """Preview of colors that are being picked and are not the take's yet, by the take's identifier."""
 
 
-def keep_preview(take: PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck") -> None:
+def keep_preview(take: PropertyGroup, styles: tuple[MarkerStyle, ...], check: "MarkerCheck") -> None:
     """Cache the learned colors of a take's markers."""
     _previews.pop(key := _key(take), None)
-    _previews[key] = _preview(styles, check)
+    _previews[key] = learned_preview(styles, check)
     while len(_previews) > 4:
         del _previews[next(iter(_previews))]
 
 
-def show_picked(identifier: str, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck") -> None:
-    """Let colors that are being picked be the preview of the take with an identifier, until `end_picked`."""
-    _picked[identifier] = _preview(styles, check)
-
-
-def end_picked() -> None:
-    """Let the takes' own markers be their previews again."""
-    _picked.clear()
-
-
 def preview_of(take: PropertyGroup) -> Preview | None:
-    """Return the preview of a take's markers as they are now; None if they were not checked."""
+    """The preview of a take's markers as they are now; None if they were not checked."""
     if take.clip is None:
         return None
-    return _picked.get(take.identifier) or _previews.get(_key(take))
+    return PICKED.get(take.identifier) or _previews.get(_key(take))
 
 
 def clear_previews() -> None:
     """Drop all previews, and close their files."""
     _previews.clear()
-    _picked.clear()
+    PICKED.clear()
 
 
 def update_masks(scene: Scene) -> Preview | None:
     """Make the masks of the current frame, unless they are made already; return their preview."""
+    from ...core.markers.regions import color_masks, mask_outlines
+    from ...core.video.clip import FrameReader
+
     take = find_take(scene)
     preview = preview_of(take) if take is not None else None
     if preview is None or is_of_frame(preview, scene):
         return preview
-    footage = footage_of(scene, take)
-    preview.masks = _masks(preview, footage, ignored_mask(take))
+    footage, preview.masks = footage_of(scene, take), ()
+    preview.reader = preview.reader or FrameReader(footage.open())
+    image = preview.reader.image_at(footage.shown_s)
+    if image is not None:
+        coverages = color_masks(image, preview.check.model, ignored_mask(take))
+        preview.masks = tuple(
+            ColorMask(label, color, coverage, mask_outlines(coverage, image.shape[1] // coverage.shape[1]))
+            for label, color, coverage in zip(preview.labels, preview.colors, coverages, strict=True)
+        )
     preview.time_s = footage.shown_s
     return preview
 
@@ -101,41 +100,20 @@ def show_masks(context: Context, shown: bool) -> bool:
 
 
 def is_of_frame(preview: Preview, scene: Scene) -> bool:
-    """Whether a preview of the active take's markers is of the scene's current frame.
-
-    It is compared by the clip's time: another scene may show the same clip at other times, and a clip may be
-    moved in time.
-    """
+    """Whether a preview of the active take's markers is of the current frame, by the time in the clip."""
     take = find_take(scene)
     return take is not None and preview.time_s == footage_of(scene, take).shown_s
 
 
-def ignored_mask(take: PropertyGroup, more: "tuple[IgnoredRegion, ...]" = ()) -> Image | None:
+def ignored_mask(take: PropertyGroup, more: tuple[IgnoredRegion, ...] = ()) -> Image | None:
     """The mask (rows, columns) of what is ignored in the current frame, and of more; None if nothing is."""
-    from ...core.markers.ignored_regions import IgnoredPixels
-
     scene = take.id_data
     pixels = IgnoredPixels((*ignored_regions(take), *more), (take.clip.size[0], take.clip.size[1]))
     return pixels.mask(scene.frame_current - footage_of(scene, take).first_frame)
 
 
-def _masks(preview: Preview, footage: Footage, ignored: Image | None) -> tuple[ColorMask, ...]:
-    from ...core.markers.regions import color_masks, mask_outlines
-    from ...core.video.clip import FrameReader
-
-    if preview.reader is None:
-        preview.reader = FrameReader(footage.open())
-    image = preview.reader.image_at(footage.shown_s)
-    if image is None:
-        return ()
-    coverages = color_masks(image, preview.check.model, ignored)
-    return tuple(
-        ColorMask(label, color, coverage, mask_outlines(coverage, image.shape[1] // coverage.shape[1]))
-        for label, color, coverage in zip(preview.labels, preview.colors, coverages, strict=True)
-    )
-
-
-def _preview(styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck") -> Preview:
+def learned_preview(styles: tuple[MarkerStyle, ...], check: "MarkerCheck") -> Preview:
+    """A preview without masks yet."""
     groups = check.groups
     labels = tuple(" / ".join(styles[marker].name for marker in group) for group in groups)
     colors = [tuple(value / 255.0 for value in styles[group[0]].color_srgb) for group in groups]
@@ -143,6 +121,6 @@ def _preview(styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck") -> Preview
 
 
 def _key(take: PropertyGroup) -> tuple[object, ...]:
-    """Return the key: the footage's digest, names and colors of markers that have one, what is ignored."""
+    """The footage's digest, names and colors of markers that have one, and what is ignored."""
     picked = tuple((marker.name, tuple(marker.color)) for marker in take.markers if marker.is_picked)
     return take.clip_state.contents, picked, ignored_regions(take)

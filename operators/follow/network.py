@@ -44,11 +44,7 @@ def draw_network(layout: UILayout) -> None:
 
 
 def chosen_network() -> "Network | None":
-    """The network that is chosen in the preferences; None for Keymark's own alone.
-
-    Raises:
-        InputError: Its file is missing or unusable, or of no known family.
-    """
+    """The network that is chosen in the preferences; None for Keymark's own alone."""
     from ...core.detect.families.table import open_network
 
     preferences = _preferences()

@@ -22,18 +22,18 @@ from ..shell.panel import (
 )
 from ..shell.steps import KINDS
 from ..shell.takes import active_take, assigned_tracks, find_take, point_of
-from .evidence import clip_frame, keypoint_path
-from .frame_keypoints import (
-    clicked_label,
+from .evidence import (
+    clicked_here,
+    clip_frame,
     contours_label,
+    keypoint_path,
     keypoint_reading,
     keypoints_label,
     people_at,
     tracks_label,
 )
-from .marker_properties import segment_title
-from .marker_search import has_still_areas
-from .marker_styles import markers_label
+from .marker_search import markers_label, still_boxes
+from .properties import segment_title
 
 ROWS = 2  # of a list that is seldom long
 
@@ -125,7 +125,7 @@ def _draw_ignored(layout: UILayout, context: Context, take: PropertyGroup) -> No
     if not draw_progress(layout, context, "keymark.ignore_region", "keymark.ignore_still_areas"):
         row = layout.row(align=True)
         row.operator("keymark.ignore_region", icon="BRUSH_DATA")
-        if has_still_areas(take):
+        if still_boxes(take):
             row.operator("keymark.ignore_still_areas")
     if not len(take.ignored_regions):
         return
@@ -199,7 +199,8 @@ def _draw_keypoints(layout: UILayout, context: Context, take: PropertyGroup) -> 
     column.operator("keymark.click_point", icon="RESTRICT_SELECT_OFF")
     if len(follow.clicks):
         row = column.row(align=True)
-        row.label(text=clicked_label(take), translate=False, icon="CHECKMARK")
+        text = f"{len(clicked_here(take))} here, {len(follow.clicks)} in all"
+        row.label(text=text, translate=False, icon="CHECKMARK")
         row.operator("keymark.remove_clicks", text="", icon="TRASH")
         source = (follow, "clicks", follow, "active_click")
         layout.template_list("KEYMARK_UL_clicked_points", "", *source, rows=ROWS)

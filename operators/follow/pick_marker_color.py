@@ -2,12 +2,13 @@
 
 from collections.abc import Generator
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 from bpy.types import Context, Event, PropertyGroup, Scene
 
 from ...core.errors import InputError
+from ...core.progress import Job
 from ..shell.base_operator import reported, warn
 from ..shell.fields import SKIP_SAVE, Entries, Integer, Vector
 from ..shell.footage_clicks import ClickSequence
@@ -15,15 +16,17 @@ from ..shell.footage_view import FootageRequest, side_of, stop_asking
 from ..shell.job_operator import SHORTEST_SLICE_S, TIMER_S, JobOperator
 from ..shell.requirements import footage, idle, markers
 from ..shell.takes import active_take, footage_of, take_by_identifier
-from .marker_properties import ignored_regions, segment_title
-from .marker_search import MarkerSearch, find_markers, search_markers, write_and_warn, write_search
-from .marker_styles import USUAL_SEGMENTS, styles_with_colors
-from .mask_previews import end_picked, show_masks, show_picked, update_masks
-
-if TYPE_CHECKING:
-    from ...core.markers.marker_check import MarkerCheck
-    from ...core.markers.region_tracks import MarkerStyle
-    from ...core.progress import Job
+from .marker_search import (
+    USUAL_SEGMENTS,
+    MarkerSearch,
+    find_markers,
+    search_markers,
+    styles_with_colors,
+    write_and_warn,
+    write_search,
+)
+from .mask_previews import PICKED, learned_preview, show_masks, update_masks
+from .properties import ignored_regions, segment_title
 
 
 class MarkerTool(ClickSequence, JobOperator):
@@ -52,11 +55,6 @@ class MarkerTool(ClickSequence, JobOperator):
         if self.masks_before is not None:
             show_masks(context, self.masks_before)
         JobOperator.cancel(self, context)
-
-
-def request_for(segment: str) -> FootageRequest:
-    """The request for the marker on a segment; left and right are the performer's own."""
-    return FootageRequest(f"Click on: {segment_title(segment)}", side_of(segment))
 
 
 KEYS = "{number} of {count}   |   Backspace: Back   |   Tab: Skip   |   Enter: Done   |   Esc: Cancel"
@@ -95,14 +93,24 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
         self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
 
     def modal(self, context: Context, event: Event) -> set[str]:
-        if self._job is None and event.type == "TIMER":
-            self._go_on_looking(context)
-            return {"PASS_THROUGH"}
-        return super().modal(context, event)
+        if self._job is not None or event.type != "TIMER":
+            return super().modal(context, event)
+        until = monotonic() + SHORTEST_SLICE_S
+        with reported(self):
+            try:
+                while self._looking is not None and monotonic() < until:
+                    next(self._looking)
+                return {"PASS_THROUGH"}
+            except StopIteration:
+                update_masks(context.scene)
+                show_masks(context, True)
+        self._looking = None
+        return {"PASS_THROUGH"}
 
     def request(self, context: Context) -> tuple[FootageRequest, str]:
         keys = KEYS.format(number=len(self._colors) + 1, count=len(self._wanted))
-        return request_for(self._wanted[self._here][1]), keys
+        segment = self._wanted[self._here][1]
+        return FootageRequest(f"Click on: {segment_title(segment)}", side_of(segment)), keys
 
     def clicked(self, context: Context, pixel: tuple[float, float]) -> set[str]:
         from ..bridge.footage import footage_color
@@ -148,10 +156,10 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
 
     def cancel(self, context: Context) -> None:
         self._stop_looking()
-        end_picked()
+        PICKED.clear()
         super().cancel(context)
 
-    def start(self, scene: Scene) -> "Job[MarkerSearch]":
+    def start(self, scene: Scene) -> Job[MarkerSearch]:
         from ..bridge.footage import footage_color
 
         source, colors = footage_of(scene, active_take(scene)), self._colors
@@ -170,32 +178,18 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
         take = active_take(context.scene)
         styles = styles_with_colors(take, self._colors)
         search = find_markers(footage_of(context.scene, take), styles, ignored_regions(take))
-        self._looking = _seen(take.identifier, styles, search)
 
-    def _go_on_looking(self, context: Context) -> None:
-        """Go on looking for the colors picked so far; at the end show their masks."""
-        if self._looking is None:
-            return
-        until = monotonic() + SHORTEST_SLICE_S
-        with reported(self):
-            try:
-                while monotonic() < until:
-                    next(self._looking)
-                return
-            except StopIteration:
-                update_masks(context.scene)
-                show_masks(context, True)
-        self._looking = None
+        identifier = take.identifier
+
+        def look() -> Job[None]:
+            PICKED[identifier] = learned_preview(styles, (yield from search))
+
+        self._looking = look()
 
     def _stop_looking(self) -> None:
         if self._looking is not None:
             self._looking.close()
             self._looking = None
-
-
-def _seen(identifier: str, styles: "tuple[MarkerStyle, ...]", search: "Job[MarkerCheck]") -> "Job[None]":
-    """Look for markers, then let what was found be the preview of the take with an identifier."""
-    show_picked(identifier, styles, (yield from search))
 
 
 class KEYMARK_OT_pick_marker_color(MarkerTool, bpy.types.Operator):
@@ -218,13 +212,14 @@ class KEYMARK_OT_pick_marker_color(MarkerTool, bpy.types.Operator):
         show_masks(context, False)  # the footage itself is what is clicked on
 
     def request(self, context: Context) -> tuple[FootageRequest, str]:
-        return request_for(self._marker(active_take(context.scene)).segment), "Esc: Cancel"
+        segment = self._marker(active_take(context.scene)).segment
+        return FootageRequest(f"Click on: {segment_title(segment)}", side_of(segment)), "Esc: Cancel"
 
     def clicked(self, context: Context, pixel: tuple[float, float]) -> set[str]:
         self.pixel = pixel
         return self.look(context)
 
-    def start(self, scene: Scene) -> "Job[MarkerSearch]":
+    def start(self, scene: Scene) -> Job[MarkerSearch]:
         """The color is read from the clip's file: the viewport's has gone through color management."""
         from ..bridge.footage import footage_color
 

@@ -194,10 +194,7 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
 
 
 def _fitted(context: Context, take: PropertyGroup, ways: "list[Turned]") -> "list[Posture]":
-    """Turned postures fitted to the frame, the likeliest first; none if it shows nothing to fit to.
-
-    The actor's pose is as before.
-    """
+    """Turned postures fitted to the frame, the likeliest first; none if it shows nothing to fit to."""
     from ..bridge.pose import write_posture
     from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
 

@@ -12,8 +12,8 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN, limb_of
 from ..bridge.object_space import evaluated, joint_places
 from ..bridge.scene_frames import Pose, pose_of, restore_pose
-from ..follow.marker_properties import segment_title
-from ..overlays.marks import window
+from ..follow.properties import segment_title
+from ..overlays.motion import window
 from ..overlays.tools import Handles, show_handles, show_keys
 from ..shell.base_operator import BaseOperator, call, reported
 from ..shell.fields import Choice, Switch, Vector

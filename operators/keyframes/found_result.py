@@ -104,9 +104,6 @@ def clear_found(take: PropertyGroup) -> int:
 
     What the animator has posed meanwhile, or changed of them, stays and is theirs for good. What they chose
     the candidate of stays as it is.
-
-    Raises:
-        InputError: The take has no actor, or it lacks bones.
     """
     actor, matching = actor_of(take), take.matching
     undecided = tuple(known_matches(take, by_hand=False))

@@ -14,7 +14,7 @@ from ...core.progress import run
 from ..bridge.actions import assign_action
 from ..bridge.scene_frames import at_scene_frame, scene_frames, showing_action
 from ..follow.evidence import followed_markers
-from ..follow.marker_properties import ignored_regions
+from ..follow.properties import ignored_regions
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.contradictions import note_contradictions
 from ..shell.keyed_frames import SAME_FRAME, has_frame, new_keyframe_action, straighten_unposed

@@ -4,4 +4,4 @@ Draw functions use only what is in memory and read no file.
 """
 
 PROPERTIES = ("properties",)
-MODULES = ("panel", "mask", "registry")
+MODULES = ("mask", "registry")

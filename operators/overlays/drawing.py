@@ -41,10 +41,7 @@ def faded(color: Sequence[float], opacity: float) -> Color:
 
 
 def texture(pixels: ArrayLike) -> gpu.types.GPUTexture:
-    """Upload a picture (height, width, 4) of red, green, blue, alpha in sRGB, 0 to 1, top row first.
-
-    Keep the texture, as making one takes time; its own coordinates begin at the bottom.
-    """
+    """Upload a picture (height, width, 4) of red, green, blue, alpha in sRGB, 0 to 1, top row first."""
     rows = np.ascontiguousarray(np.asarray(pixels, dtype=np.float32)[::-1])
     height, width, _ = rows.shape
     data = gpu.types.Buffer("FLOAT", rows.size, rows.ravel())

@@ -19,10 +19,7 @@ def segments(points: ArrayLike, *, closed: bool = False) -> Array:
 
 
 def dashes(points: ArrayLike, dash: float, gap: float, *, closed: bool = False) -> Array:
-    """Cut one line (N, D) into dashes (S, 2, D) that run on around its corners.
-
-    A dash begins anew after a point that is not finite.
-    """
+    """Cut one line (N, D) into dashes (S, 2, D) that run on around its corners, anew where it is broken."""
     line = np.asarray(points, dtype=np.float64)
     if closed and len(line):
         line = np.concatenate([line, line[:1]])
@@ -94,10 +91,7 @@ LIMBS = (
 
 
 def limb_lines(names: tuple[str, ...], positions: Array) -> tuple[Array, NDArray[np.str_]]:
-    """Lines (N, 2, 2) of a body from its points (13, 2), and their sides (N,): L, R or none.
-
-    A line with an end that is not finite is left out.
-    """
+    """Finite lines (N, 2, 2) of a body from its points (13, 2), and their sides (N,): L, R or none."""
     at = dict(zip(names, positions, strict=True))
     at[NECK] = 0.5 * (at["shoulder.L"] + at["shoulder.R"])
     at[PELVIS] = 0.5 * (at["hip.L"] + at["hip.R"])

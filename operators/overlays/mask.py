@@ -11,7 +11,7 @@ from bpy.types import Context, Scene
 
 from ...core.arrays import Image, SingleArray
 from ...core.errors import KeymarkError
-from ..follow.ignore_region import brush_at_work
+from ..follow.ignore_region import Brush
 from ..follow.mask_previews import (
     ColorMask,
     Preview,
@@ -27,11 +27,9 @@ from .drawing import INK, Item, Label, Picture, Stroke, text_size, texture, ui_s
 from .figures import segments
 
 DARKENING = 0.5
-NAME_GAP = 4.0  # between an outline and the name above it [unscaled px]
 LARGEST_SHARE = 0.2
 """Of a frame's time: masks that take longer are not made while the animation plays. Overlays together are to
 take at most a third."""
-STRIPES = (0.0, 0.0, 0.0, 0.65), (1.0, 1.0, 1.0, 0.55)  # of no marker's look
 
 _textures: dict[str, tuple[object, gpu.types.GPUTexture]] = {}
 """By what it shows, the texture that was drawn last, and what it was made of."""
@@ -93,7 +91,7 @@ def _names(masks: Sequence[ColorMask], view: FootageView) -> list[Label]:
     """Each mask's name above its larger outlines, higher where another name is."""
     labels: list[Label] = []
     boxes: list[tuple[float, float, float, float]] = []
-    gap = NAME_GAP * ui_scale()
+    gap = 4.0 * ui_scale()
     for mask in masks:
         width, height = text_size(mask.label)
         longest = len(mask.outlines[0]) if mask.outlines else 0
@@ -124,7 +122,7 @@ def free_height(
 
 def draw_ignored(context: Context) -> list[Item]:
     """The regions that are never a marker, with the masks and while they are painted."""
-    take, brush = find_take(context.scene), brush_at_work()
+    take, brush = find_take(context.scene), Brush.at_work
     if take is None or (brush is None and not context.window_manager.keymark_show_masks):
         return []
     view = footage_view(context.scene, take, context.area, context.region)
@@ -138,7 +136,8 @@ def hatched(mask: Image) -> SingleArray:
     """A mask as a striped picture (rows, columns, 4) of red, green, blue, alpha in 0 to 1, top row first."""
     row, column = np.indices(mask.shape)
     stripe = ((row + column) % 6 < 2)[..., None]
-    picture = np.where(stripe, np.array(STRIPES[1]), np.array(STRIPES[0]))
+    # Of no marker's look.
+    picture = np.where(stripe, np.array((1.0, 1.0, 1.0, 0.55)), np.array((0.0, 0.0, 0.0, 0.65)))
     picture[mask == 0] = 0.0
     return picture.astype(np.float32)
 

@@ -1,12 +1,11 @@
 """Overlay of Timeline and Dope Sheet: speed, confidence, proposed and found keyframes, weak frames."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from bpy.types import Context, PropertyGroup, Scene
 
-from ...core.arrays import Array, BoolArray
+from ...core.arrays import Array
 from ..bridge.scene_frames import scene_frames
 from ..shell.keyed_frames import have_frames
 from ..shell.results import FootageSpeed, LruCache, reading_of, review_of, speed_of
@@ -131,9 +130,12 @@ def picture(scene: Scene, take: PropertyGroup, timeline: Timeline) -> list[Item]
         (squares, matched, ~np.isin(matched, doubtful), MATCHED),
     ):
         if len(frames):
-            graph = None if speed is None else (speed.frames, relative(speed.values))
-            level = np.zeros(len(frames)) if graph is None else np.interp(frames, *graph)
-            items += marks(shape, frames, level, filled, color, timeline)
+            x, level = timeline.frame_x(frames), np.zeros(len(frames))
+            if speed is not None:
+                level = np.interp(frames, speed.frames, relative(speed.values))
+            centers = np.stack([x, timeline.floor + timeline.height * level], axis=-1)
+            figures = shape(centers, timeline.fitting(x, timeline.sizes.diamond))
+            items += [Stroke(segments(figures, closed=True), color, 1.6, 0.8), Fill(figures[filled], color)]
     return items
 
 
@@ -190,21 +192,6 @@ def weak_pointers(frames: Array, timeline: Timeline) -> list[Item]:
     ]
 
 
-def marks(
-    shape: Callable[[Array, float], Array],
-    frames: Array,
-    level: Array,
-    filled: BoolArray,
-    color: Color,
-    timeline: Timeline,
-) -> list[Item]:
-    """Diamonds or squares at frames (K,) of the graph, at heights (K,) from 0 to 1; some filled."""
-    x = timeline.frame_x(frames)
-    centers = np.stack([x, timeline.floor + timeline.height * level], axis=-1)
-    figures = shape(centers, timeline.fitting(x, timeline.sizes.diamond))
-    return [Stroke(segments(figures, closed=True), color, 1.6, 0.8), Fill(figures[filled], color)]
-
-
 _speeds: LruCache[FootageSpeed] = LruCache()
 _views: LruCache[list[Item]] = LruCache(16)
 
@@ -222,13 +209,9 @@ def _speed(scene: Scene, take: PropertyGroup) -> FootageSpeed | None:
         return FootageSpeed(take.review_key, review.frames, review.speed)
     if reading is None or not marked:
         return None
+    from ...core.prior.keyframe_proposals import marker_speed  # late: Keymark registers without SciPy
+
     footage, tracks = footage_of(scene, take), reading.tracks
     key = f"{take.reading_key} {footage.first_frame} {footage.rate}"
-
-    def read() -> FootageSpeed:
-        from ...core.prior.keyframe_proposals import marker_speed  # late: Keymark registers without SciPy
-
-        frames = scene_frames(tracks.time_s, footage.first_frame, footage.rate)
-        return FootageSpeed(key, frames, marker_speed(tracks))
-
-    return _speeds.known(key, read)
+    frames = scene_frames(tracks.time_s, footage.first_frame, footage.rate)
+    return _speeds.known(key, lambda: FootageSpeed(key, frames, marker_speed(tracks)))

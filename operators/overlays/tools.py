@@ -55,7 +55,15 @@ def draw_joints(context: Context) -> list[Item]:
     if _handles is None or take is None or take.armature is None:
         return []
     view, scale = WorldInRegion(context.region, context.region_data), ui_scale()
-    items = [] if _handles.path is None else _path(view, *_handles.path)
+    items: list[Item] = []
+    if _handles.path is not None:  # faint as stored; in the side's color as dragged, with a dot at each frame
+        joint, places = _handles.path
+        seen = [[view.position(place) for place in path] for path in places]
+        unseen = np.full(2, np.nan)
+        before, after = (np.array([unseen if at is None else at for at in path]) for path in seen)
+        items.append(Stroke(segments(before), faded(INK, GHOST), 1.5, GHOST))
+        items.append(Stroke(segments(after), side_color(joint), 1.5, 0.9))
+        items.append(Fill(circles(after, 2.5 * scale, 8), side_color(joint)))
     for name, place in zip(HUMAN.point_names, joint_places(take.armature), strict=True):
         position = view.position(place)
         if position is None:
@@ -67,19 +75,6 @@ def draw_joints(context: Context) -> list[Item]:
         if hovered:
             items += _near(context, _handles.keys.split("   |   ")[::-1], *position + 18.0 * scale)
     return items
-
-
-def _path(view: WorldInRegion, joint: str, places: Array) -> list[Item]:
-    """A faint line as stored; one in the side's color as dragged, with a dot at each frame."""
-    seen = [[view.position(place) for place in path] for path in places]
-    unseen = np.full(2, np.nan)
-    before, after = (np.array([unseen if at is None else at for at in path]) for path in seen)
-    color = side_color(joint)
-    return [
-        Stroke(segments(before), faded(INK, GHOST), 1.5, GHOST),
-        Stroke(segments(after), color, 1.5, 0.9),
-        Fill(circles(after, 2.5 * ui_scale(), 8), color),
-    ]
 
 
 # --- Lines that tell the camera

@@ -11,8 +11,7 @@ from ..actor.properties import KEYMARK_PG_lengths, in_meters
 from ..bridge.actor_bones import is_actor
 from ..character.properties import KEYMARK_PG_character
 from ..finish.properties import KEYMARK_PG_finish
-from ..follow.keypoint_properties import KEYMARK_PG_follow
-from ..follow.marker_properties import KEYMARK_PG_ignored_region, KEYMARK_PG_marker
+from ..follow.properties import KEYMARK_PG_follow, KEYMARK_PG_ignored_region, KEYMARK_PG_marker
 from ..footage.properties import KEYMARK_PG_camera_line, KEYMARK_PG_clip_state, placement_accessors
 from ..footage.take_footage import camera_chosen, clip_chosen, is_missing
 from ..keyframes.found_properties import KEYMARK_PG_match, KEYMARK_PG_matching

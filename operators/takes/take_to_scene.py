@@ -19,8 +19,8 @@ from ..bridge.footage_to_scene import show_footage, stored_path
 from ..bridge.keyframes import write_keyframes
 from ..bridge.motions.import_motion import armature_reference
 from ..follow.evidence import add_keypoint_file
-from ..follow.marker_properties import add_ignored_regions
-from ..follow.marker_styles import set_marker_color
+from ..follow.marker_search import set_marker_color
+from ..follow.properties import add_ignored_regions
 from ..footage.load_footage import hide_startup_cube
 from ..footage.take_footage import look_through_camera, show_range
 from ..keyframes.found_result import add_candidate, add_match

@@ -13,7 +13,7 @@ from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.pose import write_posture
-from keymark.operators.follow.marker_properties import SEGMENTS
+from keymark.operators.follow.properties import SEGMENTS
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")

@@ -9,8 +9,7 @@ import pytest
 from keymark.core.detect.keypoint_file import write_keypoints
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
-from keymark.operators.follow.evidence import clicked_here, scene_evidence
-from keymark.operators.follow.frame_keypoints import clicks_at, keypoints_at
+from keymark.operators.follow.evidence import clicked_here, clicks_at, keypoints_at, scene_evidence
 from keymark.operators.shell.takes import active_take, footage_of
 
 FRAMES = 13

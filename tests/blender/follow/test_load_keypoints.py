@@ -14,10 +14,10 @@ from keymark.core.detect.families.instant_hmr import LAYOUT
 from keymark.core.detect.keypoint_file import write_keypoints
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
-from keymark.operators.follow.evidence import keypoint_path
-from keymark.operators.follow.frame_keypoints import (
+from keymark.operators.follow.evidence import (
     clear_readings,
     contours_label,
+    keypoint_path,
     keypoint_reading,
     keypoints_at,
     keypoints_label,

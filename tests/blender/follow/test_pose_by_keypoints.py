@@ -9,7 +9,7 @@ import pytest
 from _results import posture_of
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.pose import write_posture
-from keymark.operators.follow.frame_keypoints import clear_readings
+from keymark.operators.follow.evidence import clear_readings
 from keymark.operators.shell.takes import active_take
 
 

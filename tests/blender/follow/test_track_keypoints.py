@@ -9,7 +9,7 @@ from keymark.core.detect.keypoints import People
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.scene_evidence import AssignedTrack, people_of_tracks
-from keymark.operators.follow.frame_keypoints import keypoints_at
+from keymark.operators.follow.evidence import keypoints_at
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take, assigned_tracks, footage_of
 

@@ -12,7 +12,7 @@ from keymark.core.errors import InputError
 from keymark.core.markers.ignored_regions import IgnoredRegion
 from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.bridge.pose import write_posture
-from keymark.operators.follow.marker_properties import add_ignored_regions
+from keymark.operators.follow.properties import add_ignored_regions
 from keymark.operators.keyframes.corrections import camera_now
 from keymark.operators.keyframes.store_keyframe import improve_neighbors
 from keymark.operators.shell import results

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from _performances import made_up_keypoints, made_up_review
 from keymark.core.review.review import Review
-from keymark.operators.follow.frame_keypoints import FrameKeypoints
+from keymark.operators.follow.evidence import FrameKeypoints
 from keymark.operators.overlays import motion
 from keymark.operators.overlays.drawing import SOURCES, THROWN_OUT, Label, Stroke, Style
-from keymark.operators.overlays.marks import all_sources, compared_marks, not_yet_compared, seen_marks
+from keymark.operators.overlays.motion import all_sources, compared_marks, not_yet_compared, seen_marks
 from keymark.operators.overlays.views import ClipView
 from keymark.operators.shell import takes
 from keymark.operators.shell.footage_view import FootageView

@@ -12,8 +12,7 @@ from keymark.core.review.review import Review
 from keymark.operators.overlays import motion
 from keymark.operators.overlays.drawing import SMALLEST, Fill, Label, Stroke, Style, body_scale, merged
 from keymark.operators.overlays.legend import Sample, corner, legend
-from keymark.operators.overlays.marks import paths, window
-from keymark.operators.overlays.motion import skeleton
+from keymark.operators.overlays.motion import paths, skeleton, window
 from keymark.operators.overlays.views import ClipView, world_view
 from keymark.operators.shell import results, takes
 from keymark.operators.shell.footage_view import FootageView

@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 from _faults import GROWING, Killed, disk_full, faulty_calls, tree
 from keymark.core.errors import BusyError, ConversionError, InputError, KeymarkError
-from keymark.core.files.commit import backup_name
-from keymark.core.files.output_folder import output_folder
+from keymark.core.files.output_folder import backup_name, output_folder
 
 MANIFEST = "manifest.json"
 OWN_FILES = (MANIFEST, "a.bin", "b.bin", "pictures/one.png", "pictures/two.png", "extra/three.png")

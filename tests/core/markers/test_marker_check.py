@@ -19,10 +19,9 @@ from _drawn_clip import (
     with_panel,
 )
 from keymark.core.markers.ignored_regions import IgnoredRegion
-from keymark.core.markers.marker_check import MarkerCheck, check_markers
+from keymark.core.markers.marker_check import Likeness, MarkerCheck, check_markers, marker_warnings, places
 from keymark.core.markers.region_tracks import ExpectedRegions, MarkerStyle
 from keymark.core.markers.regions import color_masks, mask_outlines
-from keymark.core.markers.still_areas import Likeness, marker_warnings, places
 from keymark.core.progress import run
 from keymark.core.video.clip import sample_clip
 

@@ -59,7 +59,7 @@ class Person:
     def look(self, name: str) -> Steps[None]:
         yield from turns(4)
         self.camera.shoot(name)
-        failed = keymark("operators.overlays.registry").failures()
+        failed = keymark("operators.overlays.registry").FAILURES
         expect(not failed, f"overlays failed: {failed}")
         shown = controls()
         expect(len(shown) <= MOST_CONTROLS, f"the sidebar shows {len(shown)} controls: {shown}")

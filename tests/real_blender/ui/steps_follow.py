@@ -17,7 +17,7 @@ def keypoints(person: Person) -> Steps[None]:
     yield from person.changes_nothing("cancelling the file browser", lambda: browse(person, *loading, "ESC"))
     yield from person.undoable("loading keypoints", lambda: browse(person, *loading, "RET"))
     expect(len(person.take.follow.files) == 1, "no keypoints were loaded")
-    label = keymark("operators.follow.frame_keypoints").keypoints_label(person.take)
+    label = keymark("operators.follow.evidence").keypoints_label(person.take)
     print(f"{person.hands.clicks - before} clicks to load keypoints, once cancelled; seen: {label}")
     expect(label.partition(" of ")[0] not in ("", "0"), f"the panel says {label!r} of keypoints")
     yield from person.look("keypoints")
@@ -75,7 +75,7 @@ def clip_editor(person: Person) -> Steps[None]:
     yield from person.hands.open_sidebar("CLIP_EDITOR", "Keymark")
     yield from person.hands.move_over("CLIP_EDITOR")
     yield from person.hands.press("HOME")
-    label = keymark("operators.follow.frame_keypoints").tracks_label(person.take)
+    label = keymark("operators.follow.evidence").tracks_label(person.take)
     expect(label == "1 of 1", f"the panel says {label!r} of tracks")
     yield from person.look("tracks")
     person.hands.area("CLIP_EDITOR").ui_type = "VIEW_3D"

@@ -195,7 +195,7 @@ def expect_asked(person: Person, number: int) -> None:
     segment = person.known.markers[number].segment
     request = keymark("operators.shell.footage_view").shown_request()
     expect(request is not None, "nothing is asked for")
-    title = keymark("operators.follow.marker_properties").segment_title(segment)
+    title = keymark("operators.follow.properties").segment_title(segment)
     expect(title in request.title, f"{request.title!r} is asked for, not {title}")
     side = {"L": "own left", "R": "own right"}.get(segment[-1], "")
     expect(side in request.detail, f"the request for {segment} says {request.detail!r}")

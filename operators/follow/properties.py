@@ -1,17 +1,16 @@
-"""Properties of colored markers, and of regions of the picture that are never a marker."""
+"""Properties of what a take follows: markers, what is never one, keypoints, tracks and clicked points."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 from bpy.types import Context, PropertyGroup
 
 from ...core.body.human import HUMAN
-from ..shell.fields import HIDDEN, Choice, Entries, Integer, Number, Switch, Text, Vector
-from ..shell.takes import footage_of, unique_name
-
-if TYPE_CHECKING:
-    from ...core.markers.ignored_regions import IgnoredRegion
+from ...core.detect.keypoints import FACE, FEET, HANDS, SPINE
+from ...core.markers.ignored_regions import IgnoredRegion
+from ..shell.fields import HIDDEN, RELATIVE_PATH, Choice, Entries, Integer, Number, Switch, Text, Vector
+from ..shell.takes import footage_of, redraw_footage, unique_name
 
 
 def take_of(entry: PropertyGroup, entries: str) -> PropertyGroup | None:
@@ -83,29 +82,26 @@ class KEYMARK_PG_ignored_region(bpy.types.PropertyGroup):
     last_frame: _scene_frame("Last Frame", "Last frame of the scene in which the region is left out", "last")
 
 
-PLACES = 2  # Decimals of a pixel that files keep: Blender's own numbers are of single precision
-
-
-def ignored_regions(take: PropertyGroup) -> "tuple[IgnoredRegion, ...]":
+def ignored_regions(take: PropertyGroup) -> tuple[IgnoredRegion, ...]:
     """The regions of a take."""
-    from ...core.markers.ignored_regions import IgnoredRegion
 
     def rounded(numbers: Iterable[float]) -> tuple[Any, ...]:
-        return tuple(round(float(value), PLACES) for value in numbers)
+        # Files keep two decimals of a pixel: Blender's own numbers are of single precision.
+        return tuple(round(float(value), 2) for value in numbers)
 
     regions = []
     for region in take.ignored_regions:
         frames = (int(region.first), int(region.last)) if region.some_frames else None
-        if len(region.stroke):
-            stroke = tuple(rounded(point.pixel) for point in region.stroke)
-            radius_px = round(float(region.radius), PLACES)
-            regions.append(IgnoredRegion(stroke=stroke, radius_px=radius_px, frames=frames))
-        else:
-            regions.append(IgnoredRegion(box=rounded(region.box), frames=frames))
+        stroke, (radius_px,) = (
+            tuple(rounded(point.pixel) for point in region.stroke),
+            rounded([region.radius]),
+        )
+        brushed = {"stroke": stroke, "radius_px": radius_px} if stroke else {"box": rounded(region.box)}
+        regions.append(IgnoredRegion(**brushed, frames=frames))
     return tuple(regions)
 
 
-def add_ignored_regions(take: PropertyGroup, regions: "Iterable[IgnoredRegion]") -> None:
+def add_ignored_regions(take: PropertyGroup, regions: Iterable[IgnoredRegion]) -> None:
     """Add regions to a take; the last becomes the active one."""
     length = take.clip.frame_duration if take.clip is not None else 1
     for region in regions:
@@ -192,6 +188,122 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
         """Whether the readout is of the footage of the take that the marker belongs to."""
         contents = take.clip_state.contents
         return bool(self.sampled and take.clip is not None and self.checked_clip == contents)
+
+
+# --- Keypoints
+
+
+COLUMNS = (
+    ("Joints", HUMAN.point_names),
+    ("Head and Trunk", (*FACE, *SPINE)),
+    ("Hands and Feet", (*HANDS, *FEET)),
+)
+"""Heading and points of each column."""
+NO_POINT = "NONE"
+
+
+def body_point_items(without: str = "") -> list[tuple[str, str, str]]:
+    """Items of a menu of the body points; with an entry for none where that has a label."""
+    items: list[tuple[str, str, str]] = [(NO_POINT, without, "")] if without else []
+    for heading, points in COLUMNS:
+        items.append(("", heading, ""))
+        items += [(point, segment_title(point), "") for point in points]
+    return items
+
+
+def _redraw(_group: PropertyGroup, context: Context) -> None:
+    redraw_footage(context)  # where the keypoints are drawn
+
+
+class KEYMARK_PG_keypoint_file(bpy.types.PropertyGroup):
+    """A file of keypoints, or a folder with a file a frame."""
+
+    filepath: Text(
+        "File",
+        "The file of keypoints, or the folder with a file a frame",
+        subtype="FILE_PATH",
+        options=RELATIVE_PATH,
+    )
+    absolute_path: Text(
+        "Absolute Path", "The same from the root, for a .blend that is saved elsewhere", options=HIDDEN
+    )
+    is_used: Switch("Use", "Hold the motion against these keypoints", default=True, update=_redraw)
+    contents: Text("Contents", "Digest of the file when it was loaded", options=HIDDEN)
+
+
+class KEYMARK_PG_track_choice(bpy.types.PropertyGroup):
+    """What a person chose a motion track of the clip to follow, whatever its name."""
+
+    owner: Text("Object", "Name of the tracking object that the track belongs to")
+    track: Text("Track", "Name of the motion track")
+    point: Text("Body Point", "The body point that it follows; empty for none")
+
+
+class KEYMARK_PG_clicked_point(bpy.types.PropertyGroup):
+    """A body point that was clicked on in one frame."""
+
+    point: Text("Body Point", "The point of the body")
+    frame: Integer("Frame", "Frames after the clip's first one")
+    pixel: Vector("Pixel", "Where, in pixels of the footage from its top left corner", size=2)
+
+
+class KEYMARK_PG_follow(bpy.types.PropertyGroup):
+    """What a take follows in the footage."""
+
+    use_markers: Switch(
+        "Follow Markers",
+        "Hold the motion against the colored markers of the list",
+        default=True,
+        update=_redraw,
+    )
+    use_keypoints: Switch(
+        "Follow Keypoints",
+        "Hold the motion against points of the body that a detector found or you clicked on",
+        default=True,
+        update=_redraw,
+    )
+    use_depth_hints: Switch(
+        "Depth Hints",
+        "Take a detector's guess of depths as a hint, where its file has one; "
+        "it is calibrated at your keyframes and never believed over them",
+        default=True,
+    )
+    use_hands: Switch(
+        "Hands",
+        "Look at hands where they are large enough, so that palms face where they are seen to; what you pose "
+        "stays as it is",
+        default=True,
+    )
+    use_tracks: Switch(
+        "Follow Tracks",
+        "Hold the motion against the clip's own motion tracks that follow points of the body",
+        default=True,
+        update=_redraw,
+    )
+    use_contours: Switch(
+        "Follow Contours",
+        "Hold the motion against the outline of the body, where the camera stands still",
+        default=True,
+    )
+    reference: Text(
+        "Reference Motion",
+        "A 3D motion of the same performance from elsewhere, as a neural network's: it is "
+        "turned, placed and mended as the footage shows, and needs no keyframes",
+        subtype="FILE_PATH",
+        options=RELATIVE_PATH,
+    )
+    files: Entries(type=KEYMARK_PG_keypoint_file)
+    active_file: Integer("Active File", "The file of keypoints that is chosen in the list", default=0, min=0)
+    tracks: Entries(type=KEYMARK_PG_track_choice)
+    active_track: Integer("Active Track", "The track that is chosen in the list", default=0, min=0)
+    clicks: Entries(type=KEYMARK_PG_clicked_point)
+    active_click: Integer("Active Click", "The clicked point that is chosen in the list", default=0, min=0)
+    clicked_point: Choice(
+        "Body Point",
+        "The point of the body to click on next; left and right are the performer's own",
+        items=body_point_items(),
+        default="wrist.L",
+    )
 
 
 ATTACHED = {

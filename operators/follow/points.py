@@ -1,4 +1,4 @@
-"""Points of the body that a person clicks on in the frames of a take."""
+"""Points of the body that a person clicks on in the frames of a take, or names a motion track after."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,17 +9,17 @@ from bpy.types import Context, PropertyGroup
 
 from ...core.body.human import HUMAN
 from ...core.detect.keypoints import BODY_POINTS
+from ...core.detect.layouts import named_point
 from ...core.errors import InputError
+from ..bridge.scene_evidence import clip_tracks
 from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.fields import SKIP_SAVE, Choice, Text, Vector
 from ..shell.footage_clicks import ClickSequence
 from ..shell.footage_view import FootageRequest, side_of
 from ..shell.requirements import footage, idle, keypoint_files
 from ..shell.takes import active_take, redraw_footage, redraw_sidebars_soon
-from .evidence import clicked_here, clicked_points, clip_frame
-from .frame_keypoints import keypoints_at
-from .marker_properties import segment_title
-from .tracks import body_point_items
+from .evidence import clicked_here, clicked_points, clip_frame, keypoints_at
+from .properties import NO_POINT, body_point_items, segment_title
 
 
 def set_click(take: PropertyGroup, point: str, pixel: Sequence[float], frame: int) -> None:
@@ -176,3 +176,31 @@ class KEYMARK_OT_click_performer(ClickSequence, BaseOperator, bpy.types.Operator
         set_click(take, point, pixel, clip_frame(take))
         redraw_footage(context)
         self.report({"INFO"}, f"The performer is known by the point {segment_title(point)}")
+
+
+class KEYMARK_OT_assign_track(BaseOperator, bpy.types.Operator):
+    """Choose the body point that this motion track follows; tracks that are named after one need no choice"""
+
+    bl_label = "Assign Track"
+    requirements = (footage, idle)
+
+    owner: Text("Object", "Name of the tracking object that the track belongs to")
+    track: Text("Track", "Name of the motion track")
+    point: Choice(
+        "Body Point",
+        "The body point that the track follows; left and right are the performer's own",
+        items=body_point_items("No Body Point"),
+    )
+
+    def run(self, context: Context) -> None:
+        take = active_take(context.scene)
+        if (self.owner, self.track) not in {(owner, track.name) for owner, track in clip_tracks(take.clip)}:
+            raise InputError(f"clip '{take.clip.name}' has no track '{self.track}' of object '{self.owner}'")
+        choices, point = take.follow.tracks, "" if self.point == NO_POINT else self.point
+        for number in reversed(range(len(choices))):
+            if (choices[number].owner, choices[number].track) == (self.owner, self.track):
+                choices.remove(number)
+        if point != (named_point(self.track) or ""):
+            choice = choices.add()
+            choice.owner, choice.track, choice.point = self.owner, self.track, point
+        redraw_footage(context)
