@@ -17,14 +17,10 @@ from scipy.ndimage import gaussian_filter1d
 from ..arrays import Array, BoolArray, Image, IndexArray
 
 NO_PART = -1  # label of pixels without a part of the body
-BITS = 5
-LEVELS = 1 << BITS
+LEVELS = 32  # of each channel, 8 values wide
 CELLS = LEVELS**3
-CELL_VOLUME = (256 / LEVELS) ** 3
 UNSEEN = 0.02  # share of any surface's colors that a few frames do not show
-BLUR = gaussian_filter1d(np.eye(LEVELS), 1.0, axis=0, truncate=3.0)
-"""Smoothing matrix of a histogram along one axis."""
-UNSEEN_LOG_DENSITY = float(np.log(UNSEEN / (CELLS * CELL_VOLUME)))
+UNSEEN_LOG_DENSITY = float(np.log(UNSEEN / (CELLS * 8.0**3)))
 """Log density of a color that was never seen on any surface."""
 STEADY = 6.0  # standard deviation below which a background pixel is static, in levels
 
@@ -59,7 +55,7 @@ class Appearance:
 
     def part(self, index: IndexArray, pixels: Image) -> Array:
         """Log likelihood of pixels (..., 3) under the parts `index` (...), broadcast against them."""
-        return np.asarray(self.parts[index, _cells(pixels)])
+        return np.asarray(self.parts[index, histogram_cells(pixels, 5)])
 
     def background(self, row: IndexArray, column: IndexArray, pixels: Image) -> Array:
         """Log likelihood of pixels (..., 3) under the background at rows and columns (...).
@@ -67,7 +63,7 @@ class Appearance:
         In float64: exponentials of float32 differ between versions of numpy in their last digit, which moves
         edges by a millionth of a pixel and, now and then, onto the next pixel.
         """
-        anywhere = self.parts[-1, _cells(pixels)].astype(np.float64)
+        anywhere = self.parts[-1, histogram_cells(pixels, 5)].astype(np.float64)
         deviation = self.deviation[row, column].astype(np.float64)
         # Channel by channel: sums over an axis of three are slow.
         usual = [self.color[..., channel][row, column].astype(np.float64) for channel in range(3)]
@@ -115,8 +111,8 @@ def _counts(
         shifted = (label + 1).astype(np.uint8)
         interior = np.asarray(cv2.erode(shifted, kernel) == cv2.dilate(shifted, kernel))
         rows, columns = np.nonzero(interior & (label != NO_PART))
-        seen.append(label[rows, columns].astype(np.intp) * CELLS + _cells(image[rows, columns]))
-        seen.append(parts * CELLS + _cells(image[::2, ::2][~near[::2, ::2]]))
+        seen.append(label[rows, columns].astype(np.intp) * CELLS + histogram_cells(image[rows, columns], 5))
+        seen.append(parts * CELLS + histogram_cells(image[::2, ::2][~near[::2, ::2]], 5))
     return np.bincount(np.concatenate(seen), minlength=(parts + 1) * CELLS).reshape(parts + 1, CELLS)
 
 
@@ -126,18 +122,15 @@ def histogram_cells(pixels: Image, bits: int) -> IndexArray:
     return np.asarray((reduced[..., 0] << 2 * bits) | (reduced[..., 1] << bits) | reduced[..., 2])
 
 
-def _cells(pixels: Image) -> IndexArray:
-    return histogram_cells(pixels, BITS)
-
-
 def _log_densities(counts: IndexArray) -> Array:
     """Log densities per level³ of smoothed histograms (rows, cells)."""
     smoothed = counts.astype(np.float64).reshape(-1, LEVELS, LEVELS, LEVELS)
+    blur = gaussian_filter1d(np.eye(LEVELS), 1.0, axis=0, truncate=3.0)
     for _ in range(3):  # each time along the last axis, which then becomes the second
-        smoothed = np.moveaxis(smoothed @ BLUR, -1, 1)
+        smoothed = np.moveaxis(smoothed @ blur, -1, 1)
     smoothed = smoothed.reshape(counts.shape)
     share = smoothed / np.maximum(smoothed.sum(axis=1, keepdims=True), 1.0)
-    density = np.log((1.0 - UNSEEN) * share / CELL_VOLUME + np.exp(UNSEEN_LOG_DENSITY))
+    density = np.log((1.0 - UNSEEN) * share / 8.0**3 + np.exp(UNSEEN_LOG_DENSITY))
     return np.asarray(density.astype(np.float32))
 
 

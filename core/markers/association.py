@@ -19,7 +19,6 @@ from .region_tracks import ExpectedRegions, Regions
 HIGHEST_FRAGMENT_COST = 10.0  # highest cost of a region that counts as a fragment of a marker
 RESTART_COST = 10.0
 STILL_STEP_PX = 1.5
-TAKEN_COST = 20.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,12 +139,13 @@ def rival_costs(
 
     `taken` says (N,) whether a region is a rival's already; `rivals` are the other markers of its color.
     """
-    cost = np.where(taken, TAKEN_COST, 0.0)
+    most = 20.0
+    cost = np.where(taken, most, 0.0)
     own = _relative_offset(found, expected, marker)
     for rival in rivals:
         nearer = own**2 - _relative_offset(found, expected, rival) ** 2
         # In units of the generous radius.
-        cost += np.clip(np.nan_to_num(0.5 * nearer / 0.2**2), 0.0, TAKEN_COST)
+        cost += np.clip(np.nan_to_num(0.5 * nearer / 0.2**2), 0.0, most)
     return np.asarray(cost)
 
 

@@ -102,9 +102,23 @@ class ColorLearner:
         """A sentence that begins with the name, for each marker found nowhere, by index."""
         if self._learned is None:
             return {}
-        counts = self._learned.background_counts
-        missing = [marker for color in self._missing.tolist() for marker in self.groups[color]]
-        return {marker: _complaint(self._styles[marker], counts) for marker in missing}
+        counts, sentences = self._learned.background_counts, {}
+        for marker in (marker for color in self._missing.tolist() for marker in self.groups[color]):
+            name, sample = self._styles[marker].name, self._styles[marker].color_srgb
+            color, share = list(sample), share_of_color(counts, sample)
+            if share > 0.02:  # a wall's or a floor's
+                sentences[marker] = (
+                    f"{name} has the color {color}, which {100.0 * share:.0f} % of the picture around the "
+                    "markers have too, so it cannot be told apart; wear a color that the surroundings do not "
+                    "have"
+                )
+            else:
+                nearest = ", ".join(str(list(near)) for near in nearest_colors(counts, sample))
+                sentences[marker] = (
+                    f"{name} has the color {color}, which matches nothing in the clip; pick it on the marker "
+                    f"in a frame (the nearest colors found are {nearest})"
+                )
+        return sentences
 
     @property
     def _missing(self) -> IndexArray:
@@ -145,44 +159,24 @@ class ColorLearner:
         return masks
 
 
-def _complaint(style: MarkerStyle, counts: Array) -> str:
-    """Why a color was not found, by the background's histogram (CELL_COUNT,), as a sentence."""
-    color = list(style.color_srgb)
-    share = share_of_color(counts, style.color_srgb)
-    if share > 0.02:  # a wall's or a floor's
-        return (
-            f"{style.name} has the color {color}, which {100.0 * share:.0f} % of the picture around the "
-            "markers have too, so it cannot be told apart; wear a color that the surroundings do not "
-            "have"
-        )
-    nearest = ", ".join(str(list(near)) for near in nearest_colors(counts, style.color_srgb))
-    return (
-        f"{style.name} has the color {color}, which matches nothing in the clip; pick it on the marker "
-        f"in a frame (the nearest colors found are {nearest})"
-    )
-
-
 def color_groups(styles: Sequence[MarkerStyle]) -> list[list[int]]:
     """Group the indices of the markers by color; markers of indistinguishable colors are together."""
     groups: list[list[int]] = []
     samples = [sample_distribution(style.color_srgb) for style in styles]
     for index, one in enumerate(samples):
-        for group in groups:
-            # Light may make those equal that are nearer than this squared Mahalanobis distance.
-            if any(_squared_distance(one, samples[other]) < 2.5 for other in group):
-                group.append(index)
-                break
-        else:
+        alike = set()
+        for known, other in enumerate(samples[:index]):
+            offset, light = one.mean - other.mean, (one.log_luma - other.log_luma) ** 2
+            squared = float(offset @ np.linalg.solve(one.covariance + other.covariance, offset))
+            squared += light / (one.log_luma_deviation**2 + other.log_luma_deviation**2)
+            if squared < 2.5:  # by Mahalanobis: light may make them equal
+                alike.add(known)
+        group = next((group for group in groups if alike.intersection(group)), None)
+        if group is None:
             groups.append([index])
+        else:
+            group.append(index)
     return groups
-
-
-def _squared_distance(one: ColorDistribution, other: ColorDistribution) -> float:
-    """By the covariance of their difference."""
-    offset = one.mean - other.mean
-    squared = float(offset @ np.linalg.solve(one.covariance + other.covariance, offset))
-    light = (one.log_luma - other.log_luma) ** 2
-    return squared + light / (one.log_luma_deviation**2 + other.log_luma_deviation**2)
 
 
 @dataclass(frozen=True, eq=False)

@@ -144,8 +144,33 @@ def ignored_regions(
     Raises:
         InputError: One lies beside the picture.
     """
-    field = f"{source}: {IGNORED_REGIONS}"
-    return tuple(_region(one, size, frame_start, f"{field}[{i}]") for i, one in enumerate(regions))
+    made, farthest = [], max(size)
+    for number, region in enumerate(regions):
+        where = f"{source}: {IGNORED_REGIONS}[{number}]"
+        first, last = region.frames or (frame_start, frame_start)
+        frames = None if region.frames is None else (first - frame_start, last - frame_start)
+        stroke = tuple((x, y) for x, y in region.stroke or ())
+        parts = [*(region.box or ()), *(part for point in stroke for part in point)]
+        if any(not -farthest <= part <= 2 * farthest for part in parts):
+            if region.box is not None:
+                refuse(where, "box", list(region.box), VALID_BOX)
+            refuse(where, "stroke", [list(point) for point in stroke], VALID_STROKE)
+        if region.box is None:
+            radius_px = region.radius_px or 0.0
+            if radius_px > farthest:
+                valid = f"a number from 0.5 to {farthest} pixels of the footage"
+                refuse(where, "radius_px", radius_px, valid)
+            made.append(IgnoredRegion(stroke=stroke, radius_px=radius_px, frames=frames))
+            continue
+        left, top, right, bottom = region.box
+        sides = shown([int(part) if part.is_integer() else part for part in region.box])
+        if left >= right or top >= bottom:
+            raise InputError(f"{where}: box is {sides}, which holds no pixel; it must be {VALID_BOX}")
+        if left >= size[0] or top >= size[1] or right <= 0.0 or bottom <= 0.0:
+            picture = f"the picture of {size[0]} x {size[1]} pixels"
+            raise InputError(f"{where}: box is {sides}, which lies beside {picture}")
+        made.append(IgnoredRegion(box=(left, top, right, bottom), frames=frames))
+    return tuple(made)
 
 
 def ignored_region_fields(regions: Sequence[IgnoredRegion], frame_start: int) -> list[dict[str, Any]]:
@@ -157,31 +182,3 @@ def ignored_region_fields(regions: Sequence[IgnoredRegion], frame_start: int) ->
         if one.frames is not None:
             listed[-1]["frames"] = [index + frame_start for index in one.frames]
     return listed
-
-
-def _region(region: RegionFields, size: tuple[int, int], frame_start: int, where: str) -> IgnoredRegion:
-    frames = None
-    if region.frames is not None:
-        first, last = (frame - frame_start for frame in region.frames)
-        frames = (first, last)
-    farthest = max(size)
-    points = [*(region.box or ()), *(part for point in region.stroke or () for part in point)]
-    if any(not -farthest <= part <= 2 * farthest for part in points):
-        if region.box is not None:
-            refuse(where, "box", list(region.box), VALID_BOX)
-        refuse(where, "stroke", [list(point) for point in region.stroke or ()], VALID_STROKE)
-    if region.box is None:
-        if (region.radius_px or 0.0) > farthest:
-            valid = f"a number from 0.5 to {farthest} pixels of the footage"
-            refuse(where, "radius_px", region.radius_px, valid)
-        stroke = tuple((x, y) for x, y in region.stroke or ())
-        return IgnoredRegion(stroke=stroke, radius_px=region.radius_px or 0.0, frames=frames)
-    left, top, right, bottom = region.box
-    sides = shown([int(part) if part.is_integer() else part for part in region.box])
-    if left >= right or top >= bottom:
-        raise InputError(f"{where}: box is {sides}, which holds no pixel; it must be {VALID_BOX}")
-    if left >= size[0] or top >= size[1] or right <= 0.0 or bottom <= 0.0:
-        raise InputError(
-            f"{where}: box is {sides}, which lies beside the picture of {size[0]} x {size[1]} pixels"
-        )
-    return IgnoredRegion(box=(left, top, right, bottom), frames=frames)

@@ -9,16 +9,13 @@ from numpy.typing import NDArray
 
 from ..arrays import Array, Image, IndexArray, IntArray
 from ..video.working_image import smooth
-from .color_model import CELL_COUNT, SIDE, ColorDistribution, cell_chromaticity, cell_index, weigh
+from .color_model import BACKGROUND, CELL_COUNT, SIDE, ColorDistribution, cell_chromaticity, cell_index, weigh
 from .ignored_regions import is_ignored
 from .moments import CROSS
 
 _Number = TypeVar("_Number", bound=np.generic)
 
 LEARNING_NOISE_LEVELS = 2.5  # less than in classification: pixels explained by noise alone teach nothing
-NO_MARKER = 255
-# A Gaussian kernel of one cell's deviation, cut off after two.
-SPREAD = np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2) / np.sum(np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2))
 
 
 class CroppedMask(NamedTuple):
@@ -63,14 +60,14 @@ class IndexedFrames:
         nearest = np.argmax([density for _, density in pairs], axis=0)
         distance = np.array([squared for squared, _ in pairs])[nearest, np.arange(len(nearest))]
         # 95 % of χ² with 3 degrees of freedom.
-        return np.where(distance < 7.8, nearest, NO_MARKER).astype(np.uint8)
+        return np.where(distance < 7.8, nearest, BACKGROUND).astype(np.uint8)
 
     def weighed(
         self, distributions: Sequence[ColorDistribution], pixels: IntArray, background: Array
     ) -> Image:
         """Label each color of the table by its likeliest marker; 255 where the background is likelier."""
         label, probability = weigh(distributions, pixels, background[self._table], self._chroma, self._luma)
-        return np.where(probability >= 0.5, label, NO_MARKER).astype(np.uint8)
+        return np.where(probability >= 0.5, label, BACKGROUND).astype(np.uint8)
 
     def regions(self, labels: Image, core: Image, markers: int) -> list[list[CroppedMask]]:
         """For each frame and marker, its connected regions with enough of its core color."""
@@ -78,7 +75,7 @@ class IndexedFrames:
         for image, ignored in zip(self._images, self._ignored, strict=True):
             label = labels.take(image)
             if ignored is not None:
-                label[ignored] = NO_MARKER
+                label[ignored] = BACKGROUND
             result.append([_core_regions(label, image, core, marker) for marker in range(markers)])
         return result
 
@@ -106,10 +103,13 @@ class IndexedFrames:
             total += np.bincount(image.ravel(), weights=1.0 - near.ravel(), minlength=len(self._table))
         counts, side = np.zeros(CELL_COUNT), SIDE
         counts[self._table] = total
+        # A Gaussian of one cell's deviation, cut off after two.
+        spread = np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2)
+        spread /= np.sum(spread)
         # Two channels are rows and columns of an image with as many channels as cells in the third.
         cube, edge = counts.reshape(side, side, side), cv2.BORDER_REPLICATE
-        cube = np.asarray(cv2.sepFilter2D(cube, -1, SPREAD, SPREAD, borderType=edge))
-        lines = cv2.sepFilter2D(cube.reshape(-1, side), -1, SPREAD, np.ones(1), borderType=edge)
+        cube = np.asarray(cv2.sepFilter2D(cube, -1, spread, spread, borderType=edge))
+        lines = cv2.sepFilter2D(cube.reshape(-1, side), -1, spread, np.ones(1), borderType=edge)
         return np.asarray(lines.ravel(), dtype=np.float64)
 
 

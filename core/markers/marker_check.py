@@ -80,7 +80,6 @@ def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
 
 
 NEARLY_ALWAYS = 0.9  # share of the samples in which a still pixel has the color; limbs pass before it
-MARGIN = 2  # pixels of the measuring grid around a still area that lens and encoding blend its color into
 SIDE = cv2.getStructuringElement(cv2.MORPH_RECT, (3, 3))
 THIRDS = (
     ("top left", "top", "top right"),
@@ -133,7 +132,8 @@ def _boxes(share: Array, found: Candidates, size: tuple[int, int]) -> tuple[Pixe
     `share` (rows, columns) is that of the sampled frames in which each pixel has the color.
     """
     scale, still = 1 << halvings(size), share >= NEARLY_ALWAYS
-    grown = np.asarray(cv2.dilate(still.view(np.uint8), SIDE, iterations=MARGIN), dtype=np.uint8)
+    # Lens and encoding blend its color into two pixels around a still area.
+    grown = np.asarray(cv2.dilate(still.view(np.uint8), SIDE, iterations=2), dtype=np.uint8)
     least = 0.1 * _moving_area(grown, found, scale)  # less is not worth a word
     if not least:
         return ()
@@ -153,7 +153,7 @@ def _boxes(share: Array, found: Candidates, size: tuple[int, int]) -> tuple[Pixe
 def _rests(area: BoolArray, share: Array) -> bool:
     """Whether the outline of a still area rests: few pixels about it have the color now and then."""
     mask = area.view(np.uint8)
-    around = cv2.dilate(mask, SIDE, iterations=2 * MARGIN).view(np.bool_)
+    around = cv2.dilate(mask, SIDE, iterations=4).view(np.bool_)
     now_and_then = around & (share >= 0.25) & (share < NEARLY_ALWAYS)  # by the marker that passes
     outline = np.count_nonzero(mask) - np.count_nonzero(cv2.erode(mask, SIDE))
     return bool(np.count_nonzero(now_and_then) <= 1.5 * outline)  # a second ring shows that it moves

@@ -74,7 +74,6 @@ def axis_angle_difference(first: ArrayLike, second: ArrayLike) -> Array:
 
 WEIGHT = np.diag([1.0 / 9.0, 1.0, 1.0]).astype(np.float32)
 """Luma varies within a surface by its shading, so it says less about coverage than chroma does."""
-SUM = np.ones((1, 3), dtype=np.float32)
 CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 
 
@@ -99,11 +98,12 @@ def coverage(image: Image, mask: Image) -> Coverage:
     color = cv2.cvtColor(image, cv2.COLOR_BGR2YCrCb).astype(np.float32)
     inner, has_inner = _local_mean(color, depth)
     outer, has_outer = _local_mean(color, np.bitwise_xor(grown, 1).astype(np.uint8))
-    axis = cv2.subtract(inner, outer)
+    axis, summed = cv2.subtract(inner, outer), np.ones((1, 3), dtype=np.float32)
     gain = cv2.transform(axis, WEIGHT)
-    length = cv2.transform(cv2.multiply(axis, gain), SUM) + 1.0  # one squared level: less is the same color
+    # One squared level: less is the same color.
+    length = cv2.transform(cv2.multiply(axis, gain), summed) + 1.0
     gain = cv2.divide(gain, cv2.merge([length] * 3))
-    start = cv2.transform(cv2.multiply(outer, gain), SUM)
+    start = cv2.transform(cv2.multiply(outer, gain), summed)
     start[~(has_inner & has_outer)] = np.nan
 
     pixel = np.flatnonzero(grown.view(np.bool_))

@@ -60,8 +60,20 @@ def reading_arrays(reading: Reading) -> Arrays:
     parts = {
         "album": {} if album is None else album.to_arrays(),
         "glimpses": {} if glimpses is None else glimpses.to_arrays(),
-        "seen": {} if seen is None else _detections_arrays(seen),
+        "seen": {},
     }
+    if seen is not None:  # concatenated regions with the index of each frame's first one; rounds likewise
+        counts, rounds = [len(found.color) for found in seen.regions], seen.learning_rounds
+        frames, first = sorted(seen.samples), [len(one.frames) for one in rounds]
+        parts["seen"] = {
+            "start": np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+            **{name: np.concatenate([getattr(at, name) for at in seen.regions]) for name in Regions._fields},
+            "lesson_start": np.concatenate([[0], np.cumsum(first)]).astype(np.int64),
+            "lesson_frames": np.array([frame for one in rounds for frame in one.frames], dtype=np.int64),
+            "taught": _text(tuple(one.model_digest for one in rounds)),
+            "sample_frames": np.array(frames, dtype=np.int64),
+            "samples": np.stack([seen.samples[frame] for frame in frames]),
+        }
     return arrays | {f"{part}.{name}": array for part, own in parts.items() for name, array in own.items()}
 
 
@@ -75,7 +87,18 @@ def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
         **{name: arrays[f"tracks.{name}"] for name in TRACKED},
     )
     album = Album.from_arrays(_under("album", arrays)) if "album.picture" in arrays else None
-    seen = _detections(_under("seen", arrays), tracks) if "seen.start" in arrays else None
+    seen, own = None, _under("seen", arrays)
+    if own:
+        everything = Regions(*(own[name] for name in Regions._fields))
+        learned, taught = own["lesson_frames"].tolist(), own["taught"].tolist()
+        lessons = zip(itertools.pairwise(own["lesson_start"].tolist()), taught, strict=True)
+        seen = Detections(
+            tuple(everything.part(first, end) for first, end in itertools.pairwise(own["start"].tolist())),
+            tracks.time_s,
+            tracks.size,
+            tuple(LearningRound(tuple(learned[first:end]), model) for (first, end), model in lessons),
+            dict(zip(own["sample_frames"].tolist(), own["samples"], strict=True)),
+        )
     frames, interlaced = arrays["noticed.rest"].tolist()
     noticed = {name: tuple(arrays[f"noticed.{name}"].tolist()) for name in NOTICED}
     findings = FrameFindings(frames=frames, interlaced=bool(interlaced), **noticed)
@@ -91,34 +114,6 @@ def _under(name: str, arrays: Mapping[str, NDArray[Any]]) -> Arrays:
 
 def _text(lines: tuple[str, ...]) -> NDArray[Any]:
     return np.array(lines, dtype=np.str_) if lines else np.zeros(0, dtype="<U1")
-
-
-def _detections_arrays(seen: Detections) -> Arrays:
-    """Concatenated regions with the index of each frame's first one; learning rounds likewise."""
-    counts = [len(found.color) for found in seen.regions]
-    learned = [len(one.frames) for one in seen.learning_rounds]
-    frames = sorted(seen.samples)
-    return {
-        "start": np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        **{name: np.concatenate([getattr(one, name) for one in seen.regions]) for name in Regions._fields},
-        "lesson_start": np.concatenate([[0], np.cumsum(learned)]).astype(np.int64),
-        "lesson_frames": np.array([f for one in seen.learning_rounds for f in one.frames], dtype=np.int64),
-        "taught": _text(tuple(one.model_digest for one in seen.learning_rounds)),
-        "sample_frames": np.array(frames, dtype=np.int64),
-        "samples": np.stack([seen.samples[frame] for frame in frames]),
-    }
-
-
-def _detections(arrays: Arrays, tracks: RegionTracks) -> Detections:
-    everything = Regions(*(arrays[name] for name in Regions._fields))
-    regions = tuple(everything.part(a, b) for a, b in itertools.pairwise(arrays["start"].tolist()))
-    frames, starts = arrays["lesson_frames"].tolist(), arrays["lesson_start"].tolist()
-    learning_rounds = tuple(
-        LearningRound(tuple(frames[a:b]), taught)
-        for (a, b), taught in zip(itertools.pairwise(starts), arrays["taught"].tolist(), strict=True)
-    )
-    samples = dict(zip(arrays["sample_frames"].tolist(), arrays["samples"], strict=True))
-    return Detections(regions, tracks.time_s, tracks.size, learning_rounds, samples)
 
 
 FORMAT = 3  # version of the reading's algorithm and arrays; raised whenever either changes
@@ -233,7 +228,6 @@ def without_tracks(tracks: RegionTracks, frames: Sequence[int]) -> RegionTracks:
     return replace(tracks, **arrays)
 
 
-MOST_CLIPS = 8  # clips whose times are remembered: those of the takes at hand
 _known: dict[tuple[str, float], Array] = {}
 
 
@@ -261,6 +255,6 @@ def clip_times(
             time_s = np.array(stamps, dtype=np.float64)
         time_s.setflags(write=False)
         _known[key] = time_s
-        for oldest in list(_known)[:-MOST_CLIPS]:
+        for oldest in list(_known)[:-8]:
             del _known[oldest]
     return _known[key]

@@ -9,8 +9,11 @@ import bpy
 import numpy as np
 from bpy.types import Context, Event, OperatorProperties, PropertyGroup
 
-from ...core.arrays import Array
+from ...core.body.actor import Actor
+from ...core.camera.camera_evidence import Uprights
 from ...core.errors import InputError, KeymarkError
+from ...core.markers.region_tracks import RegionTracks
+from ..bridge.scene_frames import scene_frames
 from ..footage.drawn_lines import (
     CLICKED_PX,
     HEIGHT,
@@ -28,25 +31,20 @@ from ..footage.properties import KINDS, still_camera
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.fields import SKIP_SAVE, Choice
 from ..shell.footage_clicks import ClickSequence
-from ..shell.footage_view import FootageRequest, FootageView, follow_mouse, view_of_footage_under
+from ..shell.footage_view import FootageRequest, FootageView, follow_mouse, ui_scale, view_of_footage_under
 from ..shell.requirements import camera, footage, idle
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of, redraw_sidebars_soon
 from .evidence import scene_evidence
 
 if TYPE_CHECKING:
-    from ...core.camera.camera_evidence import Uprights
     from ...core.camera.camera_fit import CameraFit
 
 
-def standing_performer(take: PropertyGroup, stature_m: float) -> "Uprights":
+def standing_performer(take: PropertyGroup, stature_m: float) -> Uprights:
     """Moments in which somebody of that stature is upright; none without keypoints of this clip."""
-    from ...core.body.actor import Actor
     from ...core.body.kinematics import Body
-    from ...core.camera.camera_evidence import Uprights
     from ...core.detect.standing_moments import standing_keypoints
-    from ...core.markers.region_tracks import RegionTracks
-    from ..bridge.scene_frames import scene_frames
     from ..bridge.take_from_scene import performers_keypoints
 
     if not TakeState(take).has_keypoints:
@@ -56,10 +54,7 @@ def standing_performer(take: PropertyGroup, stature_m: float) -> "Uprights":
         source = footage_of(take.id_data, take)
         time_s = np.arange(source.clip.frame_duration) / source.rate
         tracks = RegionTracks.unmarked(time_s, (source.clip.size[0], source.clip.size[1]))
-        frames, body = (
-            scene_frames(time_s, source.first_frame, source.rate),
-            Body(Actor.from_stature(stature_m)),
-        )
+        frames = scene_frames(time_s, source.first_frame, source.rate)
         keypoints = performers_keypoints(source, scene_evidence(take), frames, body, (), tracks)
         found = standing_keypoints(keypoints, body, source.rate)
         if len(found) >= 2:  # fewer tell nothing
@@ -135,12 +130,12 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
         action = "MOVE" if event.type == "MOUSEMOVE" else event.value
         if view is None or (action == "MOVE" and drawing.held is None):
             return {"PASS_THROUGH"} if action == "MOVE" else {"RUNNING_MODAL"}
-        x, y = view.to_footage(self._in_region(view))
-        pixel = float(x), float(y)
+        x, y = view.to_footage(self._mouse - (view.region.x, view.region.y))
+        pixel, near_px = (float(x), float(y)), NEAR_PX * ui_scale()
 
         def apart(one: Pixel, other: Pixel = pixel) -> float:
             """Distance in the region of two pixels, as a share of how near is near."""
-            return float(np.linalg.norm(view.to_region(one) - view.to_region(other))) / _scaled(NEAR_PX)
+            return float(np.linalg.norm(view.to_region(one) - view.to_region(other))) / near_px
 
         if action == "PRESS":
             drawing.press(pixel, context.scene.frame_current, apart)
@@ -207,9 +202,6 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
         x, y = self._mouse
         return view_of_footage_under(context, active_take(context.scene), int(x), int(y))
 
-    def _in_region(self, view: FootageView) -> Array:
-        return np.asarray(self._mouse - (view.region.x, view.region.y))
-
     def _distance_of_line(self, context: Context) -> Callable[[DrawnLine], float]:
         """Tells the distance from the mouse to a line in the region, as a share of how near is near."""
         view = self._view(context)
@@ -217,15 +209,11 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
         def distance(line: DrawnLine) -> float:
             if view is None:
                 return np.inf
-            mouse = self._in_region(view)
+            mouse = self._mouse - (view.region.x, view.region.y)
             start, end = view.to_region(np.array(line.ends))
             along = end - start
             share = float((mouse - start) @ along / max(float(along @ along), 1e-9))
             nearest = start + min(max(share, 0.0), 1.0) * along
-            return float(np.linalg.norm(mouse - nearest)) / _scaled(NEAR_PX)
+            return float(np.linalg.norm(mouse - nearest)) / (NEAR_PX * ui_scale())
 
         return distance
-
-
-def _scaled(length_px: float) -> float:
-    return length_px * (float(bpy.context.preferences.system.ui_scale) or 1.0)

@@ -12,7 +12,6 @@ from ...core.arrays import Array
 from ...core.detect.keypoints import People
 from ...core.errors import InputError
 from ...core.files.paths import real_path
-from ...core.markers.region_tracks import MarkerStyle
 from ..bridge.footage_camera import may_move
 from ..bridge.scene_evidence import (
     CLICKS,
@@ -35,7 +34,7 @@ def scene_evidence(take: PropertyGroup) -> SceneEvidence:
     follow = take.follow
     files = [entry for entry in follow.files if entry.is_used and follow.use_keypoints]
     return SceneEvidence(
-        markers=followed_markers(take),
+        markers=marker_styles(take) if follow.use_markers else (),
         files=tuple(keypoint_path(entry) for entry in files),
         tracks=assigned_tracks(take) if follow.use_tracks else (),
         clicks=clicked_points(take) if follow.use_keypoints else (),
@@ -44,11 +43,6 @@ def scene_evidence(take: PropertyGroup) -> SceneEvidence:
         ignored_regions=ignored_regions(take) if follow.use_markers else (),
         reference=Path(bpy.path.abspath(follow.reference)) if follow.reference else None,
     )
-
-
-def followed_markers(take: PropertyGroup) -> tuple[MarkerStyle, ...]:
-    """The styles of a take's markers, none where these are switched off."""
-    return marker_styles(take) if take.follow.use_markers else ()
 
 
 def clicked_points(take: PropertyGroup) -> tuple[ClickedPoint, ...]:

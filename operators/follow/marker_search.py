@@ -131,8 +131,8 @@ def find_markers(
     return (yield from within("Finding the markers", check, 0.7, 1.0))
 
 
-def _write_readouts(take: PropertyGroup, styles: tuple[MarkerStyle, ...], check: "MarkerCheck") -> list[str]:
-    """Store a check with the markers, and its colors for previews; return all warnings."""
+def _write_readouts(take: PropertyGroup, check: "MarkerCheck") -> None:
+    """Store a check with the markers."""
     update_clip_digest(take)
     readouts = {readout.name: readout for readout in check.readouts}
     for marker in take.markers:
@@ -148,8 +148,6 @@ def _write_readouts(take: PropertyGroup, styles: tuple[MarkerStyle, ...], check:
         for box in readout.still_boxes:
             marker.still_areas.add().box = box
         marker.checked_clip = take.clip_state.contents
-    keep_preview(take, styles, check)
-    return [sentence for readout in check.readouts for sentence in readout.warnings]
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +184,11 @@ def write_search(scene: Scene, found: MarkerSearch, masks: bool = False) -> list
         if marker.name in found.colors:
             set_marker_color(marker, found.colors[marker.name])
     add_ignored_regions(take, found.more)
-    warnings = [] if found.check is None else _write_readouts(take, found.styles, found.check)
+    warnings: list[str] = []
+    if found.check is not None:
+        warnings = [sentence for readout in found.check.readouts for sentence in readout.warnings]
+        _write_readouts(take, found.check)
+        keep_preview(take, found.styles, found.check)
     if masks:
         show_masks(context, True)
     if context.window_manager.keymark_show_masks:

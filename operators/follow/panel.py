@@ -75,6 +75,15 @@ class KEYMARK_UL_ignored_regions(RowList, bpy.types.UIList):
         right_end(row).label(text=text, translate=False)
 
 
+def _draw_list(
+    layout: UILayout, kind: str, owner: PropertyGroup, entries: str, active: str, rows: int = ROWS
+) -> UILayout:
+    """Draw a list; returns the column of buttons beside it."""
+    row = layout.row()
+    row.template_list(kind, "", owner, entries, owner, active, rows=rows)
+    return row.column(align=True)
+
+
 def _draw_markers(layout: UILayout, context: Context, take: PropertyGroup) -> None:
     """Draw the list, the active marker, and the operators of both."""
     picked = all(marker.is_picked for marker in take.markers)
@@ -87,37 +96,30 @@ def _draw_markers(layout: UILayout, context: Context, take: PropertyGroup) -> No
         layout.operator("keymark.add_usual_markers", icon="COMMUNITY")
         layout.operator("keymark.add_marker", icon="ADD")
         return
-    row = layout.row()
-    row.template_list("KEYMARK_UL_markers", "", take, "markers", take, "active_marker", rows=5)
-    buttons = row.column(align=True)
+    buttons = _draw_list(layout, "KEYMARK_UL_markers", take, "markers", "active_marker", rows=5)
     buttons.operator("keymark.add_marker", text="", icon="ADD")
     buttons.operator("keymark.remove_marker", text="", icon="REMOVE")
     if take.active_marker < len(take.markers):
-        _draw_marker(layout, context, take, take.markers[take.active_marker])
+        marker = take.markers[take.active_marker]
+        property_column(layout.column()).prop(marker, "segment")
+        readout = layout.column(align=True)
+        rows = {
+            "Found In": f"{marker.found} of {marker.sampled} frames",
+            "Area": f"{marker.area:.0f} px ({100.0 * marker.area_share:.2f}%)",
+            "Distinct": f"{100.0 * marker.distinctness:.0f}%",
+        }
+        for name, value in rows.items() if marker.has_readout(take) else ():
+            split = readout.split(factor=0.4)
+            right_end(split).label(text=name)
+            split.label(text=value, translate=False)
+        for sentence in marker.warning.splitlines() if marker.has_readout(take) else ():
+            draw_sentence(layout, context, sentence, icon="ERROR")
     _draw_ignored(layout, context, take)
     row = side_by_side(layout)
     if not draw_progress(row, context, "keymark.check_markers"):
         row.operator("keymark.check_markers", icon="VIEWZOOM")
     shown = context.window_manager.keymark_show_masks
     row.operator("keymark.show_masks", icon="HIDE_OFF" if shown else "HIDE_ON", depress=shown)
-
-
-def _draw_marker(layout: UILayout, context: Context, take: PropertyGroup, marker: PropertyGroup) -> None:
-    """Draw the active marker: its properties and its readout."""
-    property_column(layout.column()).prop(marker, "segment")
-    if not marker.has_readout(take):
-        return
-    readout = layout.column(align=True)
-    for name, value in (
-        ("Found In", f"{marker.found} of {marker.sampled} frames"),
-        ("Area", f"{marker.area:.0f} px ({100.0 * marker.area_share:.2f}%)"),
-        ("Distinct", f"{100.0 * marker.distinctness:.0f}%"),
-    ):
-        row = readout.split(factor=0.4)
-        right_end(row).label(text=name)
-        row.label(text=value, translate=False)
-    for sentence in marker.warning.splitlines():
-        draw_sentence(layout, context, sentence, icon="ERROR")
 
 
 def _draw_ignored(layout: UILayout, context: Context, take: PropertyGroup) -> None:
@@ -129,10 +131,8 @@ def _draw_ignored(layout: UILayout, context: Context, take: PropertyGroup) -> No
             row.operator("keymark.ignore_still_areas")
     if not len(take.ignored_regions):
         return
-    row = layout.row()
-    source = (take, "ignored_regions", take, "active_ignored")
-    row.template_list("KEYMARK_UL_ignored_regions", "", *source, rows=ROWS)
-    row.column(align=True).operator("keymark.remove_ignored_region", text="", icon="REMOVE")
+    buttons = _draw_list(layout, "KEYMARK_UL_ignored_regions", take, "ignored_regions", "active_ignored")
+    buttons.operator("keymark.remove_ignored_region", text="", icon="REMOVE")
     if take.active_ignored < len(take.ignored_regions):
         region, column = take.ignored_regions[take.active_ignored], property_column(layout.column())
         column.prop(region, "some_frames")
@@ -187,9 +187,7 @@ def _draw_keypoints(layout: UILayout, context: Context, take: PropertyGroup) -> 
     if not len(follow.files):
         layout.operator("keymark.load_keypoints", icon="FILE_FOLDER")
     else:
-        row = layout.row()
-        row.template_list("KEYMARK_UL_keypoint_files", "", follow, "files", follow, "active_file", rows=ROWS)
-        buttons = row.column(align=True)
+        buttons = _draw_list(layout, "KEYMARK_UL_keypoint_files", follow, "files", "active_file")
         buttons.operator("keymark.load_keypoints", text="", icon="ADD")
         buttons.operator("keymark.remove_keypoints", text="", icon="REMOVE")
         if follow.active_file < len(follow.files):

@@ -53,10 +53,7 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         items=body_point_items(),
     )
     pixel: Vector(
-        "Pixel",
-        "Where it is, in pixels of the footage from its top left corner",
-        size=2,
-        options=SKIP_SAVE,
+        "Pixel", "Where it is, in pixels of the footage from its top left corner", size=2, options=SKIP_SAVE
     )
 
     _before: Any = None

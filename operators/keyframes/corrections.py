@@ -49,11 +49,6 @@ def camera_now(scene: Scene, take: PropertyGroup) -> Camera:
     return read_camera(footage_of(scene, take), np.array([scene.frame_current_final]))
 
 
-def is_keyed(take: PropertyGroup, frame: float) -> bool:
-    """Whether a frame holds a keyframe."""
-    return take.keyframe_action is not None and has_frame(TakeState(take).keyed.all, frame)
-
-
 def set_corrected(
     operator: bpy.types.Operator, context: Context, take: PropertyGroup, posture: "Posture", in_depth: bool
 ) -> None:
@@ -68,7 +63,7 @@ def set_corrected(
     write_posture(take.armature, posture)
     redraw_footage(context)
     frame = context.scene.frame_current_final
-    if not is_keyed(take, frame):
+    if not has_frame(TakeState(take).keyed.all, frame):
         note_corrected(take, frame, in_depth)
         return
     improved = key_pose(context, take, depth_found=not in_depth and TakeState(take).depth_is_found(frame))
@@ -91,7 +86,7 @@ def put_right(
     where the points lie in the view, by name.
     """
     frame = scene.frame_current_final
-    if not is_keyed(take, frame) or not TakeState(take).depth_is_found(frame):
+    if not has_frame(TakeState(take).keyed.all, frame) or not TakeState(take).depth_is_found(frame):
         return shown
     from ...core.poses import picture_depth
     from ..library.registry_files import named_libraries

@@ -14,10 +14,11 @@ from ..bridge.object_space import evaluated, joint_places
 from ..bridge.scene_frames import Pose, pose_of, restore_pose
 from ..follow.properties import segment_title
 from ..overlays.motion import window
-from ..overlays.tools import Handles, show_handles, show_keys
+from ..overlays.tools import Handles, show_keys
 from ..shell.base_operator import BaseOperator, call, reported
 from ..shell.fields import Choice, Switch, Vector
 from ..shell.footage_clicks import NAVIGATION, WorldInRegion, view_under
+from ..shell.footage_view import ui_scale
 from ..shell.job_progress import job_is_running
 from ..shell.requirements import actor, all_met, idle
 from ..shell.take_state import TakeState
@@ -166,8 +167,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
 
     def invoke(self, context: Context, event: Event) -> set[str]:
         context.scene.keymark.overlays.only_character = False
-        self._handles = Handles()
-        show_handles(self._handles)
+        Handles.drawn = self._handles = Handles()
         context.window_manager.modal_handler_add(self)
         self._show(context)
         return {"RUNNING_MODAL"}
@@ -226,7 +226,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         take = find_take(context.scene) if context.scene is not None else None
         if drags[0] is not None and take is not None and take.armature is not None:
             drags[0].restore(take)
-        show_handles(None)
+        Handles.drawn = None
         if context.window is not None:  # None while Blender closes it or opens another file
             context.workspace.status_text_set(None)
             context.window.cursor_modal_restore()
@@ -338,5 +338,4 @@ def nearest_joint(take: PropertyGroup, view: WorldInRegion, mouse_x: int, mouse_
     positions = [view.position(place) for place in joint_places(take.armature)]
     away = [np.inf if each is None else float(np.linalg.norm(each - mouse)) for each in positions]
     nearest = int(np.argmin(away))
-    reach = 18.0 * (float(bpy.context.preferences.system.ui_scale) or 1.0)
-    return HUMAN.point_names[nearest] if away[nearest] <= reach else None
+    return HUMAN.point_names[nearest] if away[nearest] <= 18.0 * ui_scale() else None

@@ -31,33 +31,30 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
     """Found keyframes: frame, posture and confidence."""
 
     def draw_row(self, context: Context, layout: UILayout, item: PropertyGroup) -> None:
-        take = active_take(context.scene)
-        state = TakeState(take).of_match(item)
+        takes_state = TakeState(active_take(context.scene))
+        state, shown = takes_state.of_match(item), item.candidate
         row = layout.row(align=True)
         row.active = state != "GONE"
         number = row.row()
         number.ui_units_x = 1.6
         number.label(text=f"{item.frame:g}", translate=False)
         is_found = state == "FOUND"
-        icon, words = _how_sure(take, item) if is_found else STATES[state]
-        shown = item.candidate
+        if not is_found:
+            icon, words = STATES[state]
+        elif item.by_hand:
+            icon, words = "VIEW_PAN", "chosen"
+        elif takes_state.contradictions_at(item.frame):
+            icon, words = "ERROR", "contradicted"
+        elif item.confidence < DOUBTFUL:
+            icon, words = "QUESTION", "doubtful"
+        else:
+            icon, words = ("CHECKMARK", "sure") if item.confidence >= 0.8 else ("DOT", "likely")
         named = is_found and item.library != COMPOSED  # a composed one has the name of any that it resembles
         row.label(text=shown.name if named else words, icon=icon, translate=False)
         if named and shown.mirrored:
             row.label(text="", icon="MOD_MIRROR")
         if is_found:
             _draw_percent(row, item.confidence)
-
-
-def _how_sure(take: PropertyGroup, match: PropertyGroup) -> tuple[str, str]:
-    """Icon and words of a found keyframe: chosen by hand, contradicted, sure, fair or doubtful."""
-    if match.by_hand:
-        return "VIEW_PAN", "chosen"
-    if TakeState(take).contradictions_at(match.frame):
-        return "ERROR", "contradicted"
-    if match.confidence < DOUBTFUL:
-        return "QUESTION", "doubtful"
-    return ("CHECKMARK", "sure") if match.confidence >= 0.8 else ("DOT", "likely")
 
 
 def _draw_percent(row: UILayout, share: float) -> None:

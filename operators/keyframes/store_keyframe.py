@@ -13,7 +13,7 @@ from ...core.errors import KeymarkError
 from ...core.progress import run
 from ..bridge.actions import assign_action
 from ..bridge.scene_frames import at_scene_frame, scene_frames, showing_action
-from ..follow.evidence import followed_markers
+from ..follow.marker_search import marker_styles
 from ..follow.properties import ignored_regions
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.contradictions import note_contradictions
@@ -49,7 +49,7 @@ def improve_neighbors(context: Context, take: PropertyGroup, frame: float) -> in
     # The correction holds even where nothing can be found around it.
     with suppress(KeymarkError), _waiting(context):
         footage = footage_of(context.scene, take)
-        markers, ignored = followed_markers(take), ignored_regions(take)
+        markers, ignored = marker_styles(take) if take.follow.use_markers else (), ignored_regions(take)
         if of_same_footage(reading.key, reading_key(footage.path, footage.rate, markers, None, ignored)):
             return _pose_anew(context.scene, take, reading, frame)
     return 0

@@ -4,4 +4,4 @@ Draw functions use only what is in memory and read no file.
 """
 
 PROPERTIES = ("properties",)
-MODULES = ("mask", "registry")
+MODULES = ("panel", "mask", "registry")

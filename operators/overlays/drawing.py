@@ -10,7 +10,6 @@ from itertools import groupby
 from typing import ClassVar, Literal
 
 import blf
-import bpy
 import gpu
 import numpy as np
 from gpu_extras.batch import batch_for_shader
@@ -18,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from ...core.arrays import Array
 from ...core.body.human import LIGHT, side_of
+from ..shell.footage_view import ui_scale
 from .figures import triangles
 
 Color = tuple[float, float, float, float]
@@ -27,11 +27,6 @@ INK: Color = (1.0, 1.0, 1.0, 1.0)
 FONT = 0
 TEXT_SIZE = 11.0
 ALIGNMENTS = {"left": 0.0, "middle": 0.5, "right": 1.0}
-
-
-def ui_scale() -> float:
-    """Screen pixels for each unscaled pixel: resolution scale and high-density screens."""
-    return float(bpy.context.preferences.system.ui_scale) or 1.0  # 0 before there is a window
 
 
 def faded(color: Sequence[float], opacity: float) -> Color:

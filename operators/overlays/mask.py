@@ -11,7 +11,7 @@ from bpy.types import Context, Scene
 
 from ...core.arrays import Image, SingleArray
 from ...core.errors import KeymarkError
-from ..follow.ignore_region import Brush
+from ..follow.marker_tools import Brush
 from ..follow.mask_previews import (
     ColorMask,
     Preview,

@@ -1,4 +1,4 @@
-"""Registry of the overlays, their draw handlers in Blender's editors, and the popover of their switches."""
+"""Registry of the overlays, and their draw handlers in Blender's editors."""
 
 import logging
 from collections.abc import Callable, Iterable
@@ -11,7 +11,6 @@ from bpy.types import Context
 
 from ...core.errors import KeymarkError
 from ..shell.job_progress import job_is_running
-from ..shell.panel import Popover
 from . import candidates, mask, motion, timeline, tools
 from .drawing import Item, merged
 
@@ -80,25 +79,6 @@ def guarded(overlay: Overlay) -> Callable[[], None]:
             gpu.state.blend_set("NONE")
 
     return handler
-
-
-class KEYMARK_PT_overlays(Popover, bpy.types.Panel):
-    """Switches of what is drawn over the footage."""
-
-    bl_label = "Overlays"
-
-    def draw(self, context: Context) -> None:
-        layout, settings = self.layout, context.scene.keymark.overlays
-        for overlay, sentence in FAILURES.items():
-            layout.label(text="Switched off after an error:", icon="ERROR")
-            layout.label(text=overlay.name)
-            layout.label(text=sentence)
-        column = layout.column()
-        column.prop(settings, "only_character")
-        for each in settings.bl_rna.properties:
-            if each.identifier.startswith("show_"):
-                column.prop(settings, each.identifier)
-        column.prop(settings, "opacity")
 
 
 def register() -> None:

@@ -1,6 +1,7 @@
 """Overlays of running tools: joints to drag, lines that tell the camera, requests for clicks."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from bpy.types import Context
@@ -27,37 +28,29 @@ from .figures import circles, segments
 class Handles:
     """State of the tool that drags joints."""
 
+    drawn: "ClassVar[Handles | None]" = None  # the running tool's
     hovered: str | None = None  # the joint that the mouse is over or drags
     keys: str = ""  # what can be pressed now
     path: tuple[str, Array] | None = None
     """The joint dragged last, and its path (2, I, 3) [m] around this frame: as stored, and as dragged."""
 
 
-_handles: Handles | None = None
-
-
-def show_handles(handles: Handles | None) -> None:
-    """Draw the joints from now on; None ends the drawing."""
-    global _handles
-    _handles = handles
-
-
 def show_keys(context: Context, words: str) -> None:
     """Show in the status bar, and beside the joint under the mouse, what keys do now."""
     context.workspace.status_text_set(words)
-    if _handles is not None:
-        _handles.keys = words
+    if Handles.drawn is not None:
+        Handles.drawn.keys = words
 
 
 def draw_joints(context: Context) -> list[Item]:
     """A ring at each joint of the active take's actor in a 3D view, a larger one under the mouse."""
-    take = find_take(context.scene)
-    if _handles is None or take is None or take.armature is None:
+    take, handles = find_take(context.scene), Handles.drawn
+    if handles is None or take is None or take.armature is None:
         return []
     view, scale = WorldInRegion(context.region, context.region_data), ui_scale()
     items: list[Item] = []
-    if _handles.path is not None:  # faint as stored; in the side's color as dragged, with a dot at each frame
-        joint, places = _handles.path
+    if handles.path is not None:  # faint as stored; in the side's color as dragged, with a dot at each frame
+        joint, places = handles.path
         seen = [[view.position(place) for place in path] for path in places]
         unseen = np.full(2, np.nan)
         before, after = (np.array([unseen if at is None else at for at in path]) for path in seen)
@@ -68,12 +61,12 @@ def draw_joints(context: Context) -> list[Item]:
         position = view.position(place)
         if position is None:
             continue
-        hovered, color = name == _handles.hovered, side_color(name)
+        hovered, color = name == handles.hovered, side_color(name)
         rim = circles(position[None], (9.0 if hovered else 6.0) * scale)
         items.append(Fill(rim, INK if hovered else faded(color, 0.35)))
         items.append(Stroke(segments(rim, closed=True), np.array(color), width=2.0, halo=0.9))
         if hovered:
-            items += _near(context, _handles.keys.split("   |   ")[::-1], *position + 18.0 * scale)
+            items += _near(context, handles.keys.split("   |   ")[::-1], *position + 18.0 * scale)
     return items
 
 

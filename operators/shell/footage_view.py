@@ -48,6 +48,11 @@ class FootageView:
         return np.asarray(flat)
 
 
+def ui_scale() -> float:
+    """Screen pixels for each unscaled pixel: resolution scale and high-density screens."""
+    return float(bpy.context.preferences.system.ui_scale) or 1.0  # 0 before there is a window
+
+
 def footage_view(scene: Scene, take: PropertyGroup, area: Area, region: Region) -> FootageView | None:
     """Return how a region of an editor shows a take's footage; None if it does not.
 

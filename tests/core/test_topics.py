@@ -87,7 +87,7 @@ def test_no_topic_imports_the_private_parts_of_another(repository: Path) -> None
     known = modules(repository, "core", "operators")
     sources = {name: file.read_text(encoding="utf-8") for name, file in known.items()}
     private = {name for name, source in sources.items() if is_private(source)}
-    assert "operators.follow.pick_marker_color" in private and "operators.follow.panel" in private
+    assert "operators.follow.marker_tools" in private and "operators.follow.panel" in private
     wrong: list[str] = []
     for name, file in known.items():
         wrong += trespasses(name, file.name == "__init__.py", sources[name], set(known), private)

@@ -13,7 +13,7 @@ from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 from keymark.operators.bridge.take_from_scene import read_scene_take
 from keymark.operators.follow.evidence import scene_evidence
-from keymark.operators.follow.ignore_region import Brush
+from keymark.operators.follow.marker_tools import Brush
 from keymark.operators.follow.mask_previews import ignored_mask, preview_of, update_masks
 from keymark.operators.follow.properties import add_ignored_regions, ignored_regions
 from keymark.operators.overlays.mask import hatched

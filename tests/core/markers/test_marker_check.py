@@ -5,19 +5,7 @@ from typing import TypeVar
 
 import numpy as np
 import pytest
-from _drawn_clip import (
-    BLUE,
-    PANEL,
-    RED,
-    STYLES,
-    Ellipse,
-    clip_of,
-    draw,
-    film,
-    moving,
-    tracked,
-    with_panel,
-)
+from _drawn_clip import BLUE, PANEL, RED, STYLES, Ellipse, clip_of, draw, film, moving, tracked, with_panel
 from keymark.core.markers.ignored_regions import IgnoredRegion
 from keymark.core.markers.marker_check import Likeness, MarkerCheck, check_markers, marker_warnings, places
 from keymark.core.markers.region_tracks import ExpectedRegions, MarkerStyle

@@ -13,7 +13,6 @@ from _drawn_clip import write_video
 from _synthetic_take import write_synthetic_take
 from keymark.core.files.digest import digest, file_fingerprint
 from keymark.core.markers.reading import (
-    MOST_CLIPS,
     Reading,
     clip_times,
     read_clip,
@@ -218,7 +217,7 @@ def test_a_pass_that_was_broken_off_leaves_nothing(clip: Path, decoded: list[Pat
 
 
 def test_only_the_last_clips_are_remembered(clip: Path, tmp_path: Path, decoded: list[Path]) -> None:
-    others = [tmp_path / f"{number}.mp4" for number in range(MOST_CLIPS)]
+    others = [tmp_path / f"{number}.mp4" for number in range(8)]
     for number, other in enumerate(others):
         other.write_bytes(clip.read_bytes())
         os.utime(other, (100 + number, 100 + number))  # the fingerprint has the time
