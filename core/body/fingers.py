@@ -13,8 +13,8 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..numerics.vectors import unit
 from .rotations import cross, hinge, logarithm
+from .skeleton import FINGERS
 
-FINGERS = ("thumb", "index", "middle", "ring", "pinky")
 SHARES = np.array([1.08, 1.11, 0.81])
 """Flexions of a finger's joints by its curl, from the knuckle on: of a fist 97, 100 and 73 degrees."""
 RELAXED_RAD = np.radians([25.0, 25.0, 28.0, 30.0, 32.0])  # curls of a hand that hangs

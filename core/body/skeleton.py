@@ -19,6 +19,7 @@ Vector = tuple[float, float, float]
 Placement = dict[str, Vector]  # in the parent's frame: factors on x, y and z of the actor's lengths
 
 SIDES = ("L", "R")
+FINGERS = ("thumb", "index", "middle", "ring", "pinky")
 
 
 class JointKind(Enum):

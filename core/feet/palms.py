@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.fingers import FINGERS, RELAXED_RAD, Hands
+from ..body.fingers import RELAXED_RAD, Hands
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.rotations import exponential, hinge, logarithm, to_quaternions
-from ..body.skeleton import SIDES
+from ..body.skeleton import FINGERS, SIDES
 from ..camera.camera import Camera
 from ..detect.keypoints import FACING, Keypoints
 from ..numerics.markov_chain import cheapest_path

@@ -10,8 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..arrays import Array
-from ..body.fingers import FINGERS
-from ..body.skeleton import SIDES
+from ..body.skeleton import FINGERS, SIDES
 
 MIDDLE = ("hips", "spine", "neck", "head")
 TRUNK_CHAINS = ("spine", "neck")  # roles that several bones may share, from the hips upward

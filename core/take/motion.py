@@ -11,11 +11,11 @@ import numpy as np
 from .. import MOST_FRAMES
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.actor import Actor
-from ..body.fingers import FINGERS, Hands
+from ..body.fingers import Hands
 from ..body.human import HUMAN, LIMBS
 from ..body.kinematics import Body
 from ..body.posture import Posture, posture_to_json, rounded
-from ..body.skeleton import SIDES
+from ..body.skeleton import FINGERS, SIDES
 from ..errors import ConversionError, shown
 from ..files.json_file import read_json, write_json
 from ..files.kinds import ByName, Choice, Items, Kind, NumberArray, Whole, number_array, refuse

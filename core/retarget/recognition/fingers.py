@@ -5,8 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...arrays import Array
-from ...body.fingers import FINGERS
-from ...body.skeleton import SIDES
+from ...body.skeleton import FINGERS, SIDES
 from ...numerics.vectors import unit
 from ..character import Character
 from ..maps.character_map import CharacterMap, RoleBones

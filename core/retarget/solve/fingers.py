@@ -5,8 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...arrays import Array
-from ...body.fingers import FINGERS, flexion_axis, flexions, palm_axes
+from ...body.fingers import flexion_axis, flexions, palm_axes
 from ...body.rotations import hinge
+from ...body.skeleton import FINGERS
 from ...numerics.vectors import unit
 from .rest_body import RestBody
 

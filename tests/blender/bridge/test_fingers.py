@@ -6,8 +6,9 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from keymark.core.body.fingers import FINGER_BONES, FINGERS, SHARES, Hands
+from keymark.core.body.fingers import FINGER_BONES, SHARES, Hands
 from keymark.core.body.kinematics import Body
+from keymark.core.body.skeleton import FINGERS
 from keymark.core.progress import run
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import assign_action, existing_channelbag

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from keymark.core.body.fingers import (
     FINGER_BONES,
-    FINGERS,
     RELAXED_RAD,
     RESTING,
     Hands,
@@ -15,6 +14,7 @@ from keymark.core.body.fingers import (
     palm_of,
 )
 from keymark.core.body.rotations import exponential
+from keymark.core.body.skeleton import FINGERS
 
 CURLS = np.array([0.5, 0.6, 1.2, 0.8, 1.0])
 

@@ -8,8 +8,9 @@ import pytest
 from _characters import plain_character, plain_map, renamed, shared_characters
 from _performances import solved, steps
 from keymark.core.arrays import Array
-from keymark.core.body.fingers import FINGERS, RESTING, finger_bones, flexions
+from keymark.core.body.fingers import RESTING, finger_bones, flexions
 from keymark.core.body.rotations import hinge, smallest
+from keymark.core.body.skeleton import FINGERS
 from keymark.core.numerics.vectors import unit
 from keymark.core.retarget.character import FINGER_ROLES, Character, CharacterBone
 from keymark.core.retarget.character_motion import CharacterMotion
