@@ -253,3 +253,17 @@ def test_an_empty_room_shows_nobody() -> None:
     for picture in (noise, np.full((240, 320, 3), 120, dtype=np.uint8)):
         assert network(picture, Crop(np.array([160.0, 120.0]), 276.0)).presence < 0.5
     assert CENTER < ABOVE < POINTS
+
+
+@needs_model
+def test_a_mirror_image_is_as_deep(repository: Path) -> None:
+    clip = Clip.open(repository / "presets" / "demo" / "aerobic" / "clip.mp4")
+    network, sums = PoseNetwork(), []
+    for _, picture in clip.source.at(range(0, 100, 20)):
+        pose = network(picture, Crop(np.array([160.0, 120.0]), 276.0))
+        turned = Crop(pose.crop.center * [-1.0, 1.0] + [clip.size[0], 0.0], pose.crop.side, -pose.crop.angle)
+        both = network.each([(picture, pose.crop), (np.ascontiguousarray(picture[:, ::-1]), turned)])
+        sides = [[LAYOUT.names.index(f"{joint}.{side}") for joint in ("hip", "shoulder")] for side in "LR"]
+        sums.append(sum(one.hint_m[sides[0], 2] - one.hint_m[sides[1], 2] for one in both))
+    # As the large network has them the hips' sum is .1 m, the shoulders' -.1.
+    assert np.abs(np.mean(sums, axis=0)).max() < 0.04, sums
