@@ -17,7 +17,8 @@ from itertools import chain
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from ..arrays import Array, Image, IndexArray
+from ..arrays import Array, BoolArray, Image, IndexArray
+from ..body.skeleton import SIDES
 from ..errors import InputError
 from ..progress import Job, Progress
 from ..video.clip import Clip
@@ -40,6 +41,7 @@ SIZES = (0.75,)  # the same by the largest person who is followed already
 STEP = 0.5  # between crops, by their side
 APART = 0.3  # share of a crop's side within which two crops show the same person
 MOST_OTHER = 1.6  # ratio of sizes beyond which a later person is another
+SHOULDERS = [LAYOUT.names.index(f"shoulder.{side}") for side in SIDES]
 SMALLEST = 0.35  # others are followed from this share of the largest one's size on
 
 
@@ -203,11 +205,12 @@ class _Tracking:
                 break
             picture, known = self._pictures[index], [other.pose for other in self._seen[index]]
             poses = self._network.each([(picture, one.pose.crop) for one in people])
-            people = [
-                _Sighting(one.track, pose)
-                for one, pose in zip(people, poses, strict=True)
-                if _is_followed(one.pose, pose, picture) and not _is_among(pose, known)
-            ]
+            followed: list[_Sighting] = []
+            for one, pose in zip(people, poses, strict=True):
+                if _is_followed(one.pose, pose, picture) and not _is_among(pose, known):
+                    followed.append(_Sighting(one.track, pose))
+                    known.append(pose)  # two may have become one
+            people = followed
             self._seen[index] += people
         return people
 
@@ -216,8 +219,7 @@ def _is_followed(before: Pose, now: Pose, picture: Image) -> bool:
     """Whether a person is the one of the picture before, and not lost."""
     moved = np.hypot(*(now.crop.center - before.crop.center)) / before.crop.side
     grown = max(now.crop.side / before.crop.side, before.crop.side / max(now.crop.side, 1.0))
-    lost = now.presence < 0.5 or now.score.mean() < 0.3 or moved > 0.35 or grown > 1.5
-    return not lost and _is_inside(now, picture)
+    return now.presence >= 0.5 and _sure(now, picture) >= 0.3 and moved <= 0.35 and grown <= 1.5
 
 
 def _settled(network: PoseNetwork, picture: Image, crops: Sequence[Crop]) -> list[Pose]:
@@ -226,11 +228,7 @@ def _settled(network: PoseNetwork, picture: Image, crops: Sequence[Crop]) -> lis
     poses = _distinct([pose for pose in poses if pose.presence > 0.3])
     for _ in range(2):  # somebody may be there, in another place of the crop
         poses = _distinct(network.each([(picture, pose.crop) for pose in poses]))
-    return [
-        pose
-        for pose in poses
-        if pose.presence > 0.9 and pose.score.mean() > 0.5 and _is_inside(pose, picture)
-    ]
+    return [pose for pose in poses if pose.presence > 0.9 and _sure(pose, picture) > 0.5]
 
 
 def _distinct(poses: Sequence[Pose]) -> list[Pose]:
@@ -283,8 +281,15 @@ def _grid(picture: Image, side: float) -> Iterator[Crop]:
             yield Crop(np.array([x, y]), side)
 
 
-def _is_inside(pose: Pose, picture: Image) -> bool:
-    return bool((pose.crop.center > 0.0).all() and (pose.crop.center < picture.shape[1::-1]).all())
+def _sure(pose: Pose, picture: Image) -> float:
+    """Mean score of the points within the picture; 0 where neither hips nor shoulders are."""
+
+    def inside(place: Array) -> BoolArray:
+        return np.asarray(((place > 0.0) & (place < picture.shape[1::-1])).all(axis=-1))
+
+    shoulders = pose.pixel[SHOULDERS].mean(axis=0)
+    is_there = inside(np.stack([pose.crop.center, shoulders])).any()
+    return float(pose.score[inside(pose.pixel)].mean()) if is_there else 0.0
 
 
 def _is_among(pose: Pose, known: Sequence[Pose]) -> bool:

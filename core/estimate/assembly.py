@@ -5,6 +5,8 @@ belongs to: a window of a clip, the same once its contours are measured, a singl
 order, since rounding depends on it.
 """
 
+from itertools import compress
+
 import numpy as np
 
 from ..arrays import Array
@@ -26,7 +28,7 @@ from .keypoint_evidence import KeypointEvidence
 from .performer_placement import ANKLE_HEIGHT_STD_M, SHOE_M, standing_ankle_m
 from .windows import Window
 
-ANKLES, LEGS = ("ankle.L", "ankle.R"), ("leg.L", "leg.R")
+ANKLES = ("ankle.L", "ankle.R")
 LOOSE_FEET = {"release_speed_m_s": 0.4, "release_height_m": 0.06}
 """Of feet that stand, where a reference motion, whose feet slide and jump, is followed from the start."""
 
@@ -81,8 +83,7 @@ def _kept(step_s: Array, memory_s: Array | float) -> Array:
 
 
 def _seen_ankles(data: ClipData) -> tuple[int, ...]:
-    seen = [leg not in data.belief.unseen for leg in LEGS]
-    return tuple(ankle for ankle, own in zip(_ankles(data.body), seen, strict=True) if own)
+    return tuple(compress(_ankles(data.body), data.belief.feet_seen))
 
 
 def frame_terms(

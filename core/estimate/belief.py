@@ -33,7 +33,7 @@ class Belief:
     vouches for its place in space."""
     pictured: BoolArray  # (K,) which of the found ones a person has put right in the picture
     ankle_m: Array | None = None  # (F,) usual height of the lower ankle [m]; None where posed ones tell it
-    unseen: tuple[str, ...] = ()  # limbs that are never seen, whose feet say nothing of the place
+    feet_seen: tuple[bool, bool] = (True, True)  # left and right; one that never is says nothing of the place
     reference: ExpectedPoints | None = None  # where a motion from elsewhere has the points; None without one
 
     @classmethod

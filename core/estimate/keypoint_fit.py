@@ -7,7 +7,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..arrays import Array, BoolArray
-from ..body.body_volume import TRUNK
+from ..body.human import HUMAN
 from ..body.posture import Posture
 from ..detect.keypoints import Keypoints
 from ..errors import pluralize
@@ -68,15 +68,17 @@ def keypoint_fit(
 
 
 def observed_joints(fit: KeypointFit) -> tuple[tuple[str, ...], BoolArray]:
-    """The joint whose place each of N keypoints shows, and where (F, N) it does.
+    """The joint that carries each of N keypoints, and where (F, N) it is seen.
 
-    A shoulder or a hip shows where the trunk is, and nothing of the limb.
+    A joint itself is carried by the one above it: a hip shows where the trunk is, and nothing of the limb.
     """
-    names = fit.keypoints.names
-    joints = tuple(
-        TRUNK if name.startswith(("shoulder", "hip")) else USUAL_PLACES[name].joint for name in names
-    )
+    places = [USUAL_PLACES[name] for name in fit.keypoints.names]
+    joints = tuple(each.joint if each.placement else _above(each.joint) for each in places)
     return joints, (fit.weight > 0.0) & ~fit.thrown_out
+
+
+def _above(joint: str) -> str:
+    return HUMAN.joints[max(HUMAN.joints[HUMAN.joint_index(joint)].parent, 0)].name
 
 
 def keypoint_notes(fit: KeypointFit) -> tuple[str, ...]:

@@ -21,7 +21,7 @@ from ..progress import Job, Progress, within
 from ..take.clip_check import check_frame_count, check_in_front
 from ..take.conversion_settings import METHODS
 from ..take.motion import Motion
-from ..take.presence import absence_notes, unseen_ends, unseen_notes
+from ..take.presence import absence_notes, unseen_notes
 from ..take.read_footage import average_model
 from ..take.seen_take import SeenTake
 from ..take.shots import within_shot
@@ -139,16 +139,15 @@ def _reconstruct(
     motion, model, solution = baseline, average_model(take), None
     if method == "map":
         footage = Seen(tracks, take.marker_segments, keypoints, reading.album, there)
-        unseen = shown.unseen
-        belief = _belief(take, prior, doubt, unseen, referred)
+        belief = _belief(take, prior, doubt, shown.feet_seen, referred)
         estimate = estimate_whole_clip(take.body, take.camera, footage, belief)
         solution = yield from within("Estimating the motion", estimate, 0.0, 1.0)
-        motion, model = _solved(take, tracks, solution, doubt, unseen, floor_m), solution.evidence.model
+        motion, model = _solved(take, shown, tracks, solution, doubt, floor_m), solution.evidence.model
         if not shaken:  # else the camera is what does not fit
             notes += evidence_notes(take, solution.evidence)
         notes += keypoint_notes(solution.keypoints)
         notes += contour_notes(take, solution.contours is not None)
-        notes += unseen_notes(unseen, unseen_ends(keypoints, there, unseen))
+        notes += unseen_notes(shown.unseen, shown.unseen_ends)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior)
         notes += filter_notes(take)
@@ -182,7 +181,7 @@ def _belief(
     take: Take,
     prior: Posture,
     doubt: Array,
-    unseen: tuple[str, ...],
+    feet_seen: tuple[bool, bool],
     referred: ReferenceEvidence | None,
 ) -> Belief:
     """The belief in a take's keyframes; `doubt` (K,) as of `Belief`, but for wider reference motions."""
@@ -195,7 +194,7 @@ def _belief(
     doubt = doubt * np.where(referring, KEYFRAME_WIDTH, 1.0)
     pictured = np.array([keyframe.depth_found for keyframe in take.keyframes])
     expected = None if referred is None else referred.expected
-    return Belief(prior, frame, doubt, pictured, ankle_m, unseen, expected)
+    return Belief(prior, frame, doubt, pictured, ankle_m, feet_seen, expected)
 
 
 def _is_composed(take: Take) -> bool:
@@ -205,13 +204,13 @@ def _is_composed(take: Take) -> bool:
 
 def _solved(
     take: Take,
+    shown: SeenTake,
     tracks: RegionTracks,
     result: WholeClipResult,
     doubt: Array,
-    never: tuple[str, ...],
     floor_m: float | None,
 ) -> Motion:
-    fit = result.keypoints
+    fit, never = result.keypoints, shown.unseen
     diagnostics = {
         "residual_px": result.residual_px,
         "quality": tracks.quality,
@@ -232,7 +231,8 @@ def _solved(
         seen = np.concatenate([seen, result.outlined], axis=1)
     visible = np.concatenate([tracks.visible, seen], axis=1)
     names = (*take.marker_segments, *points)
-    unseen = unobserved_variance(take.body.skeleton, names, visible, index, tracks.time_s)
+    known = [key.index for key in take.keyframes if key.matched is None or key.matched.is_referred]
+    unseen = unobserved_variance(take.body.skeleton, names, visible, np.array(known, int), tracks.time_s)
     for limb in never:
         unseen[:, limb_dofs(take.body.skeleton, limb)] = LIMB_STD_RAD**2
     posture = rested(take.body, result.posture, never)
@@ -241,7 +241,7 @@ def _solved(
     place_std_m: Array | float = 0.0
     if _is_composed(take):
         ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
-        lower = None if {"leg.L", "leg.R"} <= set(never) else motion.points[:, ankles, 2].min(axis=1)
+        lower = motion.points[:, ankles, 2].min(axis=1) if any(shown.feet_seen) else None
         over_m = 0.0
         if lower is not None and floor_m is not None:
             over_m = feet_over_floor_m(take.body, motion.points, floor_m)

@@ -98,27 +98,22 @@ def unobserved_variance(
 ) -> Array:
     """(F, D) variance of postures beyond their covariance, where nothing observes them [m², rad²].
 
-    `segments` (M,): the segment of each marker, or the joint of each keypoint; an unknown name counts for the
-    trunk; `visible` (F, M); `keyframes` (K,): frames whose posture is known.
+    `segments` (M,): the segment of each marker, or the joint that carries each keypoint; an unknown name
+    counts for the trunk; `visible` (F, M); `keyframes` (K,): frames whose posture is known. A knee tells of
+    the thigh, and nothing of the shin.
     """
-    trunk, *limbs = skeleton.limbs
+    trunk = skeleton.limbs[0]
     joint = {one.name: index for index, one in enumerate(skeleton.joints)}
     joint |= {segment.name: segment.joint for segment in skeleton.segments}
-    first = {name: skeleton.dof_starts[index] for name, index in joint.items()}
-    std = np.zeros((len(time_s), skeleton.dof_count))
-    posed = np.zeros(len(time_s), dtype=bool)
-    posed[keyframes] = True
-    for part in (trunk, *limbs):
-        own = [i for i, name in enumerate(segments) if first.get(name, int(trunk[0])) in part]
-        # Anything visible also locates the trunk.
-        observed = posed | (visible if part is trunk else visible[:, own]).any(axis=1)
-        unknown = _unobserved_time_s(observed, time_s)
-        # 0.15: standard deviation of joints anywhere in reach [rad]
-        reach = 0.15 if part is trunk else LIMB_STD_RAD
-        # 0.35: time constant at which a limb approaches the variance of anywhere in reach
-        std[:, part] = (-np.expm1(-unknown / 0.35) * reach)[:, None]
-        if part is trunk:
-            std[:, :3] = np.minimum(WALKING_M_PER_S * unknown, FARTHEST_M)[:, None]
+    moving = np.array([skeleton.moved_by[joint.get(name, 0)] for name in segments], dtype=np.float64)
+    observed = visible @ moving.reshape(-1, skeleton.dof_count) > 0.0
+    observed[:, trunk] = visible.any(axis=1)[:, None]  # anything visible also locates the trunk
+    observed[keyframes] = True
+    unknown = np.stack([_unobserved_time_s(column, time_s) for column in observed.T], axis=-1)
+    # 0.35: time constant at which a limb approaches the variance of anywhere in reach
+    std = -np.expm1(-unknown / 0.35) * LIMB_STD_RAD
+    std[:, trunk] *= 0.3  # a trunk bends by less
+    std[:, :3] = np.minimum(WALKING_M_PER_S * unknown[:, :3], FARTHEST_M)
     return std**2
 
 

@@ -52,14 +52,14 @@ def agreement(
     agree: list[str] = []
     against: list[str] = []
     points = given.body.points(given.body.pose(postures[given.sampled]))
-    size = _relative_size(given, points)
+    size = None if given.unseen else _relative_size(given, points)  # it has learned whole bodies
     if size is not None:
         own = _right(float(np.log(size)), GUESSED_SIZE_STD, 0.7)  # in a range of wrong heights
         probability *= own
         what = f"by the detector's guess in space the performer is {abs(size - 1.0):.0%} "
         said = what + ("taller" if size > 1.0 else "shorter") + " than stated"
         (agree if own >= AGREES else against).append("the detector's sizes" if own >= AGREES else said)
-    if floor_m is not None and not {"leg.L", "leg.R"} <= set(given.unseen):
+    if floor_m is not None and any(given.feet_seen):
         off_m = feet_over_floor_m(given.body, points, floor_m)
         own = _right(off_m, GROUND_STD_M, 1.0)  # anywhere in it where camera, height or floor are wrong [m]
         probability *= own

@@ -122,7 +122,7 @@ def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[Whol
             scale,
             corrected,
             found_ankle_m(given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m),
-            given.unseen,
+            given.feet_seen,
         ),
         hold_rests=False,  # a held foot would pull on the postures around
     )

@@ -71,6 +71,7 @@ class PosingInput:
     keypoints: Keypoints  # all the performer's, in the detector's layout
     there: BoolArray  # (F,) frames in which the performer is there; others have no posture
     unseen: tuple[str, ...] = ()  # limbs that are never seen
+    feet_seen: tuple[bool, bool] = (True, True)
     first: int = 0  # index of the first of these frames in the clip
 
     @cached_property
@@ -123,6 +124,7 @@ def posing_input(seen: SeenTake, keyframe_count: int | None = None) -> PosingInp
         keypoints,
         there,
         seen.unseen,
+        seen.feet_seen,
     )
 
 

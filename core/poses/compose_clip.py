@@ -109,7 +109,7 @@ def compose_frames(
         rough = rough_depths(given.body, camera, evidence, sampled, time_s)
     if floor_m is None:
         floor_m = floor_height_m(given, stances, rough, floor_open)
-    floor_seen_m = None if set(LEGS) <= set(given.unseen) else floor_m  # feet never seen tell no place
+    floor_seen_m = floor_m if any(given.feet_seen) else None  # feet never seen tell no place
     yield 0.1
     # Seconds that are composed together, and those on either side that are looked at besides: a posture
     # depends on those of a second about it.

@@ -153,7 +153,9 @@ def unseen_notes(limbs: tuple[str, ...], ends: tuple[str, ...] = ()) -> tuple[st
     """Notes on limbs that are never seen, and on hands and feet of which the same is so (`unseen_ends`)."""
     notes = []
     if limbs:
-        notes.append(f"{named_limbs(limbs)} never seen and stay at rest; pose keyframes where that is wrong")
+        stay = "stays" if len(limbs) == 1 else "stay"
+        what = f"{named_limbs(limbs)} never seen and {stay} at rest"
+        notes.append(f"{what}; pose keyframes where that is wrong")
     if ends:
         is_one = len(ends) == 1
         notes.append(

@@ -3,10 +3,11 @@
 from dataclasses import dataclass, replace
 
 from ..arrays import BoolArray
+from ..body.skeleton import SIDES
 from ..detect.keypoints import Keypoints
 from ..markers.reading import Reading
 from .performer_keypoints import performer_keypoints
-from .presence import presence, unseen_limbs
+from .presence import presence, unseen_ends, unseen_limbs
 from .reference import seen_reference
 from .take import Take
 
@@ -25,8 +26,17 @@ class SeenTake:
     """(F,) frames in which the performer is there."""
     unseen: tuple[str, ...]
     """Limbs that are never seen."""
+    unseen_ends: tuple[str, ...] = ()
+    """Hands and feet of the same, of limbs that are seen; none where markers or poses tell of them."""
     camera_notes: tuple[str, ...] = ()
     """A sentence on a camera that moves and is not followed."""
+
+    @property
+    def feet_seen(self) -> tuple[bool, bool]:
+        """Whether the left and the right foot are ever seen: those that are not tell no floor."""
+        unseen = {*self.unseen, *self.unseen_ends}
+        left, right = (not unseen & {f"leg.{side}", f"foot.{side}"} for side in SIDES)
+        return left, right
 
 
 def seen_take(take: Take, reading: Reading, camera_notes: tuple[str, ...] = ()) -> SeenTake:
@@ -36,4 +46,6 @@ def seen_take(take: Take, reading: Reading, camera_notes: tuple[str, ...] = ()) 
     take = replace(take, reference=take.reference or reference)
     there = presence(take, reading, keypoints)
     unseen = unseen_limbs(take, reading.tracks, keypoints, there)
-    return SeenTake(take, reading, keypoints, there, unseen, camera_notes)
+    is_told = take.markers or any(key.is_posed for key in take.keyframes)
+    ends = () if is_told else unseen_ends(keypoints, there, unseen)
+    return SeenTake(take, reading, keypoints, there, unseen, ends, camera_notes)

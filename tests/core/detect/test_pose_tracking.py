@@ -4,6 +4,7 @@ import hashlib
 import sys
 import weakref
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -131,6 +132,34 @@ def test_points_beyond_the_picture_are_not_seen() -> None:
     found = seen([[(20.0, 120.0, 50.0)]] * 5).frames[2]
     outside = np.isnan(found.pixel[0]).any(axis=1)
     assert outside.any() and not outside.all() and (found.score[0][outside] == 0.0).all()
+
+
+class CutNetwork(FakeNetwork):
+    """Sees a disc as a chest: shoulders in its middle, hips below, of which it is never sure."""
+
+    def _pose(self, center: np.ndarray, radius: float, presence: float) -> Pose:
+        pose, middle = super()._pose(center, radius, presence), np.asarray(center, dtype=float)
+        hips = middle + [0.0, 0.8 * radius]
+        at = [LAYOUT.names.index(name) for name in ("shoulder.L", "shoulder.R")]
+        pose.pixel[at], pose.pixel[HIPS_DOWN] = middle, hips + [0.0, 0.4 * radius]
+        pose.score[HIPS_DOWN] = 0.05
+        return replace(pose, crop=replace(pose.crop, center=hips))
+
+
+HIPS_DOWN = [i for i, name in enumerate(LAYOUT.names) if name.startswith(("hip", "knee", "ankle", "heel"))]
+
+
+def test_somebody_who_is_cut_at_the_waist_is_followed_by_the_shoulders() -> None:
+    clip = drawn([[(100.0 + index, 205.0, 50.0)] for index in range(STRETCH + 5)])
+    found = run(find_people(clip, cast(Any, CutNetwork())))
+    assert counts(found) == [1] * (STRETCH + 5)
+    assert np.isnan(found.frames[9].pixel[0, HIPS_DOWN]).all()
+
+
+def test_two_who_become_one_are_one() -> None:
+    people: list[People3] = [[(100.0, 120.0, 40.0), (220.0, 120.0, 40.0)]] * 4
+    people += [[(160.0, 120.0, 40.0)]] * 40
+    assert counts(seen(people))[8:] == [1] * 36
 
 
 def test_a_large_picture_is_found_in_its_own_pixels() -> None:

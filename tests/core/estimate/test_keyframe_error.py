@@ -24,6 +24,7 @@ from keymark.core.estimate.keyframe_evidence import (
 from keymark.core.estimate.performer_placement import SHOE_M, lower_ankle_m
 from keymark.core.estimate.sigma import (
     GRACE_S,
+    LIMB_STD_RAD,
     SURE_STD_M,
     UNSURE_STD_M,
     place_depth_std_m,
@@ -173,6 +174,18 @@ def test_a_limb_is_open_long_after_it_was_seen_last_and_no_other() -> None:
     elbow, knee = (variance[:, HUMAN.dof_names.index(f"{name}.L.flexion")] for name in ("elbow", "knee"))
     assert knee.max() == 0.0 and elbow[:20].max() == elbow[80] == 0.0
     assert (np.diff(elbow[28:50]) > 0.0).all() and 0.3 < np.sqrt(elbow.max()) < 1.0
+
+
+def test_a_knee_tells_of_the_thigh_and_nothing_of_the_shin() -> None:
+    at = [
+        HUMAN.dof_names.index(f"{name}.L.{dof}") for name, dof in (("hip", "rotation_x"), ("knee", "flexion"))
+    ]
+    variance = unobserved_variance(
+        HUMAN, ("hip.L",), np.ones((90, 1), dtype=bool), np.zeros(0, dtype=np.intp), TIME_S
+    )
+    assert variance[:, at[0]].max() == 0.0
+    np.testing.assert_allclose(np.sqrt(variance[:, at[1]]), LIMB_STD_RAD, rtol=1e-3)
+    assert variance[:, :3].max() == 0.0
 
 
 def test_a_floor_that_contradicts_the_size_makes_the_place_uncertain() -> None:

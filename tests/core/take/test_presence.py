@@ -135,7 +135,10 @@ def test_limbs_that_are_never_seen_are_named_unless_something_is_posed(take: Tak
     assert unseen_line(30, limbs) == "nobody is seen in 30 frames, the legs are never seen"
     assert unseen_line(0, ()) == ""
     assert unseen_limbs(take, unmarked().tracks, seen_in(gone()), gone()) == ("leg.R",)
-    assert unseen_notes(("arm.L", "leg.R"))[0].startswith("the left arm and the right leg are")
+    assert unseen_notes(("arm.L", "leg.R"))[0].startswith(
+        "the left arm and the right leg are never seen and stay"
+    )
+    assert "is never seen and stays at rest" in unseen_notes(("leg.R",))[0]
     posed = replace(take, keyframes=(Keyframe(0, Posture.rest(BODY.skeleton)),))
     assert unseen_limbs(posed, unmarked().tracks, keypoints, gone()) == ()
 
