@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import InputError
+from ...core.video.turned import TURNS as TURNS_DEG
 from ..actor.properties import Stature
 from ..character.characters import candidates
 from ..follow.network import draw_network
 from ..footage.load_footage import PATTERNS, load_into_take
+from ..footage.properties import Part, draw_part
 from ..shell.base_operator import call, chosen_file, reported
 from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
 from ..shell.panel import draw_sentence
@@ -23,6 +25,10 @@ from .update import StagedOperator
 if TYPE_CHECKING:
     from ...core.progress import Job
 
+TURNS = [("AUTO", "So That People Are Upright", "By what is seen; MP4 and QuickTime alone")]
+TURNS += [
+    (str(turn), f"{turn}°" if turn else "As It Is", f"Clockwise by {turn} degrees") for turn in TURNS_DEG
+]
 CHARACTER_PATTERNS = "*.blend;*.fbx;*.glb;*.gltf;*.vrm"
 CLIP, CHARACTER = "CLIP", "CHARACTER"
 LAST_FOLDER = "last_clip_folder.txt"
@@ -46,7 +52,7 @@ def _characters(
     return _items
 
 
-class KEYMARK_OT_animate(Stature, StagedOperator, bpy.types.Operator):
+class KEYMARK_OT_animate(Stature, Part, StagedOperator, bpy.types.Operator):
     """From a clip and the performer's height to a moving character; every step can be corrected afterwards"""
 
     bl_label = "Animate"
@@ -61,6 +67,7 @@ class KEYMARK_OT_animate(Stature, StagedOperator, bpy.types.Operator):
         "File of the character, and after a colon the name of its armature where it has several",
         options={"SKIP_SAVE", "HIDDEN"},
     )
+    turn: Choice("Turn Picture", "By how much the picture is turned first", items=TURNS, options=SKIP_SAVE)
     asking: Text(options={"SKIP_SAVE", "HIDDEN"})
     clip: Text(options={"SKIP_SAVE", "HIDDEN"})
     problem: Text("Problem", "Why what was chosen last cannot be animated", options={"SKIP_SAVE", "HIDDEN"})
@@ -87,7 +94,9 @@ class KEYMARK_OT_animate(Stature, StagedOperator, bpy.types.Operator):
         clip, file = (
             (self.filepath, self.character_file) if self.asking == CLIP else (self.clip, self.filepath)
         )
-        typed = {"stature": self.stature, "character": self.character}
+        typed = {
+            name: getattr(self, name) for name in ("stature", "character", "turn", *Part.__annotations__)
+        }
         with reported(self):
             try:
                 call(bpy.ops.keymark.animate, "INVOKE_DEFAULT", filepath=clip, character_file=file, **typed)
@@ -109,18 +118,27 @@ class KEYMARK_OT_animate(Stature, StagedOperator, bpy.types.Operator):
             draw_sentence(layout, context, self.problem, "ERROR")
         layout.prop(self, "character")
         draw_network(layout)
+        header, body = layout.panel("KEYMARK_PT_animate_part", default_closed=True)
+        header.label(text="Picture and Part")
+        if body is not None:
+            body.prop(self, "turn")
+            draw_part(body, self)
 
     def start(self, scene: bpy.types.Scene) -> "Job[list[str]]":
         """Load the clip, and go on; what is complete stays in the scene where the job ends early."""
-        from .stages import animate, follow_found_file
+        from .stages import animate, follow_found_file, turned_copy
 
         stature = self.given_stature()
         path = chosen_file(self, "a video, or one image of a numbered sequence")
+        _keep_folder(path.parent)
+        if self.turn not in ("AUTO", "0"):
+            path = turned_copy(path, int(self.turn))
         there = find_take(scene)
         take = load_into_take(bpy.context, path, there is not None and there.clip is not None)
-        _keep_folder(path.parent)
+        for name in Part.__annotations__:
+            setattr(take.part, name, getattr(self, name))
         follow_found_file(take, path)
-        return animate(self, scene, stature, self.character, self.character_file)
+        return animate(self, scene, stature, self.character, self.character_file, self.turn == "AUTO")
 
 
 def _folder_file() -> Path | None:

@@ -25,6 +25,7 @@ from ..follow.evidence import keypoint_path
 from ..follow.load_keypoints import Detected, follow_file, keep_detected, keypoint_output
 from ..follow.network import chosen_network
 from ..footage.found_camera import is_found, write_fit
+from ..footage.load_footage import load_into_take
 from ..footage.take_footage import lens_is_guess
 from ..keyframes.pose_all import keep_poses
 from ..keyframes.scene_session import SceneSession, clip_session
@@ -39,26 +40,41 @@ if TYPE_CHECKING:
 SEEN_SHARES = np.linspace(0.0, 1.0, 9)
 """Moments of the clip at which nothing may stand before the performer."""
 MOST_HIDDEN = 1000
+DETECTED = 0.62
+"""Share of the job after which everybody is seen, at most, where that is all done again."""
 VIEWED = 0.96
 """Share of the job at which all is made, and the performer is to be seen."""
 
 
 def animate(
-    operator: bpy.types.Operator, scene: bpy.types.Scene, stature_m: float, character: str, file: str
+    operator: bpy.types.Operator,
+    scene: bpy.types.Scene,
+    stature_m: float,
+    character: str,
+    file: str,
+    turns: bool = True,
 ) -> "Job[list[str]]":
     """Go from the active take's clip all the way; each stage's result is in the scene once it is complete.
+
+    `turns`: a picture that is on its side or upside down is turned.
 
     Returns:
         A line on each stage.
     """
     from ...core.session.stages import reach
+    from ...core.session.upright import PictureTurnedError, require_upright
+    from ...core.video.turned import can_turn
 
     take = active_take(scene)
     take.stature = stature_m
     said: list[str] = []
     started = yield from stretch(_clip_session(scene, take, character, file), 0.0, 0.02)
+    clip = footage_of(scene, take).path
+    turns = turns and can_turn(clip)
 
     def keep(stage: str, session: "Session") -> "Job[object] | None":
+        if turns:
+            require_upright(stage, session)
         made = replace(started, session=session)
         if stage == "reconstruct":
             return _keep_motion(operator, scene, made, said)
@@ -66,7 +82,15 @@ def animate(
             said.append(KEPT[stage](operator, scene, made))
         return None
 
-    yield from stretch(reach(started.session, "retarget", None, keep), 0.02, VIEWED)
+    try:
+        yield from stretch(reach(started.session, "retarget", None, keep), 0.02, VIEWED)
+    except PictureTurnedError as turned:
+        turns = False
+        said.append(f"The picture is turned by {turned.turn_deg} degrees clockwise: people are upright so")
+        load_into_take(bpy.context, turned_copy(clip, turned.turn_deg), False)
+        again = _clip_session(scene, active_take(scene), character, file)
+        started = yield from stretch(again, DETECTED, DETECTED)
+        yield from stretch(reach(started.session, "retarget", None, keep), DETECTED, VIEWED)
     yield from stretch(_hide_what_stands_before(bpy.context, active_take(scene)), VIEWED, 1.0)
     scene.frame_set(scene.frame_start)
     overlays = scene.keymark.overlays
@@ -74,6 +98,20 @@ def animate(
     for evidence in ("observed", "predicted", "keypoints"):  # whoever doubts shows it
         setattr(overlays, f"show_{evidence}", False)
     return said
+
+
+def turned_copy(clip: Path, turn_deg: int) -> Path:
+    """A copy of a clip beside it that is shown turned clockwise; nothing is coded anew.
+
+    Raises:
+        InputError: It is no MP4 or QuickTime file.
+    """
+    from ...core.files.json_file import write_atomically
+    from ...core.video.turned import write_turned
+
+    copy = clip.with_name(f"{clip.stem}.turned{turn_deg}{clip.suffix}")
+    write_atomically(copy, lambda beside: write_turned(clip, turn_deg, beside))
+    return copy
 
 
 def _clip_session(

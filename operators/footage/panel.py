@@ -8,6 +8,7 @@ from ..shell.panel import Popover, StepPanel, draw_sentence
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, find_take
 from .drawn_lines import HEIGHT, VERTICAL
+from .properties import draw_part
 from .take_footage import lens_is_guess
 
 
@@ -77,7 +78,7 @@ class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
 
 
 class KEYMARK_PT_footage_options(Popover, bpy.types.Panel):
-    """Another clip or camera, what is seldom known of it, and the take's files."""
+    """Another clip or camera, what is seldom known of it, its part that counts, and the take's files."""
 
     bl_label = "Clip Options"
 
@@ -95,6 +96,7 @@ class KEYMARK_PT_footage_options(Popover, bpy.types.Panel):
             roll.prop(take, "camera_roll")
             if lens_is_guess(take):
                 _draw_guess(column, f"Lens is a guess: {take.guessed_lens_mm:.1f} mm", "keymark.keep_lens")
+        draw_part(column, take.part)
         row = column.row(align=True)
         row.operator("keymark.open_take", icon="FILE_FOLDER")
         row.operator("keymark.save_take", icon="FILE_TICK")

@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 
+from ...core.take.conversion_settings import MOST_PEOPLE
 from ..bridge.camera_placement import fixed_reason, read_placement, write_placement
 from ..shell.base_operator import capitalized
 from ..shell.fields import HIDDEN, Choice, Integer, Number, Switch, Text, Vector
@@ -51,6 +52,41 @@ class KEYMARK_PG_clip_state(bpy.types.PropertyGroup):
     contents: Text("Contents", "Digest of the clip's file", options=HIDDEN)
     rate: Number("Rate", "Frames per second of the clip on the timeline", min=0.0, options=HIDDEN)
     variable_rate: Switch("Variable Rate", "The clip's frames are unevenly spaced in time", options=HIDDEN)
+
+
+class Part:
+    """Mixin of properties that say which part of a clip is animated, and who performs."""
+
+    is_part: Switch("Part of the Clip", "Animate some of the frames alone; the motion is empty in all others")
+    first_frame: Integer("First Frame", "First scene frame of the part", default=1)
+    last_frame: Integer("Last Frame", "Last scene frame of the part", default=100)
+    performer: Integer(
+        "Performer",
+        "Who of several people performs, counted from the left where all are first seen; 0 for the one who "
+        "is posed, or the largest who is there longest",
+        min=0,
+        max=MOST_PEOPLE,
+    )
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        """The same as fields of core's `Inputs`."""
+        shot = (self.first_frame, self.last_frame) if self.is_part else None
+        return {"shot": shot, "performer": self.performer or None}
+
+
+def draw_part(layout: bpy.types.UILayout, part: Part) -> None:
+    """Draw which part is animated, and who performs."""
+    layout.prop(part, "performer")
+    layout.prop(part, "is_part")
+    frames = layout.column(align=True)
+    frames.active = part.is_part
+    frames.prop(part, "first_frame")
+    frames.prop(part, "last_frame")
+
+
+class KEYMARK_PG_part(Part, bpy.types.PropertyGroup):
+    """Which part of a take's clip is animated, and who performs."""
 
 
 KINDS = (

@@ -58,9 +58,9 @@ def clip_session(
     footage, evidence, kept = footage_of(scene, settings), scene_evidence(settings), reading_of(settings)
     frames = yield from clip_frames(footage, evidence, kept)
     take = scene_take(footage, evidence, frames, body, camera or read_camera(footage, frames))
-    return SceneSession(
-        identifier, Session(Inputs(take, kept=kept, hands=bool(settings.follow.use_hands), **wanted))
-    )
+    hands = bool(settings.follow.use_hands)
+    inputs = Inputs(take, **{"kept": kept, "hands": hands, **settings.part.inputs, **wanted})
+    return SceneSession(identifier, Session(inputs))
 
 
 def read_session(
@@ -79,7 +79,8 @@ def read_session(
     digest = digest_of(keys)
     take, notes = yield from read_scene_take(source, actor, keys, scene_evidence(settings), matches, kept)
     hands = bool(settings.follow.use_hands)
-    inputs = Inputs(take, **{"floor_m": floor_m, "kept": kept, "hands": hands, **wanted})
+    part = settings.part.inputs
+    inputs = Inputs(take, **{"floor_m": floor_m, "kept": kept, "hands": hands, **part, **wanted})
     return SceneSession(identifier, Session(inputs), notes, digest)
 
 

@@ -12,7 +12,12 @@ from ..bridge.actor_bones import is_actor
 from ..character.properties import KEYMARK_PG_character
 from ..finish.properties import KEYMARK_PG_finish
 from ..follow.properties import KEYMARK_PG_follow, KEYMARK_PG_ignored_region, KEYMARK_PG_marker
-from ..footage.properties import KEYMARK_PG_camera_line, KEYMARK_PG_clip_state, placement_accessors
+from ..footage.properties import (
+    KEYMARK_PG_camera_line,
+    KEYMARK_PG_clip_state,
+    KEYMARK_PG_part,
+    placement_accessors,
+)
 from ..footage.take_footage import camera_chosen, clip_chosen, is_missing
 from ..keyframes.found_properties import KEYMARK_PG_match, KEYMARK_PG_matching
 from ..overlays.properties import KEYMARK_PG_overlays
@@ -83,6 +88,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         update=lambda take, _: clip_chosen(take),
     )
     clip_state: Group(type=KEYMARK_PG_clip_state)
+    part: Group(type=KEYMARK_PG_part)
     camera: Group(
         name="Camera",
         description="The camera that took the footage; its animation is used, if it moves",
