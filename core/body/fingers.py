@@ -32,7 +32,7 @@ SHAPES = {
 }
 """Of a performer's fingers, in lengths of the hand: their first joints along and across it, where they point
 at rest, and the lengths of their bones (Buryanov & Kotiuk 2010, *Proportions of Hand Segments*, rounded)."""
-SURE = 0.5  # how far a hand is to be believed that is surely seen
+SURE = 0.7  # how far a hand is to be believed that is surely seen: it is taken as it is
 WRIST, INDEX, MIDDLE, LITTLE = 0, 5, 9, 17  # and knuckles among the 21 points, four of each finger
 
 

@@ -11,7 +11,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..arrays import Array
-from ..body.fingers import Hands
+from ..body.fingers import SURE, Hands
 from ..body.kinematics import Body, Extremities, Pose
 from ..body.posture import Posture
 from ..body.rotations import exponential, hinge, logarithm
@@ -206,5 +206,6 @@ def natural_extremities(
     if hands is not None:
         for row, (name, hanging) in enumerate(turns.items()):
             apart = logarithm(np.swapaxes(hanging, -1, -2) @ exponential(hands.bend[:, row]))
-            turns[name] = hanging @ exponential(hands.sure[:, row, None] * apart)
+            share = np.minimum(hands.sure[:, row, None] / SURE, 1.0)
+            turns[name] = hanging @ exponential(share * apart)
     return Extremities(MappingProxyType({**feet, **turns}))

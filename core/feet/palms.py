@@ -2,8 +2,8 @@
 
 None of it moves a principal point. What is believed is a path through the looks at a hand over time, by
 Viterbi: they may be of another hand, take the palm for the back, or jump. A look is believed as far as its
-mirror image says the same. Between and instead of such looks the pronation stays as it was estimated, as at
-keyframes that a person has posed, and fingers are relaxed.
+mirror image says the same and it is one of that side. Between and instead of such looks the pronation stays
+as it was estimated, as at keyframes that a person has posed, and fingers are relaxed.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.fingers import RELAXED_RAD, Hands
+from ..body.fingers import RELAXED_RAD, SURE, Hands
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.rotations import exponential, hinge, logarithm, to_quaternions
@@ -28,7 +28,7 @@ AGREEING_RAD = np.radians(20.0)  # by how much two looks at the same hand differ
 SWING_RAD = np.radians(45.0)  # by how much hands are bent against forearms
 SPEED_RAD_S = np.radians(400.0)  # at which hands turn over
 SMOOTH_S = 0.1
-NATURAL = 0.2  # weight of the pronation that was estimated, in sure looks
+NATURAL = 0.2  # weight of what is natural, in sure looks
 POSED_S = 0.3  # time from a posed keyframe in which it comes back
 LARGEST_RAD = np.radians(100.0)
 
@@ -71,15 +71,15 @@ def seen_hands(
         believed = kept, path[kept]
         doubt = _apart(looks[:, 0, :3], looks[:, 1, :3])[kept] / AGREEING_RAD
         weight = np.exp(-0.5 * ((time_s[:, None] - time_s[seen[kept]]) / SMOOTH_S) ** 2)
-        weight = weight * np.exp(-0.5 * doubt**2) * looks[believed][:, 3]
-        share = weight / (weight.sum(axis=1, keepdims=True) + NATURAL)
+        weight = weight * np.exp(-0.5 * doubt**2) * looks[believed][:, 3:5].prod(axis=1)
+        total = weight.sum(axis=1)
+        sure[:, row] = total / (total + NATURAL)
+        mean, full = weight / np.maximum(total, 1e-12)[:, None], np.minimum(sure[:, row] / SURE, 1.0)
         natural = angles[:, column]
-        change = (share * (twist[believed] - natural[:, None])).sum(axis=1)
+        change = full * (mean * (twist[believed] - natural[:, None])).sum(axis=1)
         angles[:, column] = np.clip(natural + free * change, -LARGEST_RAD, LARGEST_RAD)
-        sure[:, row] = share.sum(axis=1)
-        mean = weight / np.maximum(weight.sum(axis=1, keepdims=True), 1e-12)
         bend[:, row] = mean @ swing[believed]
-        curls[:, row] += share @ (looks[believed][:, 5:] - RELAXED_RAD)
+        curls[:, row] += full[:, None] * (mean @ (looks[believed][:, 5:] - RELAXED_RAD))
     return replace(posture, angles=angles), Hands(curls, bend, sure)
 
 

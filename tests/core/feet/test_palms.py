@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, exercise
-from keymark.core.body.fingers import RELAXED_RAD
+from keymark.core.body.fingers import SURE
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import exponential, hinge, logarithm
 from keymark.core.detect.keypoints import FACING, HAND_NUMBERS, Keypoints
@@ -47,13 +47,11 @@ def test_palms_follow_what_is_seen_and_points_stay() -> None:
     assert np.median(off_deg(found)) < 8.0 < 30.0 < np.median(off_deg(posture))
     points = [BODY.points(BODY.pose(each)) for each in (posture, found)]
     np.testing.assert_allclose(points[0], points[1], atol=1e-12)
-    assert hands is not None and hands.sure.min() > 0.5
+    assert hands is not None and hands.sure.min() > SURE
     np.testing.assert_allclose(
         hands.bend[1:], np.broadcast_to([0.0, 0.3, 0.0], (FRAMES - 1, 2, 3)), atol=0.02
     )
-    np.testing.assert_allclose(
-        hands.curls, RELAXED_RAD + hands.sure[..., None] * (1.0 - RELAXED_RAD), atol=1e-9
-    )
+    np.testing.assert_allclose(hands.curls, 1.0)
     assert seen_hands(BODY, posture, TIME_S, Keypoints.none(FRAMES), CAMERA) == (posture, None)
 
 
