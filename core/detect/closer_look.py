@@ -9,7 +9,7 @@ from ..errors import InputError
 from .face import FaceNetwork
 from .families.beside import Beside
 from .families.network import Network
-from .hands import HandNetwork
+from .hands import HandNetwork, no_hands
 from .pose_network import Pose, in_parallel
 
 Part = TypeVar("Part")
@@ -23,6 +23,7 @@ class CloserLook:
         """One of somebody's own, which looks at all of them."""
         self._face = _there(FaceNetwork)
         self._hands = _there(HandNetwork) if hands else None
+        self._looks_at_hands = hands
 
     def __call__(self, looks: Sequence[tuple[Image, Pose, bool]]) -> list[Pose]:
         """The poses of people in pictures with their faces, where it is wanted with their hands.
@@ -37,8 +38,9 @@ class CloserLook:
     def _seen(self, picture: Image, pose: Pose, wanted: bool) -> Pose:
         if self._face is not None:
             pose = replace(pose, face=self._face(picture, pose))
-        if self._hands is not None and wanted:
-            pose = replace(pose, hands=self._hands(picture, pose))
+        if self._looks_at_hands and wanted:
+            hands = no_hands(1)[0] if self._hands is None else self._hands(picture, pose)
+            pose = replace(pose, hands=hands)
         return pose
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..arrays import Array, Image, SingleArray
+from ..arrays import Array, BoolArray, Image, SingleArray
 from ..body.fingers import MIDDLE, RESTING, WRIST, curls_of, palm_of
 from ..body.rotations import exponential, logarithm
 from ..body.skeleton import SIDES
@@ -82,6 +82,24 @@ def _of(side: str, left: float) -> float:
 def hand_turn(points: Array, side: str) -> Array:
     """(3, 3) turn from rest of a hand by its 21 points (21, 3), in the axes of these."""
     return palm_of(points, side) @ (FACING @ RESTING[side]).T
+
+
+def hand_of(points: Array, wrist: Array, side: str) -> Array:
+    """(22,) a hand of 21 points (21, 3) in space, as another network sees it, its wrist at a pixel (2,).
+
+    Both looks are that one, of which it does not say how sure it is. NaN where the points are no hand's.
+    """
+    turn = hand_turn(points, side)
+    if abs(float(np.linalg.det(turn))) < 0.5:
+        return np.full(HAND_NUMBERS, np.nan)
+    look = [*logarithm(turn), 0.9, 1.0, *curls_of(points)]
+    return np.array([*wrist, *look, *look])
+
+
+def alike(hands: Array) -> BoolArray:
+    """(...) whether hands (..., 22) are another network's."""
+    looks = hands[..., 2:].reshape(*hands.shape[:-1], 2, -1)
+    return np.asarray((looks[..., 0, :] == looks[..., 1, :]).all(axis=-1))
 
 
 def _first_crop(pose: Pose, side: str) -> Crop:

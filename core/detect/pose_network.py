@@ -100,6 +100,7 @@ class Look:
     score: Array | None  # (N,) the network's own; None where it has none
     hint_m: Array | None = None  # (N, 3) as in `Keypoints`, NaN where there is none
     depth_m: Array | None = None  # (N,) depths alone, as those of hints, where it guesses these
+    hands: Array | None = None  # (2, 22) as in `hands`, where it sees their points in space
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +113,7 @@ class Pose:
     presence: float  # how sure it is that the crop shows anybody, 0 to 1
     crop: Crop  # about this person
     face: Array | None = None  # (6,) as in `face`, where it was looked at
-    hands: Array | None = None  # (2, 12) as in `hands`, likewise
+    hands: Array | None = None  # (2, 22) as in `hands`, likewise
 
     def pixels_per_meter(self, points: Sequence[int] | slice = slice(None)) -> float:
         """Size of some points in the picture over that of the guess of them in space, across the view."""

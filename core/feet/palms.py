@@ -45,7 +45,7 @@ def seen_hands(
 
     `posed` are frames of keyframes that a person posed.
     """
-    if keypoints.hands is None:
+    if keypoints.hands is None or not np.isfinite(keypoints.hands).any():
         return posture, None
     angles, apart_s = np.array(posture.angles), np.full(len(time_s), np.inf)
     for index in posed:

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import Array, Image
+from ..hands import LENGTH_M, SMALLEST_PX, alike
 from ..keypoints import People, SecondSource, confidences, mirrored_point
 from ..performer import FITS, person_size
 from ..pose_network import LAYOUT, Look, Pose
@@ -68,8 +69,13 @@ class Beside:
             hips = [names.index(f"hip.{side}") for side in "LR"]
             hint = np.column_stack([meters * look.pixel, look.depth_m])
             hint -= hint[hips].mean(axis=0)
+        hands = pose.hands
+        large = pose.pixels_per_meter() * LENGTH_M >= SMALLEST_PX
+        if hands is not None and look.hands is not None and large:
+            hands = np.where(np.isfinite(hands), hands, look.hands)
         return replace(
             pose,
+            hands=hands,
             pixel=np.concatenate([pose.pixel, look.pixel]),
             score=np.concatenate([pose.score, score]),
             hint_m=np.concatenate([pose.hint_m, hint]),
@@ -95,7 +101,13 @@ def believed(people: People) -> People:
         note = f"{second.detector}: {why}, and is left out"
         kept = slice(first)
         frames = [
-            replace(one, pixel=one.pixel[:, kept], score=one.score[:, kept], hint_m=one.hint_m[:, kept])
+            replace(
+                one,
+                pixel=one.pixel[:, kept],
+                score=one.score[:, kept],
+                hint_m=one.hint_m[:, kept],
+                hands=None if one.hands is None else np.where(alike(one.hands)[..., None], np.nan, one.hands),
+            )
             for one in people.frames
         ]
         notes = (*people.notes, note)

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...arrays import Array, Image, SingleArray
+from ..hands import hand_of
 from ..layouts import Layout
 from ..pose_network import Look
 from .network import Box, Network, Signature, Window
@@ -18,11 +19,17 @@ _FACE = ("nose", "eye.L", "eye.R", "ear.L", "ear.R")
 _BODY = [f"{part}.{side}" for part in ("shoulder", "elbow", "hip", "knee", "ankle") for side in "LR"]
 _FEET = [f"{part}.{side}" for side in "LR" for part in ("toe", "small_toe", "heel")]
 _HANDS = {"thumb": 2, "index": 7, "pinky": 19, "wrist": 20}  # of a hand, whose fingers begin at their tips
+RIGHT, LEFT = 21, 42  # where the hands' points begin
+FROM_WRIST = np.array([20, *(4 * finger + joint for finger in range(5) for joint in (3, 2, 1, 0))])
 LAYOUT = Layout(
     "mhr70",
     70,
     dict(enumerate([*_FACE, *_BODY, *_FEET]))
-    | {first + at: f"{part}.{side}" for side, first in (("R", 21), ("L", 42)) for part, at in _HANDS.items()}
+    | {
+        first + at: f"{part}.{side}"
+        for side, first in (("R", RIGHT), ("L", LEFT))
+        for part, at in _HANDS.items()
+    }
     | {69: "neck"},
 )
 HIPS = [LAYOUT.numbers.index(number) for number in (9, 10)]
@@ -67,6 +74,12 @@ class InstantHMR(Network):
     def read(self, outputs: Sequence[Array], window: Window) -> Look:
         """See `Network`."""
         used = LAYOUT.numbers
-        place = 0.5 * (outputs[self._flat][0, used] + 1.0) * self.size[0]
-        hint = None if self._deep is None else outputs[self._deep][0, used]
-        return Look(window.pixel(place), None, None if hint is None else hint - hint[HIPS].mean(axis=0))
+        pixel = window.pixel(0.5 * (outputs[self._flat][0] + 1.0) * self.size[0])
+        if self._deep is None:
+            return Look(pixel[used], None)
+        space = outputs[self._deep][0]
+        hands = [
+            hand_of(space[first + FROM_WRIST], pixel[first + FROM_WRIST[0]], side)
+            for side, first in (("L", LEFT), ("R", RIGHT))
+        ]
+        return Look(pixel[used], None, space[used] - space[used][HIPS].mean(axis=0), hands=np.array(hands))

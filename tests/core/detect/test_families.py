@@ -9,9 +9,14 @@ import onnx
 import pytest
 from _networks import METERS, Builder, draw_dots, heat_maps, instant_hmr, simcc
 from keymark.core.arrays import Array
+from keymark.core.body.fingers import finger_bones
+from keymark.core.body.rotations import exponential, hinge, logarithm
+from keymark.core.detect.families.instant_hmr import FROM_WRIST, LEFT
 from keymark.core.detect.families.instant_hmr import LAYOUT as MHR
-from keymark.core.detect.families.network import Box
+from keymark.core.detect.families.network import Box, Window
 from keymark.core.detect.families.table import open_network
+from keymark.core.detect.hands import alike
+from keymark.core.detect.keypoints import FACING, HAND_NUMBERS
 from keymark.core.detect.layouts import LAYOUTS
 from keymark.core.detect.onnx_file import LARGEST_BYTES, read_onnx
 from keymark.core.detect.pose_network import Look
@@ -95,7 +100,32 @@ def test_points_in_space_are_right_down_and_away_about_the_hips(
     hips = [MHR.names.index("hip.L"), MHR.names.index("hip.R")]
     expected -= expected[hips].mean(axis=0)
     assert network.motion and look.hint_m is not None
+    assert look.hands is not None and look.hands.shape == (2, HAND_NUMBERS) and alike(look.hands).all()
     np.testing.assert_allclose(look.hint_m[:29], expected, atol=0.003 if changes.get("half") else 0.001)
+
+
+@pytest.mark.parametrize("side", ["L", "R"])
+def test_points_of_hands_in_space_are_hands(side: str, tmp_path: Path) -> None:
+    network = open_network(instant_hmr(tmp_path / "body.onnx", MHR.numbers))
+    flat, space, first = np.zeros((1, 70, 2)), np.zeros((1, 70, 3)), LEFT if side == "L" else 21
+    points, turn = [np.zeros(3)], exponential(np.array([0.2, -0.5, 0.4]))
+    for name, start, end, axis in finger_bones(side):
+        if ".1." in name:
+            bend, at = np.eye(3), start
+            points.append(at)
+        bend = bend @ hinge(axis, np.array(0.4))
+        at = at + bend @ (end - start)
+        points.append(at)
+    space[0, first + FROM_WRIST] = np.array(points) @ (turn @ FACING).T
+    flat[0, first + FROM_WRIST[0]] = 0.5, 0.0
+    outputs = [np.zeros(1)] * 5
+    outputs[network._flat], outputs[network._deep] = flat, space
+    hands = network.read(outputs, Window(np.zeros(2), 1.0)).hands
+    assert hands is not None
+    hand = hands["LR".index(side)]
+    np.testing.assert_allclose(hand[:2], (168.0, 112.0))
+    assert np.degrees(np.linalg.norm(logarithm(turn.T @ exponential(hand[2:5])))) < 5.0
+    np.testing.assert_allclose(hand[7:12], 0.4, atol=0.05)
 
 
 def test_a_body_network_is_told_where_the_box_is(tmp_path: Path) -> None:
