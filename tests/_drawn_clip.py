@@ -12,7 +12,7 @@ from keymark.core.arrays import Image
 from keymark.core.detect.keypoints import People
 from keymark.core.detect.pose_network import CIRCLE, LAYOUT, Crop, Pose
 from keymark.core.markers.ignored_regions import IgnoredRegion
-from keymark.core.markers.markers import track_markers
+from keymark.core.markers.markers import assign_detections, detect_markers
 from keymark.core.markers.region_tracks import ExpectedRegions, MarkerStyle, RegionTracks
 from keymark.core.video.clip import Clip
 
@@ -109,6 +109,12 @@ def finish(job: Generator[float, None, RegionTracks]) -> RegionTracks:
             assert fractions[0] == 0.0 and fractions[-1] == pytest.approx(1.0)
             assert fractions == sorted(fractions)
             return stop.value
+
+
+def track_markers(clip, styles, expected=None, ignored=()) -> Generator[float, None, RegionTracks]:
+    """The markers of a clip, as a reading follows them."""
+    seen = yield from detect_markers(clip, styles, expected, ignored)
+    return assign_detections(seen, styles, expected)
 
 
 def film(

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from _drawn_clip import track_markers
 from keymark.core.arrays import Array, BoolArray
-from keymark.core.markers.markers import track_markers
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.progress import run, within
 from keymark.core.take.take_file import read_take

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ..arrays import BoolArray
 from ..errors import frames_in_words
-from ..markers.region_tracks import RegionTracks
+from ..markers.region_tracks import RegionTracks, is_variable_frame_rate
 from ..prior.keyframes import Matched
 from ..take.clip_check import VARIABLE_RATE
 from ..take.take import Take
@@ -26,7 +26,7 @@ def marker_notes(tracks: RegionTracks, there: BoolArray) -> tuple[str, ...]:
                 f"marker {name} was found in {seen} of {there.sum()} frames only; check its "
                 "color, or pose keyframes where it is hidden"
             )
-    if tracks.variable_frame_rate:
+    if is_variable_frame_rate(tracks.time_s):
         notes.append(VARIABLE_RATE)
     return tuple(notes)
 

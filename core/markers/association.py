@@ -64,7 +64,22 @@ def static_clutter(found: Candidates) -> BoolArray:
     A resting marker is not marked: no other region of its color is visible at the same time.
     """
     frames = len(found.start) - 1
-    still = _still(found, frames)
+    if not len(found.frame):
+        return np.zeros(0, dtype=np.bool_)
+    # Still are those with similar ones at the same position in most frames. Positions and sizes are counted
+    # in cells; regions in the same or a neighboring cell, which reach one step on average, are similar.
+    steps = np.array([STILL_STEP_PX, STILL_STEP_PX, 0.4]) * (2.0 / 3.0)
+    cells = np.column_stack([found.centroid, np.log(found.area)]) / steps
+    cells = np.floor(cells - cells.min(axis=0)).astype(np.int64) + 1
+    sides = tuple(cells.max(axis=0) + 2)
+    numbers = np.ravel_multi_index(tuple(cells.T), sides)
+    cell, index, count = np.unique(numbers, return_inverse=True, return_counts=True)
+    around = np.zeros(len(cell), dtype=np.int64)
+    for offset in np.ndindex(3, 3, 3):
+        neighbor = cell + np.ravel_multi_index(offset, sides) - np.ravel_multi_index((1, 1, 1), sides)
+        where = np.minimum(np.searchsorted(cell, neighbor), len(cell) - 1)
+        around += np.where(cell[where] == neighbor, count[where], 0)
+    still = np.asarray(around[index] >= 0.5 * frames)
     if not still.any():
         return still
     rest = float(np.median(found.area[still]))
@@ -73,30 +88,6 @@ def static_clutter(found: Candidates) -> BoolArray:
     rival = ~still & with_still[found.frame] & (found.area >= 0.1 * rest)  # less is noise
     rivals = len(np.unique(found.frame[rival]))
     return still if rivals >= 0.25 * frames else np.zeros_like(still)
-
-
-def _still(found: Candidates, frames: int) -> BoolArray:
-    """Mark regions with similar ones at the same position in most frames.
-
-    Positions and sizes are counted in cells; regions in the same or a neighboring cell are similar.
-    """
-    if not len(found.frame):
-        return np.zeros(0, dtype=np.bool_)
-    # A cell and its neighbors reach one step on average.
-    steps = np.array([STILL_STEP_PX, STILL_STEP_PX, 0.4]) * (2.0 / 3.0)
-    cells = np.column_stack([found.centroid, np.log(found.area)]) / steps
-    cells = np.floor(cells - cells.min(axis=0)).astype(np.int64) + 1
-    sides = cells.max(axis=0) + 2
-    cell, index, count = np.unique(
-        np.ravel_multi_index(tuple(cells.T), tuple(sides)), return_inverse=True, return_counts=True
-    )
-    around = np.zeros(len(cell), dtype=np.int64)
-    for offset in np.ndindex(3, 3, 3):
-        one_step = np.ravel_multi_index((1, 1, 1), tuple(sides))
-        neighbor = cell + np.ravel_multi_index(offset, tuple(sides)) - one_step
-        where = np.minimum(np.searchsorted(cell, neighbor), len(cell) - 1)
-        around += np.where(cell[where] == neighbor, count[where], 0)
-    return np.asarray(around[index] >= 0.5 * frames)
 
 
 def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IndexArray:

@@ -224,9 +224,6 @@ def share_of_color(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> floa
     return float(count[present[like]].sum() / max(count.sum(), 1.0))
 
 
-# --- Strong colors, as candidates for the markers' colors
-
-
 HUES = "red 15, orange 42, yellow 70, green 165, cyan 200, blue 255, purple 290, pink 340, red 360"
 """Hues with their upper bounds [degrees]."""
 

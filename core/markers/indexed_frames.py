@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, Image, IndexArray, IntArray
+from ..arrays import Array, Image, IntArray
 from ..video.working_image import smooth
 from .color_model import BACKGROUND, CELL_COUNT, SIDE, ColorDistribution, cell_chromaticity, cell_index, weigh
 from .ignored_regions import is_ignored
@@ -70,13 +70,30 @@ class IndexedFrames:
         return np.where(probability >= 0.5, label, BACKGROUND).astype(np.uint8)
 
     def regions(self, labels: Image, core: Image, markers: int) -> list[list[CroppedMask]]:
-        """For each frame and marker, its connected regions with enough of its core color."""
-        result = []
+        """For each frame and marker, its connected regions with enough of its core color; no wall."""
+        result: list[list[CroppedMask]] = []
         for image, ignored in zip(self._images, self._ignored, strict=True):
             label = labels.take(image)
             if ignored is not None:
                 label[ignored] = BACKGROUND
-            result.append([_core_regions(label, image, core, marker) for marker in range(markers)])
+            result.append([])
+            for marker in range(markers):
+                mask = np.equal(label, marker).view(np.uint8)
+                left, top, columns, rows = cv2.boundingRect(mask)
+                inside = slice(top, top + rows), slice(left, left + columns)
+                part = np.ascontiguousarray(mask[inside])
+                if columns:
+                    count, number, stats, _ = cv2.connectedComponentsWithStats(
+                        part, connectivity=8, ltype=cv2.CV_16U
+                    )
+                    pixel, component = np.flatnonzero(part), np.asarray(number).astype(np.intp)
+                    pure = pixel[core.take(image[inside].take(pixel)) == marker]
+                    strong = np.bincount(component.take(pure), minlength=count)
+                    area = stats[:, cv2.CC_STAT_AREA]
+                    good = (strong >= np.maximum(4, 0.25 * area)) & (area <= 0.25 * label.size)
+                    good[0] = False
+                    part = good.astype(np.uint8).take(component)
+                result[-1].append(CroppedMask(left, top, part, cv2.countNonZero(part) if columns else 0))
         return result
 
     def colors(self, masks: Sequence[CroppedMask]) -> tuple[Array, Array]:
@@ -111,21 +128,3 @@ class IndexedFrames:
         cube = np.asarray(cv2.sepFilter2D(cube, -1, spread, spread, borderType=edge))
         lines = cv2.sepFilter2D(cube.reshape(-1, side), -1, spread, np.ones(1), borderType=edge)
         return np.asarray(lines.ravel(), dtype=np.float64)
-
-
-def _core_regions(label: Image, image: IndexArray, core: Image, marker: int) -> CroppedMask:
-    """Keep regions with enough of the core color that are no wall or floor."""
-    mask = np.equal(label, marker).view(np.uint8)
-    left, top, columns, rows = cv2.boundingRect(mask)
-    part = np.ascontiguousarray(mask[top : top + rows, left : left + columns])
-    if not columns:
-        return CroppedMask(0, 0, part, 0)
-    count, number, stats, _ = cv2.connectedComponentsWithStats(part, connectivity=8, ltype=cv2.CV_16U)
-    pixel = np.flatnonzero(part)
-    color = image[top : top + rows, left : left + columns].take(pixel)
-    strong = np.bincount(np.asarray(number).take(pixel[core.take(color) == marker]), minlength=count)
-    area = stats[:, cv2.CC_STAT_AREA]
-    good = (strong >= np.maximum(4, 0.25 * area)) & (area <= 0.25 * label.size)
-    good[0] = False
-    mask = good.astype(np.uint8).take(np.asarray(number))
-    return CroppedMask(left, top, mask, cv2.countNonZero(mask))

@@ -2,11 +2,10 @@
 
 from collections.abc import Generator, Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
-from ..arrays import Array, Image
+from ..arrays import Image
 from ..errors import InputError
 from ..video.clip import Clip, FrameReader
 from ..video.working_image import halvings, measuring_image
@@ -20,49 +19,52 @@ from .regions import find_regions
 STRETCH_BYTES = 100_000_000  # images buffered until the colors are learned: five seconds of video
 
 
-def track_markers(
-    clip: Clip,
-    styles: Sequence[MarkerStyle],
-    expected: ExpectedRegions | None = None,
-    ignored: Sequence[IgnoredRegion] = (),
-) -> Generator[float, None, RegionTracks]:
-    """Track the markers through a clip; yields the fraction done.
-
-    One pass over the clip in constant memory detects the regions of each marker's color; they are then
-    assigned to the markers, apart from clutter of like hue, over the whole clip at once.
-
-    Raises:
-        InputError: A marker's color matches nothing in the clip, or a frame cannot be read.
-    """
-    yield 0.0
-    seen = yield from detect_markers(clip, styles, expected, ignored)
-    yield 1.0
-    return assign_detections(seen, styles, expected)
-
-
 def detect_markers(
     clip: Clip,
     styles: Sequence[MarkerStyle],
     expected: ExpectedRegions | None = None,
     ignored: Sequence[IgnoredRegion] = (),
 ) -> Generator[float, None, Detections]:
-    """Detect all regions of the markers' colors in a clip, in one pass; see `track_markers`."""
+    """Detect all regions of the markers' colors in a clip, in one pass and constant memory.
+
+    The clip's first images are buffered, reduced, until the colors are learned from them; later ones are
+    segmented as they come, four together, which amortizes the overhead of each step. A color that matches
+    nothing in the clip is refused. Yields the fraction done.
+    """
     pixels = IgnoredPixels(tuple(ignored), clip.size)
     colors = ColorLearner(clip.path, clip.size, styles, expected, pixels)
-    regions, time_s = yield from _detect_regions(clip, colors, pixels)
+    times, learned = halvings(clip.size), False
+    longest = STRETCH_BYTES // (3 * (clip.size[0] >> times) * (clip.size[1] >> times))
+    waiting: list[Image] = []
+    regions: list[Regions] = []
+    time_s: list[float] = []
+
+    def segment(halved: int, least: int) -> Generator[float, None, None]:
+        while len(waiting) >= least:
+            batch, first = waiting[:4], len(regions)
+            masks = [pixels.mask(first + number) for number in range(len(batch))] if ignored else []
+            before = regions[-1] if regions else NO_REGIONS
+            regions.extend(find_regions(batch, halved, colors.model, before, masks))
+            del waiting[:4]
+            yield min((len(time_s) + len(regions)) / (2.0 * clip.frame_count), 1.0)
+
+    for index, stamp, image in clip.frames():
+        if index == longest:
+            colors.learn(waiting)
+            learned = True
+            yield from segment(0, 1)
+        time_s.append(stamp)
+        waiting.append(image if learned else measuring_image(image, times))
+        if learned:
+            colors.watch(index, image)
+            yield from segment(times, 4)
+        yield min((len(time_s) + len(regions)) / (2.0 * clip.frame_count), 1.0)
+    if not learned:
+        colors.learn(waiting)
+    yield from segment(times if learned else 0, 1)
     colors.check_found()
-    return Detections(tuple(regions), time_s, clip.size, tuple(colors.learning_rounds), colors.samples)
-
-
-def still_valid(
-    seen: Detections,
-    styles: Sequence[MarkerStyle],
-    expected: ExpectedRegions | None,
-    ignored: Sequence[IgnoredRegion] = (),
-) -> bool:
-    """Whether other expected regions would give exactly the same detections."""
-    pixels = IgnoredPixels(tuple(ignored), seen.size)
-    return ColorLearner(Path(), seen.size, styles, expected, pixels).learn_again(seen)
+    rounds = tuple(colors.learning_rounds)
+    return Detections(tuple(regions), np.array(time_s), clip.size, rounds, colors.samples)
 
 
 def assign_detections(
@@ -88,46 +90,6 @@ def assign_detections(
         size=seen.size,
         notes=tuple(f"markers {names} have almost the same color; {how}" for names in alike),
     )
-
-
-def _detect_regions(
-    clip: Clip, colors: ColorLearner, ignored: IgnoredPixels
-) -> Generator[float, None, tuple[list[Regions], Array]]:
-    """Detect the regions of every frame; return them and the frames' times.
-
-    The clip's first images are buffered, reduced, until the colors are learned from them; later ones are
-    segmented as they come, four together, which amortizes the overhead of each step.
-    """
-    times, learned = halvings(clip.size), False
-    longest = STRETCH_BYTES // (3 * (clip.size[0] >> times) * (clip.size[1] >> times))
-    waiting: list[Image] = []
-    regions: list[Regions] = []
-    time_s: list[float] = []
-
-    def segment(halved: int, least: int) -> Generator[float, None, None]:
-        while len(waiting) >= least:
-            batch, first = waiting[:4], len(regions)
-            masks = [ignored.mask(first + number) for number in range(len(batch))] if ignored.regions else []
-            before = regions[-1] if regions else NO_REGIONS
-            regions.extend(find_regions(batch, halved, colors.model, before, masks))
-            del waiting[:4]
-            yield min((len(time_s) + len(regions)) / (2.0 * clip.frame_count), 1.0)
-
-    for index, stamp, image in clip.frames():
-        if index == longest:
-            colors.learn(waiting)
-            learned = True
-            yield from segment(0, 1)
-        time_s.append(stamp)
-        waiting.append(image if learned else measuring_image(image, times))
-        if learned:
-            colors.watch(index, image)
-            yield from segment(times, 4)
-        yield min((len(time_s) + len(regions)) / (2.0 * clip.frame_count), 1.0)
-    if not learned:
-        colors.learn(waiting)
-    yield from segment(times if learned else 0, 1)
-    return regions, np.array(time_s)
 
 
 def regions_of_frame(

@@ -16,8 +16,9 @@ from ..video.album import Album, Glimpses, Watch, watch_clip
 from ..video.clip import Clip
 from ..video.frame_checks import NO_FINDINGS, FrameChecks, FrameFindings
 from ..video.image_sequence import find_images
-from .ignored_regions import IgnoredRegion
-from .markers import assign_detections, detect_markers, still_valid
+from .color_learning import ColorLearner
+from .ignored_regions import IgnoredPixels, IgnoredRegion
+from .markers import assign_detections, detect_markers
 from .region_tracks import Detections, ExpectedRegions, LearningRound, MarkerStyle, Regions, RegionTracks
 
 
@@ -183,9 +184,9 @@ def read_clip(
         kept = kept if with_album else replace(kept, album=None)
         if kept.key == key:
             return kept
-        seen = kept.detections
-        same = seen is not None and of_same_footage(kept.key, key)
-        if seen is not None and same and still_valid(seen, styles, expected, ignored):
+        seen, pixels = kept.detections, IgnoredPixels(tuple(ignored), clip.size)
+        colors = ColorLearner(clip.path, clip.size, styles, expected, pixels)
+        if seen is not None and of_same_footage(kept.key, key) and colors.learn_again(seen):
             tracks = without_tracks(assign_detections(seen, styles, expected), kept.frame_findings.repeated)
             return replace(kept, tracks=tracks, key=key)
     album, checks, glimpses = Album() if with_album else None, FrameChecks(), Glimpses.of(clip)

@@ -68,11 +68,6 @@ class RegionTracks:
         """Number of frames, F."""
         return len(self.time_s)
 
-    @property
-    def variable_frame_rate(self) -> bool:
-        """Whether the frames are unevenly spaced in time, as phones record them."""
-        return is_variable_frame_rate(self.time_s)
-
 
 def is_variable_frame_rate(time_s: ArrayLike) -> bool:
     """Whether frames with these time stamps (F,) [s] are unevenly spaced in time.

@@ -42,23 +42,23 @@ def boxes_to_measure(seen: Sequence[Box], followed: Sequence[Box]) -> list[Box]:
 
     Those that overlap with their margins are merged: no pixel is measured twice for a color.
     """
-    pending = list(seen) + [box for box in followed if not any(_overlap(box, other, 0) for other in seen)]
+
+    def overlap(first: Box, second: Box, gap: int) -> bool:
+        across = first[0] - gap < second[2] and second[0] < first[2] + gap
+        return across and first[1] - gap < second[3] and second[1] < first[3] + gap
+
+    pending = list(seen) + [box for box in followed if not any(overlap(box, other, 0) for other in seen)]
     boxes = []
     while pending:
         a, b, c, d = pending.pop()
         for other in pending:
-            if _overlap((a, b, c, d), other, 2 * MARGIN):
+            if overlap((a, b, c, d), other, 2 * MARGIN):
                 pending.remove(other)
                 pending.append((min(a, other[0]), min(b, other[1]), max(c, other[2]), max(d, other[3])))
                 break
         else:
             boxes.append((a, b, c, d))
     return boxes
-
-
-def _overlap(first: Box, second: Box, gap: int) -> bool:
-    across = first[0] - gap < second[2] and second[0] < first[2] + gap
-    return across and first[1] - gap < second[3] and second[1] < first[3] + gap
 
 
 class Window(NamedTuple):

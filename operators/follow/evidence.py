@@ -61,9 +61,6 @@ def clicked_here(take: PropertyGroup) -> list[str]:
     return [click.point for click in take.follow.clicks if click.frame == clip_frame(take)]
 
 
-# --- Keypoint files on disk
-
-
 _states: dict[Path, tuple[float, str | None]] = {}
 """Time at which a path was looked at [s], and the state it had."""
 
@@ -215,9 +212,6 @@ def _one_person(
     pixel = np.array([place for _, place, _ in seen], dtype=np.float64).reshape(1, len(seen), 2)
     score = np.array([value for _, _, value in seen], dtype=np.float64).reshape(1, len(seen))
     return FrameKeypoints(source, tuple(point for point, _, _ in seen), pixel, score, is_tracked)
-
-
-# --- Labels of the panels
 
 
 def keypoints_label(take: PropertyGroup) -> str:

@@ -37,8 +37,6 @@ from .properties import segment_title
 
 ROWS = 2  # of a list that is seldom long
 
-# --- Markers
-
 
 class KEYMARK_UL_markers(RowList, bpy.types.UIList):
     """Markers with their colors and the number of sampled frames in which they are found."""
@@ -142,9 +140,6 @@ def _draw_ignored(layout: UILayout, context: Context, take: PropertyGroup) -> No
             frames.prop(region, "last_frame")
 
 
-# --- Keypoints
-
-
 class KEYMARK_UL_keypoint_files(RowList, bpy.types.UIList):
     """Files of keypoints: a switch, the detector, and the points it sees in this frame."""
 
@@ -230,9 +225,6 @@ def _draw_file(layout: UILayout, context: Context, take: PropertyGroup, entry: P
         row.operator("keymark.load_keypoints", text="Reload").filepath = str(path)
 
 
-# --- Tracks and contours
-
-
 class KEYMARK_UL_tracks(bpy.types.UIList):
     """Motion tracks of a tracking object, each with the body point that it follows."""
 
@@ -280,9 +272,6 @@ def _draw_contours(layout: UILayout, context: Context, take: PropertyGroup) -> N
     else:
         sentence = "The camera stands still: the body is told from the background in any clothes"
     draw_sentence(layout, context, sentence, "INFO")
-
-
-# --- All of it
 
 
 DRAWN = {

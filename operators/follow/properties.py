@@ -25,9 +25,6 @@ def clear_readouts(take: PropertyGroup | None) -> None:
         marker.sampled = 0
 
 
-# --- Regions of the picture that are never a marker
-
-
 def _changed(region: PropertyGroup, context: Context) -> None:
     clear_readouts(take_of(region, "ignored_regions"))
 
@@ -118,9 +115,6 @@ def add_ignored_regions(take: PropertyGroup, regions: Iterable[IgnoredRegion]) -
         take.active_ignored = len(take.ignored_regions) - 1
 
 
-# --- Markers
-
-
 SEGMENTS = ("trunk", *(each.name for each in HUMAN.segments if not each.name.startswith("girdle")))
 """Segments that a marker can be bound to: the whole trunk, and all that have a volume."""
 
@@ -188,9 +182,6 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
         """Whether the readout is of the footage of the take that the marker belongs to."""
         contents = take.clip_state.contents
         return bool(self.sampled and take.clip is not None and self.checked_clip == contents)
-
-
-# --- Keypoints
 
 
 COLUMNS = (

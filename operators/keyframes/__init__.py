@@ -1,4 +1,4 @@
 """Step 3, the poses: poses found in the footage or posed by hand, proposed frames, corrections."""
 
 PROPERTIES = ("found_properties",)
-MODULES = ("fit_pose", "store_keyframe", "corrections", "drag_joints", "panel", "pose_all", "change_match")
+MODULES = ("posing", "corrections", "drag_joints", "panel", "pose_all", "change_match")

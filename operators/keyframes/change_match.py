@@ -20,7 +20,7 @@ from ..shell.take_state import TakeState
 from ..shell.takes import active_take
 from .corrections import LIMBS
 from .found_keyframes import directions, known_matches, match_here, neighbor
-from .store_keyframe import improve_neighbors
+from .posing import improve_neighbors
 
 
 class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):

@@ -24,7 +24,7 @@ from ..shell.results import reading_of
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of, redraw_footage
 from .found_keyframes import known_matches, neighbor
-from .store_keyframe import SAME_POSE, key_pose, note_corrected
+from .posing import SAME_POSE, key_pose, note_corrected
 
 if TYPE_CHECKING:
     from ...core.body.kinematics import Body
@@ -206,9 +206,6 @@ def _fitted(context: Context, take: PropertyGroup, ways: "list[Turned]") -> "lis
     finally:
         restore_pose(take.armature, before)
     return [posture for _, posture in sorted(found, key=lambda each: each[0])]
-
-
-# --- Flipping the depth of a part of the body
 
 
 LIMBS = {"arm.L": "left arm", "arm.R": "right arm", "leg.L": "left leg", "leg.R": "right leg", TRUNK: "trunk"}

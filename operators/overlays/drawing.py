@@ -50,9 +50,6 @@ def text_size(words: str, size: float = TEXT_SIZE) -> tuple[float, float]:
     return float(width), float(height)
 
 
-# --- Style of the overlays
-
-
 SIDES: Mapping[str, Color] = {
     side: (red / 255.0, green / 255.0, blue / 255.0, 1.0) for side, (red, green, blue) in LIGHT.items()
 }
@@ -124,9 +121,6 @@ def candidate_icon(index: int) -> str:
 def side_color(name: str) -> Color:
     """The color of a point by the side of the body in its name."""
     return SIDES[side_of(name)]
-
-
-# --- Items
 
 
 def _draw(kind: str, corners: Array, color: ArrayLike, **uniforms: ArrayLike) -> None:

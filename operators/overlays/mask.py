@@ -117,9 +117,6 @@ def free_height(
     return y
 
 
-# --- Regions that are never a marker
-
-
 def draw_ignored(context: Context) -> list[Item]:
     """The regions that are never a marker, with the masks and while they are painted."""
     take, brush = find_take(context.scene), Brush.at_work
@@ -140,9 +137,6 @@ def hatched(mask: Image) -> SingleArray:
     picture = np.where(stripe, np.array((1.0, 1.0, 1.0, 0.55)), np.array((0.0, 0.0, 0.0, 0.65)))
     picture[mask == 0] = 0.0
     return picture.astype(np.float32)
-
-
-# --- Masks of the frame that the scene goes to
 
 
 _cost_s = 0.0

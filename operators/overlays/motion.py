@@ -174,9 +174,6 @@ def skeleton(
     ]
 
 
-# --- Parts of the picture: the items of each, and the rows of the legend that explain them
-
-
 @dataclass(frozen=True, eq=False)
 class Shown:
     """A frame of a take's motion that is drawn."""
@@ -327,9 +324,6 @@ def picture(context: Context, what: Shown, view: MotionView, settings: PropertyG
         rows = tuple(row for name in EXPLAINED if name in parts for row in parts[name][1])
         items += legend(rows, *corner(context.area, context.region, scale), style)
     return items
-
-
-# --- Overlay of keypoints where there is no motion yet
 
 
 def draw_keypoints(context: Context) -> list[Item]:

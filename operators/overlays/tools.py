@@ -21,8 +21,6 @@ from ..shell.takes import find_take, footage_of
 from .drawing import GHOST, INK, Color, Fill, Item, Label, Stroke, faded, side_color, text_size, ui_scale
 from .figures import circles, segments
 
-# --- Joints that can be dragged
-
 
 @dataclass
 class Handles:
@@ -68,9 +66,6 @@ def draw_joints(context: Context) -> list[Item]:
         if hovered:
             items += _near(context, handles.keys.split("   |   ")[::-1], *position + 18.0 * scale)
     return items
-
-
-# --- Lines that tell the camera
 
 
 COLORS: dict[str, Color] = {
@@ -122,9 +117,6 @@ def _view(context: Context) -> FootageView | None:
     return None if take is None else footage_view(context.scene, take, context.area, context.region)
 
 
-# --- The floor
-
-
 GRID: Color = (0.55, 0.95, 1.0, 0.9)
 HORIZON: Color = (1.0, 0.85, 0.45, 0.9)
 _grids: LruCache[FloorGrid] = LruCache(4)
@@ -151,9 +143,6 @@ def draw_floor_grid(context: Context) -> list[Item]:
         Stroke(view.to_region(grid.lines), colors, 1.2),
         Stroke(view.to_region(grid.horizon), faded(HORIZON, opacity), 1.2, 0.3),
     ]
-
-
-# --- What an operator asks for
 
 
 TITLE_SIZE, DETAIL_SIZE, NEAR_SIZE = 22.0, 14.0, 13.0

@@ -5,13 +5,13 @@ from types import SimpleNamespace
 import bpy
 import pytest
 from _results import made_up_frames, wave_library
-from keymark.core.poses import clip as posing
+from keymark.core.poses import clip as clip_posing
 from keymark.core.poses.found_poses import FoundPoses
 from keymark.core.progress import Progress
 from keymark.core.session import pose as pose_stage
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
-from keymark.operators.keyframes import store_keyframe
+from keymark.operators.keyframes import posing
 from keymark.operators.library import registry_files
 from keymark.operators.shell import results
 from keymark.operators.shell.takes import active_take
@@ -42,7 +42,7 @@ def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespa
         found = made_up_frames(wave_motion, confidences)
         return FoundPoses(found, wave_motion.posture, 0.75, 0.02, "it is", asked.contradictions)
 
-    for module in (posing, pose_stage):
+    for module in (clip_posing, pose_stage):
         monkeypatch.setattr(module, "pose_clip", pose_clip)
     libraries = [wave_library(wave_motion), wave_library(wave_motion, "walking")]
     monkeypatch.setattr(registry_files, "all_libraries", lambda: libraries)
@@ -71,4 +71,4 @@ def found(unposed: Group, given: SimpleNamespace) -> Group:
 @pytest.fixture
 def still_neighbors(monkeypatch: pytest.MonkeyPatch) -> None:
     """Found keyframes around a corrected one stay as they are."""
-    monkeypatch.setattr(store_keyframe, "_pose_anew", lambda *_: 0)
+    monkeypatch.setattr(posing, "_pose_anew", lambda *_: 0)

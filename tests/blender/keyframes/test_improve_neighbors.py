@@ -14,7 +14,7 @@ from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.follow.properties import add_ignored_regions
 from keymark.operators.keyframes.corrections import camera_now
-from keymark.operators.keyframes.store_keyframe import improve_neighbors
+from keymark.operators.keyframes.posing import improve_neighbors
 from keymark.operators.shell import results
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take

@@ -2,10 +2,23 @@
 
 import numpy as np
 import pytest
-from _drawn_clip import RED, SIZE, STYLES, Drawn, clip_of, draw, film, finish, moving, path, tracked
+from _drawn_clip import (
+    RED,
+    SIZE,
+    STYLES,
+    Drawn,
+    clip_of,
+    draw,
+    film,
+    finish,
+    moving,
+    path,
+    track_markers,
+    tracked,
+)
 from keymark.core.errors import InputError
 from keymark.core.markers import markers
-from keymark.core.markers.markers import regions_of_frame, track_markers
+from keymark.core.markers.markers import regions_of_frame
 from keymark.core.markers.region_tracks import ExpectedRegions, MarkerStyle
 from keymark.core.video.clip import Clip
 

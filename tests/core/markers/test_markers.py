@@ -20,13 +20,13 @@ from _drawn_clip import (
     finish,
     moving,
     path,
+    track_markers,
     tracked,
 )
 from hypothesis import given
 from hypothesis import strategies as st
 from keymark.core.errors import InputError
 from keymark.core.markers.color_learning import learn_colors
-from keymark.core.markers.markers import track_markers
 from keymark.core.markers.moments import axis_angle_difference, centroid_and_second_moment, characteristics
 from keymark.core.markers.region_tracks import ExpectedRegions, MarkerStyle
 from keymark.core.video.clip import Clip

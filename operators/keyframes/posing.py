@@ -1,4 +1,4 @@
-"""Keying the actor's pose: the keyframe is posed from then on, and found ones around it are improved."""
+"""Posing a frame: fitted to the footage, and keyed, which improves the found keyframes around it."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -6,20 +6,29 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
-from bpy.types import Context, PropertyGroup, Scene
+from bpy.types import Context, Event, PropertyGroup, Scene
 
 from ...core.body.human import HUMAN
 from ...core.errors import KeymarkError
+from ...core.prior.texts import COMPOSED
 from ...core.progress import run
 from ..bridge.actions import assign_action
 from ..bridge.scene_frames import at_scene_frame, scene_frames, showing_action
+from ..follow.evidence import scene_evidence
 from ..follow.marker_search import marker_styles
 from ..follow.properties import ignored_regions
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.contradictions import note_contradictions
-from ..shell.keyed_frames import SAME_FRAME, has_frame, new_keyframe_action, straighten_unposed
+from ..shell.fields import Choice
+from ..shell.keyed_frames import (
+    SAME_FRAME,
+    has_frame,
+    new_keyframe_action,
+    show_keyframes,
+    straighten_unposed,
+)
 from ..shell.notices import give_notices
-from ..shell.requirements import actor, idle
+from ..shell.requirements import actor, camera, footage, idle, points_to_follow
 from ..shell.results import MADE, reading_of
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of
@@ -172,3 +181,77 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         elif switched:
             also = "; the actor shows the keyframes now"
         self.report({"INFO"}, f"Stored a keyframe at frame {frame:g}{also}")
+
+
+class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
+    """Pose the actor so that markers and keypoints lie where this frame has them; you decide what is keyed"""
+
+    bl_label = "Fit Pose to Footage"
+    requirements = (footage, camera, actor, points_to_follow, idle)
+
+    start: Choice(
+        "Start From",
+        "What the pose may depend on beside what this frame shows",
+        items=[
+            (
+                "KEYFRAMES",
+                "Nearest Keyframes",
+                "Any pose that this frame shows, whichever way the performer faces; keyframes near it count "
+                "as well",
+            ),
+            (
+                "POSE",
+                "Current Pose",
+                "The pose as it is, set roughly by you or applied from a pose library, is changed as little "
+                "as the footage allows",
+            ),
+            ("ANEW", "Nothing", "Any pose that this frame shows, whatever the keyframes say"),
+        ],
+    )
+
+    def invoke(self, context: Context, event: Event) -> set[str]:
+        """Fit the pose, and enter Pose Mode, to correct it, if nothing else is edited."""
+        finished = self.execute(context)
+        actor, layer = active_take(context.scene).armature, context.view_layer
+        free = layer.objects.active is None or layer.objects.active.mode == "OBJECT"
+        if finished == {"FINISHED"} and actor.mode != "POSE" and free and actor.visible_get(view_layer=layer):
+            layer.objects.active = actor
+            bpy.ops.object.mode_set(mode="POSE")
+        return finished
+
+    def run(self, context: Context) -> None:
+        from ..bridge.pose import write_posture
+        from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
+        from ..library.registry_files import all_libraries
+        from .found_result import add_candidate
+
+        scene, take = context.scene, active_take(context.scene)
+        frame = frame_in_footage(footage_of(scene, take), scene_evidence(take), reading_of(take))
+        libraries = () if self.start == "POSE" else all_libraries()
+        known, floor_m = known_matches(take), take.matching.known_floor_m
+        actor_and_keys = take.armature, take.keyframe_action
+        found = fit_to_frame(frame, *actor_and_keys, self.start, known, libraries, floor_m)
+        show_keyframes(take)
+        write_posture(take.armature, found.candidates[0].posture)
+        offered = take.offered  # the one that the actor shows first, in place of all others
+        offered.candidates.clear()
+        offered.frame, offered.library, offered.chosen = scene.frame_current_final, COMPOSED, 0
+        for each in found.candidates if len(found.candidates) > 1 else ():
+            add_candidate(offered, each.posture, each.name, each.mirrored, each.confidence)
+        take.matching.corrected_in_depth = False
+        note_corrected(take, scene.frame_current_final, in_depth=False)
+        note_contradictions(take, scene.frame_current_final, found.contradictions)
+        if found.contradictions:
+            names = ", ".join(found.contradictions)
+            advice = "check what else looks like it, or pose the frame"
+            self.report({"WARNING"}, f"No plausible pose explains {names} here; {advice}")
+        elif not np.isfinite(found.residual_px).any():
+            hidden = "Seen from the camera, the body hides the markers that this frame shows; check the pose"
+            self.report({"WARNING"}, hidden)
+        elif len(found.candidates) > 1:
+            sure = f"{found.candidates[0].confidence:.0%} sure, {len(found.candidates) - 1} more in the panel"
+            self.report({"INFO"}, f"{sure}; look at it from the side too, then store it")
+        else:
+            off = f"Off by {float(np.nanmean(found.residual_px)):.1f} pixels"
+            advice = "look at it from the side too, as little tells the depth, then store it"
+            self.report({"INFO"}, f"{off}; {advice}")
