@@ -113,6 +113,7 @@ def finish(job: Generator[float, None, RegionTracks]) -> RegionTracks:
 
 def track_markers(clip, styles, expected=None, ignored=()) -> Generator[float, None, RegionTracks]:
     """The markers of a clip, as a reading follows them."""
+    yield 0.0
     seen = yield from detect_markers(clip, styles, expected, ignored)
     return assign_detections(seen, styles, expected)
 

@@ -1,6 +1,6 @@
 """The readout of markers: numbers and warnings on clips whose colors are known, and previews."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -203,41 +203,33 @@ def test_a_bent_panel_takes_several_boxes_that_leave_its_inside_free() -> None:
     assert covered[165:215, 36:104].mean() < 0.05
 
 
-def test_a_resting_marker_beside_moving_clutter_of_another_color_stays() -> None:
-    rng = np.random.default_rng(6)
-    red, blue = check_ignoring([draw(moving(index), rng) for index in range(FRAMES)]).readouts
-    assert red.still_boxes == blue.still_boxes == ()
+REST: Ellipse = (RED, (250.5, 120.5), (8.0, 18.0), 0.0)
+RESTING: Ellipse = (BLUE, (250.5, 120.5), (8.0, 18.0), 0.0)
+TWINS = (MarkerStyle("one", "shin.L", RED), MarkerStyle("two", "shin.R", RED))
 
 
-def test_two_markers_of_one_color_are_never_proposed_to_be_left_out() -> None:
-    rng = np.random.default_rng(8)
-
-    def both(index: int) -> list[Ellipse]:
-        return [*moving(index)[:1], (RED, (250.5, 120.5), (8.0, 18.0), 0.0)]
-
-    styles = (MarkerStyle("one", "shin.L", RED), MarkerStyle("two", "shin.R", RED))
-    result = check_ignoring([draw(both(index), rng) for index in range(FRAMES)], styles=styles)
-    assert all(readout.still_boxes == () for readout in result.readouts)
+def swaying(index: int) -> Ellipse:
+    """A garment of somebody who sits."""
+    sway = 3.0 * np.sin(index / 3.0)
+    return (RED, (120.0 + sway, 190.0 + 0.5 * sway), (34.0, 26.0), 0.0)
 
 
-def test_a_panel_is_not_sure_where_the_marker_is_seldom_seen_beside_it() -> None:
-    rng = np.random.default_rng(10)
-    rest: Ellipse = (BLUE, (250.5, 120.5), (8.0, 18.0), 0.0)
-    images = [
-        with_panel(draw(moving(index) if index < FRAMES // 5 else [rest], rng)) for index in range(FRAMES)
-    ]
-    assert check_ignoring(images).readouts[0].still_boxes == ()
-
-
-def test_a_garment_of_somebody_who_sits_is_no_still_area() -> None:
-    rng = np.random.default_rng(12)
-
-    def both(index: int) -> list[Ellipse]:
-        sway = 3.0 * np.sin(index / 3.0)
-        return [*moving(index)[:1], (RED, (120.0 + sway, 190.0 + 0.5 * sway), (34.0, 26.0), 0.0)]
-
-    images = [draw(both(index), rng) for index in range(FRAMES)]
-    assert check_ignoring(images, styles=STYLES[:1]).readouts[0].still_boxes == ()
+@pytest.mark.parametrize(
+    ("shapes", "styles", "panel"),
+    [
+        (moving, STYLES, False),  # a resting marker beside moving clutter of another color
+        (lambda index: [*moving(index)[:1], REST], TWINS, False),  # two markers of one color
+        (lambda index: moving(index) if index < FRAMES // 5 else [RESTING], STYLES, True),  # seldom beside it
+        (lambda index: [*moving(index)[:1], swaying(index)], STYLES[:1], False),
+    ],
+)
+def test_what_is_not_sure_is_no_still_area(
+    shapes: Callable[[int], list[Ellipse]], styles: tuple[MarkerStyle, ...], panel: bool
+) -> None:
+    images = film(shapes, FRAMES, 6)
+    images = [with_panel(image) for image in images] if panel else images
+    readouts = check_ignoring(images, styles=styles).readouts[: 2 - panel]
+    assert all(readout.still_boxes == () for readout in readouts)
 
 
 def test_a_few_frames_prove_nothing() -> None:
