@@ -1,12 +1,13 @@
 """The final motion: planted feet and few keys, made of a reconstructed motion with the animator's changes."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
 
 from ...core.arrays import Array, BoolArray, IndexArray
+from ...core.body.fingers import FINGER_BONES
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import RIGID, Body, Extremities
 from ...core.body.posture import Posture
@@ -40,8 +41,9 @@ from .rotation_modes import ALL_PATHS, bone_path
 
 PLANTING = "Planting the feet"
 REVIEW = " (Keymark)"  # end of the names of properties in which 0.1.0 told how good a motion is
-READ, SEEN, PLANTED = 0.1, 0.3, 0.4
-"""Shares of the job at which the motion is read, its postures are known, and the feet are planted."""
+READ, SEEN, PLANTED, BODY_KEYED = 0.1, 0.3, 0.4, 0.8
+"""Shares of the job at which the motion is read, its postures are known, the feet are planted, and the keys
+of the body are found where fingers have some."""
 NOTICEABLE_M = 0.005  # distance between a pose and its nearest posture above which a note is made [m]
 
 
@@ -157,11 +159,21 @@ def finish_motion(
         return Finished(body, rig, frames, values, 0.0, planted.contacts, notes)
     near = None if floor_m is None else _sole_heights_m(rig, rig.pose(values)) - floor_m < NEAR_FLOOR_M
     allowed = point_tolerances(rig, len(frames), options.tolerance_m, planted.contacts, near)
-    reducing = reduce_keys(rig, frames, values, allowed, exact, options.whole_pose)
-    reduced = yield from within("Finding the keys", reducing, PLANTED, 1.0)
-    few = rig.pose([spline.evaluate(frames, 0, len(frames) - 1) for spline in reduced.splines])
+    # Fingers come last and move nothing else: apart from the body they take a fraction of the time.
+    fingers = 0 if options.whole_pose else sum(bone.name in FINGER_BONES for bone in rig.bones)
+    count = len(rig.bones) - fingers
+    points = allowed[:, : rig.point_slices[count - 1].stop]
+    reducing = reduce_keys(Rig(rig.bones[:count]), frames, values[:count], points, exact, options.whole_pose)
+    reduced = yield from within("Finding the keys", reducing, PLANTED, BODY_KEYED if fingers else 1.0)
+    splines = reduced.splines
+    if fingers:
+        apart = Rig(tuple(replace(bone, parent=max(bone.parent - count, -1)) for bone in rig.bones[count:]))
+        reducing = reduce_keys(apart, frames, values[count:], options.tolerance_m, exact)
+        bent = yield from within("Finding the keys", reducing, BODY_KEYED, 1.0)
+        splines += bent.splines
+    few = rig.pose([spline.evaluate(frames, 0, len(frames) - 1) for spline in splines])
     notes += _floor_notes(rig, few, floor_m, frames)
-    return Finished(body, rig, frames, reduced.splines, reduced.furthest_m, planted.contacts, notes)
+    return Finished(body, rig, frames, splines, reduced.furthest_m, planted.contacts, notes)
 
 
 def _sole_heights_m(rig: Rig, shown: RigPose) -> Array:

@@ -14,8 +14,9 @@ from keymark.core.detect.closer_look import CloserLook
 from keymark.core.detect.families.beside import Beside
 from keymark.core.detect.families.instant_hmr import LAYOUT as MHR
 from keymark.core.detect.families.table import open_network
+from keymark.core.detect.hands import alike
 from keymark.core.detect.keypoint_file import read_keypoints, write_keypoints
-from keymark.core.detect.keypoints import Keypoints, People, SecondSource, mirrored_point
+from keymark.core.detect.keypoints import HAND_NUMBERS, Keypoints, People, SecondSource, mirrored_point
 from keymark.core.detect.layouts import LAYOUTS, Layout
 from keymark.core.detect.pose_network import LAYOUT, Crop, Look, Pose
 from keymark.core.detect.pose_tracking import find_people
@@ -154,6 +155,21 @@ def test_a_network_that_errs_throughout_is_left_out_with_a_sentence(tmp_path: Pa
         assert people.second is None and people.names == LAYOUT.names
         assert len(people.notes) == 1 and sentence in people.notes[0]
         np.testing.assert_array_equal(people.frames[5].pixel, plain.frames[5].pixel[:, : len(LAYOUT.names)])
+
+
+def test_hands_that_keymarks_own_network_has_not_seen_are_the_others(tmp_path: Path) -> None:
+    beside = Beside(open_network(simcc(tmp_path / "net.onnx", 17, COCO.numbers)))
+    own, other = np.full((2, HAND_NUMBERS), np.nan), np.tile([1.0, 2.0, *np.tile(np.arange(10.0), 2)], (2, 1))
+    own[0] = np.arange(HAND_NUMBERS)
+    hint = np.random.default_rng(1).normal(size=(len(LAYOUT.names), 3)) * 0.3
+    for size_px, wanted in ((400.0, [own[0], other[1]]), (100.0, own)):
+        pose = Pose(
+            size_px * hint[:, :2], np.ones(len(hint)), hint, 0.9, Crop(np.zeros(2), size_px), hands=own
+        )
+        joined = beside._joined(pose, Look(np.zeros((17, 2)), np.ones(17), hands=other))
+        assert joined.hands is not None
+        np.testing.assert_array_equal(joined.hands, wanted)
+        assert alike(joined.hands).tolist() == [False, size_px > 200.0]
 
 
 def test_single_looks_at_somebody_else_are_left_out(tmp_path: Path) -> None:
