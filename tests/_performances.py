@@ -18,8 +18,8 @@ from keymark.core.body.posture_fit import fit_posture
 from keymark.core.camera.camera import Camera
 from keymark.core.feet.natural_extremities import natural_extremities
 from keymark.core.progress import run
-from keymark.core.retarget.character import Character
-from keymark.core.retarget.character_motion import CharacterMotion, Similarity
+from keymark.core.retarget.character import Character, Similarity
+from keymark.core.retarget.character_motion import CharacterMotion
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.quality import Quality, measured
 from keymark.core.retarget.solve.solve_motion import solve_motion

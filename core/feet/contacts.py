@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array
 from ..body.skeleton import SIDES
 from ..numerics.vectors import runs
 
@@ -60,9 +60,13 @@ def find_contacts(places: Array, time_s: Array, stray_m: float = STRAY_M) -> tup
             if lasted >= max(0.2, 0.6 * whole):
                 place = path[first : last + 1].mean(axis=0)
                 near = np.linalg.norm(path - place, axis=-1) <= stray_m
-                rest = _widened(~may_rest & near & (own < RELEASE_SPEED_M_S), first, last, free)
-                found.append(Contact(point, *rest, place))
-                free = rest[1] + 1
+                stays = ~may_rest & near & (own < RELEASE_SPEED_M_S)
+                while first > free and stays[first - 1]:
+                    first -= 1
+                while last < len(stays) - 1 and stays[last + 1]:
+                    last += 1
+                found.append(Contact(point, first, last, place))
+                free = last + 1
     return tuple(contact for contact in found if not any(_is_over(contact, other) for other in found))
 
 
@@ -86,26 +90,16 @@ def _is_over(contact: Contact, other: Contact) -> bool:
     return meanwhile and bool(contact.place[2] - other.place[2] > 0.3)
 
 
-def _widened(stays: BoolArray, first: int, last: int, free: int) -> tuple[int, int]:
-    """The range of frames (first, last) with the frames from `free` on beside it in which the point stays."""
-    while first > free and stays[first - 1]:
-        first -= 1
-    while last < len(stays) - 1 and stays[last + 1]:
-        last += 1
-    return first, last
-
-
 def _longest_rest(path: Array, stray_m: float, first: int, last: int) -> tuple[int, int]:
     """The longest part of a run that stays near its own mean place."""
     longest = (first, first)
     start = first
     for stop in range(first + 1, last + 1):
-        while not _stays(path[start : stop + 1], stray_m):
+        while True:
+            part = path[start : stop + 1]
+            if (np.linalg.norm(part - part.mean(axis=0), axis=-1) <= stray_m).all():
+                break
             start += 1
         if stop - start > longest[1] - longest[0]:
             longest = (start, stop)
     return longest
-
-
-def _stays(path: Array, stray_m: float) -> bool:
-    return bool((np.linalg.norm(path - path.mean(axis=0), axis=-1) <= stray_m).all())

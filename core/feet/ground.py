@@ -123,7 +123,6 @@ def _under(point: int, rests: Sequence[Contact], levels: Array, time_s: Array) -
 IN_FLOOR_M = 0.002
 """Depth from which a foot counts as below the floor, at a performer's size [m]: more than key reduction may
 make of it."""
-MOST_RUNS = 3  # stretches of frames that a sentence names
 
 
 def floor_notes(
@@ -138,9 +137,9 @@ def floor_notes(
     for side, depth in depth_m.items():
         deep = runs(depth > size * IN_FLOOR_M)
         if deep:
-            longest = sorted(deep, key=lambda run: -float(depth[slice(*run)].max()))[:MOST_RUNS]
+            longest = sorted(deep, key=lambda run: -float(depth[slice(*run)].max()))[:3]
             named = frames_in_words([frame for run in sorted(longest) for frame in frames[slice(*run)]])
-            more = f" and {len(deep) - MOST_RUNS} more times" if len(deep) > MOST_RUNS else ""
+            more = f" and {len(deep) - 3} more times" if len(deep) > 3 else ""
             notes.append(
                 f"The {'left' if side == 'L' else 'right'} foot{whose} is up to "
                 f"{1000.0 * float(depth.max()):.3g} mm below the floor, in {named}{more}"

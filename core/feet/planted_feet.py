@@ -1,12 +1,12 @@
 """Feet that are held where they rest and above the ground on their way."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
-from ..body.kinematics import Body, Pose
+from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..numerics.block_banded import BlockBanded
@@ -15,10 +15,9 @@ from .fading import Hold, faded
 from .soles import Shins, Soles, ground_of
 
 ANKLE_STD_M = 2e-4  # standard deviation of an ankle from its target
-CHANGE_STD = {"pelvis.location": 0.005, "hip": 0.1, "knee": 0.1, "shin": 0.03}
-"""Standard deviation of the change of each degree of freedom [m, rad]: legs before hips, bends before
-twists."""
-ITERATIONS = 8
+CHANGE_STD = {"pelvis.location_": 0.005, "hip.": 0.1, "knee.": 0.1, "shin.": 0.03}
+"""Standard deviation of the change of degrees of freedom, by how they begin [m, rad]: legs before hips, bends
+before twists."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,33 +42,6 @@ def plant_feet(
     yield 0.1
     if not contacts:
         return PlantedFeet(posture, ())
-    target = _targets(body, pose, places, contacts, time_s)
-    touched = (target != places).any(axis=(1, 2))
-    kinds = [_kind(name) for name in body.skeleton.dof_names]
-    dofs = np.array([dof for dof, kind in enumerate(kinds) if kind in CHANGE_STD], dtype=np.intp)
-    std = np.array([CHANGE_STD[kinds[dof]] for dof in dofs])
-    delta = np.zeros((len(time_s), len(dofs)))
-    planted = posture
-    for number in range(ITERATIONS):
-        step = _gauss_newton_step(body, planted, ankles, target, touched, dofs, std, delta, time_s)
-        delta += step
-        full = np.zeros((len(time_s), body.skeleton.dof_count))
-        full[:, dofs] = delta
-        planted = Posture.where(touched, posture.plus(full), posture)
-        yield 0.1 + 0.9 * (number + 1) / ITERATIONS
-        if np.abs(step).max() < 1e-5:
-            break
-    return PlantedFeet(planted, contacts)
-
-
-def _kind(name: str) -> str:
-    """`hip.L.rotation_x` is of the kind `hip`, `pelvis.location_x` of the kind `pelvis.location`."""
-    first, *_, last = name.split(".")
-    return f"{first}.{last.partition('_')[0]}" if first == "pelvis" else first
-
-
-def _targets(body: Body, pose: Pose, places: Array, contacts: Sequence[Contact], time_s: Array) -> Array:
-    """Target of each ankle (F, 2, 3) from its place: at rest by its contacts, else out of the ground."""
     target = places.copy()
     for point in range(len(SIDES)):
         own = [contact for contact in contacts if contact.point == point]
@@ -82,7 +54,22 @@ def _targets(body: Body, pose: Pose, places: Array, contacts: Sequence[Contact],
     for contact in contacts:
         lowest[contact.frames, contact.point] = -np.inf
     target[..., 2] = np.maximum(target[..., 2], lowest)
-    return target
+    touched = (target != places).any(axis=(1, 2))
+    names, kinds = body.skeleton.dof_names, CHANGE_STD.items()
+    changed = {dof: std for dof, name in enumerate(names) for kind, std in kinds if name.startswith(kind)}
+    dofs, std = np.array(list(changed), dtype=np.intp), np.array(list(changed.values()))
+    delta = np.zeros((len(time_s), len(dofs)))
+    planted = posture
+    for number in range(8):
+        step = _gauss_newton_step(body, planted, ankles, target, touched, dofs, std, delta, time_s)
+        delta += step
+        full = np.zeros((len(time_s), body.skeleton.dof_count))
+        full[:, dofs] = delta
+        planted = Posture.where(touched, posture.plus(full), posture)
+        yield 0.1 + 0.9 * (number + 1) / 8
+        if np.abs(step).max() < 1e-5:
+            break
+    return PlantedFeet(planted, contacts)
 
 
 def _gauss_newton_step(

@@ -77,7 +77,7 @@ def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exac
     slope = (data[after] - data[before]) / (times[after] - times[before])[:, None]
     band[BAND, 1::2] += 0.0025
     right[1::2] += 0.0025 * slope
-    pinned = np.isin(keys, exact)
+    pinned = np.searchsorted(exact, keys, "right") > np.searchsorted(exact, keys)
     values = np.zeros_like(right)  # the known ones, and zero for those that are sought
     values[0::2] = np.where(pinned[:, None], data[keys], spline.values[low : high + 1])
     values[1::2] = spline.slopes[low : high + 1]

@@ -39,15 +39,10 @@ class KeyedBody:
         exact: IndexArray,
         groups: Sequence[tuple[int, ...]],
     ) -> None:
-        """Keys at the first, the last and the exact frames only.
+        """Keys at the first, the last and the exact frames only, which stay keys with their values.
 
-        Args:
-            rig: The bones.
-            times: (F,) rising times of the frames.
-            values: For each bone its channels, (F, C): the target.
-            tolerance_m: (F, P) largest allowed error of each of the rig's points in each frame [m].
-            exact: Indices of frames that stay keys, with their own values.
-            groups: Indices of bones, each bone in one group.
+        The target are values (F, C) for each bone at rising times (F,), which the rig's points keep within
+        (F, P) [m]; each bone is in one of the groups.
         """
         self.rig, self.times, self.posed, self.groups = rig, times, exact, groups
         self.pinned = [exact for _ in groups]
@@ -134,9 +129,6 @@ class KeyedBody:
         return found
 
 
-# --- Key reduction
-
-
 @dataclass(frozen=True, eq=False)
 class ReducedKeys:
     """Keys of every bone, and the error of the motion by them."""
@@ -155,14 +147,10 @@ def reduce_keys(
 ) -> Generator[float, None, ReducedKeys]:
     """Find few keys whose curves keep all joints and ends within a tolerance.
 
-    Args:
-        rig: The bones that the values belong to.
-        times: (F,) rising scene frames, at least two.
-        values: For each bone of the rig its channels, (F, C), without jumps.
-        tolerance_m: Largest distance of any point from its place by the values, in any frame [m]; or one for
-            each frame and point, (F, P), in the order of `Rig.point_slices`.
-        exact: Indices of frames that stay keys of every bone, with their values, as the first and last do.
-        whole_pose: Whether all bones are keyed together, as poses; by default each bone where it needs keys.
+    Each bone has values (F, C) without jumps at rising scene frames (F,), at least two. The tolerance is the
+    largest distance of a point from its place by them [m], or one a frame and point (F, P) in the order of
+    `Rig.point_slices`. The `exact` frames, by index, stay keys as the first and the last do. With
+    `whole_pose` all bones are keyed together, by default each where it needs keys.
     """
     bones = range(len(rig.bones))
     groups = [tuple(bones)] if whole_pose else [(bone,) for bone in bones]

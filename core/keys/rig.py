@@ -95,7 +95,7 @@ class Rig:
         pose.rotation[index] = own
         if bone.parent >= 0:
             start = pose.points[:, self.point_slices[bone.parent].start]
-            place = start + _turned(pose.rotation[bone.parent], place)
+            place = start + (pose.rotation[bone.parent] @ place[..., None])[..., 0]
         pose.points[:, where.start] = place
         joint = pose.points[:, where.start, None]
         pose.points[:, where.start + 1 : where.stop] = joint + bone.points @ np.swapaxes(own, -1, -2)
@@ -132,7 +132,8 @@ class RigPose:
         if bone.parent < 0:
             return own
         start = self.points[frames, rig.point_slices[bone.parent].start]
-        return _turned(np.swapaxes(self.rotation[bone.parent, frames], -1, -2), own - start)
+        away = np.swapaxes(self.rotation[bone.parent, frames], -1, -2) @ (own - start)[..., None]
+        return np.asarray(away[..., 0])
 
 
 def channel_count(mode: str) -> int:
@@ -153,8 +154,3 @@ def rotation_matrices(channels: Array, mode: str) -> Array:
     order = ["XYZ".index(letter) for letter in mode]
     # Blender's XYZ turns about the fixed x first, then y, then z: scipy's lower case.
     return np.asarray(Rotation.from_euler(mode.lower(), channels[:, order]).as_matrix())
-
-
-def _turned(turn: Array, vectors: Array) -> Array:
-    """(F, 3) vectors, (F, 3) or a single (3,), turned by (F, 3, 3)."""
-    return np.asarray(turn @ vectors if vectors.ndim == 1 else (turn @ vectors[..., None])[..., 0])

@@ -123,10 +123,7 @@ def mend_motion(points: Array, rate: float, options: MendOptions, frame_start: i
 
 
 def _checked(points: Array, options: MendOptions, frame_start: int) -> tuple[Array, list[str]]:
-    """The points with NaN where a frame is missing or repeats the one before, and notes.
-
-    InputError: see `mend_motion`.
-    """
+    """The points, NaN in frames that are missing or repeat the one before, and notes; or InputError."""
     frames = len(points)
     if not 3 <= frames <= MOST_FRAMES:
         raise InputError(
@@ -157,10 +154,7 @@ def _checked(points: Array, options: MendOptions, frame_start: int) -> tuple[Arr
 
 
 def measured_actor(points: Array) -> Actor:
-    """The actor whose segments have the median lengths of points (F, 13, 3) [m].
-
-    InputError: a length is that of no person.
-    """
+    """The actor of median lengths of points (F, 13, 3) [m]. InputError: a length is that of no person."""
     at = {name: points[:, index] for index, name in enumerate(HUMAN.point_names)}
     at |= {part: 0.5 * (at[f"{part}.L"] + at[f"{part}.R"]) for part in ("hip", "shoulder")}
     ends = {

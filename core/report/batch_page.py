@@ -24,8 +24,7 @@ STYLE = Path(__file__).with_suffix(".css").read_text(encoding="utf-8")
 LONGEST = 1000  # letters of a text
 MOST_ROWS = 5000  # largest number of takes on the page; browsers are slow to lay out more
 MOST_NAMED = 12  # frames and notes of a take
-GOOD = WEAK_CONFIDENCE
-"""Mean confidence from which a take is good: frames of this confidence need no keyframe."""
+GOOD = WEAK_CONFIDENCE  # mean confidence of a good take: such frames need no keyframe
 FAIR = 0.5
 """Mean confidence from which a take is fair (below, most joints are likely off), and the least one of the
 weakest twentieth of a good take's frames."""
@@ -37,8 +36,7 @@ class Verdict(StrEnum):
     FAILED = "failed"
     POOR = "poor"
     FAIR = "fair"
-    UNJUDGED = "not judged"
-    """Converted by a method without a confidence."""
+    UNJUDGED = "not judged"  # by a method without a confidence
     GOOD = "good"
     WAITING = "waiting"
 
@@ -125,9 +123,6 @@ def sections(outcomes: Sequence[Outcome]) -> dict[Verdict, list[Outcome]]:
     for outcome in sorted(outcomes, key=lambda one: (confidence[one.take], one.take)):
         found[verdict(outcome)].append(outcome)
     return {kind: those for kind, those in found.items() if those}
-
-
-# --- The page
 
 
 def summary_page(title: str, outcomes: Sequence[Outcome], output: Path) -> str:

@@ -118,9 +118,6 @@ def _fixed(points: Array) -> NDArray[np.int32]:
     return np.round(clipped * 2**SUBPIXEL_BITS).astype(np.int32)[:, None]
 
 
-# --- Words, grids and views that several pictures have
-
-
 def truncated(text: str, width: float = np.inf, size: float = 9.0) -> str:
     """The text in ASCII, which the font has, truncated to a `width` in letters of a `size`."""
     text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
@@ -147,10 +144,7 @@ class View:
 
 
 def view_axes(turn_rad: float, tilt_rad: float) -> Array:
-    """Axes of a view by the turn of the eye around the world's Z and its tilt downward.
-
-    At 0 it sees a performer who faces -Y from the front, turned by π/2 from their left.
-    """
+    """Axes of a view: turned by 0 it sees a performer who faces -Y from the front, by π/2 from their left."""
     right = np.array([np.cos(turn_rad), np.sin(turn_rad), 0.0])
     level = np.array([-right[1], right[0], 0.0])
     away = np.cos(tilt_rad) * level - np.sin(tilt_rad) * UP

@@ -16,7 +16,7 @@ from ..feet.natural_extremities import feet_on_floor
 from ..feet.soles import Shins, Soles
 from ..numerics.vectors import unit
 from .canvas import GRID_M, PAPER, Canvas, Color, View, draw_grid, side_axes, truncated, view_axes
-from .overlay_sheet import sheet
+from .pictures import sheet
 from .stick_figure import Projection, square_of, squares_around
 
 SKIN: Color = (196, 190, 186)
@@ -75,7 +75,14 @@ def mannequin(body: Body, posture: Posture) -> CharacterFigure:
     feet = Extremities(feet_on_floor(Shins.of(body, pose), Soles.of(body), 0.0))
     points, triangles, colors = [], [], []
     quads = ring_quads(2 * BANDS_OF_CAP + BANDS_OF_SHAFT + 1, SIDES_OF_RING)
-    for piece in (*body_pieces(body), _nose(body)):
+    pieces = body_pieces(body)
+    head = next(piece for piece in pieces if piece.segment == "head")
+    up = head.end - head.start
+    length, width = 1.3 * head.half_widths[1, 1], 0.2 * head.half_widths[1, 0]
+    start, widths = head.start + 0.65 * up, np.full((2, 2), width)
+    tip = start - length * head.sagittal  # of a nose, by which one sees where the face is
+    nose = Piece("nose", head.joint, start, tip, head.lateral, up / np.linalg.norm(up), widths)
+    for piece in (*pieces, nose):
         foot = piece.segment.startswith("foot")
         turn = segment_turn(body, pose, feet, piece.segment)[0] if foot else pose.rotation[0, piece.joint]
         rings = piece.rings(SIDES_OF_RING, BANDS_OF_CAP, BANDS_OF_SHAFT).reshape(-1, 3)
@@ -91,16 +98,6 @@ def mannequin(body: Body, posture: Posture) -> CharacterFigure:
             color[BANDS_OF_CAP + BANDS_OF_SHAFT // 2] = (235, 232, 230)
         colors += [color.reshape(-1, 3)] * 2
     return CharacterFigure(np.concatenate(points), np.concatenate(triangles), np.concatenate(colors))
-
-
-def _nose(body: Body) -> Piece:
-    """A nose, by which one sees where the face is."""
-    head = next(piece for piece in body_pieces(body) if piece.segment == "head")
-    up = head.end - head.start
-    middle = head.start + 0.65 * up
-    length, width = 1.3 * head.half_widths[1, 1], 0.2 * head.half_widths[1, 0]
-    tip, widths = middle - length * head.sagittal, np.full((2, 2), width)
-    return Piece("nose", head.joint, middle, tip, head.lateral, up / np.linalg.norm(up), widths)
 
 
 SIZE = 256
@@ -131,9 +128,6 @@ def backdrop(height: int, width: int, floor: float, scale: float) -> Image:
     return np.asarray(np.repeat(np.round(colors)[:, None], width, axis=1), dtype=np.uint8)
 
 
-# --- Contact sheet of a character's motion: the footage, the character through its camera, and from the side
-
-
 SIDE = 220
 
 
@@ -145,15 +139,9 @@ def character_sheet(
     frame_start: int,
     floor_m: float,
 ) -> Image:
-    """Draw a character in some frames, beside the footage where there is any.
+    """Draw a character by frame index, in order, through the camera, from its side, and beside the footage.
 
-    Args:
-        name: The character's name, for the title.
-        figures: The character by frame index, in the order to show it.
-        camera: The camera that took the footage; it decides what is the side.
-        images: Frames of the clip by the same index, reduced or whole; those that are missing are left out.
-        frame_start: Scene frame of index 0.
-        floor_m: Height of the floor under the character [m].
+    Frames of the clip, reduced or whole, are by the same index; those that are missing are left out.
     """
     title = truncated(f"{name}: through the camera, and from the side")
     words = (

@@ -13,8 +13,7 @@ from ..feet.natural_extremities import natural_extremities
 from ..take.motion import Motion
 from .canvas import GRAY, INK, LEFT, PALE, PAPER, RIGHT, WHITE, Canvas, Color, View, view_axes
 
-Projection = Callable[[Array], tuple[Array, Array]]
-"""From world points (N, 3) to canvas points (N, 2) and depths (N,), which grow with the distance."""
+Projection = Callable[[Array], tuple[Array, Array]]  # from the world to pixels (N, 2) and depths (N,)
 
 
 @dataclass(frozen=True)
@@ -105,15 +104,7 @@ def legend(canvas: Canvas, right: float, y: float) -> None:
 def squares_around(
     points: Array | Mapping[int, Array], camera: Camera, frames: Sequence[int]
 ) -> tuple[Array, float]:
-    """Centers (K, 2) and common side of squares around the figure in each frame [px].
-
-    They stay inside the picture where they fit.
-
-    Args:
-        points: (N, 3) places of the figure by frame index [m].
-        camera: The camera.
-        frames: Frame indices of the K pictures.
-    """
+    """Centers (K, 2) and side of squares around places (N, 3) [m] by frame, inside where they fit [px]."""
     size = np.array(camera.resolution, dtype=np.float64)
     centers, extents = np.tile(0.5 * size, (len(frames), 1)), np.zeros(len(frames))
     for index, frame in enumerate(frames):

@@ -33,15 +33,38 @@ LIMBS = {
     for side in SIDES
 }
 """The roles of `arm.L`, `leg.L`, `arm.R` and `leg.R`, from the trunk outward."""
-SOURCES = ("preset", "names", "shape", "you")
-"""Where a role may come from: a convention's preset, the bones' names, their places, or the person."""
+SOURCES = ("preset", "names", "shape", "you")  # a convention, the names, the places, or the person
 JOINTS = {limb: roles[1:] if limb.startswith("arm") else roles[:3] for limb, roles in LIMBS.items()}
 """The roles that begin at a limb's three joints: upper arm, forearm and hand, or thigh, shin and foot."""
 LONG_BONES = {limb: tuple(pairwise(roles)) for limb, roles in JOINTS.items()}
 """By limb the roles at both ends of its two long bones."""
 
 
-# --- A character's bones at rest, as arrays
+# --- Where an armature is, and its bones at rest, as arrays
+
+
+@dataclass(frozen=True, eq=False)
+class Similarity:
+    """From an armature's space to the world: turn, place and one scale."""
+
+    rotation: Array  # (3, 3)
+    location: Array  # (3,) [m]
+    scale: float
+
+    @property
+    def matrix(self) -> Array:
+        """(4, 4)."""
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = self.scale * self.rotation, self.location
+        return matrix
+
+    def to_world(self, points: Array) -> Array:
+        """World coordinates (..., 3) of points in the armature's space [m]."""
+        return np.asarray(self.location + self.scale * (points @ self.rotation.T))
+
+    def from_world(self, points: Array) -> Array:
+        """The inverse of `to_world`."""
+        return np.asarray((points - self.location) @ self.rotation / self.scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,12 +73,10 @@ class CharacterBone:
 
     name: str
     parent: int  # index of its parent; -1 for none
-    rest: Array
-    """(4, 4) rest matrix in the armature's own space and units: the axes as columns, then the head."""
+    rest: Array  # (4, 4) in the armature's space and units: the axes as columns, then the head
     tail: Array  # (3,) in the armature's space; importers may put it anywhere, the head is what counts
     deforms: bool = True  # whether it moves a mesh
-    connected: bool = False
-    """Whether its head is bound to its parent's tail, so that Blender ignores its location."""
+    connected: bool = False  # whether it begins at its parent's tail: Blender ignores its location
 
     @property
     def head(self) -> Array:
@@ -84,6 +105,17 @@ class Character:
             if bone.parent >= 0:
                 found[bone.parent].append(number)
         return tuple(tuple(each) for each in found)
+
+    @cached_property
+    def tails_are_meant(self) -> bool:
+        """Whether most bones end at a child's head, so that the tails of the others mean something too."""
+        near = 0.006 * float(np.max(np.ptp([bone.head for bone in self.bones], axis=0)))
+        met = [
+            min(float(np.linalg.norm(bone.tail - self.bones[child].head)) for child in children) < near
+            for bone, children in zip(self.bones, self.children, strict=True)
+            if children
+        ]
+        return bool(met) and float(np.mean(met)) >= 0.5
 
     def ancestors(self, bone: int) -> list[int]:
         """Indices of a bone's parents upward, the nearest first."""

@@ -8,25 +8,8 @@ import numpy as np
 
 from ..arrays import Array, BoolArray
 from ..feet.contacts import Contact
-from .character import ARM, LEG, Character
+from .character import ARM, LEG, Character, Similarity
 from .maps.character_map import CharacterMap
-
-
-@dataclass(frozen=True, eq=False)
-class Similarity:
-    """From the armature's space to the world: turn, place and one scale."""
-
-    rotation: Array  # (3, 3)
-    location: Array  # (3,) [m]
-    scale: float
-
-    def to_world(self, points: Array) -> Array:
-        """World coordinates (..., 3) of points in the armature's space [m]."""
-        return self.location + self.scale * (points @ self.rotation.T)
-
-    def from_world(self, points: Array) -> Array:
-        """The inverse of `to_world`."""
-        return (points - self.location) @ self.rotation / self.scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,17 +26,12 @@ class HandGoal:
 class CharacterMotion:
     """Poses of the role bones in F frames, in the armature's space and units."""
 
-    poses: Mapping[str, Array]
-    """(F, 4, 4) by name of bone: the posed matrix of every bone that plays a role and is not left alone."""
-    bends: Mapping[str, Array]
-    """(F, 3) by limb: unit vector from the line through the limb's ends toward its elbow or knee, without
-    flips."""
+    poses: Mapping[str, Array]  # (F, 4, 4) by name, of every bone with a role that is not left alone
+    bends: Mapping[str, Array]  # (F, 3) by limb: from the line through its ends toward elbow or knee
     root: Array | None  # (F, 4, 4) posed matrix of the root bone; None where it stays at rest
-    to_world: Similarity
-    """Where the armature object stands; that of the object itself with `Placement.CHARACTER`."""
+    to_world: Similarity  # where the armature stands; as it does with `Placement.CHARACTER`
     rests: tuple[Contact, ...]  # rests of the planted feet; their places are the performer's
-    soles: Mapping[str, Array]
-    """(N, 3) by role of foot and toe: points of the sole at rest, in the armature's space."""
+    soles: Mapping[str, Array]  # (N, 3) by role of foot and toe: its sole at rest, in the armature's space
     size: float  # the character's size: its legs' length over the performer's
     stance: Array = field(default_factory=lambda: np.eye(3))
     """(3, 3) from the armature's axes to canonical ones: Z up, facing -Y. *Canonical* places are in these
@@ -67,9 +45,6 @@ class CharacterMotion:
     hands: Mapping[str, HandGoal] = field(default_factory=lambda: MappingProxyType({}))
     """Where hands belong, by side, of those that reach."""
     notes: tuple[str, ...] = ()  # what a person should know, in sentences without a full stop
-
-
-# --- How a character stands in its armature's space
 
 
 UP_SNAP_DEG = 15.0  # a body leans by a few degrees at rest; an axis this near to its length is up

@@ -27,17 +27,13 @@ class Quality:
     arms_worst_deg: float | None = None
     legs_deg: float | None = None  # mean angle between the legs' bones and the performer's
     legs_worst_deg: float | None = None
-    skate_mm: float | None = None
-    """Mean way of a resting foot from frame to frame, of whichever of ankle, heel and toes goes farthest."""
+    skate_mm: float | None = None  # mean way of a rest's ankle, heel or toes a frame, of the farthest
     skate_worst_mm: float | None = None
-    penetration_mm: float | None = None
-    """Greatest depth below the ground of a foot's mesh as it is shown, or of its bones without one."""
+    penetration_mm: float | None = None  # greatest depth of a foot, its mesh if there is one, in the ground
     lifted_mm: float | None = None  # mean height of a resting foot's lowest point over the ground
-    hands_mm: float | None = None
-    """Mean distance of wrists from where they belong by the body, the other hand and the floor, in reach."""
+    hands_mm: float | None = None  # mean distance of wrists in reach from where they belong
     hands_worst_mm: float | None = None
-    hands_floor_mm: float | None = None
-    """Greatest error of a wrist's height over the floor where the performer's hand is at the floor."""
+    hands_floor_mm: float | None = None  # greatest error of height of wrists that are at the floor
     ik_fk_mm: float | None = None  # greatest distance of ankles and wrists between the limbs in FK and in IK
     keys: int | None = None  # keys of the motion
     dense_keys: int | None = None  # keys that one on every frame would be
@@ -108,10 +104,7 @@ def skate_mm(feet: Mapping[str, Array], rests: Sequence[Contact], sole_m: float)
 
 
 def depths_m(heights_m: Mapping[str, Array], ground_m: Mapping[str, Array]) -> dict[str, Array]:
-    """(F,) by leg: depth of the lowest point of a foot below the ground (F,), negative above it [m].
-
-    Heights (F, N) are by role of foot and toe.
-    """
+    """(F,) by leg: depth of a foot's lowest point (F, N) by role below its ground (F,), negative above."""
     found: dict[str, Array] = {}
     for role, heights in heights_m.items():
         limb = f"leg.{role.rpartition('.')[2]}"

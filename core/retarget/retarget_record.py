@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
-from ..files.json_file import read_json, write_readable_json
+from ..files.json_file import read_json
 from ..files.kinds import ByName, Choice, Number, Text
 from ..files.records import Record
 from ..take.character_settings import RetargetOptions
@@ -15,12 +15,8 @@ from .maps.character_map import Roles, roles_mistake
 
 RECORD_FILE = "retarget.json"
 LARGEST_BYTES = 2**22
-MOST_FIGURES, LONGEST_FIGURE, LARGEST_FIGURE = 200, 100, 1e12
-"""Of the quality: figures, characters of a name, and the value of one."""
-LARGEST_SIZE = 1e6
 GIVEN, SAVED, RECOGNIZED = "given", "saved", "recognized"
-ORIGINS = (GIVEN, SAVED, RECOGNIZED)
-"""Where a map comes from: the person named it, it was found by the bones, or it was made of them."""
+ORIGINS = (GIVEN, SAVED, RECOGNIZED)  # the person named it, its file fits the bones, it was made of them
 KEYED = ("fk", "ik", "both")
 
 
@@ -86,7 +82,7 @@ class RetargetRecord(Record):
     """Scene frame of the first frame."""
     fps: FrameRate
     """Frames per second."""
-    size: Annotated[float, Number(0.0, LARGEST_SIZE, decimals=6)]
+    size: Annotated[float, Number(0.0, 1e6, decimals=6)]
     """The character's size: its legs' length over the performer's."""
     options: RetargetOptions
     """How the motion was put onto it."""
@@ -97,8 +93,8 @@ class RetargetRecord(Record):
     ]
     """By limb, which of its controls are keyed."""
     quality: Annotated[
-        Mapping[str, Annotated[float, Figure(-LARGEST_FIGURE, LARGEST_FIGURE)] | None],
-        ByName("figures", MOST_FIGURES, key=Text(LONGEST_FIGURE)),
+        Mapping[str, Annotated[float, Figure(-1e12, 1e12)] | None],
+        ByName("figures", 200, key=Text(100)),
     ] = field(default_factory=dict)
     """Figures by name, units at the names' ends; None where one does not apply."""
     warnings: Notes = ()
@@ -114,11 +110,6 @@ class RetargetRecord(Record):
     def mistake(self) -> str:
         """See `Record`."""
         return roles_mistake(self.roles)
-
-
-def write_retarget_record(folder: Path, record: RetargetRecord) -> None:
-    """Write a record into a folder of results, atomically. ConversionError: the file cannot be written."""
-    write_readable_json(folder / RECORD_FILE, record.to_json())
 
 
 def read_retarget_record(folder: Path) -> RetargetRecord:

@@ -42,9 +42,6 @@ def from_arrays(record: type[Any], arrays: Arrays, prefix: str = "") -> dict[str
     }
 
 
-# --- Keypoints beside the places where the motion puts them
-
-
 PREFIX = "keypoint_"  # of the names of the arrays in a cache
 DRAWN = ("seen", "predicted", "confidence", "distance_px", "expected_px")
 PARTS = {
@@ -95,10 +92,7 @@ class ComparedKeypoints:
         return tuple(self._columns())
 
     def by_part(self, values: Array) -> Array:
-        """(F, K) medians over each part's keypoints of values (F, N); NaN where all are.
-
-        A detector errs alike on neighbors, and hides them together: five points of the face are one witness.
-        """
+        """(F, K) medians of values (F, N) over each part, on which detectors err alike; NaN where all are."""
         columns = self._columns()
         result = np.full((len(values), len(columns)), np.nan)
         for part, own in enumerate(columns.values()):
@@ -107,10 +101,7 @@ class ComparedKeypoints:
         return result
 
     def quality(self) -> Array:
-        """(F, K) confidence of the best keypoint of each part, 0 where none is seen.
-
-        A part that is seen in few frames, as clicked points are, has 1 in the others: nobody misses it.
-        """
+        """(F, K) confidence of each part's best keypoint; 1 where a part that is seldom seen is not."""
         best = [self.confidence[:, own].max(axis=1) for own in self._columns().values()]
         if not best:
             return np.zeros((len(self.confidence), 0))

@@ -1,8 +1,7 @@
 """Evidence of each frame of a motion: markers, keypoints, and contours, which judge where no marker does."""
 
-from collections.abc import Generator, Mapping
+from collections.abc import Generator
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 
@@ -69,29 +68,19 @@ def contour_sight(reconstruction: Reconstruction) -> Generator[float, None, Cont
     return ContourSight(tuple(parts), quality, misfit, lines)
 
 
-# --- Evidence of each frame of any kind together
-
-
-ENDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        f"{segment}.{side}": tuple(f"{end}.{side}" for end in ends)
-        for segment, *ends in (
-            ("upper_arm", "shoulder", "elbow"),
-            ("forearm", "elbow", "wrist"),
-            ("hand", "wrist"),
-            ("thigh", "hip", "knee"),
-            ("shin", "knee", "ankle"),
-            ("foot", "ankle"),
-        )
-        for side in "LR"
-    }
-    | {
-        "trunk": ("shoulder.L", "shoulder.R", "hip.L", "hip.R"),
-        "chest": ("shoulder.L", "shoulder.R"),
-        "pelvis": ("hip.L", "hip.R"),
-        "head": ("head",),
-    }
-)
+ENDS: dict[str, tuple[str, ...]] = {
+    f"{segment}.{side}": tuple(f"{end}.{side}" for end in ends)
+    for segment, *ends in (
+        *(("upper_arm", "shoulder", "elbow"), ("forearm", "elbow", "wrist"), ("hand", "wrist")),
+        *(("thigh", "hip", "knee"), ("shin", "knee", "ankle"), ("foot", "ankle")),
+    )
+    for side in "LR"
+} | {
+    "trunk": ("shoulder.L", "shoulder.R", "hip.L", "hip.R"),
+    "chest": ("shoulder.L", "shoulder.R"),
+    "pelvis": ("hip.L", "hip.R"),
+    "head": ("head",),
+}
 """Body points that lie at the ends of a segment."""
 
 
@@ -133,14 +122,8 @@ def frame_evidence(
     )
 
 
-# --- Comparison of a take's keypoints with the places where its motion puts them
-
-
 def compare_keypoints(reconstruction: Reconstruction) -> ComparedKeypoints:
-    """The performer's keypoints beside the motion's, with what the estimate made of them.
-
-    A method that does not follow keypoints is compared with them as if they were where they usually are.
-    """
+    """The performer's keypoints beside the motion's, also for a method that does not follow them."""
     keypoints, motion, fit = reconstruction.keypoints, reconstruction.motion, reconstruction.keypoint_fit
     if not keypoints.names:
         return ComparedKeypoints.none(len(motion.time_s))
@@ -160,9 +143,6 @@ def compare_keypoints(reconstruction: Reconstruction) -> ComparedKeypoints:
         thrown_out=fit.thrown_out,
         swapped=fit.swapped,
     )
-
-
-# --- Evidence that a reconstruction rests on beside its keyframes
 
 
 def used_evidence(reconstruction: Reconstruction) -> UsedEvidence:

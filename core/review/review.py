@@ -69,10 +69,7 @@ class Review:
 
     @classmethod
     def from_arrays(cls, arrays: Arrays) -> "Review":
-        """Restore a review, also of a version that knew neither keypoints nor contours.
-
-        KeyError: an array is missing; ValueError: a reason is unknown.
-        """
+        """Restore a review, of any version. KeyError, ValueError: an array is missing, a reason unknown."""
         frames, weak = len(arrays["frames"]), len(arrays["weak_index"])
         new = {"contours": ContourSight.none(frames).lines, "weak_point": np.full(weak, "")}
         plain = from_arrays(cls, {**new, **arrays})

@@ -34,10 +34,8 @@ class Score:
     image: float  # mean error across that line, free frames
     worst_p95: float  # 95th percentile of the points' errors, free frames
     jitter: float  # mean length of the error's second difference, per frame²
-    skate: float | None
-    """Mean horizontal travel per frame of ankles that truly stand; None where none ever stands."""
-    coverage95: float | None
-    """Share of points within 1.96 sigma of the truth, 0.90 to 0.99 where sigma is honest; None without."""
+    skate: float | None  # mean horizontal travel a frame of ankles that truly stand
+    coverage95: float | None  # share of points within 1.96 sigma; 0.90 to 0.99 where it is honest
 
     def to_dict(self) -> dict[str, float | None]:
         """The measures by name."""
@@ -53,15 +51,8 @@ def score_points(
 ) -> Score:
     """Score points (F, 13, 3) against true ones [m]; frames of NaN, in which nobody is there, do not count.
 
-    Args:
-        points: The motion's.
-        truth: The true ones.
-        keyframe_indices: Frames, from 0, that were given as keyframes.
-        camera: The camera whose lines of sight split the error.
-        sigma_m: (F, 13) square root of the trace of each point's covariance [m].
-
-    Raises:
-        InputError: The motion and the truth have different frames, or every frame is a keyframe.
+    Keyframes count from 0; the camera's lines of sight split the error; `sigma_m` (F, 13) are roots of the
+    traces of the points' covariances. InputError: the frames differ, or every frame is a keyframe.
     """
     if points.shape != truth.shape:
         raise InputError(f"the motion has {len(points)} frames; the truth has {len(truth)}")
@@ -121,10 +112,7 @@ class TruthFile(Record):
 
 
 def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
-    """(F, 13, 3) true points [m] of a take's `truth.json` for the clip's frames.
-
-    InputError: the file is unusable or lacks a frame of the clip.
-    """
+    """(F, 13, 3) true points [m] of a `truth.json`. InputError: it is unusable or lacks a frame."""
     truth = TruthFile.from_json(read_json(path), str(path))
     wanted = tuple(range(frame_start, frame_start + frame_count))
     if truth.frames != wanted:

@@ -27,8 +27,8 @@ from ...core.body.human import side_of
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import SIDES, JointKind, Segment, Skeleton
+from ...core.retarget.character import Similarity
 from .actor_bones import color_bones
-from .object_space import ObjectSpace
 
 HINGE_ORDER = "YZX"  # Euler angles of bones that hinges turn; all others have quaternions
 
@@ -88,7 +88,7 @@ class ActorBones:
     models: tuple[BoneModel, ...]
     rest: Mapping[str, Array]  # (4, 4) rest matrix of each in the object's space
     modes: Mapping[str, str]  # rotation mode of each
-    space: ObjectSpace
+    space: Similarity
 
 
 @lru_cache(maxsize=4)
@@ -104,7 +104,7 @@ def bones_at_rest(body: Body) -> ActorBones:
         matrix[:3, 3] = origins[model.joint] + model.start - [0.0, 0.0, floor]
     hinges = set(body.skeleton.hinge_joints)
     modes = {model.name: HINGE_ORDER if hinges & {*model.chain} else "QUATERNION" for model in models}
-    return ActorBones(models, rest, modes, ObjectSpace(np.eye(3), np.zeros(3), 1.0))
+    return ActorBones(models, rest, modes, Similarity(np.eye(3), np.zeros(3), 1.0))
 
 
 def finger_models(body: Body) -> tuple[BoneModel, ...]:

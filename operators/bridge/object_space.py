@@ -1,40 +1,15 @@
 """Similarity transform of an armature object, and where an actor's joints are in the scene."""
 
-from dataclasses import dataclass
-
 import bpy
 import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
+from ...core.retarget.character import Similarity
 
 
-@dataclass(frozen=True, eq=False)
-class ObjectSpace:
-    """A similarity from an object's own space to the world."""
-
-    rotation: Array  # (3, 3)
-    location: Array  # (3,) [m]
-    scale: float
-
-    @property
-    def matrix(self) -> Array:
-        """(4, 4)."""
-        matrix = np.eye(4)
-        matrix[:3, :3], matrix[:3, 3] = self.scale * self.rotation, self.location
-        return matrix
-
-    def to_world(self, points: Array) -> Array:
-        """World coordinates (..., 3) of points in the object's space [m]."""
-        return np.asarray(self.location + self.scale * (points @ self.rotation.T))
-
-    def from_world(self, points: Array) -> Array:
-        """The inverse of `to_world`."""
-        return np.asarray((points - self.location) @ self.rotation / self.scale)
-
-
-def object_space(armature_object: bpy.types.Object) -> ObjectSpace:
+def object_space(armature_object: bpy.types.Object) -> Similarity:
     """The object's evaluated transform, parents and constraints included.
 
     Raises:
@@ -51,7 +26,7 @@ def object_space(armature_object: bpy.types.Object) -> ObjectSpace:
             f"armature '{armature_object.name}' is scaled by {scales} along its axes or mirrored; give "
             "it one positive scale, or apply the scale (Ctrl+A)"
         )
-    return ObjectSpace(linear / scale, matrix[:3, 3], scale)
+    return Similarity(linear / scale, matrix[:3, 3], scale)
 
 
 def evaluated(blender_object: bpy.types.Object) -> bpy.types.Object:

@@ -5,21 +5,22 @@ import bpy
 from ...core.errors import InputError
 from ..bridge.character.read_character import make_override, needs_override
 from ..bridge.character.rigify_human import add_rigify_human, enable_rigify, has_rigify, is_rigify_enabled
-from ..shell.base_operator import BaseOperator
+from ..shell.base_operator import BaseOperator, remove_active
 from ..shell.fields import SKIP_SAVE, Text
-from ..shell.requirements import bones_editable, idle
-from ..shell.take_state import TakeState
+from ..shell.requirements import bones_editable, idle, of_take
 from ..shell.takes import active_take
 from .characters import (
     active_character,
     add_character,
+    armature,
     candidates,
+    character,
     find_character,
     require_character_armature,
+    take,
 )
 from .map_properties import map_of, show_map
 from .recognition import say_recognized
-from .requirements import armature, character, take
 
 
 class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
@@ -62,22 +63,16 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
             say_recognized(self, character)
 
 
-# --- Add a Rigify rig of the performer's size as the character
-
-
-def rigify(_context: bpy.types.Context, _state: object) -> str | None:
-    """Blender brings Rigify along."""
-    return None if has_rigify() else "This Blender comes without the add-on Rigify; install Rigify first"
+rigify = of_take(
+    lambda _state: has_rigify(), "This Blender comes without the add-on Rigify; install Rigify first"
+)
 
 
 def add_rigify_character(context: bpy.types.Context) -> bpy.types.PropertyGroup:
-    """Add a Rigify rig of the performer's size as the active take's character; enables Rigify.
+    """Add a Rigify rig of the performer's size; enables Rigify. InputError: it cannot make one."""
+    from ..actor.take_actor import leave_mode
 
-    InputError: Rigify cannot make the rig.
-    """
-    active = context.view_layer.objects.active
-    if active is not None and active.mode != "OBJECT":
-        bpy.ops.object.mode_set(mode="OBJECT")
+    leave_mode(context)
     try:
         if not is_rigify_enabled():
             enable_rigify()
@@ -122,45 +117,31 @@ class KEYMARK_OT_remove_character(BaseOperator, bpy.types.Operator):
     requirements = (character, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        take = active_take(context.scene)
-        index = min(take.active_character, len(take.characters) - 1)
-        take.characters.remove(index)
-        take.active_character = max(0, index - 1)
+        remove_active(active_take(context.scene), "characters", "active_character")
 
 
-# --- Make a library override of a linked character, so that it can be animated here
-
-
-def linked(context: bpy.types.Context, state: TakeState | None) -> str | None:
-    """The chosen character is linked, without an override."""
-    unmet = armature(context, state)
-    if unmet is not None:
-        return unmet
-    return None if needs_override(active_character(context.scene).armature) else "The character is not linked"
+linked = of_take(
+    lambda state: needs_override(active_character(state.take.id_data).armature), "The character is not linked"
+)
 
 
 class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
     """Make a library override of the linked character, with its meshes, so that it can be animated here"""
 
     bl_label = "Make Override"
-    requirements = (linked, idle)
+    requirements = (armature, linked, idle)
 
     def run(self, context: bpy.types.Context) -> None:
         character = active_character(context.scene)
         original, scene = character.armature, context.scene
         # A linked collection often stands in a scene as an empty, in whose place it is overridden.
-        empties = (
-            []
-            if original.name in scene.objects
-            else [
-                one for one in scene.objects if one.instance_type == "COLLECTION" and one.instance_collection
-            ]
-        )
-        instance = next((one for one in empties if original in one.instance_collection.all_objects[:]), None)
-        if instance is None:
+        empties = [] if original.name in scene.objects else scene.objects
+        holders = ((one, one.instance_collection) for one in empties if one.instance_type == "COLLECTION")
+        holds = (pair for pair in holders if pair[1] and original in pair[1].all_objects[:])
+        instance, collection = next(holds, (None, None))
+        if collection is None:
             overridden = make_override(context, original)
         else:
-            collection = instance.instance_collection
             made = collection.override_hierarchy_create(
                 scene, context.view_layer, reference=instance, do_fully_editable=True
             )

@@ -1,18 +1,21 @@
 """The characters of a take: which armatures may be one, which is chosen, and what it lacks."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import bpy
 
 from ...core.errors import InputError
+from ...core.files.fields import listed
 from ...core.retarget.character import REQUIRED
 from ..bridge.actor_bones import is_actor
+from ..bridge.character.read_character import needs_override
 from ..shell.base_operator import capitalized
+from ..shell.requirements import of_take
 from ..shell.take_state import TakeState
-from ..shell.takes import find_take
-from .map_properties import role_title
+from ..shell.takes import active_take, find_take
+from .map_properties import map_of, role_title
 
 MOST_NAMED = 3  # roles or bones that a sentence names
 
@@ -21,7 +24,7 @@ def may_be_character(candidate: bpy.types.Object | None) -> bool:
     """Whether an object is an armature that is no actor, not even one that has lost bones."""
     if candidate is None or candidate.type != "ARMATURE" or is_actor(candidate):
         return False
-    return all(take.armature != candidate for take in _takes())
+    return all(take.armature != candidate for scene in bpy.data.scenes for take in scene.keymark.takes)
 
 
 def require_character_armature(candidate: bpy.types.Object | None, named: str = "") -> None:
@@ -33,15 +36,8 @@ def require_character_armature(candidate: bpy.types.Object | None, named: str = 
         )
 
 
-def _takes() -> Iterator[bpy.types.PropertyGroup]:
-    return (take for scene in bpy.data.scenes for take in scene.keymark.takes)
-
-
 def candidates(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[bpy.types.Object]:
-    """Armatures of the scene that may be characters and are none of the active take yet.
-
-    The active or a selected one counts alone; else all that are visible.
-    """
+    """Free armatures that may be characters: the active or selected ones alone, else all that are visible."""
     take = find_take(scene)
     taken = {character.armature for character in take.characters} if take is not None else set()
     there = list(view_layer.objects)
@@ -88,7 +84,8 @@ def with_map(
     armature_object: bpy.types.Object, beside: bpy.types.PropertyGroup | None = None
 ) -> bpy.types.PropertyGroup | None:
     """A character of the file, of any take, of this armature, that has a map; another one than `beside`."""
-    characters = (character for take in _takes() for character in take.characters)
+    takes = (take for scene in bpy.data.scenes for take in scene.keymark.takes)
+    characters = (character for take in takes for character in take.characters)
     of_it = (each for each in characters if each.armature == armature_object and each != beside)
     return next((each for each in of_it if len(each.character_map.roles)), None)
 
@@ -102,8 +99,8 @@ def missing_roles(character: bpy.types.PropertyGroup) -> list[str]:
 
 def full_title(role: str) -> str:
     """A role's label with its side, as in a sentence: `left upper arm`."""
-    side = {"L": "left ", "R": "right "}.get(role.partition(".")[2], "")
-    return side + role_title(role).lower()
+    part, _, side = role.partition(".")
+    return {"L": "left ", "R": "right "}.get(side, "") + role_title(part).lower()
 
 
 def shown_result(character: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:
@@ -111,9 +108,6 @@ def shown_result(character: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup 
     if not len(character.results):
         return None
     return character.results[min(character.active_result, len(character.results) - 1)]
-
-
-# --- The motion that a character performs
 
 
 @dataclass(frozen=True)
@@ -128,10 +122,9 @@ class SourceMotion:
 
 def source_of(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> SourceMotion:
     """The motion that a character is to perform. InputError: there is none; the sentence says what to do."""
-    problem = missing_source(take, character)
-    if problem is not None:
-        raise InputError(problem)
     kind, action, actor = _source(take, character)
+    if (problem := missing_source(take, character)) is not None:
+        raise InputError(problem)
     return SourceMotion(kind, action, actor, action.name if kind == "ACTION" else take.name)
 
 
@@ -139,20 +132,16 @@ def missing_source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyG
     """What is missing for a character to perform, as a sentence; None where nothing is."""
     kind, action, actor = _source(take, character)
     if action is None:
-        return LACKING[kind]
+        return {
+            "ACTION": "Choose the Action that the character is to perform",
+            "FINAL": "Bake the final Action first, or choose another motion",
+            "MOTION": "Reconstruct the motion first",
+        }[kind]
     if actor is None:
         return "The motion's actor is gone; choose its armature in the step Performer"
     if not is_actor(actor):
         return f"'{actor.name}' is no actor of Keymark's; choose the motion's actor"
     return None
-
-
-LACKING = {
-    "ACTION": "Choose the Action that the character is to perform",
-    "FINAL": "Bake the final Action first, or choose another motion",
-    "MOTION": "Reconstruct the motion first",
-}
-"""What is to be done where there is no motion of a kind."""
 
 
 def _source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> tuple[str, Any, Any]:
@@ -168,9 +157,6 @@ def _source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -
 # --- Results of retargeting, in a character's list
 
 
-OF_THE_TAKE = ("FINAL", "MOTION")
-
-
 def result_to_replace(
     character: bpy.types.PropertyGroup, kind: str, source_action: bpy.types.Action | None
 ) -> bpy.types.PropertyGroup | None:
@@ -178,14 +164,12 @@ def result_to_replace(
 
     The take's final and its reconstructed motion are one motion; any other Action is one of its own.
     """
+    made = [result for result in character.results if result.action is not None]
     same = [
         result
-        for result in character.results
-        if result.action is not None
-        and (
-            (kind in OF_THE_TAKE and result.source in OF_THE_TAKE)
-            or (result.source == kind and result.source_action == source_action)
-        )
+        for result in made
+        if "ACTION" not in (kind, result.source)
+        or (result.source, result.source_action) == (kind, source_action)
     ]
     chosen = shown_result(character)
     return chosen if chosen in same else next(reversed(same), None)
@@ -194,29 +178,17 @@ def result_to_replace(
 def add_result(
     character: bpy.types.PropertyGroup, source: SourceMotion, action: bpy.types.Action, made_from: str
 ) -> bpy.types.PropertyGroup:
-    """List an Action as a result, in place of what was listed of it, and choose it; deleted ones go.
-
-    `made_from` is the digest of the source's curves.
-    """
-    for empty in reversed([i for i, each in enumerate(character.results) if each.action is None]):
-        character.results.remove(empty)
-    index = next((i for i, each in enumerate(character.results) if each.action == action), None)
-    if index is None:
-        index = len(character.results)
-        character.results.add()
-    result = character.results[index]
+    """List and choose an Action, in place of what was of it, with its source's digest; deleted ones go."""
+    for index in reversed(range(len(character.results))):
+        if character.results[index].action is None:
+            character.results.remove(index)
+    actions = [each.action for each in character.results]
+    index = actions.index(action) if action in actions else len(actions)
+    result = character.results[index] if index < len(actions) else character.results.add()
     result.action, result.made_from, result.armature = action, made_from, character.armature
     result.source, result.source_action, result.source_actor = source.kind, source.action, source.actor
     character.active_result = index
     return result
-
-
-def drop_results_of_others(character: bpy.types.PropertyGroup) -> None:
-    """Take results that move another armature than the chosen one out of the list; their Actions stay."""
-    others = [i for i, each in enumerate(character.results) if each.armature != character.armature]
-    for index in reversed(others):
-        character.results.remove(index)
-    character.active_result = max(0, len(character.results) - 1)
 
 
 def add_lines(lines: "bpy.types.bpy_prop_collection_idprop", sentences: Iterable[str], level: str) -> None:
@@ -226,7 +198,59 @@ def add_lines(lines: "bpy.types.bpy_prop_collection_idprop", sentences: Iterable
         line.text, line.level = capitalized(sentence), level
 
 
-def is_shown(character: bpy.types.PropertyGroup, result: bpy.types.PropertyGroup) -> bool:
-    """Whether a result animates its character now."""
-    data = character.armature.animation_data if character.armature is not None else None
-    return data is not None and data.action is not None and data.action == result.action
+# --- Requirements of the step's operators: what the chosen character lacks, as a tooltip
+
+
+take = of_take(lambda state: True, "Load the footage or open a take first")
+
+
+character = of_take(lambda state: len(state.take.characters), "Add a character first")
+
+
+def armature(context: bpy.types.Context, _state: TakeState | None) -> str | None:
+    """The chosen character has an armature, in this scene."""
+    chosen = find_character(context.scene)
+    if chosen is None:
+        return "Add a character first"
+    if chosen.armature is None:
+        return "Choose the character's armature first"
+    if chosen.armature.type != "ARMATURE":
+        return f"'{chosen.armature.name}' is no armature; choose the character's"
+    return None
+
+
+def editable(context: bpy.types.Context, _state: TakeState | None) -> str | None:
+    """The chosen character, which has an armature, is in the scene and can be animated."""
+    chosen = active_character(context.scene).armature
+    if needs_override(chosen):
+        return f"'{chosen.name}' is linked; make a library override of it first"
+    if chosen.name not in context.scene.objects:
+        return f"'{chosen.name}' is not in this scene; add it, or choose another armature"
+    return None
+
+
+def recognized(context: bpy.types.Context, _state: TakeState | None) -> str | None:
+    """The bones of the chosen character, which has an armature, have their roles, and are there."""
+    chosen = active_character(context.scene)
+    if not len(chosen.character_map.roles):
+        return "Recognize the character's bones first"
+    missing = [full_title(role) for role in missing_roles(chosen)]
+    if missing:
+        return f"Choose the bones of {listed(missing, MOST_NAMED)} first"
+    there = chosen.armature.data.bones
+    lost = [f"'{name}'" for name in map_of(chosen.character_map).named_bones if name not in there]
+    if not lost:
+        return None
+    lacking = f"'{chosen.armature.name}' has no bone {listed(lost, MOST_NAMED)} any more"
+    return f"{lacking}; recognize its bones again, or choose others"
+
+
+def source(context: bpy.types.Context, _state: TakeState | None) -> str | None:
+    """There is a motion for the chosen character to perform."""
+    return missing_source(active_take(context.scene), active_character(context.scene))
+
+
+def result(context: bpy.types.Context, _state: TakeState | None) -> str | None:
+    """The chosen character has a result."""
+    made = any(each.action is not None for each in active_character(context.scene).results)
+    return None if made else "Retarget the motion first"

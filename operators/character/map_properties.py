@@ -13,28 +13,21 @@ from ...core.retarget.maps.character_map import Switch as SwitchControl
 from ..shell.declared_properties import declared_property
 from ..shell.fields import Choice, Entries, Number, Switch, Text, Vector
 
-SOURCE_WORDS = {"preset": "Preset", "names": "Names", "shape": "Shape", "you": "You"}
-"""Labels of where a role's bones come from."""
 KINDS = (
     ("FLOAT", "Decimal", "A decimal number"),
     ("INT", "Integer", "A whole number"),
     ("BOOL", "Switch", "On or off"),
 )
 PARTS = {
-    "trunk": MIDDLE,
-    **{limb: LIMBS[limb] for limb in ("arm.L", "arm.R", "leg.L", "leg.R")},
-    **{f"fingers.{side}": roles for side, roles in HANDS.items()},
+    "trunk": ("Trunk", MIDDLE),
+    "arm.L": ("Left Arm", LIMBS["arm.L"]),
+    "arm.R": ("Right Arm", LIMBS["arm.R"]),
+    "leg.L": ("Left Leg", LIMBS["leg.L"]),
+    "leg.R": ("Right Leg", LIMBS["leg.R"]),
+    "fingers.L": ("Left Fingers", HANDS["L"]),
+    "fingers.R": ("Right Fingers", HANDS["R"]),
 }
-"""Roles of the parts of the body, as the panel shows them."""
-PART_TITLES = {
-    "trunk": "Trunk",
-    "arm.L": "Left Arm",
-    "arm.R": "Right Arm",
-    "leg.L": "Left Leg",
-    "leg.R": "Right Leg",
-    "fingers.L": "Left Fingers",
-    "fingers.R": "Right Fingers",
-}
+"""Titles and roles of the parts of the body, as the panel shows them."""
 
 
 def role_title(role: str) -> str:
@@ -84,7 +77,7 @@ class KEYMARK_PG_role(bpy.types.PropertyGroup):
     source: Choice(
         "Found By",
         "Where the bones of this role come from",
-        items=[(source, SOURCE_WORDS[source], "") for source in SOURCES],
+        items=[(source, source.title(), "") for source in SOURCES],
         default="you",
     )
     doubt: Text("Doubt", "Why these may be the wrong bones")
@@ -135,9 +128,6 @@ class KEYMARK_PG_character_map(bpy.types.PropertyGroup):
     settings: Entries(type=KEYMARK_PG_map_setting)
     root: declared_property(CharacterMap, "root", name="Root Bone")
     preset: declared_property(CharacterMap, "preset")
-
-
-# --- Character maps from properties, and into them
 
 
 DIGITS = 7  # significant digits of values that Blender keeps as float32

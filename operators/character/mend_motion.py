@@ -18,12 +18,9 @@ if TYPE_CHECKING:
     from ...core.progress import Job
     from ..bridge.motions.mend_action import MendedAction
 
+SAME = "A new Action on the armature itself; fingers, face and toes move as before"
 ONTO = (
-    (
-        "ARMATURE",
-        "Same Armature",
-        "A new Action on the armature itself; fingers, face and toes move as before",
-    ),
+    ("ARMATURE", "Same Armature", SAME),
     ("ACTOR", "Actor", "A new Keymark actor, whose Action any character can be given in this step"),
 )
 FILTER = "*.bvh;*.fbx;*.glb;*.gltf;*.vrm;*.usd;*.usda;*.usdc;*.usdz;*.blend;*.csv;*.npy;*.trc;*.c3d;*.json"
@@ -59,13 +56,12 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
         from ...core.mend.mend_motion import MendOptions, mend_motion
         from ...core.take.character_settings import CharacterFile
         from ...core.take.reference import REFERENCE_ENDINGS, read_reference
+        from ..actor.take_actor import leave_mode, select_alone
         from ..bridge.motions.import_motion import load_motion
         from ..bridge.motions.mend_action import add_actor
 
         path, scene = chosen_file(self, "a motion, such as a .bvh or .fbx"), context.scene
-        active = context.view_layer.objects.active
-        if active is not None and active.mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")
+        leave_mode(context)
         if path.suffix.lower() in REFERENCE_ENDINGS:
             reference = read_reference(path, self.object or None)
             rate = reference.fps or scene.render.fps / scene.render.fps_base
@@ -77,7 +73,7 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
             loaded, notes = load_motion(file, scene, map_folders(), self.action or None)
         for note in notes:
             warn(self, note)
-        _select(context, loaded)
+        select_alone(context, loaded)
         self.report({"INFO"}, f"'{loaded.name}' moves as {path.name} says")
 
 
@@ -101,7 +97,12 @@ class KEYMARK_OT_mend_motion(JobOperator, bpy.types.Operator):
         from ..bridge.motions.read_poses import motion_map
 
         active = bpy.context.view_layer.objects.active
-        frames = _frames(self.posed)
+        try:
+            frames = tuple(int(word) for word in self.posed.split(",") if word.strip())
+        except ValueError as error:
+            raise InputError(
+                f"Posed Frames is {self.posed}; frames with commas between them are valid"
+            ) from error
         known = with_map(active)
         if known is not None:
             character_map = map_of(known.character_map)
@@ -111,6 +112,7 @@ class KEYMARK_OT_mend_motion(JobOperator, bpy.types.Operator):
         return active.session_uid, found
 
     def finish(self, scene: bpy.types.Scene, result: "tuple[int, MendedAction]") -> None:
+        from ..actor.take_actor import select_alone
         from ..bridge.motions.mend_action import add_actor, write_mended
 
         uid, found = result
@@ -120,24 +122,10 @@ class KEYMARK_OT_mend_motion(JobOperator, bpy.types.Operator):
         if self.onto == "ACTOR":
             actor = add_actor(scene, found.mended.motion, f"{armature.name} Actor")
             name = actor.animation_data.action.name
-            _select(bpy.context, actor)
+            select_alone(bpy.context, actor)
         else:
             name = write_mended(armature, found).name
         for note in found.mended.notes:
             warn(self, note)
         posed = f", {len(found.posed)} posed" if found.posed else ""
         self.report({"INFO"}, f"'{name}' has the mended motion, {len(found.frames)} frames{posed}")
-
-
-def _frames(text: str) -> tuple[int, ...]:
-    try:
-        return tuple(int(word) for word in text.split(",") if word.strip())
-    except ValueError as error:
-        raise InputError(f"Posed Frames is {text}; frames with commas between them are valid") from error
-
-
-def _select(context: bpy.types.Context, chosen: bpy.types.Object) -> None:
-    for one in list(context.view_layer.objects.selected):
-        one.select_set(False)
-    chosen.select_set(True)
-    context.view_layer.objects.active = chosen

@@ -1,139 +1,103 @@
 """Rows of the panel that shows which bones play which role."""
 
 import bpy
-from bpy.types import Context, PropertyGroup, UILayout
+from bpy.types import Armature, Context, PropertyGroup, UILayout
 
 from ...core.retarget.character import CHAINS
 from ..bridge.character.read_character import needs_override
-from ..shell.panel import Popover, RowList, StepPanel, TakePanel, draw_progress, draw_sentence
+from ..shell.panel import Popover, RowList, StepPanel, TakePanel, draw_progress, draw_sentence, right_end
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take
 from .characters import (
     active_character,
+    armature,
     find_character,
     full_title,
-    is_shown,
     may_be_character,
     missing_roles,
+    recognized,
     shown_result,
 )
-from .map_properties import PART_TITLES, PARTS, SOURCE_WORDS, role_title
-from .requirements import recognized
-
-LABEL_SHARE = 0.29  # share of the width that a role's name takes
-MOST_LINES = 5
-
-
-def draw_map(layout: UILayout, context: Context, character: PropertyGroup) -> None:
-    """Draw recognition, the map's file, what is doubtful, and the roles of each part of the body."""
-    character_map = character.character_map
-    column = layout.column()
-    column.operator("keymark.recognize_character", icon="VIEWZOOM")
-    if character.suggested:
-        text = f"Use '{character.suggested}'"
-        use = column.operator("keymark.load_map", text=text, icon="FILE_TICK", translate=False)
-        use.title = character.suggested
-    row = column.row(align=True)
-    row.operator("keymark.load_map", icon="IMPORT")
-    row.operator("keymark.save_map", icon="EXPORT")
-    for doubt in character.doubts:
-        draw_sentence(column, context, doubt.text, "ERROR", MOST_LINES)
-    missing = [full_title(role) for role in missing_roles(character)]
-    if len(character_map.roles) and missing:
-        draw_sentence(column, context, f"Without a bone: {', '.join(missing)}", "ERROR")
-    if not len(character_map.roles):
-        return
-    _draw_parts(layout, context, character)
-    layout.operator("keymark.mirror_roles", text="Mirror Left to Right", icon="MOD_MIRROR").side = "L"
+from .map_properties import PARTS, role_title
 
 
 def _draw_parts(layout: UILayout, context: Context, character: PropertyGroup) -> None:
-    for part, roles in PARTS.items():
-        shown = [
-            character.character_map.roles[role] for role in roles if role in character.character_map.roles
-        ]
-        marked = any(is_marked(character, role) for role in shown)
+    known, armature_data = character.character_map.roles, character.armature.data
+    for part, (title, roles) in PARTS.items():
+        shown = [known[role] for role in roles if role in known]
+        entries = [entry for role in shown for entry in role.bones if entry.bone]
+        # Where a role is doubtful, or one of its bones is not there any more.
+        lost = any(entry.bone not in armature_data.bones for entry in entries)
+        marked = lost or any(role.doubt for role in shown)
         header, body = layout.panel(f"KEYMARK_PT_part_{part.replace('.', '_')}", default_closed=not marked)
-        header.label(text=PART_TITLES[part], icon="ERROR" if marked else "NONE")
+        header.label(text=title, icon="ERROR" if marked else "NONE")
         found = [role for role in shown if any(entry.bone for entry in role.bones)]
         if found:
             least = min(found, key=lambda role: role.confidence)
-            facts = header.row()
-            facts.alignment, facts.active = "RIGHT", False
             sure = "" if least.source == "you" else f" {100.0 * least.confidence:.0f} %"
-            facts.label(text=SOURCE_WORDS[least.source] + sure, translate=False)
-        if body is None:
-            continue
-        column = body.column(align=True)
-        for role in shown:
-            _draw_role(column, context, character, role)
-        _draw_controls(body, character, part, shown)
+            facts = right_end(header)
+            facts.active = False
+            facts.label(text=least.source.title() + sure, translate=False)
+        if body is not None:
+            column = body.column(align=True)
+            for role in shown:
+                _draw_role(column, context, armature_data, role)
+            _draw_controls(body, character, part, shown)
 
 
-def is_marked(character: PropertyGroup, role: PropertyGroup) -> bool:
-    """Whether a role is doubtful, or one of its bones is not there any more."""
-    bones = character.armature.data.bones
-    return bool(role.doubt) or any(entry.bone and entry.bone not in bones for entry in role.bones)
+def _labeled(column: UILayout, text: str) -> tuple[UILayout, UILayout]:
+    """A name, and the row to the right of it."""
+    split = column.split(factor=0.29, align=True)
+    name = right_end(split)
+    name.label(text=text, translate=False)
+    return name, split.row(align=True)
 
 
-def _draw_role(column: UILayout, context: Context, character: PropertyGroup, role: PropertyGroup) -> None:
-    bones = character.armature.data.bones
+def _draw_role(column: UILayout, context: Context, armature_data: Armature, role: PropertyGroup) -> None:
+    is_chain = role.name in CHAINS
     for index, entry in enumerate(role.bones):
-        split = column.split(factor=LABEL_SHARE, align=True)
-        name = split.row()
-        name.alignment = "RIGHT"
-        name.label(text=role_title(role.name) if index == 0 else "")
-        if role.name in CHAINS and index == len(role.bones) - 1:
+        name, row = _labeled(column, role_title(role.name) if index == 0 else "")
+        if is_chain and index == len(role.bones) - 1:
             name.operator("keymark.add_chain_bone", text="", icon="ADD", emboss=False).role = role.name
-        row = split.row(align=True)
         field = row.row(align=True)
-        field.alert = bool(entry.bone) and entry.bone not in bones
+        field.alert = bool(entry.bone) and entry.bone not in armature_data.bones
         icon = "ERROR" if role.doubt or field.alert else "NONE"
-        field.prop_search(entry, "bone", character.armature.data, "bones", text="", icon=icon)
-        pick = row.operator("keymark.pick_bone", text="", icon="EYEDROPPER")
-        pick.role, pick.index = role.name, index
-        if role.name in CHAINS and not entry.bone and len(role.bones) > 1:
-            remove = row.operator("keymark.remove_chain_bone", text="", icon="REMOVE")
-            remove.role, remove.index = role.name, index
+        field.prop_search(entry, "bone", armature_data, "bones", text="", icon=icon)
+        buttons = [("keymark.pick_bone", "EYEDROPPER")]
+        if is_chain and not entry.bone and len(role.bones) > 1:
+            buttons.append(("keymark.remove_chain_bone", "REMOVE"))
+        for operator, icon in buttons:
+            button = row.operator(operator, text="", icon=icon)
+            button.role, button.index = role.name, index
     if role.doubt:
         why = role.doubt.partition(": ")[2] or role.doubt
-        draw_sentence(column, context, why[:1].upper() + why[1:], "BLANK1", MOST_LINES)
+        draw_sentence(column, context, why[:1].upper() + why[1:], "BLANK1", 5)
 
 
 def _draw_controls(layout: UILayout, character: PropertyGroup, part: str, shown: list[PropertyGroup]) -> None:
-    keyed = [(role, entry) for role in shown for entry in role.bones if entry.control]
     limb = character.character_map.limbs.get(part)
-    controls = [name for name in ("goal", "pole", "toe") if limb is not None and getattr(limb, name)]
-    if not keyed and not controls:
+    entries = [(role, entry) for role in shown for entry in role.bones if entry.control]
+    fields = [(entry, "control", role_title(role.name)) for role, entry in entries]
+    for name in ("goal", "pole", "toe", "switch_bone") if limb is not None else ():
+        if getattr(limb, name):
+            fields.append((limb, name, limb.bl_rna.properties[name].name))
+    if not fields:
         return
-    closed = f"KEYMARK_PT_controls_{part.replace('.', '_')}"
-    header, body = layout.panel(closed, default_closed=True)
+    header, body = layout.panel(f"KEYMARK_PT_controls_{part.replace('.', '_')}", default_closed=True)
     header.label(text="Controls")
     if body is None:
         return
-    column, armature = body.column(align=True), character.armature.data
-    fields = [(entry, "control", role_title(role.name)) for role, entry in keyed]
-    switch = ["switch_bone"] * bool(limb is not None and limb.switch_bone)
-    fields += [(limb, name, limb.bl_rna.properties[name].name) for name in (*controls, *switch)]
+    column, armature_data = body.column(align=True), character.armature.data
     for owner, name, text in fields:
-        split = column.split(factor=LABEL_SHARE, align=True)
-        left = split.row()
-        left.alignment = "RIGHT"
-        left.label(text=text, translate=False)
-        field = split.row()
-        field.alert = bool(getattr(owner, name)) and getattr(owner, name) not in armature.bones
-        field.prop_search(owner, name, armature, "bones", text="", icon="BONE_DATA")
-    if switch:
-        split = column.split(factor=LABEL_SHARE)
-        split.label(text="")
+        _, field = _labeled(column, text)
+        field.alert = bool(getattr(owner, name)) and getattr(owner, name) not in armature_data.bones
+        field.prop_search(owner, name, armature_data, "bones", text="", icon="BONE_DATA")
+    if limb is not None and limb.switch_bone:
         values = f"{limb.switch_property}: IK {limb.switch_ik:g}, FK {limb.switch_fk:g}"
-        split.label(text=values, translate=False)
+        _labeled(column, "")[1].label(text=values, translate=False)
 
 
 # --- The panel of the step
-
-
-MOST_LINES_PANEL = 6  # lines of a sentence
 
 
 class KEYMARK_UL_characters(RowList, bpy.types.UIList):
@@ -192,10 +156,8 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
         if needs_override(character.armature):
             draw_sentence(column, context, "It is linked; an override can be animated here", "LINKED")
             column.operator("keymark.make_override", icon="LIBRARY_DATA_OVERRIDE")
-        elif character.problem:
-            draw_sentence(column, context, character.problem, "ERROR", MOST_LINES_PANEL)
-        elif (unmet := recognized(context, state)) is not None:
-            draw_sentence(column, context, unmet, "ERROR", MOST_LINES_PANEL)
+        elif unmet := character.problem or armature(context, state) or recognized(context, state):
+            draw_sentence(column, context, unmet, "ERROR", 6)
         row = column.row()
         row.scale_y = 1.4
         if not draw_progress(row, context, "keymark.retarget"):
@@ -223,14 +185,16 @@ def _draw_choice(body: UILayout, take: PropertyGroup, character: PropertyGroup) 
 def _draw_results(column: UILayout, context: Context, state: TakeState, character: PropertyGroup) -> None:
     column.separator()
     rows = column.column(align=True)
+    data = character.armature.animation_data
+    performed = None if data is None else data.action
     for index, result in enumerate(character.results):
         row = rows.row(align=True)
         if result.action is None:
             row.label(text="Deleted", icon="ACTION")
         else:
             icon = "ERROR" if state.of_earlier(result) else "ACTION"
-            text, shown = result.action.name, is_shown(character, result)
-            show = row.operator("keymark.show_result", text=text, icon=icon, depress=shown, translate=False)
+            words = {"text": result.action.name, "icon": icon, "translate": False}
+            show = row.operator("keymark.show_result", depress=result.action == performed, **words)
             show.index = index
         row.operator("keymark.remove_result", text="", icon="X").index = index
     chosen = shown_result(character)
@@ -287,4 +251,22 @@ class KEYMARK_PT_character_map(TakePanel, bpy.types.Panel):
             self.layout.label(text="", icon="ERROR")
 
     def draw(self, context: Context) -> None:
-        draw_map(self.layout, context, active_character(context.scene))
+        layout, character = self.layout, active_character(context.scene)
+        column = layout.column()
+        column.operator("keymark.recognize_character", icon="VIEWZOOM")
+        if character.suggested:
+            text = f"Use '{character.suggested}'"
+            use = column.operator("keymark.load_map", text=text, icon="FILE_TICK", translate=False)
+            use.title = character.suggested
+        row = column.row(align=True)
+        row.operator("keymark.load_map", icon="IMPORT")
+        row.operator("keymark.save_map", icon="EXPORT")
+        for doubt in character.doubts:
+            draw_sentence(column, context, doubt.text, "ERROR", 5)
+        if not len(character.character_map.roles):
+            return
+        missing = [full_title(role) for role in missing_roles(character)]
+        if missing:
+            draw_sentence(column, context, f"Without a bone: {', '.join(missing)}", "ERROR")
+        _draw_parts(layout, context, character)
+        layout.operator("keymark.mirror_roles", text="Mirror Left to Right", icon="MOD_MIRROR").side = "L"

@@ -14,32 +14,25 @@ from ..shell.footage_clicks import NAVIGATION
 from ..shell.footage_view import FootageRequest, ask, follow_mouse, stop_asking
 from ..shell.job_operator import cancel_click
 from ..shell.requirements import idle
-from .characters import MOST_NAMED, active_character, find_character, full_title
+from .characters import MOST_NAMED, active_character, armature, find_character, full_title
 from .map_properties import map_of, role_named, show_map
 from .recognition import RoleBoneOperator, active_bone_of, give_bone, told
-from .requirements import armature
 
 NEAR_PX = 25.0  # farthest that a click may be from a bone, at a UI scale of 1
 ENTER, ESCAPE = "Enter: {bone}, the active one   |   ", "Esc: Cancel"
-SAME_PX = 3.0
-"""Bones that are hardly farther than the nearest lie over it; the one nearest to the viewer counts."""
+SAME_PX = 3.0  # farther than the nearest by this, bones lie over it: the front one counts
 
 
 def bone_under(
     context: bpy.types.Context, armature_object: bpy.types.Object, mouse_x: int, mouse_y: int
 ) -> str | None:
     """Name of the visible bone nearest to the mouse [window px], in a 3D viewport; None where none is."""
-    regions = (
-        region
-        for area in context.screen.areas
-        if area.type == "VIEW_3D"
-        for region in area.regions
-        if region.type == "WINDOW"
-        and 0 <= mouse_x - region.x < region.width
-        and 0 <= mouse_y - region.y < region.height
-    )
-    region = next(regions, None)
-    if region is None:
+    areas = (area for area in context.screen.areas if area.type == "VIEW_3D")
+    regions = (region for area in areas for region in area.regions if region.type == "WINDOW")
+    for region in regions:
+        if 0 <= mouse_x - region.x < region.width and 0 <= mouse_y - region.y < region.height:
+            break
+    else:
         return None
     view, names, ends, depths = region.data, [], [], []
     shown = armature_object.evaluated_get(context.evaluated_depsgraph_get())
@@ -81,9 +74,6 @@ def is_visible(pose_bone: bpy.types.PoseBone) -> bool:
     return not len(bone.collections) or any(each.is_visible_effectively for each in bone.collections)
 
 
-# --- Pick a role's bone by a click on it in the viewport
-
-
 class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     """Click on the bone in the viewport"""
 
@@ -111,26 +101,23 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         if cancel_click(self, context, event):
             return {"CANCELLED"}
         follow_mouse(context, event)
-        with reported(self):
-            return self._watch(context, event)
-        self.cancel(context)
-        return {"CANCELLED"}
-
-    def _watch(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if event.type in ("RET", "NUMPAD_ENTER") and event.value == "PRESS":
-            return self._take(context, active_bone_of(active_character(context.scene)))
-        clicked = event.type == "LEFTMOUSE" and event.value == "PRESS"
-        if not clicked and event.type != "MOUSEMOVE":
+        pressed = event.value == "PRESS"
+        confirmed = pressed and event.type in ("RET", "NUMPAD_ENTER")
+        clicked = pressed and event.type == "LEFTMOUSE"
+        if not clicked and not confirmed and event.type != "MOUSEMOVE":
             return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
         character = find_character(context.scene)
-        if character is None or character.armature is None:
-            self.cancel(context)
-            return {"CANCELLED"}
-        under = bone_under(context, character.armature, event.mouse_x, event.mouse_y)
-        if not clicked:
-            self._ask(context, under or "")
-            return {"PASS_THROUGH"}
-        return self._take(context, under)
+        if character is not None and character.armature is not None:
+            with reported(self):
+                if confirmed:
+                    return self._take(context, active_bone_of(character))
+                under = bone_under(context, character.armature, event.mouse_x, event.mouse_y)
+                if clicked:
+                    return self._take(context, under)
+                self._ask(context, under or "")
+                return {"PASS_THROUGH"}
+        self.cancel(context)
+        return {"CANCELLED"}
 
     def _take(self, context: bpy.types.Context, bone: str | None) -> set[str]:
         """Give the bone to the role; wait on where there is none."""
@@ -181,11 +168,10 @@ class KEYMARK_OT_remove_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Ope
 
     def run(self, context: bpy.types.Context) -> None:
         shown = chain_of(active_character(context.scene), self.role)
-        if self.index >= len(shown.bones):
-            raise InputError(
-                f"the role {self.role} has {len(shown.bones)} bones; there is no number {self.index}"
-            )
-        if len(shown.bones) == 1:
+        count = len(shown.bones)
+        if self.index >= count:
+            raise InputError(f"the role {self.role} has {count} bones; there is no number {self.index}")
+        if count == 1:
             shown.bones[0].bone = ""
             return
         shown.bones.remove(self.index)
@@ -197,9 +183,6 @@ def chain_of(character: bpy.types.PropertyGroup, role: str) -> bpy.types.Propert
     if role not in CHAINS:
         raise InputError(f"'{role}' is no chain of bones; spine, neck and fingers are")
     return role_named(character.character_map, role)
-
-
-# --- Copy the roles of one side to the other
 
 
 SIDES = (

@@ -6,35 +6,21 @@ from ...core.take.character_settings import RetargetOptions
 from ..bridge.actor_bones import is_actor, moves_an_actor
 from ..shell.declared_properties import declared_property
 from ..shell.fields import HIDDEN, Choice, Entries, Group, Integer, Switch, Text
+from .characters import may_be_character
 from .map_properties import KEYMARK_PG_character_map
+from .recognition import armature_chosen
 
 KEYS = (
     ("TOLERANCE", "Within Tolerance", "The fewest keys that keep the character within the tolerance"),
     ("EVERY_FRAME", "Every Frame", "A key on every frame"),
 )
 SOURCES = (
-    (
-        "NEWEST",
-        "Newest",
-        "The final Action, unless there is none or the reconstructed motion is newer",
-    ),
+    ("NEWEST", "Newest", "The final Action, unless there is none or the reconstructed motion is newer"),
     ("FINAL", "Final", "The take's final Action"),
     ("MOTION", "Motion", "The take's reconstructed motion"),
     ("ACTION", "Other Action", "Any Action of a Keymark actor in this file"),
 )
 LEVELS = (("INFO", "Note", "What was done"), ("ERROR", "Warning", "What to look at"))
-
-
-def _is_character(_character: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
-    from .characters import may_be_character
-
-    return may_be_character(candidate)
-
-
-def _armature_chosen(character: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    from .recognition import armature_chosen
-
-    armature_chosen(character)
 
 
 class KEYMARK_PG_result_line(bpy.types.PropertyGroup):
@@ -92,8 +78,8 @@ class KEYMARK_PG_character(bpy.types.PropertyGroup):
         name="Armature",
         description="The character's armature; any but Keymark's own actors",
         type=bpy.types.Object,
-        poll=_is_character,
-        update=_armature_chosen,
+        poll=lambda _character, candidate: may_be_character(candidate),
+        update=lambda character, _context: armature_chosen(character),
     )
     problem: Text("Problem", "Why the armature's bones could not be recognized")
     doubts: Entries(type=KEYMARK_PG_result_line)

@@ -8,20 +8,20 @@ import bpy
 from ...core.errors import InputError, KeymarkError
 from ...core.retarget.character import ROLES
 from ..library import registry
-from ..shell.base_operator import BaseOperator, capitalized, warn
-from ..shell.fields import SKIP_SAVE, Integer, Text
+from ..shell.base_operator import BaseOperator, browse, capitalized, chosen_file, reported, warn
+from ..shell.fields import HIDDEN, SKIP_SAVE, Integer, Switch, Text
 from ..shell.requirements import idle
 from .characters import (
     active_character,
     add_lines,
-    drop_results_of_others,
+    armature,
     find_character,
     full_title,
+    recognized,
     require_character_armature,
     with_map,
 )
-from .map_properties import SOURCE_WORDS, clear_map, map_of, role_named, show_map
-from .requirements import armature
+from .map_properties import clear_map, map_of, role_named, show_map
 
 
 class RoleBoneOperator:
@@ -32,10 +32,7 @@ class RoleBoneOperator:
 
 
 def give_bone(character: bpy.types.PropertyGroup, role: str, index: int, bone: str) -> None:
-    """Give a role a bone, which makes the role the person's.
-
-    InputError: there is no such role or place in it, or no such bone.
-    """
+    """Give a role a bone, which makes it the person's. InputError: no such role, place or bone."""
     if role not in ROLES:
         raise InputError(f"there is no role '{role}'; roles are {', '.join(ROLES)}")
     if bone not in character.armature.data.bones:
@@ -64,32 +61,26 @@ def told(context: bpy.types.Context, role: str) -> str:
     shown = character.character_map.roles[role]
     if shown.doubt:
         return shown.doubt[:1].upper() + shown.doubt[1:]
-    if not any(entry.bone for entry in shown.bones):
-        return f"{full_title(role).capitalize()}: no bone"
+    found = f"found by {shown.source}, {100.0 * shown.confidence:.0f} % sure"
     if shown.source == "you":
-        return f"{full_title(role).capitalize()}: chosen by you"
-    return (
-        f"{full_title(role).capitalize()}: found by {SOURCE_WORDS[shown.source].lower()}, "
-        f"{100.0 * shown.confidence:.0f} % sure"
-    )
-
-
-# --- A character's bones recognized, and shown in its properties
+        found = "chosen by you"
+    if not any(entry.bone for entry in shown.bones):
+        found = "no bone"
+    return f"{full_title(role).capitalize()}: {found}"
 
 
 def recognize_bones(character: bpy.types.PropertyGroup) -> None:
-    """Recognize the bones of a character's armature, and show which play which role.
-
-    InputError: it is no character; the properties keep what they held.
-    """
+    """Recognize a character's bones and show them. InputError: it is none; properties stay."""
     from ...core.retarget.recognition.recognize import recognize
     from ..bridge.character.read_character import read_character
 
     require_character_armature(character.armature)
     found = recognize(read_character(character.armature))
-    by_role = {_role_of(sentence): capitalized(sentence) for sentence in found.doubts}
+    # A doubt about a role alone begins with its name.
+    words = {sentence: sentence.partition(" ")[0] for sentence in found.doubts}
+    by_role = {role: capitalized(sentence) for sentence, role in words.items() if role in ROLES}
     show_map(character.character_map, found.character_map, by_role)
-    show_doubts(character, tuple(sentence for sentence in found.doubts if not _role_of(sentence)))
+    show_doubts(character, tuple(sentence for sentence, role in words.items() if role not in ROLES))
     character.problem = ""
 
 
@@ -109,12 +100,6 @@ def say_recognized(operator: BaseOperator, character: bpy.types.PropertyGroup) -
         operator.report({"INFO"}, f"Recognized the bones of '{character.armature.name}'")
 
 
-def _role_of(sentence: str) -> str:
-    """The role that a doubt is about, with whose name it begins; empty where it is about none alone."""
-    word = sentence.partition(" ")[0]
-    return word if word in ROLES else ""
-
-
 def armature_chosen(character: bpy.types.PropertyGroup) -> None:
     """Find out about the armature that was chosen: the map it has elsewhere in the file, or recognition.
 
@@ -125,7 +110,10 @@ def armature_chosen(character: bpy.types.PropertyGroup) -> None:
     character.problem = character.suggested = ""
     if character.armature is None:
         return
-    drop_results_of_others(character)
+    for index in reversed(range(len(character.results))):  # those of another armature; their Actions stay
+        if character.results[index].armature != character.armature:
+            character.results.remove(index)
+    character.active_result = max(0, len(character.results) - 1)
     known = with_map(character.armature, beside=character)
     if known is not None:
         show_map(character.character_map, map_of(known.character_map))
@@ -157,3 +145,93 @@ class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
         character = active_character(context.scene)
         recognize_bones(character)
         say_recognized(self, character)
+
+
+class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
+    """Load which bones play which role from a file, instead of what was recognized"""
+
+    bl_label = "Load Map"
+    requirements = (armature, idle)
+
+    filepath: Text("File Path", "A character map", subtype="FILE_PATH", options=SKIP_SAVE)
+    title: Text(
+        "Title",
+        "Title of a map in your library folder, instead of a file",
+        options=SKIP_SAVE,
+    )
+    filter_glob: Text(default="*.json", options=HIDDEN)
+    filter_folder: Switch(default=True, options=HIDDEN)
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        if properties.title:
+            return "Use this map from your library folder, which names this armature's bones"
+        return "Load which bones play which role from a file, instead of what was recognized"
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if self.filepath or self.title:
+            return self.execute(context)
+        return browse(self, context, str(map_folders()[0]))
+
+    def run(self, context: bpy.types.Context) -> None:
+        from ...core.retarget.maps.map_registry import check_map, find_map
+        from ..bridge.character.read_character import read_character
+
+        character = active_character(context.scene)
+        by_title = self.title and not self.filepath
+        named = self.title if by_title else chosen_file(self, "a character map, .json")
+        found = find_map(named, map_folders())
+        check_map(found.valid, read_character(character.armature), str(found.path))
+        show_map(character.character_map, found.valid)
+        show_doubts(character)
+        character.problem = character.suggested = ""
+        self.report({"INFO"}, f"Loaded '{found.valid.title}'")
+
+
+class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
+    """Save which bones play which role as a file; in the folder that is offered it is found again"""
+
+    bl_label = "Save Map"
+    bl_options = {"REGISTER"}
+    requirements = (armature, recognized, idle)
+
+    filepath: Text("File", "File to write", subtype="FILE_PATH")
+    check_existing: Switch(default=True, options=HIDDEN)
+    filter_glob: Text(default="*.json", options=HIDDEN)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        from ...core.retarget.maps.map_registry import map_path
+
+        with reported(self):
+            title = _title(active_character(context.scene))
+            self.filepath = str(map_path(map_folders()[0], title))
+            context.window_manager.fileselect_add(self)
+            return {"RUNNING_MODAL"}
+        return {"CANCELLED"}
+
+    def check(self, context: bpy.types.Context) -> bool:
+        path = bpy.path.ensure_ext(self.filepath, ".json")
+        changed = path != self.filepath
+        self.filepath = path
+        return changed
+
+    def draw(self, context: bpy.types.Context) -> None:
+        character, column = active_character(context.scene), self.layout.column()
+        if character is not None:
+            for name in ("title", "author", "license", "description", "tags"):
+                column.prop(character.character_map, name)
+
+    def run(self, context: bpy.types.Context) -> None:
+        from ...core.retarget.maps.character_map import write_character_map
+
+        if not self.filepath:
+            raise InputError("no file is named to save the map to; give filepath")
+        character = active_character(context.scene)
+        character.character_map.title = _title(character)
+        path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ".json"))
+        write_character_map(path, map_of(character.character_map))
+        self.report({"INFO"}, f"Wrote {path}")
+
+
+def _title(character: bpy.types.PropertyGroup) -> str:
+    return character.character_map.title.strip() or str(character.armature.name)

@@ -22,12 +22,17 @@ from .characters import (
     active_character,
     add_lines,
     add_result,
+    armature,
+    character,
+    editable,
+    recognized,
+    result,
     result_to_replace,
     shown_result,
+    source,
     source_of,
 )
 from .map_properties import map_of
-from .requirements import character, editable, recognized, result, source
 
 if TYPE_CHECKING:
     from ...core.progress import Job
@@ -57,9 +62,9 @@ def keep_retargeted(operator: bpy.types.Operator, scene: bpy.types.Scene, result
     """Let the character perform the motion; returns a sentence on it."""
     identifier, uids, kind, title, made_from, retargeted = result
     take = take_by_identifier(scene, identifier)
-    character = next((each for each in take.characters if _uid(each.armature) == uids[0]), None)
-    source_action = next((each for each in bpy.data.actions if _uid(each) == uids[1]), None)
-    actor = next((each for each in bpy.data.objects if _uid(each) == uids[2]), None)
+    characters = {each.armature.session_uid: each for each in take.characters if each.armature is not None}
+    there = {each.session_uid: each for each in (*bpy.data.actions, *bpy.data.objects)}
+    character, source_action, actor = characters.get(uids[0]), there.get(uids[1]), there.get(uids[2])
     if character is None or source_action is None or actor is None:
         raise InputError(
             "the character or its motion was removed while the job ran; nothing was changed, run it again"
@@ -82,14 +87,14 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
     """Let the character perform the motion, as an Action of its own"""
 
     bl_label = "Retarget"
-    requirements = (source, editable, recognized, idle)
+    requirements = (character, source, armature, editable, recognized, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[tuple[Any, ...]]":
-        return (yield from retarget_take(scene))
+        return retarget_take(scene)
 
     def finish(self, scene: bpy.types.Scene, result: tuple[Any, ...]) -> None:
-        said = keep_retargeted(self, scene, result)
-        self.report({"INFO"}, said)
+        performs = keep_retargeted(self, scene, result)
+        self.report({"INFO"}, performs)
 
 
 def options_of(group: bpy.types.PropertyGroup) -> RetargetOptions:
@@ -114,15 +119,11 @@ def figures(quality: "Quality") -> list[str]:
     return lines
 
 
-def _uid(block: bpy.types.ID | None) -> int:
-    return -1 if block is None else int(block.session_uid)
-
-
 class KEYMARK_OT_show_result(BaseOperator, bpy.types.Operator):
     """Animate the character by this result"""
 
     bl_label = "Show Result"
-    requirements = (result, editable, idle)
+    requirements = (character, result, armature, editable, idle)
 
     index: Integer("Index", "Number of the result in the list, from 0", min=0)
 
@@ -145,9 +146,8 @@ class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         chosen = active_character(context.scene)
         if self.index >= len(chosen.results):
-            raise InputError(
-                f"there is no result number {self.index}; the character has {len(chosen.results)}"
-            )
+            count = len(chosen.results)
+            raise InputError(f"there is no result number {self.index}; the character has {count}")
         chosen.results.remove(self.index)
         chosen.active_result = max(0, min(chosen.active_result, len(chosen.results) - 1))
 
@@ -156,7 +156,7 @@ class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
     """Mark the character's motion as an asset, with the catalog, tags and details of the step Export"""
 
     bl_label = "Mark Asset"
-    requirements = (result, idle)
+    requirements = (character, result, idle)
 
     def run(self, context: bpy.types.Context) -> None:
         take, made = active_take(context.scene), shown_result(active_character(context.scene))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arrays import Array
 from .control_plan import ControlKind, PlannedControl
-from .control_spaces import NOTHING, ControlSpace, unscaled
+from .control_spaces import NOTHING, RIGID, ControlSpace, unscaled
 
 ALWAYS_MOVED = (ControlKind.HIPS, ControlKind.GOAL, ControlKind.POLE, ControlKind.ROOT, ControlKind.CARRIER)
 """Kinds of controls that are placed wherever they can be."""
@@ -34,8 +34,7 @@ class Control:
 class ControlChannels:
     """A control over F frames."""
 
-    rotation: Array | None
-    """(F, 3, 3) its rotation channels as a turn from rest; None where they are not keyed."""
+    rotation: Array | None  # (F, 3, 3) its rotation channels as a turn from rest; None for none
     location: Array | None  # (F, 3) its location channels; None where they are not keyed
     turn: Array  # (F, 3, 3) its axes in the armature's space, as the channels give them
     place: Array  # (F, 3) its head in the armature's space, as the channels give it
@@ -112,7 +111,7 @@ def control_channels(
         if space.movable and (must or control.plan.kind in ALWAYS_MOVED):
             local = (np.swapaxes(axes, -1, -2) @ apart[..., None])[..., 0]
             location = np.linalg.solve(space.axes, local.T).T
-        if location is not None or not space.is_placed(size):  # where none can tell, as wanted
+        if location is not None or space.residual >= RIGID * size:  # where none can tell, as wanted
             place = goal
         found.append(ControlChannels(rotation, location, turn, place))
     return tuple(found)

@@ -18,19 +18,13 @@ class KeyedControl:
     """What is keyed on a control."""
 
     control: Control
-    rotation: Array | Spline | None
-    """(F, C) values of its rotation channels on every frame, or few keys; None where they are not keyed."""
+    rotation: Array | Spline | None  # (F, C) on every frame, or few keys; None if not keyed
     location: Array | Spline | None  # (F, 3) those of its location
 
     @property
-    def channel_count(self) -> int:
-        """Number of its channels."""
-        return sum(values_of(held).shape[1] for held in (self.rotation, self.location) if held is not None)
-
-    @property
-    def key_count(self) -> int:
-        """Number of keys on all its channels."""
-        return sum(values_of(held).size for held in (self.rotation, self.location) if held is not None)
+    def values(self) -> tuple[Array, ...]:
+        """The values of all its keys."""
+        return tuple(values_of(held) for held in (self.rotation, self.location) if held is not None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +32,7 @@ class LimbPaths:
     """A limb of three joints."""
 
     bones: tuple[str, str, str]  # the bones that begin at them
-    joints: tuple[Array, Array, Array]
-    """(F, 3) its root, its elbow or knee and its end, in the armature's space and units."""
+    joints: tuple[Array, Array, Array]  # (F, 3) its root, elbow or knee, and end [units]
     root_control: int  # index of the control that carries its root; NOTHING for none
     root_place: Array  # (3,) the root in that control's axes, in the armature's units
     bend: Array  # (F, 3) unit vector from the line between root and end toward elbow or knee
@@ -73,10 +66,6 @@ class ControlMotion:
             for point in self.points
             if point.bone == control.plan.bone
         ]
-
-    def shows_ik(self, limb: str | None) -> bool:
-        """Whether a limb shows what its inverse kinematics does."""
-        return limb is not None and limb in self.limbs and self.limbs[limb].in_ik
 
     def joints_m(self, limb: str) -> tuple[Array, Array, Array]:
         """(F, 3) a limb's root, its elbow or knee, and its end [m]."""

@@ -30,14 +30,6 @@ class ControlSpace:
     residual_rad: float  # largest turn that the space does not explain
     residual: float  # largest distance that it does not explain, in the armature's units
 
-    def is_placed(self, size: float) -> bool:
-        """Whether its carrier places it as said."""
-        return self.residual < RIGID * size
-
-    def placed_by_turner(self, origin: Array) -> "ControlSpace":
-        """The space where the turner carries it at a place (3,) in its axes, and locations do nothing."""
-        return replace(self, carrier=self.turner, origin=origin, axes=np.zeros((3, 3)), residual=0.0)
-
     @property
     def movable(self) -> bool:
         """Whether its location channels place it."""
@@ -75,10 +67,13 @@ def find_spaces(posed: PosedControls) -> tuple[ControlSpace, ...]:
     carriers = _least(_spread(seen, (-1,)), _spread(still, (-1,)))
     spaces = []
     for control, (turner, carrier) in enumerate(zip(turners, carriers, strict=True)):
-        turn, residual_rad = constant_turn(in_axes_of(turns, turner, axes[:, control]))
-        place = places[:, control]
+        own, place = axes[:, control], places[:, control]
+        if turner != NOTHING:
+            own = np.swapaxes(turns[:, turner], -1, -2) @ own
+        turn, residual_rad = constant_turn(own)
         if carrier != NOTHING:
-            place = in_axes_of(turns, carrier, (place - places[:, carrier])[..., None])[..., 0]
+            way = (place - places[:, carrier])[..., None]
+            place = (np.swapaxes(turns[:, carrier], -1, -2) @ way)[..., 0]
         origin = place[: posed.still].mean(axis=0)
         moved, shift = posed.channels[posed.still :, control, :3, 3], place[posed.still :] - origin
         location_axes = np.linalg.lstsq(moved, shift, rcond=1e-6)[0].T
@@ -86,11 +81,6 @@ def find_spaces(posed: PosedControls) -> tuple[ControlSpace, ...]:
         residual = float(np.linalg.norm(left, axis=-1).max())
         spaces.append(ControlSpace(turner, turn, carrier, origin, location_axes, residual_rad, residual))
     return tuple(spaces)
-
-
-def in_axes_of(turns: Array, control: int, values: Array) -> Array:
-    """Matrices (S, 3, N) of the armature's space in the axes of a control, of (S, C, 3, 3) turns."""
-    return values if control == NOTHING else np.asarray(np.swapaxes(turns[:, control], -1, -2) @ values)
 
 
 def unscaled(matrices: Array) -> Array:
@@ -115,9 +105,6 @@ def _least(others: Array, nothing: Array) -> list[int]:
     row = others.argmin(axis=0)
     less = others[row, np.arange(len(row))] < nothing
     return [int(index) if taken else NOTHING for index, taken in zip(row, less, strict=True)]
-
-
-# --- How one bone follows another
 
 
 def rigid_offset(leading: Array, following: Array) -> tuple[Array, float, float]:

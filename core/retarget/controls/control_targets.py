@@ -102,44 +102,35 @@ def _limb_paths(
 ) -> dict[str, LimbPaths]:
     found = {}
     in_ik = {control.plan.limb for control in controls if control.plan.kind is ControlKind.GOAL}
-    in_fk = {control.plan.bone for control in controls if control.plan.kind in IN_FK}
+    fk = {
+        one.plan.bone: index for index, one in reversed(list(enumerate(controls))) if one.plan.kind in IN_FK
+    }
     for limb in LIMBS:
         bones = limb_bones(character_map, limb)
         if not set(JOINTS[limb]) <= set(character_map.roles) or not set(bones) <= set(motion.poses):
             continue
+        # What carries its root: the nearest bone of the trunk, or the shoulder, that is keyed.
+        above = (LIMBS[limb][0], "spine", "hips") if limb.startswith("arm") else ("hips",)
+        names = (name for role in above for name in reversed(character_map.bones(role)) if name in fk)
+        carrier, place = NOTHING, np.zeros(3)
+        if (name := next(names, None)) is not None:
+            carrier, rest = fk[name], character.bone(name).rest
+            offset = offsets[controls[carrier].name]
+            place = (character.bone(bones[0]).head - rest[:3, 3]) @ rest[:3, :3]
+            place = np.asarray(offset[:3, :3] @ place + offset[:3, 3])
         root, middle, end = (motion.poses[bone][:, :3, 3] for bone in bones)
         pole = character_map.ik[limb].pole if limb in in_ik else None
-        carrier, place = _carrier(character, character_map, controls, offsets, limb)
         found[limb] = LimbPaths(
             bones,
             (root, middle, end),
             carrier,
             place,
             motion.bends[limb],
-            set(bones) <= in_fk,
+            set(bones) <= set(fk),
             limb in in_ik,
             poles[pole].distance if pole is not None else 0.0,
         )
     return found
-
-
-def _carrier(
-    character: Character,
-    character_map: CharacterMap,
-    controls: Sequence[Control],
-    offsets: Mapping[str, Array],
-    limb: str,
-) -> tuple[int, Array]:
-    """Index of the control that carries a limb's root, and the root's place in its axes; NOTHING for none."""
-    root = character.bone(limb_bones(character_map, limb)[0]).head
-    above = (LIMBS[limb][0], "spine", "hips") if limb.startswith("arm") else ("hips",)
-    for bone in [name for role in above for name in reversed(character_map.bones(role))]:
-        for index, control in enumerate(controls):
-            if control.plan.bone == bone and control.plan.kind in IN_FK:
-                rest, offset = character.bone(bone).rest, offsets[control.name]
-                place = (root - rest[:3, 3]) @ rest[:3, :3]
-                return index, np.asarray(offset[:3, :3] @ place + offset[:3, 3])
-    return NOTHING, np.zeros(3)
 
 
 def leg_on_body(motion: ControlMotion, leg: str, carrier: ControlChannels) -> dict[str, Array]:

@@ -70,9 +70,6 @@ def held_points(
     return tuple(found)
 
 
-# --- How far key reduction may move a character's points
-
-
 # In meters for a character of the performer's size; smaller and larger ones have them in proportion.
 SWITCH_M = 0.0008  # largest distance of wrists and ankles between IK and FK
 LEAST_M = 0.0002  # of a limb's ends where it is all but straight: less would bring keys and no likeness
@@ -121,10 +118,7 @@ class ToleranceRules:
         return rests
 
     def reach_m(self, joints: tuple[Array, Array, Array], share: float = 1.0) -> Array:
-        """(F,) error of a limb's length between root and end that moves elbow or knee by the tolerance [m].
-
-        `share` is how much of the tolerance it may take.
-        """
+        """(F,) error of a limb's length that moves elbow or knee by a share of the tolerance [m]."""
         root, middle, end = joints
         general_m, least_m = share * self.body_m, LEAST_M * self.motion.size
         line, length = unit(end - root), np.linalg.norm(end - root, axis=-1)

@@ -9,6 +9,7 @@ moves nothing.
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from types import MappingProxyType
 
 import numpy as np
 
@@ -27,8 +28,7 @@ AFTER_BODY = (ControlKind.GOAL, ControlKind.TOE, ControlKind.POLE, ControlKind.F
 Toleranced = tuple[Array, Array | Callable[[Array], Array]]
 """A point (3,) in its control's axes [m], and its tolerance (F,), or that from its path (F, 3) in the
 armature's."""
-Keyed = tuple[dict[int, KeyedControl], dict[int, ControlChannels]]
-"""By index what is keyed on each control, and its channels with the poses that the keys show."""
+Keyed = tuple[dict[int, KeyedControl], dict[int, ControlChannels]]  # by index the keys, and what they show
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,7 @@ def reduce_controls(
     motion: ControlMotion, times: Array, rules: ToleranceRules, of: ChannelValues
 ) -> Part[tuple[KeyedControl, ...]]:
     """Find few keys for every control of a motion at rising scene frames (F,), at least two."""
+    reduction = _Reduction(motion, times, rules, of)
     legs: dict[str, tuple[int, list[int]]] = {}
     for leg, limb in motion.limbs.items():
         if leg.startswith("leg") and limb.in_fk and limb.root_control != NOTHING:
@@ -57,31 +58,20 @@ def reduce_controls(
     if body:
         # Share of the work that the body's controls are, where others follow.
         done = 0.5 if following else 1.0
-        points: dict[int, list[Toleranced]] = {
-            index: [
-                (place, partial(_tolerance, motion, rules, None, point))
-                for point, place in motion.points_of(index)
-            ]
-            for index in body
-        }
+        points = {index: reduction.points(index) for index in body}
         for name, limb in motion.limbs.items():  # the roots of the limbs that are fitted after it
             follows = not limb.in_fk or name in {group.leg for group in following}
             if limb.root_control in points and follows:
                 root_m = rules.reach_m(motion.joints_m(name), CARRIED_SHARE)
                 points[limb.root_control].append((motion.scale * limb.root_place, root_m))
-        part = _reduced(motion, motion.channels, times, rules.body_m, of, points)
-        keyed, shown = yield from scaled(part, 0.0, done)
+        keyed, shown = yield from scaled(reduction.keys(motion.channels, points), 0.0, done)
     share = (1.0 - done) / max(len(following), 1)
     for group in following:
-        part = _reduce_following(motion, times, rules, of, group, shown)
-        more, now = yield from scaled(part, done, done + share)
+        more, now = yield from scaled(reduction.following(group, shown), done, done + share)
         keyed |= more
         shown |= now
         done += share
     return tuple(keyed[index] for index in range(len(motion.controls)))
-
-
-# --- In which order the keys are found
 
 
 def control_stages(
@@ -121,9 +111,6 @@ def control_stages(
     return tuple(sorted(body)), tuple(chains)
 
 
-# --- Some of the controls as a rig, in meters, in the axes of the armature or of what carries them
-
-
 def control_rig(
     controls: Sequence[Control],
     channels: Sequence[ControlChannels],
@@ -156,138 +143,134 @@ def control_rig(
     return Rig(tuple(bones)), moved, turned
 
 
-def _reduced(
-    motion: ControlMotion,
-    channels: Sequence[ControlChannels],
-    times: Array,
-    general_m: float,
-    of: ChannelValues,
-    points: Mapping[int, Sequence[Toleranced]],
-    heads: Mapping[int, Array] | None = None,
-) -> Part[Keyed]:
-    """Find the keys of controls by index that hold their points, and their heads within (F,) [m]."""
-    places = {
-        index: np.array([place for place, _ in points[index]]).reshape(-1, 3) for index in sorted(points)
-    }
-    rig, moved, turned = control_rig(motion.controls, channels, places, motion.scale)
-    values = [np.zeros((len(times), 0))] * len(rig.bones)
-    for index, row in turned.items():
-        rotation, location = channels[index].rotation, channels[index].location
-        if rotation is not None:
-            values[row] = of(rotation, motion.controls[index].mode)
-        if location is not None:
-            values[moved[index]] = location
-    target = rig.pose(values).points
-    allowed = np.full(target.shape[:2], general_m)
-    for index, row in turned.items():
-        start = rig.point_slices[row].start
-        for column, (_, tolerance) in enumerate(points[index], start + 1):
-            allowed[:, column] = tolerance(target[:, column]) if callable(tolerance) else tolerance
-        if heads is not None and index in heads:
-            allowed[:, start] = heads[index]
-            allowed[:, rig.point_slices[moved.get(index, row)].start] = heads[index]
-    reduced = yield from reduce_keys(rig, times, values, allowed, np.zeros(0, dtype=np.intp))
-    pose = rig.pose([spline.evaluate(times, 0, len(times) - 1) for spline in reduced.splines])
-    keyed, shown = {}, {}
-    for index, row in turned.items():
-        keyed[index] = KeyedControl(
-            motion.controls[index],
-            None if rig.bones[row].mode == NO_TURN else reduced.splines[row],
-            reduced.splines[moved[index]] if index in moved else None,
-        )
-        place = pose.points[:, rig.point_slices[row].start] / motion.scale
-        shown[index] = replace(channels[index], turn=pose.rotation[row], place=place)
-    return keyed, shown
+@dataclass(frozen=True, eq=False)
+class _Reduction:
+    """What stays the same while keys are found, first of the body's controls, then of what follows them."""
 
+    motion: ControlMotion
+    times: Array
+    rules: ToleranceRules
+    of: ChannelValues
 
-# --- What follows the body that its own few keys show
+    def points(
+        self, index: int, group: FollowingControls | None = None, carrier: ControlChannels | None = None
+    ) -> list[Toleranced]:
+        """The points that a control moves, of the body or of a group of others on a carrier."""
+        return [
+            (place, partial(self._tolerance, group, carrier, point))
+            for point, place in self.motion.points_of(index)
+        ]
 
-
-def _reduce_following(
-    motion: ControlMotion,
-    times: Array,
-    rules: ToleranceRules,
-    of: ChannelValues,
-    group: FollowingControls,
-    shown: Mapping[int, ControlChannels],
-) -> Part[Keyed]:
-    """Find the keys of controls that hang together; `shown` has the controls fitted before."""
-    known = {index: shown.get(index, channels) for index, channels in enumerate(motion.channels)}
-    carrier = known.get(group.carrier)
-    known = {index: channels for index, channels in known.items() if index not in group.controls}
-    controls = [motion.controls[index] for index in group.controls]
-    if group.leg is None or group.carrier not in shown:
-        own = {control.name: _followed(motion, rules, control, shown) for control in controls}
-    else:
-        bones = {**motion.bones, **leg_on_body(motion, group.leg, shown[group.carrier])}
-        own = {
-            control.name: bones[control.plan.bone] @ np.linalg.inv(motion.offsets[control.name])
-            for control in controls
+    def keys(
+        self,
+        channels: Sequence[ControlChannels],
+        points: Mapping[int, Sequence[Toleranced]],
+        heads: Mapping[int, Array] = MappingProxyType({}),
+    ) -> Part[Keyed]:
+        """Find the keys of controls by index that hold their points, and their heads within (F,) [m]."""
+        motion, times = self.motion, self.times
+        places = {
+            index: np.array([place for place, _ in points[index]]).reshape(-1, 3) for index in sorted(points)
         }
-    channels = motion.channels
-    if any(control.plan.kind is not ControlKind.FINGER for control in controls):
-        channels = control_channels(motion.controls, {**motion.wanted, **own}, motion.size, known)
+        rig, moved, turned = control_rig(motion.controls, channels, places, motion.scale)
+        values = [np.zeros((len(times), 0))] * len(rig.bones)
+        for index, row in turned.items():
+            rotation, location = channels[index].rotation, channels[index].location
+            if rotation is not None:
+                values[row] = self.of(rotation, motion.controls[index].mode)
+            if location is not None:
+                values[moved[index]] = location
+        target = rig.pose(values).points
+        allowed = np.full(target.shape[:2], self.rules.body_m)
+        for index, row in turned.items():
+            start = rig.point_slices[row].start
+            for column, (_, tolerance) in enumerate(points[index], start + 1):
+                allowed[:, column] = tolerance(target[:, column]) if callable(tolerance) else tolerance
+            if index in heads:
+                allowed[:, start] = heads[index]
+                allowed[:, rig.point_slices[moved.get(index, row)].start] = heads[index]
+        reduced = yield from reduce_keys(rig, times, values, allowed, np.zeros(0, dtype=np.intp))
+        pose = rig.pose([spline.evaluate(times, 0, len(times) - 1) for spline in reduced.splines])
+        keyed, shown = {}, {}
+        for index, row in turned.items():
+            keyed[index] = KeyedControl(
+                motion.controls[index],
+                None if rig.bones[row].mode == NO_TURN else reduced.splines[row],
+                reduced.splines[moved[index]] if index in moved else None,
+            )
+            place = pose.points[:, rig.point_slices[row].start] / motion.scale
+            shown[index] = replace(channels[index], turn=pose.rotation[row], place=place)
+        return keyed, shown
 
-    def held(point: HeldPoint, path: Array) -> Array:
+    def following(self, group: FollowingControls, shown: Mapping[int, ControlChannels]) -> Part[Keyed]:
+        """Find the keys of controls that hang together; `shown` has the controls fitted before."""
+        motion, rules = self.motion, self.rules
+        known = {index: shown.get(index, channels) for index, channels in enumerate(motion.channels)}
+        carrier = known.get(group.carrier)
+        known = {index: channels for index, channels in known.items() if index not in group.controls}
+        bones = None
+        if group.leg is not None and group.carrier in shown:
+            bones = {**motion.bones, **leg_on_body(motion, group.leg, shown[group.carrier])}
+        own, heads = {}, {}
+        for index in group.controls:
+            control = motion.controls[index]
+            if bones is None:
+                own[control.name] = self._followed(control, shown)
+            else:
+                own[control.name] = bones[control.plan.bone] @ np.linalg.inv(motion.offsets[control.name])
+            if control.plan.kind is ControlKind.POLE:
+                limb = str(control.plan.limb)
+                distance_m = motion.scale * motion.limbs[limb].pole_distance
+                heads[index] = rules.pole_m(motion.joints_m(limb), distance_m)
+        channels = motion.channels
+        if any(motion.controls[index].plan.kind is not ControlKind.FINGER for index in group.controls):
+            channels = control_channels(motion.controls, {**motion.wanted, **own}, motion.size, known)
+        points = {index: self.points(index, group, carrier) for index in group.controls}
+        keyed, local = yield from self.keys(channels, points, heads)
+        if carrier is not None:
+            for index, one in local.items():
+                place = carrier.place + (carrier.turn @ one.place[..., None])[..., 0]
+                local[index] = replace(one, turn=carrier.turn @ one.turn, place=place)
+        return keyed, local
+
+    def _followed(self, control: Control, shown: Mapping[int, ControlChannels]) -> Array:
+        """(F, 4, 4) the pose of a control that brings hand or foot to where the FK keys have it.
+
+        A resting foot is where it rests: the FK keys are a hair off.
+        """
+        motion = self.motion
+        wanted, fk = motion.wanted[control.name], motion.fk_control(control.plan.bone)
+        limb = motion.limbs.get(str(control.plan.limb))
+        pole = control.plan.kind is ControlKind.POLE
+        if pole or limb is None or not limb.in_fk or fk is None or fk not in shown:
+            return wanted
+        poses = np.tile(np.eye(4), (len(wanted), 1, 1))
+        poses[:, :3, :3], poses[:, :3, 3] = shown[fk].turn, shown[fk].place
+        offset = motion.offsets[motion.controls[fk].name] @ np.linalg.inv(motion.offsets[control.name])
+        rests = self.rules.resting(control.plan.limb)[:, None, None]
+        return np.where(rests, wanted, poses @ offset)
+
+    def _tolerance(
+        self,
+        group: FollowingControls | None,
+        carrier: ControlChannels | None,
+        point: HeldPoint,
+        path: Array,
+    ) -> Array:
+        """(F,) tolerance of a point on its path (F, 3) in the axes of what carries its controls [m]."""
+        motion, rules = self.motion, self.rules
         if carrier is not None:
             path = motion.scale * carrier.place + (carrier.turn @ path[..., None])[..., 0]
-        return _tolerance(motion, rules, group, point, path)
-
-    points = {
-        index: [(place, partial(held, point)) for point, place in motion.points_of(index)]
-        for index in group.controls
-    }
-    heads = {}
-    for index, plan in zip(group.controls, (control.plan for control in controls), strict=True):
-        if plan.kind is ControlKind.POLE:
-            limb = str(plan.limb)
-            distance_m = motion.scale * motion.limbs[limb].pole_distance
-            heads[index] = rules.pole_m(motion.joints_m(limb), distance_m)
-    keyed, local = yield from _reduced(motion, channels, times, rules.body_m, of, points, heads)
-    if carrier is None:
-        return keyed, local
-    for index, one in local.items():
-        place = carrier.place + (carrier.turn @ one.place[..., None])[..., 0]
-        local[index] = replace(one, turn=carrier.turn @ one.turn, place=place)
-    return keyed, local
-
-
-def _followed(
-    motion: ControlMotion, rules: ToleranceRules, control: Control, shown: Mapping[int, ControlChannels]
-) -> Array:
-    """(F, 4, 4) the pose of a control that brings hand or foot to where the FK keys have it.
-
-    A resting foot is where it rests: the FK keys are a hair off.
-    """
-    wanted, fk = motion.wanted[control.name], motion.fk_control(control.plan.bone)
-    limb = motion.limbs.get(str(control.plan.limb))
-    if control.plan.kind is ControlKind.POLE or limb is None or not limb.in_fk or fk not in shown:
-        return wanted
-    assert fk is not None
-    poses = np.tile(np.eye(4), (len(wanted), 1, 1))
-    poses[:, :3, :3], poses[:, :3, 3] = shown[fk].turn, shown[fk].place
-    offset = motion.offsets[motion.controls[fk].name] @ np.linalg.inv(motion.offsets[control.name])
-    rests = rules.resting(control.plan.limb)[:, None, None]
-    return np.where(rests, wanted, poses @ offset)
-
-
-def _tolerance(
-    motion: ControlMotion,
-    rules: ToleranceRules,
-    group: FollowingControls | None,
-    point: HeldPoint,
-    path: Array,
-) -> Array:
-    """(F,) tolerance of a point on its path (F, 3), of the body's controls or of some that follow them."""
-    shows_ik, limb = motion.shows_ik(point.limb), motion.limbs.get(str(point.limb))
-    if group is None:
-        return rules.of(point, path, not shows_ik, rules.general_m)
-    if group.leg is not None:
-        allowed = rules.of(point, path, not shows_ik, rules.general_m)
-        share = CARRIED_SHARE if point.kind is PointKind.BODY else 1.0
-        return np.minimum(allowed, share * rules.body_m)
-    ends_m = SWITCH_M if limb is not None and limb.in_fk else rules.general_m
-    allowed = rules.of(point, path, True, ends_m)
-    if point.limb is not None and shows_ik and point.kind is PointKind.END:
-        allowed = np.minimum(allowed, rules.reach_m(motion.joints_m(point.limb)))
-    return allowed
+        limb = motion.limbs.get(str(point.limb))
+        shows_ik = limb is not None and limb.in_ik
+        if group is None or group.leg is not None:
+            allowed = rules.of(point, path, not shows_ik, rules.general_m)
+            if group is not None:
+                share = CARRIED_SHARE if point.kind is PointKind.BODY else 1.0
+                allowed = np.minimum(allowed, share * rules.body_m)
+            return allowed
+        ends_m = SWITCH_M if limb is not None and limb.in_fk else rules.general_m
+        allowed = rules.of(point, path, True, ends_m)
+        if point.limb is not None and shows_ik and point.kind is PointKind.END:
+            allowed = np.minimum(allowed, rules.reach_m(motion.joints_m(point.limb)))
+        return allowed

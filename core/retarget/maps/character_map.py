@@ -3,7 +3,6 @@
 `docs/character_map_format.md` describes the fields. Conventions in `presets/characters` have a few more.
 """
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from math import hypot
@@ -12,7 +11,6 @@ from types import MappingProxyType
 from typing import Annotated, Any, ClassVar
 
 from ...errors import shown
-from ...files.digest import digest
 from ...files.fields import is_number, listed
 from ...files.json_file import read_json, write_readable_json
 from ...files.kinds import ByName, Choice, Items, Kind, Never, Number, Text, first_twice, refuse
@@ -20,8 +18,8 @@ from ...files.records import Object, Record
 from ...prior.texts import LONGEST_LINE, LONGEST_NAME, LONGEST_TEXT, SPDX, Tags, line
 from ..character import CHAINS, LIMBS, ROLES, SOURCES, TRUNK_CHAINS
 
-MOST_BONES, MOST_SETTINGS, MOST_SOLE_POINTS = 100, 1000, 1000
-"""Most bones of one role; settings; points of one sole."""
+MOST_BONES, MOST_SETTINGS, MOST_SOLE_POINTS = 100, 1000, 1000  # of a role; of a map; of a sole
+LARGEST_BYTES = 2**20
 LONGEST_BONE = 255  # characters of a bone's or a property's name; Blender's own have up to 63 bytes
 FARTHEST = 1e6  # largest coordinate of a sole, in the armature's units, and largest value of a property
 DECIMALS = 9
@@ -333,6 +331,31 @@ class CharacterMap(Record):
         """The bones to key for each of the role's bones."""
         return self.fk.get(role, self.bones(role))
 
+    def renamed(self, name_of: Callable[[str], str | None]) -> "CharacterMap":
+        """The map with other names, without what has none; a chain that lacks a bone turns in equal steps."""
+        roles: dict[str, RoleBones] = {}
+        for role, given in self.roles.items():
+            bones = tuple(name for bone in given.bones if (name := name_of(bone)) is not None)
+            if bones:
+                whole = len(bones) == len(given.bones)
+                roles[role] = replace(given, bones=bones, shares=given.shares if whole else ())
+        fk: dict[str, tuple[str | None, ...]] = {}
+        for role, keyed in self.fk.items():
+            controls = tuple(None if name is None else name_of(name) for name in keyed)
+            same = [name is None for name in controls] == [name is None for name in keyed]
+            if same and role in roles and len(controls) == len(roles[role].bones):
+                fk[role] = controls
+        found = {limb: own.renamed(name_of) for limb, own in self.ik.items()}
+        settings = ((setting, name_of(setting.bone)) for setting in self.settings)
+        return replace(
+            self,
+            roles=roles,
+            fk=fk,
+            ik={limb: other for limb, other in found.items() if other is not None},
+            settings=tuple(replace(setting, bone=bone) for setting, bone in settings if bone is not None),
+            root=None if self.root is None else name_of(self.root),
+        )
+
     def shares(self, role: str) -> tuple[float, ...]:
         """Share of the turn that each of a chain's bones takes."""
         bones = self.bones(role)
@@ -342,27 +365,13 @@ class CharacterMap(Record):
         return tuple((number + 1) / len(bones) for number in range(len(bones)))
 
 
-# --- Character map files
-
-
-LARGEST_BYTES = 2**20
-
-
 def read_character_map(path: Path) -> CharacterMap:
     """Read a character map file. InputError: the file is missing, no character map, or invalid."""
     return CharacterMap.from_json(read_json(path, LARGEST_BYTES), str(path))
 
 
 def write_character_map(path: Path, character_map: CharacterMap) -> None:
-    """Write a character map file, whole or not at all.
-
-    InputError: the map is invalid and could not be read back; ConversionError: the file cannot be written.
-    """
+    """Write a map's file, whole or not at all. InputError, ConversionError: it is invalid, unwritable."""
     value = character_map.to_json()
     CharacterMap.from_json(value, f"character map {shown(character_map.title)}")
     write_readable_json(path, value)
-
-
-def map_digest(character_map: CharacterMap) -> str:
-    """Digest of a map's content, whatever the path and the layout of its file."""
-    return digest(json.dumps(character_map.to_json(), sort_keys=True))

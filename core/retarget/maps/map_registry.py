@@ -1,11 +1,13 @@
 """Whether a character map is for a character: all bones that it names must be there."""
 
+import json
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ...errors import InputError, shown
+from ...files.digest import digest
 from ...files.fields import listed
 from ...files.json_file import ENDING, is_path, json_files
 from ...files.registry import Registered, find_registered, registered_files
@@ -15,7 +17,7 @@ from ...take.character_settings import AUTO, NO_MAP
 from ..character import REQUIRED, Character
 from ..recognition.recognize import recognize
 from ..retarget_record import GIVEN, RECOGNIZED, SAVED
-from .character_map import CharacterMap, map_digest, read_character_map
+from .character_map import CharacterMap, read_character_map
 
 MOST_NAMED = 5  # missing bones that are named in a sentence
 
@@ -43,9 +45,6 @@ def check_map(character_map: CharacterMap, character: Character, where: str = ""
             f"{name} gives no bones for {listed(absent, MOST_NAMED)} of '{character.name}'; "
             f"a character map needs {listed(REQUIRED)}"
         )
-
-
-# --- Registry of character maps
 
 
 def registered_maps(folders: Sequence[Path]) -> tuple[Registered[CharacterMap], ...]:
@@ -93,9 +92,6 @@ def map_path(folder: Path, title: str) -> Path:
     return folder / (identifier_from(title, [path.stem for path in json_files(folder)], "character") + ENDING)
 
 
-# --- Choice of a character's map
-
-
 @dataclass(frozen=True)
 class ChosenMap:
     """A character's map, and where it comes from."""
@@ -112,30 +108,24 @@ def choose_map(character: Character, wanted: str, folders: Sequence[Path]) -> Ch
     `auto` takes a saved one that knows the character's bones, else recognition; `none` recognition alone.
     InputError: there is no such map, it is for another character, or the bones are no character's.
     """
-    if wanted not in (AUTO, NO_MAP):
-        named = find_map(wanted, folders)
-        return _checked(named, character, GIVEN)
-    saved = map_for(character, folders) if wanted == AUTO else None
-    if saved is not None:
-        return _checked(saved, character, SAVED)
-    found = recognize(character)
-    return ChosenMap(found.character_map, RECOGNIZED, doubts=tuple(found.doubts))
+    if wanted in (AUTO, NO_MAP):
+        saved = map_for(character, folders) if wanted == AUTO else None
+    else:
+        saved = find_map(wanted, folders)
+    if saved is None:
+        found = recognize(character)
+        return ChosenMap(found.character_map, RECOGNIZED, doubts=tuple(found.doubts))
+    check_map(saved.valid, character, str(saved.path))
+    return ChosenMap(saved.valid, SAVED if wanted == AUTO else GIVEN, saved.path)
 
 
 def map_digests(wanted: str, folders: Sequence[Path]) -> tuple[str, ...]:
-    """Digests of the maps that `choose_map` may take, for the digest of what it is used for.
-
-    InputError: there is no such map.
-    """
+    """Digests of the maps that `choose_map` may take. InputError: there is no such map."""
     if wanted == NO_MAP:
         return ()
     if wanted != AUTO:
         entries: Sequence[Registered[CharacterMap]] = [find_map(wanted, folders)]
     else:
         entries = registered_maps(folders)
-    return tuple(sorted(map_digest(entry.content) for entry in entries if entry.content))
-
-
-def _checked(entry: Registered[CharacterMap], character: Character, origin: str) -> ChosenMap:
-    check_map(entry.valid, character, str(entry.path))
-    return ChosenMap(entry.valid, origin, entry.path)
+    known = [entry.content.to_json() for entry in entries if entry.content]
+    return tuple(sorted(digest(json.dumps(content, sort_keys=True)) for content in known))

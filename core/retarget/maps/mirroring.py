@@ -6,15 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from ...body.mirror import other_side
-from ..character import LIMBS, ROLES, Character
+from ..character import ROLES, Character
 from ..recognition.bones import anatomy
+from ..recognition.names import read_name
 from ..recognition.symmetry import find_planes, mirrored
 from .character_map import CharacterMap, RoleBones
-
-WORDS = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"), ("L", "R"), ("l", "r"), ("左", "右"))
-"""How names tell the sides."""
-Partner = Callable[[str | None], str | None]
-"""The bone of the other side that mirrors a bone; None where there is none."""
 
 
 def mirrored_map(
@@ -24,33 +20,26 @@ def mirrored_map(
 
     With the map come the roles of the other side for which no bone was found, which stay as they were.
     """
-    given = {
-        role: bones.bones for role, bones in character_map.roles.items() if role.endswith(f".{from_side}")
-    }
-    partner = _partners(character, {name for bones in given.values() for name in bones})
-    roles, fk, ik = dict(character_map.roles), dict(character_map.fk), dict(character_map.ik)
+    given = {role: own for role, own in character_map.roles.items() if role.endswith(f".{from_side}")}
+    partner = _partners(character, {name for own in given.values() for name in own.bones})
+    ik = {limb: own for limb, own in character_map.ik.items() if limb.endswith(from_side)}
+    found = replace(character_map, roles=given, ik=ik, settings=(), root=None).renamed(partner)
+    roles, fk = dict(character_map.roles), dict(character_map.fk)
     missing = []
-    for role in ROLES:
-        if role not in given:
-            continue
-        partners = tuple(name for name in map(partner, given[role]) if name is not None)
-        if len(partners) < len(given[role]):
+    for role in (role for role in ROLES if role in given):
+        own = found.roles.get(role)
+        if own is None or len(own.bones) < len(given[role].bones):
             missing.append(other_side(role))
             continue
-        roles[other_side(role)] = RoleBones(partners, shares=character_map.roles[role].shares)
+        roles[other_side(role)] = RoleBones(own.bones, shares=own.shares)
         fk.pop(other_side(role), None)
-        keyed = character_map.fk.get(role, ())
-        turning = tuple(map(partner, keyed))
-        if keyed and [name is None for name in turning] == [name is None for name in keyed]:
-            fk[other_side(role)] = turning
-    for limb in LIMBS:
-        controls = ik[limb].renamed(partner) if limb in ik and limb.endswith(from_side) else None
-        if controls is not None:
-            ik[other_side(limb)] = controls
-    return replace(character_map, roles=roles, fk=fk, ik=ik), tuple(missing)
+        if role in found.fk:
+            fk[other_side(role)] = found.fk[role]
+    mirrored = {other_side(limb): controls for limb, controls in found.ik.items()}
+    return replace(character_map, roles=roles, fk=fk, ik=dict(character_map.ik) | mirrored), tuple(missing)
 
 
-def _partners(character: Character, used: set[str]) -> Partner:
+def _partners(character: Character, used: set[str]) -> Callable[[str], str | None]:
     """What finds the partner of a bone; none of those used, which are of the side that is mirrored.
 
     One whose name differs in the word for the side alone comes before one that only lies there.
@@ -58,17 +47,19 @@ def _partners(character: Character, used: set[str]) -> Partner:
     bones = anatomy(character, np.arange(len(character.bones)))
     plane = next(find_planes(bones), None)
 
-    def partner(name: str | None) -> str | None:
-        if name is None or name not in character.index:
+    def partner(name: str) -> str | None:
+        if name not in character.index:
             return None
-        named, own = _other_names(name), character.bone(name)
+        read, own = read_name(name), character.bone(name)
         ranks: dict[str, tuple[bool, float]] = {}
         for other in character.bones:
             off = ends = 0.0
             if plane is not None:
                 off = float(np.linalg.norm(other.head - mirrored(own.head, *plane[:2])))
                 ends = float(np.linalg.norm(other.tail - mirrored(own.tail, *plane[:2])))
-            far = other.name not in named
+            its = read_name(other.name)
+            sides = {read.side, its.side} == {"L", "R"}
+            far = not sides or its.unsided.casefold() != read.unsided.casefold()
             # Share of the character's extent by which a mirrored bone may lie off.
             lost = far and (plane is None or off > 0.03 * bones.size)
             if other.name != name and other.name not in used and not lost:
@@ -76,15 +67,3 @@ def _partners(character: Character, used: set[str]) -> Partner:
         return min(ranks, key=lambda other: ranks[other], default=None)
 
     return partner
-
-
-def _other_names(name: str) -> set[str]:
-    """Names that differ from one in a word for a side alone, once."""
-    found = set()
-    for one, other in WORDS:
-        for old, new in ((one, other), (other, one)):
-            start = name.find(old)
-            while start >= 0:
-                found.add(name[:start] + new + name[start + len(old) :])
-                start = name.find(old, start + 1)
-    return found

@@ -1,7 +1,6 @@
 """Presets: character maps of conventions of bone names, found by the bones that they require."""
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -11,10 +10,9 @@ from ...files.json_file import json_files, read_json
 from ...files.kinds import Never
 from ...files.records import declared
 from ..character import Character
-from .character_map import Bones, CharacterMap, RoleBones
+from .character_map import Bones, CharacterMap
 
 SHIPPED = Path(__file__).resolve().parents[3] / "presets" / "characters"  # the presets that come with Keymark
-LARGEST_BYTES = 2**20
 
 _SEPARATORS = re.compile(r"[\s._-]+")
 _PREFIX = re.compile(r"(?:.*[^a-z0-9])?", re.DOTALL)
@@ -45,7 +43,7 @@ class Preset:
 
 def read_preset(path: Path) -> Preset:
     """Read a preset. InputError: the file is missing, no preset, or invalid."""
-    return preset_from_json(read_json(path, LARGEST_BYTES), str(path), path.stem)
+    return preset_from_json(read_json(path, 2**20), str(path), path.stem)
 
 
 def preset_from_json(value: Any, where: str, identifier: str) -> Preset:
@@ -72,55 +70,24 @@ def find_preset(character: Character, presets: tuple[Preset, ...] | None = None)
     Of several (by default the shipped ones) the one that requires most bones; what the character lacks is
     left out.
     """
-    found: list[tuple[int, int, CharacterMap]] = []
-    for preset in shipped_presets() if presets is None else presets:
-        fitted = _fitted(preset, character)
-        if fitted is not None:
-            found.append((len(preset.requires), len(fitted.named_bones), fitted))
-    return max(found, key=lambda each: each[:2])[2] if found else None
-
-
-def _fitted(preset: Preset, character: Character) -> CharacterMap | None:
-    """The preset's map with the character's names; None where a required bone is missing."""
     names: dict[str, str] = {}
     for bone in character.bones:  # of several names with one key the first
         names.setdefault(_key(bone.name), bone.name)
-    first = _key(preset.requires[0])
-    prefixes = [key[: -len(first)] for key in names if key.endswith(first)]
-    for prefix in sorted(filter(_PREFIX.fullmatch, prefixes), key=len):
-        keys = (prefix + _key(name) for name in preset.requires)
-        lacking = (prefix + _key(name) for name in preset.lacks)
-        if all(key in names for key in keys) and not any(key in names for key in lacking):
-            return _renamed(preset.character_map, lambda name, prefix=prefix: names.get(prefix + _key(name)))  # type: ignore[misc]
-    return None
+    found: list[tuple[int, int, CharacterMap]] = []
+    for preset in shipped_presets() if presets is None else presets:
+        first = _key(preset.requires[0])
+        prefixes = [key[: -len(first)] for key in names if key.endswith(first)]
+        for prefix in sorted(filter(_PREFIX.fullmatch, prefixes), key=len):
+            own = {name: names.get(prefix + _key(name)) for name in (*preset.requires, *preset.lacks)}
+            if all(own[name] for name in preset.requires) and not any(own[name] for name in preset.lacks):
+                known = preset.character_map
+                fitted = known.renamed(lambda name, prefix=prefix: names.get(prefix + _key(name)))  # type: ignore[misc]
+                found.append((len(preset.requires), len(fitted.named_bones), fitted))
+                break
+    return max(found, key=lambda each: each[:2])[2] if found else None
 
 
 @lru_cache(maxsize=4096)
 def _key(name: str) -> str:
     """Equal for names that exporters turn into each other: by case and separators."""
     return _SEPARATORS.sub("_", name.casefold())
-
-
-def _renamed(character_map: CharacterMap, name_of: Callable[[str], str | None]) -> CharacterMap:
-    roles: dict[str, RoleBones] = {}
-    for role, given in character_map.roles.items():
-        bones = tuple(name for bone in given.bones if (name := name_of(bone)) is not None)
-        if bones:
-            whole = len(bones) == len(given.bones)
-            roles[role] = replace(given, bones=bones, shares=given.shares if whole else ())
-    fk: dict[str, tuple[str | None, ...]] = {}
-    for role, keyed in character_map.fk.items():
-        controls = tuple(None if name is None else name_of(name) for name in keyed)
-        same = [name is None for name in controls] == [name is None for name in keyed]
-        if same and role in roles and len(controls) == len(roles[role].bones):
-            fk[role] = controls
-    ik = {
-        limb: other for limb, own in character_map.ik.items() if (other := own.renamed(name_of)) is not None
-    }
-    settings = tuple(
-        replace(setting, bone=bone)
-        for setting in character_map.settings
-        if (bone := name_of(setting.bone)) is not None
-    )
-    root = None if character_map.root is None else name_of(character_map.root)
-    return replace(character_map, roles=roles, fk=fk, ik=ik, settings=settings, root=root)

@@ -10,8 +10,7 @@ from ...arrays import Array, BoolArray, IndexArray
 from ..character import Character
 from .names import NameReading, read_name
 
-SAME_PLACE, NEAR_PLACE = 0.003, 0.03
-"""Points closer than this share of the figure's size are one; and are meant to be one."""
+SAME_PLACE, NEAR_PLACE = 0.003, 0.03  # shares of the size within which points are one, and are meant to be
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,25 +74,22 @@ def anatomy(character: Character, number: IndexArray) -> Bones:
     heads, tails = (np.array([getattr(bone, end) for bone in character.bones]) for end in ("head", "tail"))
     size = float(np.max(np.ptp(heads[number], axis=0)))
     head = heads[number]
-    tail = tails[number] if _tails_tell(character, size) else np.full(head.shape, np.nan)
+    tail = tails[number] if character.tails_are_meant else np.full(head.shape, np.nan)
     readings = [read_name(character.bones[index].name) for index in number]
-    parent = _nearest_parents(character, number, heads, tails, size)
-    parent, order = _ordered(_joined(head, tail, parent, readings, size))
+    parent = _joined(head, tail, _nearest_parents(character, number, heads, tails, size), readings, size)
+    depth = np.zeros(len(parent), dtype=np.intp)
+    for bone in range(len(parent)):
+        above, seen = int(parent[bone]), {bone}
+        while above >= 0 and above not in seen:
+            seen.add(above)
+            above = int(parent[above])
+        if above == bone:  # a circle is opened
+            parent[bone] = -1
+        depth[bone] = len(seen)
+    order = np.argsort(depth, kind="stable")
     place = np.append(np.argsort(order), -1)
     names = tuple(character.bones[index].name for index in number[order])
     return Bones(names, head[order], tail[order], place[parent[order]], size)
-
-
-def _tails_tell(character: Character, size: float) -> bool:
-    """Whether tails lie where the next bone begins, as they do not after many imports."""
-    met = [
-        min(np.linalg.norm(character.bones[child].head - bone.tail) for child in children)
-        < 2 * SAME_PLACE * size
-        for bone, children in zip(character.bones, character.children, strict=True)
-        if children
-    ]
-    # Least share of bones whose tail meets a child's head where tails say something.
-    return bool(met and sum(met) >= 0.5 * len(met))
 
 
 def _nearest_parents(
@@ -201,18 +197,3 @@ def _below(parent: IndexArray, bone: int) -> BoolArray:
         if np.array_equal(grown, own):
             return own
         own = grown
-
-
-def _ordered(parent: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """The parents, with circles opened, and (N,) an order with parents before children."""
-    parent = parent.copy()
-    depth = np.zeros(len(parent), dtype=np.intp)
-    for bone in range(len(parent)):
-        above, seen = int(parent[bone]), {bone}
-        while above >= 0 and above not in seen:
-            seen.add(above)
-            above = int(parent[above])
-        if above == bone:
-            parent[bone] = -1
-        depth[bone] = len(seen)
-    return parent, np.argsort(depth, kind="stable")

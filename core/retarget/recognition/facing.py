@@ -10,9 +10,6 @@ from ..maps.character_map import CharacterMap
 from .figure import Figure
 from .names import read_name
 
-NAMES_WEIGHT, FEET_WEIGHT, KNEES_WEIGHT, ELBOWS_WEIGHT = 3.0, 2.5, 1.0, 0.8
-"""Feet alone do not outvote names; feet, knees and elbows together do."""
-
 
 @dataclass(frozen=True)
 class Facing:
@@ -33,18 +30,19 @@ def find_facing(figure: Figure) -> Facing:
     leg = max(float(np.linalg.norm(knee - hip) + np.linalg.norm(ankle - knee)), 1e-9)
     toes = frame.branch[limbs["foot"]] - ankle  # what hangs on an ankle lies mostly ahead of it
     far = float(toes[np.abs(toes[:, 1]).argmax(), 1]) / leg
-    shape = FEET_WEIGHT * float(np.clip(far / 0.1, -1.0, 1.0))
-    shape += KNEES_WEIGHT * float(np.clip(_bulge(hip, knee, ankle) / 0.03, -1.0, 1.0))
+    # Feet alone do not outvote names; feet, knees and elbows together do.
+    shape = 2.5 * float(np.clip(far / 0.1, -1.0, 1.0))
+    shape += 1.0 * float(np.clip(_bulge(hip, knee, ankle) / 0.03, -1.0, 1.0))
     if "hand" in limbs:
         wrist = frame.place[limbs["hand"]]
-        shape -= ELBOWS_WEIGHT * float(np.clip(_bulge(shoulder, elbow, wrist) / 0.04, -1.0, 1.0))
+        shape -= 0.8 * float(np.clip(_bulge(shoulder, elbow, wrist) / 0.04, -1.0, 1.0))
     sides = [
         sign if frame.bones.readings[bone].side == "L" else -sign
         for own in limbs.values()
         for bone, sign in ((own, 1.0), (int(frame.partner[own]), -1.0))
         if frame.bones.readings[bone].side is not None
     ]
-    names = NAMES_WEIGHT * float(np.mean(sides)) if sides else 0.0
+    names = 3.0 * float(np.mean(sides)) if sides else 0.0
     ahead = 1.0 if shape + names >= 0.0 else -1.0
     confidence = float(1.0 / (1.0 + np.exp(-1.3 * abs(shape + names))))
     return Facing(ahead, confidence, ahead * names, ahead * shape)
@@ -56,9 +54,6 @@ def _bulge(first: Array, middle: Array, last: Array) -> float:
     reach = max(float(line @ line), 1e-12)
     off = middle - first - line * float(np.clip((middle - first) @ line / reach, 0.0, 1.0))
     return float(off[1]) / float(np.sqrt(reach))
-
-
-# --- The bone that carries the whole character
 
 
 ROOT_WORDS = frozenset({"root", "master", "traj", "origin", "reference", "全ての親", "world", "motion"})

@@ -13,14 +13,8 @@ from ..character import ARM, LEG, MIDDLE
 from .names import CLEAR
 from .symmetry import Frame
 
-NAMES_WEIGHT = 1.3  # names are trusted so much more than a measure of place
-SHORTEST_LIMB, SHORT_LEG = 0.08, 0.4
-"""Shortest limb; shortest leg whose foot is taken to be smaller with it: in sizes."""
-MANY, FEW = 150, 40
-"""Best limbs of a kind that are looked at closely, and that are weighed against those of the other kind."""
-NO_END, NO_PART, NO_HEAD = -3.0, -4.0, -5.0
-"""Scores of an arm without a hand, a limb without toe or shoulder though bones are there, and no head."""
-SAME_JOINT = 0.02  # A bone this near to its parent, in heights of the trunk, begins where that does
+SHORT_LEG = 0.4  # shortest leg whose foot is taken to be smaller with it, in sizes
+NO_HEAD = -5.0  # score of a figure without a head
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,8 +22,7 @@ class Figure:
     """Bones of one side and of the middle."""
 
     frame: Frame
-    limbs: Mapping[str, int]
-    """By part of `roles.ARM` and `LEG`, of the side that is `frame.one_side`; some may be missing."""
+    limbs: Mapping[str, int]  # by part of an arm and a leg, of `frame.one_side`; some may be missing
     middle: Mapping[str, tuple[int, ...]]  # by part of `roles.MIDDLE`, from the hips upward
     fit: float  # what the places alone add up to
     score: float
@@ -40,8 +33,7 @@ class Figure:
 class _Chains:
     """C chains of three bones on one side, each above the next, which may be a leg or an arm."""
 
-    bones: IndexArray
-    """(C, 3) upper, middle and end bone; the end is -1 where the middle is a limb's last bone."""
+    bones: IndexArray  # (C, 3) upper, middle and end bone; the end -1 after a limb's last bone
     attached: IndexArray  # (C,) bone of the middle on which each hangs; -1 for none
 
 
@@ -90,7 +82,7 @@ def _find_chains(frame: Frame) -> _Chains:
     table = np.array(found, dtype=np.intp).reshape(-1, 4)
     ends = np.where(table[:, 2] >= 0, table[:, 2], table[:, 1])
     length = _length(place[table[:, 1]] - place[table[:, 0]]) + _length(place[ends] - place[table[:, 1]])
-    table = table[length > SHORTEST_LIMB]
+    table = table[length > 0.08]
     return _Chains(table[:, :3], table[:, 3])
 
 
@@ -115,7 +107,7 @@ def _figure(frame: Frame, chains: _Chains) -> Figure | None:
     limbs |= {"hand": hand} if hand >= 0 else {}
     for part, options in (("toe", _toes(frame, foot, thigh)), ("shoulder", _shoulders(frame, upper_arm))):
         bone = max(options, key=lambda bone: options[bone], default=-1)
-        if bone >= 0 and options[bone] > NO_PART:
+        if bone >= 0 and options[bone] > -4.0:
             limbs[part] = bone
     hip, shoulder = (frame.place[bone] * [0.0, 1.0, 1.0] for bone in (thigh, upper_arm))
     middle, trunk_fit = _trunk(frame, hip, shoulder, int(arms.attached[arm]), fork)
@@ -134,7 +126,8 @@ def _figure(frame: Frame, chains: _Chains) -> Figure | None:
 def _names(frame: Frame, part: str) -> Array:
     """(N,) what the names say of a part, both sides' names taken together."""
     own = np.array([reading.scores[part] for reading in frame.bones.readings])
-    return np.asarray(NAMES_WEIGHT * 0.5 * (own + np.where(frame.partner >= 0, own[frame.partner], own)))
+    # Names are trusted so much more than a measure of place.
+    return np.asarray(1.3 * 0.5 * (own + np.where(frame.partner >= 0, own[frame.partner], own)))
 
 
 def _names_of(frame: Frame, chains: _Chains, parts: tuple[str, ...]) -> Array:
@@ -147,12 +140,13 @@ def _names_of(frame: Frame, chains: _Chains, parts: tuple[str, ...]) -> Array:
 def _best_limbs(frame: Frame, chains: _Chains, fits: Array, parts: tuple[str, ...]) -> tuple[_Chains, Array]:
     """The chains that fit a kind of limb best by place and name, and how their places fit."""
     names = _names_of(frame, chains, parts)
-    many = np.argsort(-(fits + names), kind="stable")[:MANY]
+    # The best are looked at closely, and the best of those weighed against limbs of the other kind.
+    many = np.argsort(-(fits + names), kind="stable")[:150]
     many = many[np.isfinite(fits[many])]
-    ends = _foot_fit if parts == LEG[:3] else _hand_fit
-    closer = [_line_fit(frame, bones) + ends(frame, bones) for bones in chains.bones[many]]
+    is_leg = parts == LEG[:3]
+    closer = [_line_fit(frame, bones) + _end_fit(frame, bones, is_leg) for bones in chains.bones[many]]
     fits, names = fits[many] + np.array(closer), names[many]
-    few = np.argsort(-(fits + names), kind="stable")[:FEW]
+    few = np.argsort(-(fits + names), kind="stable")[:40]
     return _Chains(chains.bones[many[few]], chains.attached[many[few]]), fits[few]
 
 
@@ -182,18 +176,14 @@ def _arm_fits(frame: Frame, chains: _Chains) -> Array:
     fits += near(np.minimum(_length(wrist - shoulder) / length, 0.85), 0.85, 0.15, 8.0)
     fits += near(np.maximum((wrist[:, 2] - shoulder[:, 2]) / length, 0.2), 0.2, 0.3, 8.0)
     fits += near(shoulder[:, 0] / length, 0.33, 0.13, 4.0)
-    return fits + np.where(has_hand[:, 0], 0.0, NO_END) + np.where(chains.attached >= 0, 0.0, -2.0)
+    return fits + np.where(has_hand[:, 0], 0.0, -3.0) + np.where(chains.attached >= 0, 0.0, -2.0)
 
 
 def _line_fit(frame: Frame, chain: IndexArray) -> float:
     """How little the bones that are left out bend the limb, and that it is no strand of several alike."""
     bones, place = frame.bones, frame.place
+    part = [reading.clear_part for reading in bones.readings]
     found = 0.0
-
-    def same_part(one: int, other: int) -> bool:
-        part = bones.readings[one].clear_part
-        return part is not None and bones.readings[other].clear_part == part
-
     for top, low in zip(chain[:2], chain[1:], strict=True):
         line = place[low] - place[top]
         between = int(bones.parent[low]) if low >= 0 else int(top)
@@ -201,12 +191,12 @@ def _line_fit(frame: Frame, chain: IndexArray) -> float:
             off = place[between] - place[top]
             off = off - line * float(np.clip(off @ line / max(float(line @ line), 1e-9), 0.0, 1.0))
             found -= 0.3 + min(20.0 * float(_length(off)) / max(float(_length(line)), 1e-5), 3.0)
-            found -= 2.0 * same_part(low, between)
+            found -= 2.0 * (part[low] is not None and part[low] == part[between])
             between = int(bones.parent[between])
     top = int(chain[0])
     above = int(bones.parent[top])
     if above >= 0 and frame.one_side[above]:
-        found -= 2.0 * same_part(top, above)
+        found -= 2.0 * (part[top] is not None and part[top] == part[above])
         lower = place[above, 2] > place[top, 2] and place[low, 2] < place[top, 2]
         found -= 2.0 if lower and place[above, 0] > 0.6 * place[top, 0] else 0.0
     while bones.parent[top] >= 0 and frame.one_side[bones.parent[top]]:
@@ -222,21 +212,20 @@ def _line_fit(frame: Frame, chain: IndexArray) -> float:
     return found - 1.2 * min(len(alike), 2)
 
 
-def _foot_fit(frame: Frame, chain: IndexArray) -> float:
-    """Whether what hangs on an ankle lies ahead of it, as a foot does, and not far below."""
-    points = frame.branch[chain[2]] - frame.place[chain[2]]
-    unit = max(_length(np.diff(frame.place[chain], axis=0)).sum(), SHORT_LEG)
-    ahead, below = np.abs(points[:, 1]).max() / unit, max(-points[:, 2].min() / unit, 0.2)
-    return -1.0 if len(points) < 2 else float(near(ahead, 0.25, 0.13, 2.0) + near(below, 0.2, 0.08, 5.0))
+def _end_fit(frame: Frame, chain: IndexArray, is_leg: bool) -> float:
+    """How well what begins at a limb's end is a foot ahead and not far below, or a hand with fingers.
 
-
-def _hand_fit(frame: Frame, chain: IndexArray) -> float:
-    """Whether fingers fan out where a hand begins, and nowhere before."""
+    Fingers fan out where a hand begins, and nowhere before.
+    """
     bones, (_, middle, end) = frame.bones, (int(bone) for bone in chain)
     if end < 0:
         return 0.0
-    reach = min(_reach(frame, end), _reach(frame, int(frame.partner[end])))  # one hand may hold something
     length = _length(np.diff(frame.place[chain], axis=0)).sum()
+    if is_leg:
+        points, unit = frame.branch[end] - frame.place[end], max(length, SHORT_LEG)
+        ahead, below = np.abs(points[:, 1]).max() / unit, max(-points[:, 2].min() / unit, 0.2)
+        return -1.0 if len(points) < 2 else float(near(ahead, 0.25, 0.13, 2.0) + near(below, 0.2, 0.08, 5.0))
+    reach = min(_reach(frame, end), _reach(frame, int(frame.partner[end])))  # one hand may hold something
     found = float(near(reach / length, 0.33, 0.2, 4.0)) if reach > 1e-6 else 0.0
     found += 0.8 * min(sum(not bones.children[each] for each in bones.subtree[end]) - 1, 2)
     rivals = [
@@ -312,7 +301,8 @@ def _trunk(
     path = [*reversed(bones.ancestors(arms_on)), arms_on]
     off = _length(place - hip) / height
     over = (place[:, 2] - shoulder[2]) / height
-    off_parent = _length(place - place[bones.parent])
+    # A bone this near to its parent begins where that does.
+    on_parent = _length(place - place[bones.parent]) < 0.02 * height
     rank = {bone: number - path.index(fork) for number, bone in enumerate(path)}
     late = {bone: -4.0 * (rank[bone] > 0) - 6.0 * (rank[bone] < 0) for bone in path}
     hips_fits = {
@@ -328,12 +318,12 @@ def _trunk(
             near(over[bone], 0.35, 0.2, 5.0) + near((place[bone, 1] - shoulder[1]) / height, 0.0, 0.25, 4.0)
         )
         fit += 0.8 * min(sum(frame.one_side[child] for child in bones.children[bone]), 2)
-        inner = [child for child in bones.children[bone] if off_parent[child] > SAME_JOINT * height]
+        inner = [child for child in bones.children[bone] if not on_parent[child]]
         onward = (
             len(bones.children[bone]) == 1 == len(inner) and frame.middle[inner[0]] and over[inner[0]] < 0.55
         )
         line = [bone, *(each for each in bones.ancestors(bone) if each in options)]
-        fit -= 4.0 * sum(bool(off_parent[each] < SAME_JOINT * height) for each in line) + 1.5 * onward
+        fit -= 4.0 * int(on_parent[line].sum()) + 1.5 * onward
         options[bone] = fit + float(names["head"][bone])
     head = max(options | {-1: NO_HEAD}, key=lambda bone: options.get(bone, NO_HEAD))
     neck: list[int] = []

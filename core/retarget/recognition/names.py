@@ -113,8 +113,7 @@ OTHER_WORDS = frozenset(
 )
 """Words of fingers, faces, clothes, things held, corrections and ends of chains."""
 
-LIMB_HELPERS = frozenset({"twist", "roll"})
-"""Of `OTHER_WORDS` those that in a trunk are mere description, as in NeckTwist01."""
+LIMB_HELPERS = frozenset({"twist", "roll"})  # mere description in a trunk, as in NeckTwist01
 
 FILLER_WORDS = frozenset(
     """bone jnt joint def org bip bip001 cc base mixamorig j b c x sk bn bind skin deform skeleton armature
@@ -124,13 +123,9 @@ FILLER_WORDS = frozenset(
 """Words that say nothing of the part."""
 
 
-# --- Names of bones read as tokens
-
-
 OTHER_PART = -2.0  # score of a part where the name speaks for another
 NO_PART = -4.0  # score of every part where the name speaks for something that plays no role
 CLEAR = 1.0  # score from which a name speaks for a part
-UNKNOWN = 3  # as many words as this a letter counts that is no word
 LONGEST_NAME = 120  # characters of a name that are read; Blender's own names hold 63 bytes
 
 _NAMESPACE = re.compile(r"^.*[:|]")
@@ -168,7 +163,10 @@ class NameReading:
 @lru_cache(maxsize=4096)
 def read_name(name: str) -> NameReading:
     """Read a bone's name."""
-    words = _words(name)
+    text = _NAMESPACE.sub("", unicodedata.normalize("NFKC", name[:LONGEST_NAME])) or name[:LONGEST_NAME]
+    words = tuple(word for piece in _PIECES.findall(text) for word in _taken_apart(piece.casefold()))
+    borders = _BORDERS.split(name[:LONGEST_NAME])
+    unsided = "".join("*" if part and part.casefold() in SIDE_WORDS else part for part in borders if part)
     sides = {SIDE_WORDS[word] for word in words if word in SIDE_WORDS}
     side = sides.pop() if len(sides) == 1 else None
     meaning = tuple(word for word in words if word not in SIDE_WORDS)
@@ -185,27 +183,17 @@ def read_name(name: str) -> NameReading:
         trunk = dict.fromkeys(MIDDLE, NO_PART)
     if mechanism or other:
         limb = dict.fromkeys(limb, NO_PART)
-    return NameReading(words, side, {**trunk, **limb}, mechanism, other, _unsided(name))
-
-
-def _words(name: str) -> tuple[str, ...]:
-    text = _NAMESPACE.sub("", unicodedata.normalize("NFKC", name[:LONGEST_NAME])) or name[:LONGEST_NAME]
-    found: list[str] = []
-    for piece in _PIECES.findall(text):
-        found += _taken_apart(piece.casefold())
-    return tuple(found)
+    return NameReading(words, side, {**trunk, **limb}, mechanism, other, unsided)
 
 
 def _taken_apart(piece: str) -> list[str]:
-    """A piece as words of the vocabulary, the fewest; itself where that does not work.
-
-    In scripts without spaces what is no word is left out.
-    """
+    """A piece as the fewest words of the vocabulary; itself where that does not work."""
     if piece in _VOCABULARY:
         return [piece]
     best: list[tuple[int, list[str]] | None] = [(0, [])]
     for end in range(1, len(piece) + 1):
-        ways = [] if _LATIN.fullmatch(piece) or best[-1] is None else [(best[-1][0] + UNKNOWN, best[-1][1])]
+        # A letter that is no word counts as three words.
+        ways = [] if _LATIN.fullmatch(piece) or best[-1] is None else [(best[-1][0] + 3, best[-1][1])]
         for start in range(max(0, end - _LONGEST_WORD), end):
             before, word = best[start], piece[start:end]
             at_end = start == 0 or end == len(piece)  # only there single letters are words: those of sides
@@ -232,9 +220,3 @@ def _part_scores(
     if not best:
         return dict.fromkeys(parts, 0.0)
     return {part: best.get(part, OTHER_PART) for part in parts}
-
-
-def _unsided(name: str) -> str:
-    """The name with the words and letters of sides replaced by one sign."""
-    pieces = _BORDERS.split(name[:LONGEST_NAME])
-    return "".join("*" if piece and piece.casefold() in SIDE_WORDS else piece for piece in pieces if piece)

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...arrays import Array
 from ...body.human import HUMAN
 from ...body.mirror import other_side
 from ...errors import InputError, shown
@@ -23,11 +22,7 @@ from .symmetry import Frame, find_frames
 AGREED, NAMED, UNSEEN, PLACED, AGAINST = 0.99, 0.95, 0.9, 0.7, 0.6
 """Confidence of a role: of a preset and confirmed by its place, of a name, of a preset alone, of a place, and
 where something speaks against it."""
-SAME_JOINT = 0.03  # heads this near to each other, in sizes, are one joint
-LEAST_UPRIGHT, LEAST_LEG_DOWN = 0.6, 0.7  # least cosine between the trunk and up, and between a leg and down
-HANDS_ABOVE = 0.1  # hands are at least so many lengths of a leg above the ankles
-LEAST_FIT, LEAST_FIT_NAMED = -12.0, -26.0
-"""Least fit of a figure's places, and where names speak for its arms and legs."""
+LEAST_UPRIGHT, HANDS_ABOVE = 0.6, 0.1  # cosine of trunk and up; hands over ankles, in lengths of a leg
 LIMB_WORDS = {"upper_arm": "arm", "forearm": "forearm", "thigh": "leg", "shin": "shin", "foot": "foot"}
 """Parts of limbs that a character must have, in words."""
 VALID = "a character stands on two legs and has two arms"
@@ -37,8 +32,7 @@ VALID = "a character stands on two legs and has two arms"
 class Recognition:
     """Roles found for a character's bones."""
 
-    character_map: CharacterMap
-    """Roles with confidence and source; of a preset also its controls and settings."""
+    character_map: CharacterMap  # of a preset also its controls and settings
     doubts: tuple[str, ...] = ()  # what a person should look at, in sentences without a full stop
 
 
@@ -60,9 +54,16 @@ def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -
             character_map = CharacterMap(character.name, roles)
             doubts += _place_doubts(figure, roles)
         else:
-            character_map, against = _merged(
-                character, _swapped(preset) if facing.by_names < 0.0 else preset, roles, figure
-            )
+            if facing.by_names < 0.0:  # its sides are the other way round
+                preset = replace(
+                    preset,
+                    roles={
+                        one: preset.roles[other_side(one)] for one in ROLES if other_side(one) in preset.roles
+                    },
+                    fk={other_side(role): bones for role, bones in preset.fk.items()},
+                    ik={other_side(limb): controls for limb, controls in preset.ik.items()},
+                )
+            character_map, against = _merged(character, preset, roles, figure)
             doubts += against
     elif preset is not None and _stands_upright(character, preset):
         unseen = {role: replace(bones, confidence=UNSEEN) for role, bones in preset.roles.items()}
@@ -104,62 +105,45 @@ def _best_figure(character: Character) -> tuple[Figure | None, Frame | None, str
 
 
 def _roles_of(figure: Figure, facing: Facing) -> dict[str, RoleBones]:
-    bones = figure.frame.bones
-
-    def role_bones(part: str, those: tuple[int, ...], share: float = 1.0) -> RoleBones:
+    frame, bones = figure.frame, figure.frame.bones
+    sides = ("L", "R") if facing.ahead > 0 else ("R", "L")
+    chosen = [(part, part, those, 1.0) for part, those in figure.middle.items() if those]
+    for part in (part for part in (*ARM, *LEG) if part in figure.limbs):
+        pair = figure.limbs[part], int(frame.partner[figure.limbs[part]])
+        for side, own in zip(sides, pair, strict=True):
+            chosen.append((f"{part}.{side}", part, (own,), facing.confidence))
+        if part == "forearm" and "hand" not in figure.limbs:
+            # A hand whose counterpart lacks is as far from the elbow as the shoulder, about.
+            reach = float(np.linalg.norm(frame.place[pair[0]] - frame.place[figure.limbs["upper_arm"]]))
+            for side, elbow in zip(sides, pair, strict=True):
+                for bone in bones.children[elbow]:
+                    way = float(np.linalg.norm(bones.head[bone] - bones.head[elbow])) / bones.size
+                    alone = frame.partner[bone] < 0 and not bones.readings[bone].other
+                    if alone and 0.5 * reach < way < 1.7 * reach:
+                        chosen.append((f"hand.{side}", "hand", (bone,), facing.confidence))
+                        break
+    found: dict[str, RoleBones] = {}
+    for role, part, those, share in chosen:
         named = all(bones.readings[bone].scores[part] >= CLEAR for bone in those)
         names = tuple(bones.names[bone] for bone in those)
-        return RoleBones(names, (NAMED if named else PLACED) * share, "names" if named else "shape")
-
-    found = {part: role_bones(part, those) for part, those in figure.middle.items() if those}
-    partner = figure.frame.partner
-
-    def both(part: str) -> tuple[tuple[str, int], tuple[str, int]]:
-        bone = figure.limbs[part]
-        one, other = ("L", "R") if facing.ahead > 0 else ("R", "L")
-        return (one, bone), (other, int(partner[bone]))
-
-    for part in (*ARM, *LEG):
-        if part in figure.limbs:
-            for side, bone in both(part):
-                found[f"{part}.{side}"] = role_bones(part, (bone,), facing.confidence)
-    if "hand" not in figure.limbs:
-        for side, forearm in both("forearm"):
-            hand = _lone_hand(figure, forearm)
-            if hand is not None:
-                found[f"hand.{side}"] = role_bones("hand", (hand,), facing.confidence)
+        found[role] = RoleBones(names, (NAMED if named else PLACED) * share, "names" if named else "shape")
     return found
 
 
-def _lone_hand(figure: Figure, forearm: int) -> int | None:
-    """The hand on a forearm whose counterpart has none: as far from the elbow as the shoulder, about."""
-    frame = figure.frame
-    elbow, shoulder = (frame.place[figure.limbs[part]] for part in ("forearm", "upper_arm"))
-    length = float(np.linalg.norm(elbow - shoulder)) * frame.bones.size
-    for bone in frame.bones.children[forearm]:
-        way = float(np.linalg.norm(frame.bones.head[bone] - frame.bones.head[forearm]))
-        alone = frame.partner[bone] < 0 and not frame.bones.readings[bone].other
-        if alone and 0.5 * length < way < 1.7 * length:
-            return bone
-    return None
-
-
 def _side_doubts(facing: Facing) -> list[str]:
-    against = facing.by_names * facing.by_shape < 0.0 and abs(facing.by_shape) > 1.0
-    if against and facing.by_names < 0.0:
-        return [
-            "left and right are taken from the shape, against the names of the bones: feet and knees point "
-            "the other way"
-        ]
-    if against:
+    if facing.by_names * facing.by_shape < 0.0 and abs(facing.by_shape) > 1.0:
+        if facing.by_names < 0.0:
+            return [
+                "left and right are taken from the shape, against the names of the bones: feet and knees "
+                "point the other way"
+            ]
         return ["left and right are taken from the names of the bones, although the feet point the other way"]
-    # Confidence from which left and right are not doubted.
-    if facing.confidence < 0.9:
-        return [
-            "left and right may be swapped for all roles of a side: names, feet, knees and elbows hardly "
-            "tell where the character faces"
-        ]
-    return []
+    if facing.confidence >= 0.9:
+        return []
+    return [
+        "left and right may be swapped for all roles of a side: names, feet, knees and elbows hardly tell "
+        "where the character faces"
+    ]
 
 
 def _place_doubts(figure: Figure, roles: Mapping[str, RoleBones]) -> list[str]:
@@ -188,13 +172,16 @@ def _merged(
     character: Character, preset: CharacterMap, roles: Mapping[str, RoleBones], figure: Figure
 ) -> tuple[CharacterMap, list[str]]:
     """The preset's map with its roles held against the figure's, and what is doubtful about them."""
-    kept = dict(preset.roles)
-    if _neck_carries_arms(character, preset):  # the trunk as names and shape say
+    kept, arm = dict(preset.roles), preset.bone("upper_arm.L")
+    start = None if arm is None else character.index[arm]
+    above = [] if start is None else [start, *character.ancestors(start)]
+    carrying = {character.bones[bone].name for bone in above}.intersection(preset.bones("neck"))
+    if any("neck" not in name.casefold() for name in carrying):
+        # What carries an arm and is no neck by name: the trunk is as names and shape say.
         trunk = (*TRUNK_CHAINS, "head")
         kept = {role: bones for role, bones in kept.items() if role not in trunk}
         kept |= {role: roles[role] for role in trunk if role in roles}
     taken = {bone for bones in kept.values() for bone in bones.bones}
-    near = SAME_JOINT * figure.frame.bones.size
     merged: dict[str, RoleBones] = {}
     found: list[str] = []
     for role in ROLES:
@@ -202,12 +189,15 @@ def _merged(
         if given is None:
             if seen is not None and taken.isdisjoint(seen.bones):
                 merged[role] = seen
-        elif seen is None or role in CHAINS:
+            continue
+        if seen is None or role in CHAINS:
             merged[role] = replace(given, confidence=UNSEEN if seen is None else AGREED)
-        elif np.linalg.norm(_head(character, given) - _head(character, seen)) < near:
-            merged[role] = replace(given, confidence=AGREED)
-        else:
-            merged[role] = replace(given, confidence=AGAINST)
+            continue
+        apart = character.bone(given.bones[0]).head - character.bone(seen.bones[0]).head
+        # Heads this near to each other, in sizes, are one joint.
+        agreed = np.linalg.norm(apart) < 0.03 * figure.frame.bones.size
+        merged[role] = replace(given, confidence=AGREED if agreed else AGAINST)
+        if not agreed:
             found.append(
                 f"{role} is doubtful: {shown(given.bones[0])} was chosen by the names of "
                 f"{preset.title}, and by its place {shown(seen.bones[0])} fits better"
@@ -215,42 +205,18 @@ def _merged(
     return replace(preset, roles=merged), found
 
 
-def _head(character: Character, role: RoleBones) -> Array:
-    return character.bone(role.bones[0]).head
-
-
-def _neck_carries_arms(character: Character, character_map: CharacterMap) -> bool:
-    """Whether a bone of the neck carries an upper arm although its name does not say neck."""
-    arm = character_map.bone("upper_arm.L")
-    start = None if arm is None else character.index[arm]
-    above = [] if start is None else [start, *character.ancestors(start)]
-    names = {character.bones[bone].name for bone in above}
-    return any("neck" not in name.casefold() for name in names.intersection(character_map.bones("neck")))
-
-
-def _swapped(character_map: CharacterMap) -> CharacterMap:
-    given = character_map.roles
-    return replace(
-        character_map,
-        roles={role: given[other_side(role)] for role in ROLES if other_side(role) in given},
-        fk={other_side(role): bones for role, bones in character_map.fk.items()},
-        ik={other_side(limb): controls for limb, controls in character_map.ik.items()},
-    )
-
-
 def _stands_upright(character: Character, character_map: CharacterMap) -> bool:
     """Whether a map has all roles that a character must have, on a body that stands upright on its legs."""
     if any(role not in character_map.roles for role in REQUIRED):
         return False
     shoulder, hip, ankle, hand = (
-        np.mean([_head(character, character_map.roles[f"{part}.{side}"]) for side in "LR"], axis=0)
+        np.mean([character.bone(str(character_map.bone(f"{part}.{side}"))).head for side in "LR"], axis=0)
         for part in ("upper_arm", "thigh", "foot", "hand" if "hand.L" in character_map.roles else "forearm")
     )
     leg, trunk = hip - ankle, shoulder - hip
     lengths = float(np.linalg.norm(leg)), float(np.linalg.norm(trunk))
-    if not min(lengths) > 0.0 or float(leg @ trunk) < LEAST_UPRIGHT * lengths[0] * lengths[1]:
-        return False
-    return float((hand - ankle) @ leg) > HANDS_ABOVE * lengths[0] ** 2
+    upright = min(lengths) > 0.0 and float(leg @ trunk) >= LEAST_UPRIGHT * lengths[0] * lengths[1]
+    return upright and float((hand - ankle) @ leg) > HANDS_ABOVE * lengths[0] ** 2
 
 
 def _check_character(character: Character) -> None:
@@ -265,10 +231,9 @@ def _check_character(character: Character) -> None:
     if not np.isfinite(character.scale) or character.scale <= 0.0:
         raise InputError(f"{name}: its scale is {character.scale:g}; it must be one positive number")
     for bone in character.bones:
-        if not np.isfinite(bone.rest).all() or not np.isfinite(bone.tail).all():
-            raise InputError(
-                f"{name}: bone {shown(bone.name)} has a place that is no number; all must be finite"
-            )
+        if not (np.isfinite(bone.rest).all() and np.isfinite(bone.tail).all()):
+            placeless = f"{name}: bone {shown(bone.name)} has a place that is no number"
+            raise InputError(f"{placeless}; all must be finite")
     extent = float(np.max(np.ptp([bone.head for bone in character.bones], axis=0)))
     if not extent * character.scale > 1e-6:
         raise InputError(f"{name} has no size, all its bones begin at one point; {VALID}")
@@ -279,7 +244,7 @@ def _why_no_character(figure: Figure) -> str:
     places, limbs = figure.frame.place, figure.limbs
     hip, ankle = places[limbs["thigh"]], places[limbs["foot"]]
     leg = max(float(np.linalg.norm(ankle - hip)), 1e-9)
-    if figure.upright < LEAST_UPRIGHT or (hip[2] - ankle[2]) / leg < LEAST_LEG_DOWN:
+    if figure.upright < LEAST_UPRIGHT or (hip[2] - ankle[2]) / leg < 0.7:
         # An animal's forelegs reach the ground; a body that only lies or hangs is none.
         hand = places[limbs.get("hand", limbs["forearm"]), 2]
         like = ", like an animal's" if hand - ankle[2] < 0.5 * leg else ""
@@ -290,7 +255,8 @@ def _why_no_character(figure: Figure) -> str:
     named = all(
         readings[limbs[part]].scores[part] >= CLEAR for part in ("upper_arm", "forearm", "thigh", "shin")
     )
-    if figure.fit < (LEAST_FIT_NAMED if named else LEAST_FIT):
+    # Least fit of a figure's places, where names speak for its arms and legs and where not.
+    if figure.fit < (-26.0 if named else -12.0):
         return "its bones do not have the proportions of a body with two legs and two arms"
     return ""
 

@@ -10,9 +10,7 @@ from scipy.spatial import cKDTree
 from ...arrays import Array, BoolArray, IndexArray
 from .bones import Bones
 
-SAME = 0.02
-"""A mirrored head lies this near to its counterpart, a head beside the plane this far from it, in sizes."""
-MOST_PLANES, MOST_SYMMETRIES = 60, 3  # planes that are tried, and that are yielded
+SAME = 0.02  # sizes within which heads mirror each other, or lie in the plane
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,8 +20,7 @@ class Frame:
     bones: Bones
     normal: Array  # (3,) unit vector from one side to the other
     offset: float
-    partner: IndexArray
-    """(N,) counterpart of each bone on the other side; itself in the middle; -1 where there is none."""
+    partner: IndexArray  # (N,) bone on the other side; itself in the middle; -1 for none
     up: Array  # (3,) unit vector at right angles to the normal
 
     @cached_property
@@ -85,7 +82,15 @@ def find_frames(bones: Bones) -> Iterator[list[Frame]]:
 
 def find_planes(bones: Bones) -> Iterator[tuple[Array, float, IndexArray]]:
     """Yield normal, offset and partners (see `Frame`) of planes, the one that mirrors most bones first."""
-    named = _named_pairs(bones)
+    sides: dict[tuple[str, str], list[int]] = {}
+    for bone, reading in enumerate(bones.readings):
+        if reading.side is not None:
+            sides.setdefault((reading.unsided.casefold(), reading.side), []).append(bone)
+    named: dict[int, int] = {}  # bones whose names differ in the side alone, by each other
+    for (unsided, side), those in sides.items():
+        others = sides.get((unsided, "R"), [])
+        if side == "L" and len(those) == len(others) == 1:
+            named |= {those[0]: others[0], others[0]: those[0]}
     tree = cKDTree(bones.head)
     planes = [_fitted(bones, tree, *plane) for plane in _planes(bones, named)]
     planes.sort(key=lambda plane: -_score(bones, tree, *plane))
@@ -100,22 +105,8 @@ def find_planes(bones: Bones) -> Iterator[tuple[Array, float, IndexArray]]:
             pairs = np.flatnonzero(partner > np.arange(len(partner)))
             normal, offset = _between(bones, pairs, partner[pairs], normal, offset)
         yield normal, offset, partner
-        if len(taken) == MOST_SYMMETRIES:
+        if len(taken) == 3:
             return
-
-
-def _named_pairs(bones: Bones) -> dict[int, int]:
-    """Bones whose names differ in the side alone, by each other."""
-    sides: dict[tuple[str, str], list[int]] = {}
-    for bone, reading in enumerate(bones.readings):
-        if reading.side is not None:
-            sides.setdefault((reading.unsided.casefold(), reading.side), []).append(bone)
-    found = {}
-    for (unsided, side), those in sides.items():
-        others = sides.get((unsided, "R"), [])
-        if side == "L" and len(those) == len(others) == 1:
-            found[those[0]], found[others[0]] = others[0], those[0]
-    return found
 
 
 def _planes(bones: Bones, named: dict[int, int]) -> list[tuple[Array, float]]:
@@ -139,7 +130,7 @@ def _planes(bones: Bones, named: dict[int, int]) -> list[tuple[Array, float]]:
     found: list[tuple[Array, float]] = []
     for _, apart, both in sorted(weighted, key=lambda plane: -plane[0]):
         length = float(np.linalg.norm(apart))
-        if len(found) == MOST_PLANES or length < SAME * bones.size:
+        if len(found) == 60 or length < SAME * bones.size:
             continue
         normal = apart / length
         offset = 0.5 * float(normal @ both)
@@ -189,8 +180,20 @@ def _between(
 
 def _partners(bones: Bones, normal: Array, offset: float, named: dict[int, int]) -> IndexArray:
     """Counterparts by the tree: children of the middle among themselves, children of a pair between both."""
+    # How badly bones mirror each other, in sizes; on the diagonal how far each is from the middle.
+    middles = np.array([np.median(points, axis=0) for points in bones.points])
+    cost = np.zeros((len(bones.names), len(bones.names)))
+    for points in (bones.head, middles):
+        images = mirrored(points, normal, offset)
+        cost += 0.5 * np.linalg.norm(points[:, None] - images[None], axis=-1) / bones.size
+    count = np.log([len(below) for below in bones.subtree])
+    cost += 0.02 * np.abs(count[:, None] - count[None])
+    sides = np.array([{"L": 1, "R": 2}.get(reading.side or "", 0) for reading in bones.readings])
+    cost += (sides[:, None] == sides[None]) & (sides[:, None] > 0)
+    cost[np.diag_indices(len(cost))] += 0.005 - (sides > 0)  # a pair close to the plane is a pair
+    for bone, other in named.items():
+        cost[bone, other] -= 1.0
     partner = np.full(len(bones.names), -1, dtype=np.intp)
-    cost = _costs(bones, normal, offset, named)
     _match([int(bone) for bone in np.flatnonzero(bones.parent < 0)], None, cost, partner)
     for bone in range(len(bones.names)):  # parents stand before children
         other, children = int(partner[bone]), list(bones.children[bone])
@@ -216,23 +219,6 @@ def _match(those: list[int], others: list[int] | None, cost: Array, partner: Ind
             return
         if partner[rows[a]] < 0 and partner[columns[b]] < 0:
             partner[rows[a]], partner[columns[b]] = columns[b], rows[a]
-
-
-def _costs(bones: Bones, normal: Array, offset: float, named: dict[int, int]) -> Array:
-    """(N, N) how badly bones mirror each other, in sizes; on the diagonal how far each is from the middle."""
-    middles = np.array([np.median(points, axis=0) for points in bones.points])
-    cost = np.zeros((len(bones.names), len(bones.names)))
-    for points in (bones.head, middles):
-        images = mirrored(points, normal, offset)
-        cost += 0.5 * np.linalg.norm(points[:, None] - images[None], axis=-1) / bones.size
-    count = np.log([len(below) for below in bones.subtree])
-    cost += 0.02 * np.abs(count[:, None] - count[None])
-    sides = np.array([{"L": 1, "R": 2}.get(reading.side or "", 0) for reading in bones.readings])
-    cost += (sides[:, None] == sides[None]) & (sides[:, None] > 0)
-    cost[np.diag_indices(len(cost))] += 0.005 - (sides > 0)  # a pair close to the plane is a pair
-    for bone, other in named.items():
-        cost[bone, other] -= 1.0
-    return cost
 
 
 def mirrored(points: Array, normal: Array, offset: float) -> Array:

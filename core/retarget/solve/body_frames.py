@@ -64,11 +64,7 @@ def _align(body: RestBody, turns: dict[str, Array], limb: list[str], along: Arra
     turns[lower] = rotations.smallest(bent, along) @ turn @ turns[lower]
 
 
-# --- Turns of bones that follow from the performer's segments alone, and where they put the joints
-
-
-FOLLOWED = {"hips": "pelvis", "shoulder": "girdle", "toe": "foot"}
-"""The performer's segment that a role of one bone follows where it has another name."""
+FOLLOWED = {"hips": "pelvis", "shoulder": "girdle", "toe": "foot"}  # segments of other names
 
 
 def bone_turns(body: RestBody, turn: Mapping[str, Array], alignment: Mapping[str, Array]) -> list[Array]:

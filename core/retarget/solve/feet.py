@@ -14,18 +14,15 @@ from scipy.spatial.transform import Rotation
 from ...arrays import Array, BoolArray
 from ...body import rotations
 from ...body.body_volume import sole_offsets
-from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
 from ...feet.contacts import RELEASE_SPEED_M_S, Contact, speeds
 from ...feet.fading import Hold, ease, faded, held_turns, smooth_above
-from ...feet.ground import Ground
 from .foot_shape import FootShape
 from .stage import Stage
 from .two_bone import LimbPose
 
-TOUCHING_M = (0.01, 0.04)
-"""Height of the performer's toe tip up to which it is on the ground, and from which it is in the air."""
+TOUCHING_M = (0.01, 0.04)  # height of a toe tip on the ground, and of one in the air
 MOST_TOE_BEND_RAD = np.radians(75.0)
 ACROSS = np.eye(3)[0]  # canonical axis about which feet and toes pitch
 
@@ -41,20 +38,12 @@ class FootPath:
     ground_m: Array  # (F,) height of the ground under it [m]
 
 
-def plan_foot(
-    source: SegmentMotion,
-    stage: Stage,
-    ground: Ground,
-    shape: FootShape,
-    side: str,
-    leg: LimbPose,
-    lift_m: Array,
-) -> FootPath:
+def plan_foot(stage: Stage, shape: FootShape, side: str, leg: LimbPose, lift_m: Array | float) -> FootPath:
     """The path of a foot, from the leg by the performer's directions, on ground raised by `lift_m` (F,)."""
-    point, time_s, ankle = SIDES.index(side), source.time_s, leg.end
-    ground_m = stage.heights(ground.height_m[:, point]) + lift_m
-    turn = _rolled(source, stage, ground, shape, side, ankle[:, 2] - ground_m)
-    rests = [rest for rest in ground.rests if rest.point == point]
+    point, time_s, ankle = SIDES.index(side), stage.source.time_s, leg.end
+    ground_m = stage.heights(stage.ground.height_m[:, point]) + lift_m
+    turn = _rolled(stage, shape, side, ankle[:, 2] - ground_m)
+    rests = [rest for rest in stage.ground.rests if rest.point == point]
     stands = []
     for rest in rests:  # the turn throughout a rest: its mean, flat where it nearly is
         mean = Rotation.from_matrix(turn[rest.frames]).mean().as_matrix()
@@ -63,10 +52,15 @@ def plan_foot(
         upright = rotations.logarithm(rotations.smallest(mean[:, 2], UP))
         stands.append(rotations.exponential(flat * upright) @ mean)
     turn = held_turns(turn, rests, stands, time_s)
-    depth_m = sole_depth_m(turn, shape)
+    # Depth of the foot's lowest point under the ankle, the toes bent up as far as they bend.
+    points = shape.foot
+    if shape.toe_joint is not None:
+        toe = shape.toe_joint + shape.toe @ rotations.hinge(ACROSS, np.array(-MOST_TOE_BEND_RAD)).T
+        points = np.concatenate([points, toe])
+    depth_m = -(turn[:, 2] @ points.T).min(axis=1)
     planted = np.zeros(len(time_s), dtype=bool)
     holds = []
-    for rest, stand, (first, last) in zip(rests, stands, _rolls(source, ground, side, rests), strict=True):
+    for rest, stand, (first, last) in zip(rests, stands, _rolls(stage, side, rests), strict=True):
         # The place of the rest is the mean of where the leg's directions put the ankle. Frames in which the
         # leg is nearly straight count more: there a knee bends a lot for a little way.
         middle = np.average(leg.end[rest.frames], axis=0, weights=leg.straightness[rest.frames])
@@ -97,15 +91,6 @@ def floor_lifts(
     return smooth_above(lift, time_s, 0.1)
 
 
-def sole_depth_m(turn: Array, shape: FootShape) -> Array:
-    """(F,) depth of the foot's lowest point under the ankle, the toes bent up as far as they bend [m]."""
-    points = shape.foot
-    if shape.toe_joint is not None:
-        toe = shape.toe_joint + shape.toe @ rotations.hinge(ACROSS, np.array(-MOST_TOE_BEND_RAD)).T
-        points = np.concatenate([points, toe])
-    return np.asarray(-(turn[:, 2] @ points.T).min(axis=1))
-
-
 def toe_bends(turn: Array, shape: FootShape, height_m: Array) -> Array:
     """(F, 3, 3) turns of the toes, bent up against the foot just as far as the ankle's height demands."""
     if shape.toe_joint is None or not len(shape.toe):
@@ -113,79 +98,59 @@ def toe_bends(turn: Array, shape: FootShape, height_m: Array) -> Array:
     joint_m = height_m + turn[:, 2] @ shape.toe_joint
     bend = np.zeros(len(turn))
     for point in shape.toe:
-        # Height of the point over the toe joint: level + a cos(bend) + b sin(bend).
-        level, a, b = _heights(turn, point)
-        ratio = np.clip((-joint_m - level) / np.maximum(np.hypot(a, b), 1e-9), -1.0, 1.0)
-        middle = (np.arctan2(-b, a) + 0.5 * np.pi) % (2.0 * np.pi) - 0.5 * np.pi
-        bend = np.maximum(bend, middle - np.arccos(ratio))
+        bend = np.maximum(bend, -_pitches_to_ground(turn, point, joint_m, toes=1.0))
     bend = np.minimum(bend, MOST_TOE_BEND_RAD)
     return np.asarray(turn @ rotations.hinge(ACROSS, -bend))
 
 
-def _rolled(
-    source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, height_m: Array
-) -> Array:
+def _rolled(stage: Stage, shape: FootShape, side: str, height_m: Array) -> Array:
     """Turns of the foot, pitched so that its front stays on the ground where the performer's does.
 
     Nowhere is it pitched further than the ground lets it: a larger foot than the performer's lifts its toes.
     """
-    turn = np.asarray(stage.turn @ source.turn[f"foot.{side}"])
-    point = SIDES.index(side)
-    tip = source.start[f"foot.{side}"] + source.turn[f"foot.{side}"] @ sole_offsets(source.body)[point][1]
-    speed = speeds(tip, source.time_s)
-    touching = 1.0 - ease(tip[:, 2] - ground.height_m[:, point], *TOUCHING_M)
+    source, ground_m = stage.source, stage.ground.height_m[:, SIDES.index(side)]
+    own, turn = source.turn[f"foot.{side}"], np.asarray(stage.turn @ source.turn[f"foot.{side}"])
+    tip = source.start[f"foot.{side}"] + own @ sole_offsets(source.body)[SIDES.index(side)][1]
+    touching = 1.0 - ease(tip[:, 2] - ground_m, *TOUCHING_M)
     # Speeds [m/s] up to which a foot rolls over its tip, and from which it swings over the ground.
-    touching *= 1.0 - ease(speed, 0.4, 1.2)
+    touching *= 1.0 - ease(speeds(tip, source.time_s), 0.4, 1.2)
     rolled = np.clip(_pitches_to_ground(turn, shape.front, height_m, toes=1.0), -np.pi, np.pi)
     # Largest change of pitch for a front that is nearer to the ankle than the performer's: a heel that rises
     # higher than that front allows leaves the ground with it. And for a foot of another shape.
     most_rolled, most_changed = np.radians([20.0, 45.0])
     change = touching * most_rolled * np.tanh(rolled / most_rolled)
-    in_front = [point for point in shape.foot if point[1] < 0.0]
-    behind = [point for point in shape.foot if point[1] >= 0.0]
-    free = np.full(len(turn), np.inf)  # a sole without points before or behind the ankle hits nothing there
-    most = np.minimum.reduce(
-        [free, *(_pitches_to_ground(turn, point, height_m, toes=1.0) for point in in_front)]
-    )
-    least = np.maximum.reduce(
-        [-free, *(_pitches_to_ground(turn, point, height_m, toes=-1.0) for point in behind)]
-    )
+    most = np.full(len(turn), np.inf)  # a sole without points before or behind the ankle hits nothing there
+    least = -most
+    for point in shape.foot:
+        toes = 1.0 if point[1] < 0.0 else -1.0
+        pitch = _pitches_to_ground(turn, point, height_m, toes)
+        most, least = (np.minimum(most, pitch), least) if toes > 0.0 else (most, np.maximum(least, pitch))
     change = np.clip(change, np.minimum(least, most), most)
     return np.asarray(turn @ rotations.hinge(ACROSS, np.clip(change, -most_changed, most_changed)))
 
 
 def _pitches_to_ground(turn: Array, point: Array, height_m: Array, toes: float) -> Array:
-    """(F,) pitches that bring a point of the sole down to the ground, toes downward (1) or upward (-1).
-
-    Infinite, in that direction, where the ankle is so high that no pitch does.
-    """
-    level, a, b = _heights(turn, point)
-    ratio = (-height_m - level) / np.maximum(np.hypot(a, b), 1e-9)
+    """(F,) pitches that bring a point to the ground, toes downward (1) or upward (-1); infinite for none."""
+    up, (x, y, z) = turn[:, 2], point
+    # The height of the point, pitched by p with the toes down, is up·x + a cos(p) + b sin(p).
+    a, b = up[:, 1] * y + up[:, 2] * z, up[:, 2] * y - up[:, 1] * z
+    ratio = (-height_m - up[:, 0] * x) / np.maximum(np.hypot(a, b), 1e-9)
     # The pitch at which the point is highest, a quarter turn or so from the standing foot.
     highest = toes * ((toes * np.arctan2(b, a) - 0.5 * np.pi) % (2.0 * np.pi) - 1.5 * np.pi)
     pitch = highest + toes * np.arccos(np.clip(ratio, -1.0, 1.0))
     return np.where(ratio < -1.0, toes * np.inf, pitch)
 
 
-def _heights(turn: Array, point: Array) -> tuple[Array, Array, Array]:
-    """l, a, b (F,): the height of a foot's point pitched by p, toes down, is l + a cos(p) + b sin(p) [m]."""
-    x, y, z = point
-    up = turn[:, 2]
-    return up[:, 0] * x, up[:, 1] * y + up[:, 2] * z, up[:, 2] * y - up[:, 1] * z
-
-
-def _rolls(
-    source: SegmentMotion, ground: Ground, side: str, rests: Sequence[Contact]
-) -> list[tuple[int, int]]:
+def _rolls(stage: Stage, side: str, rests: Sequence[Contact]) -> list[tuple[int, int]]:
     """First and last frame of each rest together with the roll onto the sole and off it.
 
     Before a rest the heel stands still on the ground with the toes up, after it the front with the heel up.
     """
+    source, ground_m = stage.source, stage.ground.height_m[:, SIDES.index(side)]
     turn, ankle, time_s = source.turn[f"foot.{side}"], source.start[f"foot.{side}"], source.time_s
     heel, tip = (ankle + turn @ offset for offset in sole_offsets(source.body)[SIDES.index(side)])
     # Place of the ball between ankle and tip of the performer's foot.
     ball = ankle + 0.62 * (tip - ankle)
-    ground_m = ground.height_m[:, SIDES.index(side)]
     pitch = turn[:, 2, 1]
     slow = [speeds(path, time_s) < RELEASE_SPEED_M_S for path in (heel, tip, ball)]
     on_heel = slow[0] & (heel[:, 2] - ground_m < TOUCHING_M[1]) & (pitch <= 0.0)

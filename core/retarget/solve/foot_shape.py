@@ -21,8 +21,7 @@ class FootShape:
     foot: Array  # (N, 3) points of the sole fixed to the foot, from the ankle [m]
     toe: Array  # (M, 3) points fixed to the toe bone, from its joint [m]; none without one
     toe_joint: Array | None  # (3,) the toe's joint from the ankle [m]; None without one
-    front: Array
-    """(3,) where it rolls when the heel rises, from the ankle [m]: the ball; the tip without a toe."""
+    front: Array  # (3,) where it rolls when the heel rises: the ball; the tip without a toe [m]
     heel: Array  # (3,) where it rolls when the toes rise, from the ankle [m]
 
     @property
@@ -123,13 +122,10 @@ def _beyond_ankle(body: RestBody, side: str) -> list[Array]:
         bone = character.bones[index]
         if bone.name != body.bones[body.first[f"foot.{side}"]].name:
             found.append(bone.head)
-        if body.tails_are_meant and not character.children[index]:
+        if character.tails_are_meant and not character.children[index]:
             found.append(bone.tail)
         open_ += character.children[index]
     return [character.scale * body.stance @ point for point in found]
-
-
-# --- The ground under a performer
 
 
 def performer_ground(source: SegmentMotion) -> Ground:

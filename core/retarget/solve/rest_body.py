@@ -108,19 +108,6 @@ class RestBody:
         """(3,) midpoint of the joints of a part on both sides, canonical [m]."""
         return np.asarray(0.5 * (self.joint(f"{part}.L") + self.joint(f"{part}.R")))
 
-    @cached_property
-    def tails_are_meant(self) -> bool:
-        """Whether most bones end at a child's head, so that the tails of the others mean something too."""
-        character = self.character
-        # Distance from a tail to a child's head that still counts as met, as a share of the bone's length.
-        met = [
-            min(float(np.linalg.norm(bone.tail - character.bones[child].head)) for child in children)
-            <= 0.02 * float(np.linalg.norm(bone.tail - bone.head))
-            for bone, children in zip(character.bones, character.children, strict=True)
-            if children
-        ]
-        return bool(met) and float(np.mean(met)) > 0.5
-
     def tip(self, role: str) -> Array | None:
         """(3,) the end of a role's last bone: the farthest head of a child, else a tail that means something.
 
@@ -133,7 +120,7 @@ class RestBody:
         scale = self.character.scale
         ends = [self.character.bones[child].head for child in self.character.children[index]]
         ends = [end for end in ends if np.linalg.norm(end - bone.head) * scale > SHORTEST_SHARE * self.leg_m]
-        if not ends and self.tails_are_meant:
+        if not ends and self.character.tails_are_meant:
             ends = [bone.tail]
         if not ends:
             return None

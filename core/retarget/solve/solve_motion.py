@@ -1,6 +1,6 @@
 """A performer's motion solved for a character: what its role bones do, before any control."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -11,11 +11,10 @@ from ...body.kinematics import SegmentMotion
 from ...body.posture import UP, turn_headings_rad, yaw_rotation
 from ...body.skeleton import SIDES
 from ...feet.fading import ease, smooth_above, smoothed
-from ...feet.ground import Ground
 from ...progress import Job, Progress
 from ...take.character_settings import Placement, RetargetOptions, RootMotion
-from ..character import FINGER_ROLES, JOINTS, LIMBS, Character
-from ..character_motion import CharacterMotion, HandGoal, Similarity
+from ..character import FINGER_ROLES, JOINTS, LIMBS, Character, Similarity
+from ..character_motion import CharacterMotion, HandGoal
 from ..maps.character_map import CharacterMap
 from .body_frames import bone_turns, joint_places, rest_alignment
 from .feet import FootPath, plan_foot, toe_bends
@@ -33,7 +32,6 @@ HINGES = {
     "leg.R": (1.0, 0.0, 0.0),
 }
 """Axis of elbow or knee by limb, of the performer at rest."""
-DEEPEST_SHARE = 0.08  # farthest that the hips go down or up, as a share of the legs' length
 
 
 @dataclass(eq=False)
@@ -42,9 +40,7 @@ class Solution:
 
     body: RestBody
     alignment: Mapping[str, Array]
-    source: SegmentMotion
     stage: Stage
-    ground: Ground
     hips: Array  # (F, 3) the midpoint of the hip joints, canonical [m]
     turns: list[Array]  # (F, 3, 3) a bone: its turn from rest, canonical
 
@@ -73,35 +69,30 @@ class Solution:
         found = {side: self.limb(f"{kind}.{side}") for side in SIDES}
         return {side: limb for side, limb in found.items() if limb is not None}
 
-    def plan_feet(self, shapes: Mapping[str, FootShape], lifts: Mapping[str, Array]) -> dict[str, FootPath]:
-        """Paths of the feet that can be planted, by side, lifted by (F,) by leg [m]."""
-        if not self.body.is_moved("hips"):
-            return {}
-        none = np.zeros(len(self.source.time_s))
-        return {
-            side: plan_foot(
-                self.source, self.stage, self.ground, shapes[side], side, leg, lifts.get(f"leg.{side}", none)
-            )
-            for side, leg in self.limbs("leg").items()
-        }
-
     def move_hips(self, feet: Mapping[str, FootPath], arms: Mapping[str, LimbPose]) -> None:
         """Move the hips with feet that stand, and lower them for these and for hands on the floor."""
         if not feet:
             return
-        legs = self.limbs("leg")
-        time_s, leg_m = self.source.time_s, self.body.leg_m
-        ankles, over_m = [feet[side].ankle for side in legs], [feet[side].over_m for side in legs]
-        raised = _raised_m(list(legs.values()), ankles, over_m, time_s, leg_m)
+        legs, stage = self.limbs("leg"), self.stage
+        time_s, deepest_m = stage.source.time_s, 0.08 * self.body.leg_m
+        # They are raised or lowered for the legs that stand to keep their bend, weighed against a constant: a
+        # bent leg that stands has about 20, a straight one 100, and an ankle higher than this none.
+        total, weights = np.zeros(len(time_s)), np.full(len(time_s), 1.0)
+        for side, leg in legs.items():
+            weight = leg.straightness * (1.0 - ease(feet[side].over_m, 0.0, 0.04 * self.body.leg_m))
+            total += weight * (feet[side].ankle - leg.end)[:, 2]
+            weights += weight
+        raised = smoothed(total / weights, time_s, 0.08, ends_kept=False)
+        raised = np.clip(raised, -deepest_m, deepest_m)
         needed = []
         for side, leg in legs.items():
             moved = feet[side].ankle - raised[:, None] * UP
             needed.append(_needed_drop_m(leg, moved, feet[side].planted, LEG_SOFT, time_s))
         for side, arm in arms.items():
-            goal, share = floor_goals(self.source, self.stage, self.ground, arm, side)
+            goal, share = floor_goals(stage.source, stage, stage.ground, arm, side)
             moved = goal - raised[:, None] * UP
             needed.append(share * _needed_drop_m(arm, moved, share > 0.0, ARM_SOFT, time_s))
-        lowered = np.minimum(np.maximum.reduce(needed), DEEPEST_SHARE * leg_m)
+        lowered = np.minimum(np.maximum.reduce(needed), deepest_m)
         # Time [s] over which the hips go down and up again.
         self.hips = self.hips + (raised - smooth_above(lowered, time_s, 0.12))[:, None] * UP
 
@@ -119,9 +110,10 @@ class Solution:
 
     def reach_with_hands(self) -> dict[str, HandGoal]:
         """Bring hands to where they belong, which is returned by side."""
-        arms, floor_m = self.limbs("arm"), self.stage.heights(self.ground.lowest_m)
+        arms, stage, places = self.limbs("arm"), self.stage, self.places()
+        floor_m = stage.heights(stage.ground.lowest_m)
         goals = hand_goals(
-            self.body, self.source, self.stage, self.ground, self.places(), self.turns, self.alignment, arms
+            self.body, stage.source, stage, stage.ground, places, self.turns, self.alignment, arms
         )
         for side, arm in arms.items():
             solved = reach(arm, goals[side].place_m, goals[side].share)
@@ -138,7 +130,7 @@ class Solution:
 
     def bend_fingers(self) -> None:
         """Bend the fingers on the hands where these are now."""
-        bends = finger_bends(self.body, self.source.fingers)
+        bends = finger_bends(self.body, self.stage.source.fingers)
         for index, bone in enumerate(self.body.bones):
             if bone.role in FINGER_ROLES:
                 carried = self.turns[bone.carrier]
@@ -162,9 +154,6 @@ class Solution:
         return found
 
 
-# --- How high the hips are
-
-
 def _needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float, time_s: Array) -> Array:
     """(F,) how much lower a limb must begin to reach its goal (F, 3) where that is needed (F,) [m]."""
     length_m = sum(limb.lengths_m)
@@ -175,25 +164,6 @@ def _needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float, 
     aside = np.sum(way[:, :2] ** 2, axis=-1)
     below = np.sqrt(np.maximum((allowed * STRAIGHTEST * length_m) ** 2 - aside, 0.0))
     return np.where(needed, np.maximum(-way[:, 2] - below, 0.0), 0.0)
-
-
-def _raised_m(
-    legs: Sequence[LimbPose], ankles: Sequence[Array], over_m: Sequence[Array], time_s: Array, leg_m: float
-) -> Array:
-    """(F,) how much higher the hips go, or lower, for the legs that stand to keep their bend [m].
-
-    `over_m` (F,) is how much higher the ankles (F, 3) shall be than ankles on the ground.
-    """
-    # What standing legs are weighed against: a bent leg that stands has about 20, a straight one 100.
-    total, weights = np.zeros(len(time_s)), np.full(len(time_s), 1.0)
-    for leg, ankle, over in zip(legs, ankles, over_m, strict=True):
-        # Height of an ankle over its height on the ground, as a share of the leg, from which it does not
-        # stand.
-        weight = leg.straightness * (1.0 - ease(over, 0.0, 0.04 * leg_m))
-        total += weight * (ankle - leg.end)[:, 2]
-        weights += weight
-    limit = DEEPEST_SHARE * leg_m
-    return np.clip(smoothed(total / weights, time_s, 0.08, ends_kept=False), -limit, limit)
 
 
 WAY_S = 0.4  # standard deviation in time of what counts as the way and heading; faster changes are sway
@@ -224,13 +194,18 @@ def solve_motion(
     stage = find_stage(source, ground, stand, body.leg_m, ankle_m)
     yield Progress("Turning bones", 0.2)
     turn = {name: stage.turn @ own for name, own in source.turn.items()}
-    hips = stage.joints(0.5 * (source.start["thigh.L"] + source.start["thigh.R"]))
+    hips = 0.5 * (source.start["thigh.L"] + source.start["thigh.R"]) - stage.under
+    hips = stage.stand + stage.size * hips @ stage.turn.T + [0.0, 0.0, stage.lift_m]
     if not body.is_moved("hips"):
         hips = np.broadcast_to(body.middle("thigh"), hips.shape).copy()
     turns = bone_turns(body, turn, alignment)  # by the performer's directions alone
-    solution = Solution(body, alignment, source, stage, ground, hips, turns)
+    solution = Solution(body, alignment, stage, hips, turns)
     yield Progress("Planting feet", 0.4)
-    feet = solution.plan_feet(shapes, lifts) if options.plant_feet else {}
+    legs = solution.limbs("leg") if options.plant_feet and body.is_moved("hips") else {}
+    feet = {
+        side: plan_foot(stage, shapes[side], side, leg, lifts.get(f"leg.{side}", 0.0))
+        for side, leg in legs.items()
+    }
     arms = solution.limbs("arm") if options.reach_hands else {}
     solution.move_hips(feet, arms)
     solution.plant(feet, shapes)
@@ -265,7 +240,8 @@ def solve_motion(
 
 def _root_motion(solution: Solution, options: RetargetOptions) -> tuple[Array, Array | None, tuple[str, ...]]:
     """What is taken off the way (F, 3) [m], the root bone's poses in the armature's space, and notes."""
-    body, time_s = solution.body, solution.source.time_s
+    body, source = solution.body, solution.stage.source
+    time_s = source.time_s
     none = np.zeros_like(solution.hips)
     if options.root_motion is RootMotion.AS_FILMED:
         return none, None, ()
@@ -277,7 +253,7 @@ def _root_motion(solution: Solution, options: RetargetOptions) -> tuple[Array, A
     if name is None or name not in character.index or name in {bone.name for bone in body.bones}:
         note = f"'{character.name}' has no root bone apart from its hips, which keep the way over the ground"
         return none, None, (note,)
-    headings_rad = np.unwrap(turn_headings_rad(solution.source.turn["pelvis"]))
+    headings_rad = np.unwrap(turn_headings_rad(source.turn["pelvis"]))
     turn = yaw_rotation(smoothed(headings_rad - headings_rad[0], time_s, WAY_S))
     rest, stand = body.stance @ character.bone(name).rest[:3], solution.stage.stand
     poses = np.tile(np.eye(4), (len(way), 1, 1))

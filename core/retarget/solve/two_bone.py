@@ -13,8 +13,7 @@ from ...body import rotations
 from ...numerics.vectors import unit
 
 ARM_SOFT, LEG_SOFT = 0.97, 0.988  # shares of its length from which a limb resists being stretched further
-STRAIGHTEST = 0.9999
-"""Largest extension as a share of a limb's length; beyond it the bend would have no direction left."""
+STRAIGHTEST = 0.9999  # largest share of its length that a limb is extended: beyond, nothing bends
 LEAST_M = 1e-6
 
 

@@ -7,8 +7,7 @@ from ....core.arrays import Array, Image
 from ....core.numerics.vectors import across
 from ....core.report.canvas import LEFT, RIGHT, Color
 from ....core.report.mannequin import SKIN, CharacterFigure, character_sheet
-from ....core.report.overlay_sheet import evenly_spaced_frames
-from ....core.report.pictures import footage_frames
+from ....core.report.pictures import evenly_spaced_frames, footage_frames
 from ....core.retarget.character import LIMBS, MIDDLE
 from ....core.retarget.maps.character_map import CharacterMap
 from ..camera_placement import read_camera

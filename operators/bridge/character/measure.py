@@ -10,13 +10,13 @@ import numpy as np
 from ....core.arrays import Array, IndexArray
 from ....core.body.kinematics import SegmentMotion
 from ....core.progress import Part, scaled
-from ....core.retarget.character import JOINTS, LIMBS, Character
+from ....core.retarget.character import JOINTS, LIMBS, Character, Similarity
 from ....core.retarget.character_motion import CharacterMotion
 from ....core.retarget.controls.control_spaces import unscaled
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.quality import Measured, farthest_mm, measured
 from ..actions import existing_channelbag
-from ..object_space import ObjectSpace, evaluated, object_space
+from ..object_space import evaluated, object_space
 from ..scene_frames import at_scene_frame
 from .controls import Property, Value, posing, property_path
 from .mesh_soles import FootVertices, foot_rows, foot_vertices, leading_roles, mesh_soles
@@ -45,7 +45,7 @@ def measure(
     bones = {role: str(character_map.bone(role)) for role in character_map.roles}
     feet = ShownFeet.of(armature_object, character, character_map)
     stands = motion.to_world
-    still = ObjectSpace(stands.rotation, stands.location, stands.scale) if rides else None
+    still = stands if rides else None
     showing = _show(armature_object, action, frames, bones, properties, {}, feet, still)
     poses = yield from scaled(showing, 0.0, 0.5 if in_fk else 1.0)
     shown = {role: poses[role][:, :3, 3] for role in bones}
@@ -147,7 +147,7 @@ def _show(
     properties: Sequence[Property],
     switched: Mapping[Property, Value],
     feet: ShownFeet | None = None,
-    still: ObjectSpace | None = None,
+    still: Similarity | None = None,
 ) -> Part[dict[str, Array]]:
     """(F, 4, 4) by role the pose of its first bone in the world [m], as Blender shows it; feet are read."""
     scene = next(iter(armature_object.users_scene), bpy.context.scene)

@@ -13,6 +13,7 @@ from ....core.retarget.controls.control_channels import ALWAYS_MOVED, Control, o
 from ....core.retarget.controls.control_plan import IN_FK, ControlKind, PlannedControl, limb_bones
 from ....core.retarget.controls.control_spaces import (
     NOTHING,
+    RIGID,
     ControlSpace,
     PosedControls,
     chosen,
@@ -224,9 +225,10 @@ def _placed(
 ) -> Control:
     """A control that random poses did not place: where it rests on what turns it, else where it is."""
     space = control.space
-    if control.plan.kind in ALWAYS_MOVED or space.is_placed(size):
+    if control.plan.kind in ALWAYS_MOVED or space.residual < RIGID * size:
         return control
     if space.turner != NOTHING and space.residual_rad < NOTICEABLE_RAD:
         turner, own = _rests(armature_object, [controls[space.turner].name, control.name])
-        return replace(control, space=space.placed_by_turner((np.linalg.inv(turner) @ own)[:3, 3]))
+        origin = (np.linalg.inv(turner) @ own)[:3, 3]
+        space = replace(space, carrier=space.turner, origin=origin, residual=0.0)
     return replace(control, space=replace(space, axes=np.zeros((3, 3))))

@@ -11,7 +11,7 @@ from ....core.errors import InputError
 from ....core.feet.ground import IN_FLOOR_M, floor_notes
 from ....core.progress import Job, Progress, run, stretch, within
 from ....core.retarget.character import FINGER_ROLES, Character
-from ....core.retarget.character_motion import CharacterMotion, Similarity, find_stance
+from ....core.retarget.character_motion import CharacterMotion, find_stance
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
 from ....core.retarget.controls.control_plan import ControlKind, limb_keys, planned_controls
 from ....core.retarget.controls.control_targets import on_controls
@@ -157,8 +157,7 @@ def retarget(
     unknown = [role for role in FINGER_ROLES if role in character_map.roles and role not in source.fingers]
     alone = tuple(dict.fromkeys((*character_map.left_alone, *unknown)))
     character_map = replace(character_map, left_alone=alone)
-    there = Similarity(here.rotation, here.location, here.scale)
-    motion = yield from stretch(solve_motion(character, character_map, source, options, there), 0.0, SOLVED)
+    motion = yield from stretch(solve_motion(character, character_map, source, options, here), 0.0, SOLVED)
     yield Progress("Finding how the controls act", SOLVED)
     probed = probe_controls(
         armature_object,
@@ -182,7 +181,7 @@ def retarget(
             break
         lifts = {limb: own + lifts.get(limb, 0.0) for limb, own in more.items()}
         yield Progress("Lifting the feet out of the floor", start)
-        motion = run(solve_motion(character, character_map, source, options, there, lifts))
+        motion = run(solve_motion(character, character_map, source, options, here, lifts))
         keys, controls, found = yield from stretch(performance.keyed(motion, probed), start, end)
     warnings = warnings_of(found.quality.to_dict(), motion.size)
     require_released(armature_object, probed.releases, warnings)

@@ -11,7 +11,7 @@ from mathutils import Quaternion
 from ....core.arrays import Array
 from ....core.errors import InputError
 from ....core.keys.hermite import values_of
-from ....core.retarget.character_motion import Similarity
+from ....core.retarget.character import Similarity
 from ....core.retarget.controls.control_motion import KeyedControl
 from ..actions import channelbag_for
 from ..keys import ensure_fcurve, write_column, write_linear_keys
@@ -129,12 +129,12 @@ class RetargetedKeys:
     @property
     def key_count(self) -> int:
         """Number of keys on the controls."""
-        return sum(keyed.key_count for keyed in self.controls)
+        return sum(values.size for keyed in self.controls for values in keyed.values)
 
     @property
     def dense_count(self) -> int:
         """Number of keys on the controls with one on every frame."""
-        return sum(keyed.channel_count for keyed in self.controls) * len(self.frames)
+        return sum(values.shape[1] for keyed in self.controls for values in keyed.values) * len(self.frames)
 
 
 def write_keys(keys: RetargetedKeys, armature_object: bpy.types.Object, action: bpy.types.Action) -> None:

@@ -15,6 +15,7 @@ from ....core.errors import ConversionError, InputError, KeymarkError, describe_
 from ....core.feet.natural_extremities import natural_extremities
 from ....core.files.digest import content_digest
 from ....core.files.fields import listed
+from ....core.files.json_file import write_readable_json
 from ....core.files.paths import regular_file_size
 from ....core.progress import Job, Progress
 from ....core.report.canvas import write_png
@@ -22,7 +23,7 @@ from ....core.retarget.character import LIMBS, Character
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.maps.map_registry import ChosenMap, choose_map, map_digests
 from ....core.retarget.quality import warnings_of
-from ....core.retarget.retarget_record import RetargetRecord, UsedCharacter, UsedMap, write_retarget_record
+from ....core.retarget.retarget_record import RECORD_FILE, RetargetRecord, UsedCharacter, UsedMap
 from ....core.shoot.discovery import Shoot
 from ....core.take.character_settings import CharacterFile, CharacterSettings
 from ....core.take.conversion_record import CHARACTER_BLEND, CHARACTER_PICTURE
@@ -184,7 +185,7 @@ def write_character_result(
             notes=(*opened.imported.notes, *note, *retargeted.notes),
             files={CHARACTER_BLEND: curves},
         )
-        write_retarget_record(staging_folder, record)
+        write_readable_json(staging_folder / RECORD_FILE, record.to_json())
         return record
 
 

@@ -12,8 +12,7 @@ from ....core.files.paths import real_path
 from ....core.poses.found_poses import FoundPoses
 from ....core.prior.library import library_digest
 from ....core.progress import Job, run
-from ....core.report.overlay_sheet import performer_contours
-from ....core.report.pictures import write_pictures
+from ....core.report.pictures import performer_contours, write_pictures
 from ....core.retarget.maps.map_registry import map_digests
 from ....core.retarget.retarget_record import RetargetRecord
 from ....core.review.frame_evidence import compare_keypoints

@@ -10,7 +10,7 @@ from _armatures import run_script
 from bpy.types import Object, PropertyGroup
 from keymark.operators.bridge.character import rigify_human
 from keymark.operators.character import add_character as add_rigify_human
-from keymark.operators.character.requirements import recognized
+from keymark.operators.character.characters import recognized
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")

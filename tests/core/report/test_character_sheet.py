@@ -6,7 +6,7 @@ from _synthetic_take import SIZE, write_synthetic_take
 from keymark.core.arrays import Image
 from keymark.core.report.canvas import Canvas
 from keymark.core.report.mannequin import SIDE, CharacterFigure, character_sheet, draw_character
-from keymark.core.report.overlay_sheet import GAP, MARGIN, TITLE
+from keymark.core.report.pictures import GAP, MARGIN, TITLE
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 

@@ -12,15 +12,16 @@ from keymark.core.camera.camera import Camera
 from keymark.core.markers.reading import Reading
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.report.canvas import INK, LEFT, RIGHT, Canvas, write_png
-from keymark.core.report.overlay_sheet import (
+from keymark.core.report.pictures import (
     CELL_WIDTH,
     OUTLINE,
     SOURCE_COLORS,
     THROWN_OUT,
     evenly_spaced_frames,
     overlay_sheet,
+    side_sheet,
+    write_pictures,
 )
-from keymark.core.report.pictures import side_sheet, write_pictures
 from keymark.core.take.conversion_record import PICTURES
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take

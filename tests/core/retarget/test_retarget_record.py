@@ -8,22 +8,30 @@ from typing import Any
 import pytest
 from _characters import full_record
 from keymark.core.errors import InputError
-from keymark.core.retarget.retarget_record import RECORD_FILE, read_retarget_record, write_retarget_record
+from keymark.core.files.json_file import write_readable_json
+from keymark.core.retarget.retarget_record import RECORD_FILE, RetargetRecord, read_retarget_record
+
+
+def written(folder: Path, record: RetargetRecord) -> RetargetRecord:
+    """The record as it is read again."""
+    write_readable_json(folder / RECORD_FILE, record.to_json())
+    return read_retarget_record(folder)
 
 
 def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
-    write_retarget_record(tmp_path, full_record())
-    assert read_retarget_record(tmp_path) == full_record()
+    assert written(tmp_path, full_record()) == full_record()
     first = (tmp_path / RECORD_FILE).read_bytes()
-    write_retarget_record(tmp_path, read_retarget_record(tmp_path))
+    written(tmp_path, read_retarget_record(tmp_path))
     assert (tmp_path / RECORD_FILE).read_bytes() == first
 
 
 def test_figures_have_five_digits(tmp_path: Path) -> None:
-    write_retarget_record(
-        tmp_path, replace(full_record(), quality={"a_mm": 1.23456789, "b": None, "keys": 1234567})
-    )
-    assert read_retarget_record(tmp_path).quality == {"a_mm": 1.2346, "b": None, "keys": 1234567}
+    figures = {"a_mm": 1.23456789, "b": None, "keys": 1234567}
+    assert written(tmp_path, replace(full_record(), quality=figures)).quality == {
+        "a_mm": 1.2346,
+        "b": None,
+        "keys": 1234567,
+    }
     assert '"keys": 1234567' in (tmp_path / RECORD_FILE).read_text(encoding="utf-8")
 
 

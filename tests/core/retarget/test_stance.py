@@ -5,24 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _characters import plain_character, plain_map
-from keymark.core.body.posture import yaw_rotation
 from keymark.core.body.rotations import exponential
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.character_motion import find_stance
 from keymark.core.retarget.maps.character_map import CharacterMap
-
-
-@pytest.mark.parametrize("yaw_deg", [0.0, 90.0, 180.0, 35.0, -120.0])
-@pytest.mark.parametrize("y_up", [False, True])
-def test_the_stance_undoes_how_the_armature_lies(yaw_deg: float, y_up: bool) -> None:
-    turn = yaw_rotation(np.radians(yaw_deg))
-    if y_up:
-        turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]) @ turn
-    for arms_down_deg in (0.0, 45.0, 85.0):
-        character = plain_character(turn=turn, arms_down_deg=arms_down_deg)
-        stance = find_stance(character, plain_map(character))
-        assert np.allclose(stance @ turn, np.eye(3), atol=1e-9)
-        assert np.allclose(stance @ stance.T, np.eye(3)) and np.linalg.det(stance) > 0.0
 
 
 def test_a_lean_is_no_tilt_of_the_armature() -> None:

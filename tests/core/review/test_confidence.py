@@ -33,12 +33,9 @@ def test_confidence_falls_with_each_reason_for_doubt() -> None:
     assert believed(covariance, still, contradicts) < usual - 0.1
 
 
-def test_without_any_evidence_the_covariance_stays() -> None:
-    covariance, still = np.broadcast_to(0.02**2 * np.eye(3), (1, 13, 3, 3)), np.zeros((1, 13))
-    assert np.array_equal(expected_covariance(covariance, still, np.zeros((1, 0))), covariance)
-
-
-def test_what_is_certain_is_believed_and_what_is_unknown_is_not_a_number() -> None:
+def test_without_any_evidence_the_covariance_stays_and_what_is_unknown_is_not_a_number() -> None:
+    usual, still = np.broadcast_to(0.02**2 * np.eye(3), (1, 13, 3, 3)), np.zeros((1, 13))
+    assert np.array_equal(expected_covariance(usual, still, np.zeros((1, 0))), usual)
     covariance = np.zeros((2, 13, 3, 3))
     covariance[1] = np.nan
     believed = confidence(covariance, 0.045)

@@ -142,7 +142,7 @@ def test_contours_judge_a_motion_only_where_no_marker_does(take: Take) -> None:
     assert np.nanmedian(sights[1].misfit) > 2.0 * np.nanmedian(sights[0].misfit)
     believed = [run(review(bare, result, np.arange(24) + 1.0)).confidence.mean() for result in (good, bad)]
     assert believed[1] < believed[0]
-    assert run(contour_sight(run(reconstruct(take)))).parts == ()
+    assert run(contour_sight(run(reconstruct(take)))).segments == ()
 
 
 def test_few_keyframes_are_told_with_the_frames_that_lack_one(take: Take) -> None:

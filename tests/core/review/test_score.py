@@ -12,19 +12,12 @@ from keymark.core.review.score import read_truth, score_points
 FRAMES = 12
 EYE_ALONG_Y = Camera.from_dict(CAMERA)
 TRUTH = BODY.points(BODY.pose(true_postures(FRAMES)))
-LEFT_ANKLE, RIGHT_ANKLE = (
-    BODY.skeleton.point_names.index("ankle.L"),
-    BODY.skeleton.point_names.index("ankle.R"),
-)
 
 
-def test_the_truth_scores_zero() -> None:
+def test_the_truth_scores_zero_and_a_shift_of_all_is_an_error_that_rooting_takes_away() -> None:
     score = score_points(TRUTH, TRUTH, [0, 11], EYE_ALONG_Y, np.zeros((FRAMES, 13)))
     assert (score.mpjpe, score.rooted, score.depth, score.image, score.jitter) == (0.0, 0.0, 0.0, 0.0, 0.0)
     assert (score.frames, score.keyframes, score.coverage95) == (FRAMES, 2, 1.0)
-
-
-def test_a_shift_of_all_is_an_error_that_rooting_takes_away() -> None:
     points = TRUTH.copy()
     points[1:] += [0.03, 0.0, 0.0]
     score = score_points(points, TRUTH, [0], EYE_ALONG_Y)
@@ -35,28 +28,21 @@ def test_a_shift_of_all_is_an_error_that_rooting_takes_away() -> None:
     assert score.coverage95 is None
 
 
-def test_depth_is_along_the_line_of_sight_and_image_across_it() -> None:
-    eye = EYE_ALONG_Y.matrix_world[:3, 3]
-    sight = (TRUTH - eye) / np.linalg.norm(TRUTH - eye, axis=-1, keepdims=True)
-    score = score_points(TRUTH + 0.05 * sight, TRUTH, [0], EYE_ALONG_Y)
-    assert score.depth == pytest.approx(50.0)
-    assert score.image == pytest.approx(0.0, abs=1e-6)
-
-
-def test_a_moving_camera_splits_each_frame_from_where_it_is() -> None:
+@pytest.mark.parametrize("moves", [False, True])
+def test_depth_is_along_the_line_of_sight_and_image_across_it(moves: bool) -> None:
     poses = np.repeat(EYE_ALONG_Y.matrix_world[None], FRAMES, axis=0)
-    poses[:, 0, 3] = np.linspace(-2.0, 2.0, FRAMES)
-    moving = Camera.from_dict({**CAMERA, "matrix_world_frames": poses.tolist()})
+    poses[:, 0, 3] += np.linspace(-2.0, 2.0, FRAMES) * moves
+    camera = Camera.from_dict({**CAMERA, "matrix_world_frames": poses.tolist()}) if moves else EYE_ALONG_Y
     sight = TRUTH - poses[:, None, :3, 3]
     sight /= np.linalg.norm(sight, axis=-1, keepdims=True)
-    score = score_points(TRUTH + 0.05 * sight, TRUTH, [0], moving)
+    score = score_points(TRUTH + 0.05 * sight, TRUTH, [0], camera)
     assert (score.depth, score.image) == (pytest.approx(50.0), pytest.approx(0.0, abs=1e-6))
 
 
 def test_jitter_and_skate_are_per_frame() -> None:
     standing = np.repeat(TRUTH[:1], FRAMES, axis=0)
     points = standing.copy()
-    points[:, LEFT_ANKLE, 0] += 0.01 * np.arange(FRAMES)
+    points[:, BODY.skeleton.point_names.index("ankle.L"), 0] += 0.01 * np.arange(FRAMES)
     score = score_points(points, standing, [0], EYE_ALONG_Y)
     assert score.skate == pytest.approx(5.0)  # the other ankle stands still
     assert score.jitter == pytest.approx(0.0, abs=1e-9)

@@ -26,10 +26,13 @@ def evidence(confidence: float = 0.4) -> FrameEvidence:
     )
 
 
-def test_the_middle_of_the_widest_gap_comes_first_where_nothing_else_differs() -> None:
+def test_the_middle_of_the_widest_gap_comes_first_unless_an_error_outweighs_it() -> None:
     worst = find_weak_frames(evidence(), [0, 20, 40, 100, 120])[0]
     assert worst.index == pytest.approx(70, abs=1)
     assert worst.reason is Reason.FAR and worst.marker is None and worst.strength == 1.0
+    uncertain = evidence()
+    uncertain.squared_error[5:16] = 30.0
+    assert 5 <= find_weak_frames(uncertain, [0, 20, 120])[0].index <= 15
 
 
 def test_believed_frames_are_not_named() -> None:
@@ -48,12 +51,6 @@ def test_weak_frames_are_few_spread_and_in_order_of_worth() -> None:
     assert np.diff(places).min() >= NEAREST_FRAMES
     strengths = [frame.strength for frame in found]
     assert strengths == sorted(strengths, reverse=True)
-
-
-def test_a_large_error_outweighs_a_wide_gap() -> None:
-    uncertain = evidence()
-    uncertain.squared_error[5:16] = 30.0
-    assert 5 <= find_weak_frames(uncertain, [0, 20, 120])[0].index <= 15
 
 
 def test_each_reason_is_told_where_it_holds() -> None:
@@ -85,16 +82,13 @@ def test_a_body_point_is_told_where_its_keypoints_are_the_reason() -> None:
     assert (reasons[1].reason, reasons[1].point, reasons[1].marker) == (Reason.FOOTAGE, "wrist.L", None)
 
 
-def test_frames_without_any_marker_or_keypoint_have_reasons_too() -> None:
+def test_a_method_without_evidence_or_uncertainty_is_judged_by_coverage() -> None:
     none = np.zeros((FRAMES, 0))
     assert find_weak_frames(replace(evidence(), quality=none, misfit=none), [0, 120])[0].reason is Reason.FAR
+    unknown = replace(evidence(), confidence=np.full(FRAMES, np.nan))
+    assert find_weak_frames(unknown, [0, 120])[0].index == pytest.approx(60, abs=1)
 
 
 def test_frames_before_the_first_and_after_the_last_keyframe_count() -> None:
     found = {frame.index for frame in find_weak_frames(evidence(), [60])}
     assert min(found) < 50 and max(found) > 70
-
-
-def test_a_method_without_uncertainty_is_judged_by_coverage() -> None:
-    unknown = replace(evidence(), confidence=np.full(FRAMES, np.nan))
-    assert find_weak_frames(unknown, [0, 120])[0].index == pytest.approx(60, abs=1)

@@ -8,7 +8,8 @@ from _characters import plain_character, plain_map
 from _controls import with_ik
 from keymark.core.feet.contacts import Contact
 from keymark.core.keys.tolerances import RESTING_M
-from keymark.core.retarget.character_motion import CharacterMotion, Similarity
+from keymark.core.retarget.character import Similarity
+from keymark.core.retarget.character_motion import CharacterMotion
 from keymark.core.retarget.controls.control_channels import Control
 from keymark.core.retarget.controls.control_plan import (
     ControlKind,

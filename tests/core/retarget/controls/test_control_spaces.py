@@ -59,7 +59,7 @@ def test_carriers_and_turners_are_found() -> None:
         assert space.movable == made.movable
         if made.movable:
             assert space.axes == pytest.approx(axes[index], abs=1e-9)
-        assert space.residual_rad < 1e-6 and space.is_placed(1.0)
+        assert space.residual_rad < 1e-6 and space.residual < 1e-3
 
 
 def test_what_is_not_rigid_says_by_how_much() -> None:

@@ -9,7 +9,7 @@ from keymark.core.arrays import Array
 from keymark.core.body.rotations import hinge
 from keymark.core.retarget.character import LIMBS, ROLES, Character, CharacterBone
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Switch
-from keymark.core.retarget.maps.mirroring import _other_names, mirrored_map
+from keymark.core.retarget.maps.mirroring import mirrored_map
 
 LEFT, RIGHT = (LIMBS[f"arm.{side}"] + LIMBS[f"leg.{side}"] for side in "LR")
 
@@ -120,9 +120,3 @@ def test_a_map_without_bones_stays_as_it_is() -> None:
     character = plain_character()
     empty = CharacterMap("Empty", {})
     assert mirrored_map(character, empty, "L") == (empty, ())
-
-
-def test_a_word_for_a_side_is_exchanged_wherever_it_stands() -> None:
-    assert {"Right_arm_Left", "Left_arm_Right"} < _other_names("Left_arm_Left")
-    assert "foot.R.low" in _other_names("foot.L.low")
-    assert _other_names("Spine") == set()

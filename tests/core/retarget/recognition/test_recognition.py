@@ -84,8 +84,7 @@ def test_names_of_every_convention_are_recognized(convention: str) -> None:
 
 
 def test_a_rig_without_names_is_recognized_by_its_shape() -> None:
-    character = renamed(plain_character())
-    found = recognize(character)
+    found = recognize(renamed(plain_character()))
     numbers = {bone.name: f"bone_{n:03}" for n, bone in enumerate(plain_character().bones)}
     truth = {role: tuple(numbers[b] for b in bones) for role, bones in plain_truth(plain_character()).items()}
     assert wrong_roles(found, truth) == []
@@ -169,56 +168,40 @@ def swapped(character: Character) -> Character:
     return replace(character, bones=bones)
 
 
-def test_the_shape_decides_where_names_are_mirrored() -> None:
-    found = recognize(swapped(plain_character()))
-    assert found.character_map.bones("upper_arm.L") == ("upper_arm.R",)
-    assert any("left and right" in doubt and "against the names" in doubt for doubt in found.doubts)
-
-
-def test_names_decide_where_only_feet_are_against_them() -> None:
-    straight = build(Plan(elbow_bend_deg=0.0, knee_bend_deg=0.0, fingers=0)).character
-    found = recognize(swapped(straight))
-    assert found.character_map.bones("upper_arm.L") == ("upper_arm.L",)
-    assert any("left and right" in doubt for doubt in found.doubts)
-
-
-def test_a_presets_sides_are_exchanged_where_the_shape_is_against_them() -> None:
-    names = convention_names("Mixamo")
-    other = {"L": "R", "R": "L"}
+def test_the_shape_decides_where_names_are_mirrored_unless_only_feet_are_against_them() -> None:
+    names, other = convention_names("Mixamo"), {"L": "R", "R": "L"}
     mirrored = {key: names[key[:-1] + other.get(key[-1], key[-1]) if "." in key else key] for key in names}
-    found = recognize(plain_character(names=mirrored))
-    assert found.character_map.preset == "mixamo"
-    assert found.character_map.bones("upper_arm.L") == ("mixamorig:RightArm",)
-    assert any("left and right" in doubt for doubt in found.doubts)
+    straight = build(Plan(elbow_bend_deg=0.0, knee_bend_deg=0.0, fingers=0)).character
+    for character, preset, arm, words in (
+        (swapped(plain_character()), None, "upper_arm.R", "against the names"),
+        (plain_character(names=mirrored), "mixamo", "mixamorig:RightArm", "against the names"),
+        (swapped(straight), None, "upper_arm.L", "although the feet"),
+    ):
+        found = recognize(character)
+        assert (found.character_map.preset, found.character_map.bones("upper_arm.L")) == (preset, (arm,))
+        assert any("left and right" in doubt and words in doubt for doubt in found.doubts)
 
 
 def test_a_preset_alone_is_enough_where_the_shape_says_nothing() -> None:
     character = plain_character(names=convention_names("Mixamo"))
-    flat = replace(
-        character,
-        bones=tuple(
-            replace(bone, parent=min(bone.parent, 0), tail=bone.head + [0.1, 0.0, 0.0])
-            for bone in character.bones
-        ),
+    bones = (
+        replace(bone, parent=min(bone.parent, 0), tail=bone.head + [0.1, 0.0, 0.0])
+        for bone in character.bones
     )
+    flat = replace(character, bones=tuple(bones))
     with pytest.raises(InputError):
         recognize(renamed(flat))
     found = recognize(flat)
-    assert found.character_map.preset == "mixamo" and found.character_map.bones("foot.L") == (
-        "mixamorig:LeftFoot",
-    )
+    assert found.character_map.preset == "mixamo"
+    assert found.character_map.bones("foot.L") == ("mixamorig:LeftFoot",)
     assert any("no body was recognized" in doubt for doubt in found.doubts)
 
 
-def test_a_hand_may_be_missing_on_one_side() -> None:
-    character = without(plain_character(), "hand.R")
-    found = recognize(character)
+def test_a_hand_may_be_missing_on_one_side_and_the_root_is_found() -> None:
+    found = recognize(without(plain_character(), "hand.R"))
     assert found.character_map.bones("hand.L") == ("hand.L",)
     assert "hand.R" not in found.character_map.roles
     assert any("hand.R" in doubt for doubt in found.doubts)
-
-
-def test_the_root_is_found() -> None:
     assert recognize(plain_character(root="Base")).character_map.root == "Base"
     assert recognize(plain_character()).character_map.root is None
 
@@ -261,14 +244,13 @@ def quadruped(names: Mapping[str, str] | None = None) -> Character:
 
 def chain(count: int) -> Character:
     """A rope."""
-    bones = []
     template = plain_character().bones[0]
-    for number in range(count):
-        rest = np.eye(4)
-        rest[:3, 3] = [0.0, 0.0, 0.1 * number]
-        bones.append(
-            replace(template, name=f"rope{number}", parent=number - 1, rest=rest, tail=rest[:3, 3] + 0.1)
-        )
+    rests = np.tile(np.eye(4), (count, 1, 1))
+    rests[:, 2, 3] = 0.1 * np.arange(count)
+    bones = (
+        replace(template, name=f"rope{n}", parent=n - 1, rest=rest, tail=rest[:3, 3] + 0.1)
+        for n, rest in enumerate(rests)
+    )
     return Character("Rope", tuple(bones))
 
 
@@ -346,29 +328,28 @@ def test_the_root_of_the_controls_is_the_root_of_the_character() -> None:
     assert find_root(character, replace(found, fk=fk), np.array([0.0, 0.0, 1.0])) == "root"
 
 
+def with_loose_feet(shift: tuple[float, float, float]) -> Character:
+    """Feet without toes and without a parent, moved [m]."""
+    bones = []
+    for bone in plain_character(without=("toe",)).bones:
+        if bone.name.startswith("foot"):
+            bone = replace(bone, rest=bone.rest + 0.0, parent=-1)
+            bone.rest[:3, 3] += shift
+        bones.append(bone)
+    return Character("Robot", tuple(bones))
+
+
 @pytest.mark.parametrize("drop_m", [0.0, 0.04, 0.08])
 @pytest.mark.parametrize("named", [True, False])
 def test_feet_without_a_parent_are_those_of_the_legs(drop_m: float, named: bool) -> None:
-    bones = []
-    for bone in plain_character(without=("toe",)).bones:
-        rest = bone.rest.copy()
-        if bone.name.startswith("foot"):
-            rest[2, 3] -= drop_m
-        bones.append(replace(bone, rest=rest, parent=-1 if bone.name.startswith("foot") else bone.parent))
-    character = Character("Robot", tuple(bones))
-    known = recognize(character if named else renamed(character)).character_map
-    feet = [character.bones[character.index[f"foot.{side}"]].head for side in "LR"]
+    character = with_loose_feet((0.0, 0.0, -drop_m))
     looked_at = character if named else renamed(character)
+    known = recognize(looked_at).character_map
+    feet = [character.bone(f"foot.{side}").head for side in "LR"]
     found = [looked_at.bone(str(known.bone(f"foot.{side}"))).head for side in "LR"]
     np.testing.assert_allclose(np.sort(np.array(found), axis=0), np.sort(np.array(feet), axis=0))
 
 
 def test_feet_far_from_any_leg_are_refused_for_what_they_are() -> None:
-    bones = []
-    for bone in plain_character(without=("toe",)).bones:
-        rest = bone.rest.copy()
-        if bone.name.startswith("foot"):
-            rest[1, 3] -= 3.0
-        bones.append(replace(bone, rest=rest, parent=-1 if bone.name.startswith("foot") else bone.parent))
     with pytest.raises(InputError, match=r"the feet .foot\.L. and .foot\.R. have no parent"):
-        recognize(Character("Robot", tuple(bones)))
+        recognize(with_loose_feet((0.0, -3.0, 0.0)))

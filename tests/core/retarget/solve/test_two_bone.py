@@ -32,32 +32,23 @@ def test_a_limb_reaches_its_goal_and_keeps_its_lengths() -> None:
     )
 
 
-def test_a_limb_that_is_where_it_shall_be_stays() -> None:
+def test_a_limb_that_is_where_it_shall_be_stays_and_a_straight_one_knows_where_it_bends() -> None:
     limb = leg(np.linspace(0.05, 2.4, 40))
     solved = reach_for(limb, limb.start, limb.end)
     np.testing.assert_allclose(solved.upper_turn, limb.upper_turn, atol=1e-6)
     np.testing.assert_allclose(solved.middle, limb.middle, atol=1e-6)
-
-
-def test_a_straight_limb_knows_where_it_bends() -> None:
     limb = leg(np.zeros(3))
-    goal = limb.end * (1.0 - np.array([[1e-3], [1e-2], [1e-1]]))
-    solved = reach_for(limb, limb.start, goal)
+    solved = reach_for(limb, limb.start, limb.end * (1.0 - np.array([[1e-3], [1e-2], [1e-1]])))
     np.testing.assert_allclose(unit(solved.middle * [1.0, 1.0, 0.0]), [[0.0, -1.0, 0.0]] * 3, atol=1e-6)
     np.testing.assert_allclose(limb.bend, [[0.0, -1.0, 0.0]] * 3, atol=1e-9)
 
 
-def test_a_goal_that_leaves_the_reach_stretches_the_limb_smoothly() -> None:
+def test_a_goal_that_leaves_the_reach_stretches_the_limb_smoothly_or_as_the_performers() -> None:
     wanted = np.linspace(0.5, 1.2, 500)
     extension = stretched_m(wanted, np.zeros(500), 0.75)
-    assert (np.diff(extension) > 0.0).all() or extension[-1] < 0.75
-    assert (np.diff(extension) >= 0.0).all()
-    assert extension.max() < 0.75
+    assert (np.diff(extension) >= 0.0).all() and extension.max() < 0.75
     assert np.abs(np.diff(extension, 2)).max() < 1e-4
     np.testing.assert_allclose(extension[wanted < 0.7], wanted[wanted < 0.7])
-
-
-def test_a_limb_follows_freely_as_far_as_the_performers_is_stretched() -> None:
     wanted = np.array([0.74, 0.745])
     np.testing.assert_allclose(stretched_m(wanted, np.full(2, 0.748), 0.75), wanted)
 
