@@ -30,6 +30,10 @@ class ControlSpace:
     residual_rad: float  # largest turn that the space does not explain
     residual: float  # largest distance that it does not explain, in the armature's units
 
+    def placed_by_turner(self, origin: Array) -> "ControlSpace":
+        """The space where the turner carries it at a place (3,) in its axes, and locations do nothing."""
+        return replace(self, carrier=self.turner, origin=origin, axes=np.zeros((3, 3)), residual=0.0)
+
     @property
     def movable(self) -> bool:
         """Whether its location channels place it."""

@@ -229,6 +229,5 @@ def _placed(
         return control
     if space.turner != NOTHING and space.residual_rad < NOTICEABLE_RAD:
         turner, own = _rests(armature_object, [controls[space.turner].name, control.name])
-        origin = (np.linalg.inv(turner) @ own)[:3, 3]
-        space = replace(space, carrier=space.turner, origin=origin, residual=0.0)
+        return replace(control, space=space.placed_by_turner((np.linalg.inv(turner) @ own)[:3, 3]))
     return replace(control, space=replace(space, axes=np.zeros((3, 3))))
