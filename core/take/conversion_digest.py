@@ -14,7 +14,7 @@ from ..video.image_sequence import find_images
 from .conversion_settings import METHODS, ConversionSettings
 from .description import FILE_FIELDS, SETTING_FIELDS, Description, keypoint_files
 
-FORMAT = 4
+FORMAT = 5
 """Raised whenever the same input gives another result without a new version."""
 
 

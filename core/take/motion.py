@@ -248,16 +248,14 @@ def write_motion(motion: Motion, path: Path) -> None:
         uncertainty["covariance_mm2"] = dict(zip(names, spread, strict=True))
     hands: dict[str, Any] = {}
     if motion.hands is not None:
-        curls, bend, sure = (
-            np.swapaxes(own, 0, 1) for own in (motion.hands.curls, motion.hands.bend, motion.hands.sure)
-        )
-        curls = np.swapaxes(curls, 1, 2).reshape(len(FINGER_NAMES), -1)
-        for name, keys, own in (
-            ("curls_rad", FINGER_NAMES, curls),
-            ("wrists_rad", SIDES, bend),
-            ("hands_seen", SIDES, sure),
-        ):
-            hands[name] = dict(zip(keys, _rows(rounded(own), empty), strict=True))
+        own = motion.hands
+        lists = {
+            "curls_rad": (FINGER_NAMES, own.curls.reshape(len(own.sure), -1)),
+            "wrists_rad": (SIDES, own.bend),
+            "hands_seen": (SIDES, own.sure),
+        }
+        for name, (keys, values) in lists.items():
+            hands[name] = dict(zip(keys, _rows(rounded(np.swapaxes(values, 0, 1)), empty), strict=True))
     file = MotionFile(
         fps=motion.fps,
         frame_start=motion.frame_start,

@@ -59,6 +59,12 @@ def test_a_motion_is_read_back(motion: Motion, tmp_path: Path) -> None:
     assert back.hands is not None and motion.hands is not None
     for name in ("curls", "bend", "sure"):
         np.testing.assert_allclose(getattr(back.hands, name), getattr(motion.hands, name), atol=1e-6)
+    write_motion(motion.emptied(np.arange(FRAMES) != 0), tmp_path / "motion.json")
+    absent = read_motion(tmp_path / "motion.json")
+    assert absent.empty == (0,) and absent.hands is not None
+    np.testing.assert_array_equal(absent.hands.curls[0], absent.hands.curls[1])
+    shown = absent.without_absence().hands
+    assert shown is not None and len(shown.sure) == FRAMES - 1
     write_motion(replace(motion, hands=None), tmp_path / "motion.json")
     assert read_motion(tmp_path / "motion.json").hands is None
 
