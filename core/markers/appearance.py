@@ -36,10 +36,7 @@ class Appearance:
     steady: bool  # whether the background is static, so that pixels that differ from it are foreground
 
     def with_parts(self, images: list[Image], labels: list[NDArray[np.int8]], parts: int) -> "Appearance":
-        """This appearance with the colors of O parts learned from frames in which the body is known best.
-
-        `labels` are as in `learn_appearance`.
-        """
+        """This appearance with the colors of O parts learned from frames in which the body is known best."""
         nothing = np.ones(labels[0].shape, dtype=np.bool_)
         own = _log_densities(_counts(images, labels, [nothing] * len(images), parts)[:-1])
         return replace(self, parts=np.concatenate([own, self.parts[-1:]]))
@@ -102,16 +99,14 @@ def learn_appearance(images: list[Image], labels: list[NDArray[np.int8]], parts:
 def _counts(
     images: list[Image], labels: list[NDArray[np.int8]], body: Iterable[BoolArray], parts: int
 ) -> IndexArray:
-    """(O + 1, cells) how often each color was seen inside each part and, last, well outside the body.
-
-    Of the background every other pixel counts.
-    """
+    """(O + 1, cells) how often each color was seen inside each part and, last, well outside the body."""
     seen, kernel = [], np.ones((3, 3), dtype=np.uint8)
     for image, label, near in zip(images, labels, body, strict=True):
         shifted = (label + 1).astype(np.uint8)
         interior = np.asarray(cv2.erode(shifted, kernel) == cv2.dilate(shifted, kernel))
         rows, columns = np.nonzero(interior & (label != NO_PART))
         seen.append(label[rows, columns].astype(np.intp) * CELLS + histogram_cells(image[rows, columns], 5))
+        # Of the background every other pixel counts.
         seen.append(parts * CELLS + histogram_cells(image[::2, ::2][~near[::2, ::2]], 5))
     return np.bincount(np.concatenate(seen), minlength=(parts + 1) * CELLS).reshape(parts + 1, CELLS)
 

@@ -64,10 +64,7 @@ def cell_colors(cells: Int32Array | None = None) -> Array:
 
 
 def cell_chromaticity(cells: Int32Array) -> tuple[SingleArray, SingleArray]:
-    """Chromaticity (N, 2) and offset luma (N,) of the centers of cells.
-
-    Single precision is plenty for a color and takes half the time.
-    """
+    """Chromaticity (N, 2) and offset luma (N,) of the centers of cells; single precision is plenty."""
     levels = LEVELS.astype(np.float32)
     blue, green, red = (levels.take(cells >> shift & SIDE - 1) for shift in (0, 6, 12))
     luma = green * np.float32(LUMA_BGR[1])
@@ -117,10 +114,7 @@ class ColorDistribution:
         return squared, -0.5 * (squared + normalizer)
 
     def within_reach(self, chroma: ColorArray, luma: ColorArray) -> IndexArray:
-        """Indices of all of N colors nearer than OUTLIER_DISTANCE, and of some beyond.
-
-        A fast bound: no component of a distance exceeds the whole.
-        """
+        """Indices of all of N colors nearer than OUTLIER_DISTANCE, and of some beyond: a bound."""
         light = np.log(luma) - self.log_luma
         widest = OUTLIER_DISTANCE * (float(self.covariance[0, 0]) + (NOISE_LEVELS / luma) ** 2)
         offset = chroma[..., 0] - float(self.mean[0]) - float(self.slope[0]) * light

@@ -139,11 +139,7 @@ class RegionFields(Record):
 def ignored_regions(
     regions: Sequence[RegionFields], size: tuple[int, int], frame_start: int, source: str
 ) -> tuple[IgnoredRegion, ...]:
-    """Regions of a take, from the fields that `source` gives, for footage of (width, height).
-
-    Raises:
-        InputError: One lies beside the picture.
-    """
+    """Regions of a take, from the fields that `source` gives, for footage of (width, height)."""
     made, farthest = [], max(size)
     for number, region in enumerate(regions):
         where = f"{source}: {IGNORED_REGIONS}[{number}]"

@@ -104,9 +104,6 @@ def regions_of_frame(
 
     The frame is that at a time from the first; its index counts for regions that are ignored in some frames
     only. Expected regions are those of this frame, (1, M).
-
-    Raises:
-        InputError: A marker's color matches nothing in the clip, or there is no such frame.
     """
     image = FrameReader(clip).image_at(time_s)
     if image is None:

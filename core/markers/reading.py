@@ -172,9 +172,6 @@ def read_clip(
     same; if only the expected regions differ and the colors would be learned alike, its detections are
     assigned to the markers anew. The result is the same to the last digit. Whoever is to `watch` sees each
     frame if the clip is decoded. Yields the fraction done.
-
-    Raises:
-        InputError: The clip shows nothing, a marker's color matches nothing, or a frame cannot be read.
     """
     yield 0.0
     key = reading_key(clip.path, clip.fps, styles, expected, ignored)

@@ -167,10 +167,7 @@ def find_regions(
 
 
 def color_masks(image: Image, model: ColorModel, ignored: Image | None = None) -> SingleArray:
-    """Coverage of each pixel of the measuring grid by each color, (C, rows, columns) in 0..1.
-
-    For previews: as tracking measures it, clutter of the markers' colors included.
-    """
+    """Coverage (C, rows, columns) of the measuring grid by each color, as tracking measures it."""
     grid = measuring_image(image, halvings((image.shape[1], image.shape[0])))
     label = model.labels(smooth(grid))
     if ignored is not None:
@@ -201,10 +198,7 @@ class _Components(NamedTuple):
 
 
 def _components(atlas: Atlas, model: ColorModel) -> _Components:
-    """Connected components of each panel's color, with one-pixel holes closed.
-
-    Specks and components without a sure core are left out.
-    """
+    """Connected components of each panel's color, holes of a pixel closed, without specks and unsure ones."""
     cells = cell_index(smooth(atlas.picture))
     label, probability = model.label.take(cells), model.probability.take(cells)
     used = np.arange(len(label))[:, None] < atlas.height
@@ -294,10 +288,7 @@ def ellipse_outline(centroid: ArrayLike, second_moment: ArrayLike, corners: int 
 
 
 def mask_outlines(mask: SingleArray, scale: float) -> list[Array]:
-    """Closed outlines (N, 2) [px] of the area that a mask covers at least half, the longest first.
-
-    `scale` are pixels of the image to one of the mask.
-    """
+    """Closed outlines (N, 2) [px], `scale` to one of the mask, of what it covers half, the longest first."""
     fine = cv2.resize(mask, None, fx=2, fy=2, interpolation=cv2.INTER_LINEAR)
     inside = (np.asarray(fine) >= 0.5).view(np.uint8)
     found, _ = cv2.findContours(inside, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)

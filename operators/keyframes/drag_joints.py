@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 import numpy as np
-from bpy.types import Context, Event, PropertyGroup, Scene
+from bpy.types import Context, Event, PropertyGroup
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN, limb_of
@@ -255,6 +255,8 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         self._show(context)
 
     def _begin(self, context: Context, take: PropertyGroup, view: WorldInRegion, event: Event) -> None:
+        from ..bridge.keyframes import read_keyframes
+
         joint = self._handles.hovered
         if joint is None:
             return
@@ -265,7 +267,13 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             if position is not None:
                 if not self._done:
                     self._done, self._frame = [], context.scene.frame_current_final
-                    self._read_keyframes(context.scene, take, body)
+                    keyed = TakeState(take).keyed.all
+                    first = floor(min((*keyed, self._frame)))  # frames are counted from it
+                    self._index, self._keyframes = round(self._frame - first), ()
+                    if keyed:
+                        frames = first + np.arange(ceil(keyed[-1]) - first + 1.0)
+                        source = take.armature, take.keyframe_action, body, frames
+                        self._keyframes = read_keyframes(context.scene, *source).keyframes
                 pose, mouse = pose_of(take.armature), (event.mouse_x, event.mouse_y)
                 self._drag = JointDrag(joint, view, start, position, body, posture, pose, mouse)
 
@@ -299,18 +307,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             drag.show(take)
             self._show(context)
         return {"RUNNING_MODAL"}
-
-    def _read_keyframes(self, scene: Scene, take: PropertyGroup, body: "Body") -> None:
-        """Read all keyframes, counted from the first of them and the current frame."""
-        from ..bridge.keyframes import read_keyframes
-
-        keyed = TakeState(take).keyed.all
-        first = floor(min((*keyed, self._frame)))
-        self._index, self._keyframes = round(self._frame - first), ()
-        if keyed:
-            frames = first + np.arange(ceil(keyed[-1]) - first + 1.0)
-            source = take.armature, take.keyframe_action, body, frames
-            self._keyframes = read_keyframes(scene, *source).keyframes
 
     def _show(self, context: Context) -> None:
         """Show the keys, and the path of the joint dragged last around this frame: before and after."""
