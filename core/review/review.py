@@ -29,7 +29,6 @@ from .weak_frames import Reason, WeakFrame, find_weak_frames
 __all__ = ["Reason", "Review", "WeakFrame", "review"]
 
 STAGE = "Judging the motion"
-CHUNK_FRAMES = 100  # so few that a job can be canceled within some hundredths of a second
 DRAWN = ("observed", "predicted", "contours")
 WEAK = ("index", "reason", "strength", "marker", "point")
 
@@ -133,9 +132,10 @@ def _predictions(model: RegionModel, pose: Pose, centroid: Array) -> Part[tuple[
     """Predicted outlines (F, M, K, 2) and the centroids' distances (F, M) from observed ones [px]."""
     outlines = np.full((*centroid.shape[:2], CORNERS, 2), np.nan)
     distance = np.full(centroid.shape[:2], np.nan)
-    for first in range(0, len(centroid), CHUNK_FRAMES):
+    few = 100  # so few frames that a job can be canceled within some hundredths of a second
+    for first in range(0, len(centroid), few):
         yield first / len(centroid)
-        chunk = slice(first, first + CHUNK_FRAMES)
+        chunk = slice(first, first + few)
         frame = np.arange(len(centroid))[chunk]
         predicted = model.evaluate(pose[chunk], frame)
         seen = predicted.visible > NOISE.least_visible

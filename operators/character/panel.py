@@ -146,7 +146,18 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
             buttons.operator("keymark.add_character", icon="COMMUNITY")
             buttons.operator("keymark.add_rigify_human", icon="ARMATURE_DATA")
             return
-        column = _draw_choice(body, take, character)
+        row = body.row()
+        if len(take.characters) == 1:
+            buttons = row.row(align=True)
+            buttons.prop(character, "armature", text="")
+        else:
+            row.template_list(
+                "KEYMARK_UL_characters", "", take, "characters", take, "active_character", rows=2, maxrows=4
+            )
+            buttons = row.column(align=True)
+        buttons.operator("keymark.add_character", text="", icon="ADD")
+        buttons.operator("keymark.remove_character", text="", icon="REMOVE")
+        column = body.column()
         if character.armature is None:
             draw_sentence(column, context, "Choose the armature that is to move", "FORWARD")
             if len(take.characters) > 1:
@@ -164,22 +175,6 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
             row.operator("keymark.retarget", icon="COMMUNITY")
         if len(character.results):
             _draw_results(column, context, state, character)
-
-
-def _draw_choice(body: UILayout, take: PropertyGroup, character: PropertyGroup) -> UILayout:
-    row = body.row()
-    single = len(take.characters) == 1
-    if single:
-        buttons = row.row(align=True)
-        buttons.prop(character, "armature", text="")
-    else:
-        row.template_list(
-            "KEYMARK_UL_characters", "", take, "characters", take, "active_character", rows=2, maxrows=4
-        )
-        buttons = row.column(align=True)
-    buttons.operator("keymark.add_character", text="", icon="ADD")
-    buttons.operator("keymark.remove_character", text="", icon="REMOVE")
-    return body.column()
 
 
 def _draw_results(column: UILayout, context: Context, state: TakeState, character: PropertyGroup) -> None:

@@ -19,8 +19,6 @@ from ..recognition.recognize import recognize
 from ..retarget_record import GIVEN, RECOGNIZED, SAVED
 from .character_map import CharacterMap, read_character_map
 
-MOST_NAMED = 5  # missing bones that are named in a sentence
-
 
 def missing_bones(character_map: CharacterMap, character: Character) -> tuple[str, ...]:
     """Bones that the map names and the character lacks, those of roles first."""
@@ -37,12 +35,12 @@ def check_map(character_map: CharacterMap, character: Character, where: str = ""
     if missing:
         raise InputError(
             f"{name} is for another character: '{character.name}' has no bone "
-            f"{listed(map(shown, missing), MOST_NAMED)}; choose a map made for its bones, or recognize them"
+            f"{listed(map(shown, missing), 5)}; choose a map made for its bones, or recognize them"
         )
     absent = [role for role in REQUIRED if role not in character_map.roles]
     if absent:
         raise InputError(
-            f"{name} gives no bones for {listed(absent, MOST_NAMED)} of '{character.name}'; "
+            f"{name} gives no bones for {listed(absent, 5)} of '{character.name}'; "
             f"a character map needs {listed(REQUIRED)}"
         )
 
