@@ -3,7 +3,9 @@
 Nothing is shifted without a word.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -105,16 +107,17 @@ def _everyone(
     # What a network guesses of a motion beyond the picture is none of a point that is seen.
     beyond = len(numbers) - (len(detected.second.names) if detected.second and detected.second.motion else 0)
     hint[:, :beyond][~seen[:, :beyond]] = np.nan
-    face = no_faces(len(persons)) if any(person.face is not None for person in persons) else None
-    for row, person in enumerate(persons):
-        if face is not None and person.face is not None:
-            face[row] = person.face * [*scale, 1.0, 1.0, 1.0, 1.0]
-    hands = no_hands(len(persons)) if any(person.hands is not None for person in persons) else None
-    for row, person in enumerate(persons):
-        if hands is not None and person.hands is not None:
-            hands[row] = person.hands
-            hands[row, :, :2] *= scale
-    return SeenPeople(place, score, hint, face, hands), notes + score_notes
+    face = _looks([person.face for person in persons], no_faces)
+    hands = _looks([person.hands for person in persons], no_hands)
+    looks = SeenPeople(place, score, hint, face, hands).moved(partial(np.multiply, scale))
+    return replace(looks, pixel=place), notes + score_notes
+
+
+def _looks(own: Sequence[Array | None], none: Callable[[int], Array]) -> Array | None:
+    """Looks at the face or the hands of each person; `none` of those who were not looked at."""
+    if all(look is None for look in own):
+        return None
+    return np.stack([none(1)[0] if look is None else look for look in own])
 
 
 def _scale(

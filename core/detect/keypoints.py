@@ -4,7 +4,7 @@ The principal points of the skeleton, and what detectors add: face, spine, hands
 the performer's own.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated
 
@@ -185,6 +185,14 @@ class SeenPeople:
     def nobody(cls, points: int) -> "SeenPeople":
         """No person at all, H = 0, by a source of so many points."""
         return cls(np.zeros((0, points, 2)), np.zeros((0, points)), np.zeros((0, points, 3)))
+
+    def moved(self, place: Callable[[Array], Array]) -> "SeenPeople":
+        """The same with all places (..., 2) [px] as a function has them; faces and hands go along."""
+        looks = (
+            None if own is None else np.concatenate([place(own[..., :2]), own[..., 2:]], axis=-1)
+            for own in (self.face, self.hands)
+        )
+        return SeenPeople(place(self.pixel), self.score, self.hint_m, *looks)
 
     def only(self, rows: Sequence[int] | IndexArray) -> "SeenPeople":
         """Some of them alone."""

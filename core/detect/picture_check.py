@@ -272,11 +272,11 @@ def applied(people: People, finding: PictureFinding) -> People:
     nobody = SeenPeople.nobody(len(names))
     frames = [nobody] * max(-finding.shift, 0)
     for frame in people.frames[max(finding.shift, 0) : len(people.frames) + min(finding.shift, 0)]:
-        pixel = scale * frame.pixel
-        hint = frame.hint_m
-        if finding.mirrored:
-            pixel, hint = size * [1.0, 0.0] + pixel * [-1.0, 1.0], hint * [-1.0, 1.0, 1.0]
-        frames.append(SeenPeople(pixel, frame.score, hint))
+        seen = frame.moved(partial(np.multiply, scale))
+        if finding.mirrored:  # a face or a hand is no longer that of the side it was looked at for
+            pixel = size * [1.0, 0.0] + seen.pixel * [-1.0, 1.0]
+            seen = SeenPeople(pixel, seen.score, seen.hint_m * [-1.0, 1.0, 1.0])
+        frames.append(seen)
     frames += [nobody] * max(finding.shift, 0)
     ends = (max(-finding.shift, 0), len(frames) - max(finding.shift, 0))
     silent = (*range(ends[0]), *range(ends[1], len(frames)))

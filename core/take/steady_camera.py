@@ -5,6 +5,7 @@ and pictures are taken back by it, so that all that follows knows a camera that 
 """
 
 from dataclasses import replace
+from functools import partial
 
 import cv2
 import numpy as np
@@ -102,24 +103,10 @@ def steadied_picture(image: Image, factor: float, reading: Reading, frame: int) 
 
 def _people(people: People, back: Array) -> People:
     frames = tuple(
-        replace(
-            seen,
-            pixel=moved(own, seen.pixel),
-            face=_looks(seen.face, own),
-            hands=_looks(seen.hands, own),
-        )
-        if len(seen.pixel)
-        else seen
+        seen.moved(partial(moved, own)) if len(seen.pixel) else seen
         for seen, own in zip(people.frames, back, strict=False)
     )
     return replace(people, frames=(*frames, *people.frames[len(frames) :]))
-
-
-def _looks(looks: Array | None, back: Array) -> Array | None:
-    """Faces or hands whose places are moved: they turn about the lines of sight."""
-    if looks is None:
-        return None
-    return np.concatenate([moved(back, looks[..., :2]), looks[..., 2:]], axis=-1)
 
 
 def _tracks(tracks: RegionTracks, back: Array) -> RegionTracks:

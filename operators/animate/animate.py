@@ -25,7 +25,7 @@ from .update import StagedOperator
 if TYPE_CHECKING:
     from ...core.progress import Job
 
-TURNS = [("AUTO", "So That People Are Upright", "By what is seen; MP4 and QuickTime alone")]
+TURNS = [("AUTO", "Upright", "So that people are upright; MP4 and QuickTime alone")]
 TURNS += [
     (str(turn), f"{turn}°" if turn else "As It Is", f"Clockwise by {turn} degrees") for turn in TURNS_DEG
 ]

@@ -1,5 +1,6 @@
 """*Animate*: from a clip and a height to a take whose every step is there, and what an early end leaves."""
 
+import shutil
 from pathlib import Path
 
 import bpy
@@ -12,7 +13,7 @@ from bpy.types import Object, PropertyGroup
 from keymark.core.camera.camera_fields import CameraPlacement
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.operators.animate import NOTHING
-from keymark.operators.animate.stages import animate, follow_found_file
+from keymark.operators.animate.stages import animate, follow_found_file, turned_copy
 from keymark.operators.bridge.camera_placement import read_placement
 from keymark.operators.follow.evidence import keypoint_path
 from keymark.operators.footage.load_footage import load_into_take
@@ -111,3 +112,38 @@ def test_a_clip_that_is_none_changes_nothing(tmp_path: Path, name: str) -> None:
     with pytest.raises(RuntimeError):
         bpy.ops.keymark.animate(filepath=path, character=NOTHING)
     assert not len(bpy.context.scene.keymark.takes) and not bpy.data.movieclips
+
+
+def test_the_named_part_is_animated_and_the_take_keeps_it(clip: Path) -> None:
+    part = {"is_part": True, "first_frame": 8, "last_frame": 30, "performer": 1}
+    bpy.ops.keymark.animate(filepath=str(clip), stature=1.75, character=NOTHING, **part)
+    take = only_take()
+    assert take.part.inputs == {"shot": (8, 30), "performer": 1}
+    assert "in 17 frames" in take.review.unseen
+    assert bpy.ops.keymark.reconstruct() == {"FINISHED"} and "in 17 frames" in take.review.unseen
+    take.part.last_frame = 300
+    with pytest.raises(
+        RuntimeError, match="Frames 8 to 300 are not all in hall.mp4, whose frames are 1 to 40"
+    ):
+        bpy.ops.keymark.reconstruct()
+
+
+def test_a_turned_copy_is_loaded_upright(clip: Path) -> None:
+    copy = turned_copy(clip, 90)
+    assert copy == clip.with_name("hall.turned90.mp4") and copy.stat().st_size == clip.stat().st_size
+    take = load_into_take(bpy.context, copy, False)
+    width, height = bpy.data.movieclips.load(str(clip)).size
+    assert tuple(take.clip.size) == (height, width) and width != height
+
+
+def test_a_picture_on_its_side_is_turned_by_itself(repository: Path, tmp_path: Path) -> None:
+    """By `turn4_lying_video_without_a_flag`."""
+    source = repository.parent / "shared" / "failing" / "turn4_lying_video_without_a_flag" / "sideways.mp4"
+    if not source.is_file():
+        pytest.skip("no shared/failing")
+    bpy.ops.keymark.animate(filepath=str(shutil.copyfile(source, tmp_path / source.name)), stature=1.76)
+    take = only_take()
+    assert Path(bpy.path.abspath(take.clip.filepath)).name == "sideways.turned270.mp4"
+    assert tuple(take.clip.size) == (320, 240) and take.name == "sideways"
+    hips, head = (take.armature.pose.bones[name].head.z for name in ("pelvis", "head"))
+    assert 0.8 < hips < 1.0 and head > hips + 0.3

@@ -112,6 +112,18 @@ def test_another_time_is_shifted_back(glimpses: Glimpses, late: int, words: str)
     assert mended.silent == silent and not any(len(mended.frames[index].pixel) for index in silent)
 
 
+def test_faces_and_hands_go_along_with_what_is_scaled_and_shifted() -> None:
+    face, hands = np.arange(6.0)[None], np.arange(44.0).reshape(1, 2, 22)
+    frames = tuple(
+        replace(frame, face=face + index, hands=hands) for index, frame in enumerate(people().frames)
+    )
+    mended = applied(replace(people(), frames=frames), PictureFinding((2.0, 3.0), shift=4)).frames[5]
+    np.testing.assert_array_equal(mended.face, (face + 9) * [2.0, 3.0, 1.0, 1.0, 1.0, 1.0])
+    assert mended.hands is not None
+    np.testing.assert_array_equal(mended.hands[..., :2], hands[..., :2] * [2.0, 3.0])
+    np.testing.assert_array_equal(mended.hands[..., 2:], hands[..., 2:])
+
+
 def test_another_rate_is_refused(glimpses: Glimpses) -> None:
     slow = people(frames=np.arange(FRAMES) // 2)
     with pytest.raises(InputError, match=r"there/seen.json: it runs through the motion 0.5 times as fast"):
