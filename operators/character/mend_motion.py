@@ -1,5 +1,6 @@
 """Motions from elsewhere: loaded from a file, and mended without footage."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
@@ -36,6 +37,16 @@ def animated(context: bpy.types.Context, _state: object) -> str | None:
     return None if moving else f"'{active.name}' has no Action; choose the one that moves it first"
 
 
+def _actions(operator: bpy.types.Operator, context: bpy.types.Context, _typed: str) -> list[str]:
+    """The names of the Actions in the file that is chosen, in the file browser too."""
+    from ..bridge.motions.action_names import action_names
+
+    chosen, space = Path(operator.filepath), context.space_data
+    if isinstance(space, bpy.types.SpaceFileBrowser) and space.params is not None:
+        chosen = Path(space.params.directory.decode()) / space.params.filename
+    return action_names(chosen)
+
+
 class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
     """Load a motion that another program made: an animated armature, or points by name"""
 
@@ -46,7 +57,12 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
     object: Text(
         "Armature", "Name of its armature, ROOT or subject, where the file has several", options=SKIP_SAVE
     )
-    action: Text("Action", "Name of its Action, where the armature has several", options=SKIP_SAVE)
+    action: Text(
+        "Action",
+        "Name of its Action, where the armature has several; those of the file are listed",
+        options=SKIP_SAVE,
+        search=_actions,
+    )
     filter_glob: Text(default=FILTER, options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:

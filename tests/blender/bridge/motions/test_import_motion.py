@@ -1,5 +1,7 @@
 """Animated armatures out of files: at their own rate, in a person's size, recognized or refused."""
 
+import json
+import struct
 from pathlib import Path
 
 import bpy
@@ -9,6 +11,7 @@ from keymark.core.errors import InputError
 from keymark.core.take.character_settings import CharacterFile
 from keymark.operators.bridge.blend_files import own_scene, showing_scene
 from keymark.operators.bridge.export_formats import FORMATS, export_motion
+from keymark.operators.bridge.motions.action_names import action_names
 from keymark.operators.bridge.motions.import_motion import import_motion, load_motion
 from keymark.operators.bridge.motions.read_poses import joint_paths
 
@@ -63,6 +66,20 @@ def test_one_of_several_actions_is_taken_said_and_named(shaken: bpy.types.Object
         assert [note for note in imported.notes if said in note] == list(imported.notes)[: wanted is None]
     with pytest.raises(InputError, match=f"has no Action 'Run'; its Actions are {every}"):
         load_motion(file, bpy.context.scene, (), "Run")
+    assert {own.name, "Walk", "Loose"} <= set(action_names(file.path)) and not bpy.data.libraries
+
+
+@pytest.mark.parametrize("ending", ["glb", "gltf", "vrm"])
+def test_a_menu_offers_the_actions_of_a_gltf(tmp_path: Path, ending: str) -> None:
+    text = json.dumps({"animations": [{"name": "A_Idle"}, {}, {"name": "Walk"}]}).encode()
+    head = (
+        b"" if ending == "gltf" else struct.pack("<4sIII4s", b"glTF", 2, 20 + len(text), len(text), b"JSON")
+    )
+    file = tmp_path / f"pack.{ending}"
+    file.write_bytes(head + text)
+    assert action_names(file) == ["A_Idle", "Walk"]
+    file.write_bytes((head + text)[:-9])
+    assert action_names(file) == action_names(tmp_path / "none.blend") == action_names(tmp_path) == []
 
 
 def test_a_loaded_motion_takes_as_long_as_in_its_file_and_the_scene_stays(exported: Path) -> None:
