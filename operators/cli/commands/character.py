@@ -2,7 +2,7 @@
 
 import argparse
 
-from ....core.retarget.character import ROLES
+from ....core.retarget.character import FINGER_ROLES, ROLES
 from ....core.retarget.maps.character_map import CharacterMap, write_character_map
 from ....core.retarget.retarget_record import GIVEN, SAVED
 from ....core.take.character_settings import CharacterFile
@@ -80,7 +80,7 @@ def map_lines(character_map: CharacterMap) -> list[str]:
         if (switch := controls.switch) is not None:
             parts.append(f"switch {switch.property} of {switch.bone}")
         lines.append(f"  IK of {limb:<6} {', '.join(parts)}")
-    missing = [role for role in ROLES if role not in character_map.roles]
+    missing = [role for role in ROLES if role not in (*character_map.roles, *FINGER_ROLES)]
     if missing:
         lines.append(f"  without: {', '.join(missing)}")
     if character_map.root is not None:
