@@ -22,45 +22,46 @@ def version() -> str:
 
 
 Argument = tuple[tuple[str, ...], dict[str, Any]]
-"""The names and the settings of an argument."""
+"""The names and the settings of an argument, as `ArgumentParser.add_argument` takes them."""
 
 
-def argument(*names: str, **settings: Any) -> Argument:
-    """An argument of a command, as `ArgumentParser.add_argument` takes it."""
-    return names, settings
+def argument(usage: str, words: str, **settings: Any) -> Argument:
+    """An argument, as in `argument("--output -o DIR", "folder for the result", type=Path)`.
+
+    `usage` is what its help shows: all names, and what stands for its value. An option without is a switch.
+    """
+    names = usage.split()
+    if not names[-1].startswith("-"):
+        settings = {"metavar": names.pop()} | settings
+    elif not {"action", "choices"} & settings.keys():
+        settings["action"] = "store_true"
+    return tuple(names), {"help": words, **settings}
 
 
 @dataclass(frozen=True)
 class Command:
-    """A command: a function `NAME_command`, whose docstring is what the command's own help says."""
+    """A command: a function `NAME_command` of the arguments and the console, its docstring the help."""
 
     run: Callable[..., None]
-    """It takes the arguments and the console, on which it shows progress and result."""
-    arguments: Sequence[Argument] = ()
+    arguments: Sequence[Argument]
     """Beside those that every command has."""
-    summary: str = ""
+    summary: str
     """Half a line for the list of a group; those of the other commands are in `commands/__init__.py`."""
 
-    @property
-    def name(self) -> str:
-        """What the user types."""
-        return self.run.__name__.removesuffix("_command")
 
-    @property
-    def description(self) -> str:
-        """What the command's own help begins with."""
-        return str(self.run.__doc__)
+def command(*arguments: Argument, summary: str = "") -> Callable[[Callable[..., None]], Command]:
+    """Decorator that makes a command of a function."""
+    return lambda run: Command(run, arguments, summary)
 
 
 @dataclass(frozen=True)
 class CommandGroup:
-    """A command that consists of commands, as `keymark library` does."""
+    """A command that consists of commands, by what the user types, as `keymark library` does."""
 
-    name: str
     description: str
     epilog: str
     """Below the list of commands; `{program}` stands for what the user types in front of them."""
-    commands: Sequence[Command]
+    commands: dict[str, Command]
 
 
 class UsageError(Exception):

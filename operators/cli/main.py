@@ -21,7 +21,7 @@ from typing import Any, NoReturn
 
 from ...core.errors import InputError, KeymarkError, describe_unexpected
 from .blender_silence import codec_silence
-from .command import Command, CommandGroup, UsageError, print_error, program_name, version
+from .command import Command, UsageError, argument, print_error, program_name, version
 from .commands import SUMMARIES
 from .console import Console
 
@@ -172,6 +172,15 @@ class OneLineParser(argparse.ArgumentParser):
         raise UsageError(f"{message}; see {self.prog} --help")
 
 
+EVERYWHERE = (
+    argument("--quiet -q", "write nothing but errors"),
+    argument("--json", "write one JSON object instead of text"),
+    argument("--strict", "exit with 3 where a result's own figures are bad"),
+    argument("--debug", "on errors, show where in the program"),
+)
+"""Arguments that every command has."""
+
+
 def build_parser(chosen: str | None) -> argparse.ArgumentParser:
     """The parser; its result has `run`, which runs the command."""
     program = program_name()
@@ -184,37 +193,28 @@ def build_parser(chosen: str | None) -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"keymark {version()}")
     added = parser.add_subparsers(metavar="COMMAND", title="commands", required=True)
     for name, summary in SUMMARIES.items():
-        if name == chosen:
-            _add_command(added, _declared(name), summary, program)
-        else:
+        if name != chosen:
             added.add_parser(name, help=summary)
+            continue
+        found = getattr(import_module(f".commands.{name}", __package__), f"{name}_command")
+        if isinstance(found, Command):
+            _add_command(added, name, found, summary)
+            continue
+        group = added.add_parser(
+            name,
+            help=summary,
+            description=found.description,
+            epilog=found.epilog.format(program=f"{program} {name}"),
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        below = group.add_subparsers(metavar="COMMAND", title="commands", required=True)
+        for inner, each in found.commands.items():
+            _add_command(below, inner, each, each.summary)
     return parser
 
 
-def _declared(name: str) -> Any:
-    return getattr(import_module(f".commands.{name}", __package__), name.upper())
-
-
-def _add_command(added: Any, command: Command | CommandGroup, summary: str, program: str) -> None:
-    one = added.add_parser(
-        command.name,
-        help=summary,
-        description=command.description,
-        formatter_class=argparse.RawDescriptionHelpFormatter
-        if isinstance(command, CommandGroup)
-        else argparse.HelpFormatter,
-    )
-    if isinstance(command, CommandGroup):
-        inner = f"{program} {command.name}"
-        one.epilog = command.epilog.format(program=inner)
-        below = one.add_subparsers(metavar="COMMAND", title="commands", required=True)
-        for each in command.commands:
-            _add_command(below, each, each.summary, inner)
-        return
-    one.add_argument("--quiet", "-q", action="store_true", help="write nothing but errors")
-    one.add_argument("--json", action="store_true", help="write one JSON object instead of text")
-    one.add_argument("--strict", action="store_true", help="exit with 3 where a result's own figures are bad")
-    one.add_argument("--debug", action="store_true", help="on errors, show where in the program")
-    for names, settings in command.arguments:
+def _add_command(added: Any, name: str, command: Command, summary: str) -> None:
+    one = added.add_parser(name, help=summary, description=command.run.__doc__)
+    for names, settings in (*EVERYWHERE, *command.arguments):
         one.add_argument(*names, **settings)
     one.set_defaults(run=command.run)

@@ -25,19 +25,14 @@ CHARACTER_HELP = (
 REPLACE_HELP = "replace what is there already"
 
 
-def bare_clip_fields(height_m: float) -> dict[str, object]:
-    """The fields of a take of which nothing but the performer's height is known."""
-    return {"actor": {"height_m": height_m}, "keyframes": EVERY_LIBRARY}
-
-
 def output(metavar: str, words: str, *, required: bool = True, replace: str = "") -> tuple[Argument, ...]:
     """Where a command writes, and, with the help for it, whether it may replace what is there."""
-    to = argument("--output", "-o", metavar=metavar, type=Path, required=required, help=words)
-    return (to, argument("--replace", action="store_true", help=replace)) if replace else (to,)
+    to = argument(f"--output -o {metavar}", words, type=Path, required=required)
+    return (to, argument("--replace", replace)) if replace else (to,)
 
 
 def field_option(
-    record: type[Record], field: str, option: str, condition: str = "", **settings: Any
+    record: type[Record], field: str, usage: str, condition: str = "", **settings: Any
 ) -> Argument:
     """The option of a record's field; None stands for one that is left out.
 
@@ -47,14 +42,13 @@ def field_option(
     kind = declared(record)[field].kind
     kind = kind.item if isinstance(kind, Nullable) else kind
     words = descriptions(record)[field].rstrip(".")
-    settings = {"dest": field, "help": words[:1].lower() + words[1:] + condition, **settings}
     if isinstance(kind, Choice):
         settings |= {"choices": kind.names}
     elif isinstance(kind, Flag):
         settings |= {"action": argparse.BooleanOptionalAction}
     elif isinstance(kind, Number | Whole):
-        settings |= {"type": checked(kind, option)}
-    return argument(option, **settings)
+        settings |= {"type": checked(kind, usage.split()[0])}
+    return argument(usage, words[:1].lower() + words[1:] + condition, **{"dest": field} | settings)
 
 
 def checked(kind: Number | Whole, option: str) -> Callable[[str], float]:
@@ -71,7 +65,7 @@ def checked(kind: Number | Whole, option: str) -> Callable[[str], float]:
 
 def jobs_option(most: int, words: str) -> Argument:
     """How many takes are worked on at a time."""
-    return argument("--jobs", "-j", metavar="N", type=checked(Whole(1, most), "--jobs"), help=words)
+    return argument("--jobs -j N", words, type=checked(Whole(1, most), "--jobs"))
 
 
 def _kinds(text: str) -> tuple[str, ...] | None:
@@ -99,35 +93,33 @@ def setting_options(*names: str, condition: str = "", **changes: dict[str, Any])
     """The options of settings of a conversion; `changes` are those of an option."""
     made = []
     for name in names:
-        option, settings = SETTINGS[name]
+        usage, settings = SETTINGS[name]
         settings = settings | changes.get(name, {})
-        made.append(field_option(ConversionSettings, name, option, condition, **settings))
+        made.append(field_option(ConversionSettings, name, usage, condition, **settings))
     return tuple(made)
 
 
 SETTINGS: dict[str, tuple[str, dict[str, Any]]] = {
-    "keyframes": ("--keyframes", {"metavar": "FILE|auto"}),
-    "keypoints": ("--keypoints", {"metavar": "FILE", "type": Path, "action": "append"}),
-    "network": ("--network", {"metavar": "FILE.onnx", "type": Path}),
-    "reference": ("--reference", {"metavar": "FILE", "type": Path}),
-    "subject": ("--subject", {"metavar": "NAME"}),
-    "shot": ("--frames", {"metavar": "FIRST-LAST", "type": _frames}),
-    "performer": ("--performer", {"metavar": "N"}),
-    "evidence": ("--evidence", {"metavar": ",".join(EVIDENCE), "type": _kinds}),
-    "library": ("--library", {"metavar": "NAME|FILE|auto"}),
-    "floor_m": ("--floor", {"metavar": "HEIGHT"}),
+    "keyframes": ("--keyframes FILE|auto", {}),
+    "keypoints": ("--keypoints FILE", {"type": Path, "action": "append"}),
+    "network": ("--network FILE.onnx", {"type": Path}),
+    "reference": ("--reference FILE", {"type": Path}),
+    "subject": ("--subject NAME", {}),
+    "shot": ("--frames FIRST-LAST", {"type": _frames}),
+    "performer": ("--performer N", {}),
+    "evidence": (f"--evidence {','.join(EVIDENCE)}", {"type": _kinds}),
+    "library": ("--library NAME|FILE|auto", {}),
+    "floor_m": ("--floor HEIGHT", {}),
     "method": ("--method", {}),
 }
 """Option of each setting, and what it does not take from the declaration."""
-PICTURES = argument(
-    "--no-report", dest="pictures", action="store_const", const=False, help="draw no pictures"
-)
+PICTURES = argument("--no-report", "draw no pictures", dest="pictures", action="store_false", default=None)
 HANDS = argument(
     "--no-hands",
+    "do not look at hands: palms face naturally",
     dest="hands",
-    action="store_const",
-    const=False,
-    help="do not look at hands: palms face naturally",
+    action="store_false",
+    default=None,
 )
 SHOOT_OPTIONS = setting_options(
     *("keypoints", "network", "evidence", "keyframes", "library", "floor_m", "method"),
@@ -139,33 +131,31 @@ SHOOT_OPTIONS = setting_options(
 RETARGET_OPTIONS = (
     argument(
         "--limbs",
-        choices=tuple(map(str, LimbKeys)),
-        help="controls of arms and legs that are keyed; both, the default, shows IK. A limb without IK "
+        "controls of arms and legs that are keyed; both, the default, shows IK. A limb without IK "
         "controls is keyed in FK",
+        choices=tuple(map(str, LimbKeys)),
     ),
     *(
         field_option(
             RetargetOptions,
             name,
-            f"--{name.removesuffix('_mm').replace('_', '-')}",
-            **({"metavar": "MM|none"} if name == "tolerance_mm" else {}),
+            "--tolerance MM|none" if name == "tolerance_mm" else f"--{name.replace('_', '-')}",
         )
         for name in declared(RetargetOptions)
     ),
 )
 """How a motion is put onto a character."""
 MAP = argument(
-    "--map",
-    metavar="TITLE|FILE|auto|none",
-    default="auto",
-    help="character map, by title or file; auto, the default: a saved one that knows the character's bones, "
+    "--map TITLE|FILE|auto|none",
+    "character map, by title or file; auto, the default: a saved one that knows the character's bones, "
     "else recognition; none: recognition",
+    default="auto",
 )
 
 
 def character_options(*, required: bool = False) -> tuple[Argument, ...]:
     """The character that gets the motion, its map, and how the motion is put onto it."""
-    named = argument("--character", "-c", metavar="FILE[:OBJECT]", required=required, help=CHARACTER_HELP)
+    named = argument("--character -c FILE[:OBJECT]", CHARACTER_HELP, required=required)
     return (named, MAP, *RETARGET_OPTIONS)
 
 

@@ -6,13 +6,14 @@ from tempfile import TemporaryDirectory
 
 from ....core.errors import InputError
 from ....core.files.paths import absolute_path
+from ....core.prior.texts import EVERY_LIBRARY
 from ....core.session.result import Conversion
 from ....core.session.session import Keep, keep_nothing
 from ....core.session.upright import PictureTurnedError, require_upright
 from ....core.take.description import ASSUMED, describe
 from ....core.take.take_file import USUAL_HEIGHT_M, check_height
 from ....core.video.turned import TURNS, can_turn, write_turned
-from ..command import Command, UsageError, argument
+from ..command import UsageError, argument, command
 from ..console import Console
 from ..conversion.character_result import FORMAT, check_exporters, export_formats
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
@@ -20,7 +21,6 @@ from ..options import (
     HANDS,
     HEIGHT,
     PICTURES,
-    bare_clip_fields,
     character_options,
     given_settings,
     output,
@@ -28,6 +28,26 @@ from ..options import (
 )
 
 
+@command(
+    argument("clip CLIP", "a video, or a folder of the images of one", type=Path),
+    argument(
+        f"{HEIGHT} METERS",
+        f"the performer's height, as in 1.78; {USUAL_HEIGHT_M:g} is assumed without it",
+        type=float,
+    ),
+    *setting_options("keypoints", "network", "shot", "performer"),
+    argument(
+        "--rotate",
+        "turn the picture clockwise (MP4 and QuickTime); by default so that people are upright",
+        type=int,
+        choices=TURNS,
+    ),
+    *output("OUT", "folder for the result, new or old"),
+    FORMAT,
+    *character_options(),
+    PICTURES,
+    HANDS,
+)
 def animate_command(arguments: argparse.Namespace, console: Console) -> None:
     """Goes from a clip and the performer's height all the way to a motion, and onto a character.
 
@@ -41,7 +61,7 @@ def animate_command(arguments: argparse.Namespace, console: Console) -> None:
     formats = export_formats(arguments.format)
     if formats and arguments.character is None:
         raise UsageError("--format is given without --character, of which it writes further files")
-    said = bare_clip_fields(USUAL_HEIGHT_M if height_m is None else height_m)
+    said = {"actor": {"height_m": height_m or USUAL_HEIGHT_M}, "keyframes": EVERY_LIBRARY}
     clip: Path = arguments.clip
     if clip.is_dir() and (clip / "take.json").is_file():
         raise InputError(f"{clip}: is a take, which keymark convert is for; name a clip")
@@ -74,29 +94,3 @@ def animate_command(arguments: argparse.Namespace, console: Console) -> None:
             done = convert(Path(folder) / clip.name, (note,))
     console.finish(conversion_summary(done), conversion_text(done))
     console.warn(done.warnings)
-
-
-ANIMATE = Command(
-    arguments=(
-        argument("clip", metavar="CLIP", type=Path, help="a video, or a folder of the images of one"),
-        argument(
-            HEIGHT,
-            metavar="METERS",
-            type=float,
-            help=f"the performer's height, as in 1.78; {USUAL_HEIGHT_M:g} is assumed without it",
-        ),
-        *setting_options("keypoints", "network", "shot", "performer"),
-        argument(
-            "--rotate",
-            type=int,
-            choices=TURNS,
-            help="turn the picture clockwise (MP4 and QuickTime); by default so that people are upright",
-        ),
-        *output("OUT", "folder for the result, new or old"),
-        FORMAT,
-        *character_options(),
-        PICTURES,
-        HANDS,
-    ),
-    run=animate_command,
-)

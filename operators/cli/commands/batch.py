@@ -21,7 +21,7 @@ from ..batch.machine_resources import available_memory_bytes, processor_count
 from ..batch.outcomes import BatchOutcomes
 from ..batch.worker_pool import WorkerPool
 from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, Job, worker_command_line
-from ..command import Command, UsageError, argument, require_blender
+from ..command import UsageError, argument, command, require_blender
 from ..console import Console
 from ..options import HANDS, PICTURES, SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option, output
 
@@ -32,6 +32,32 @@ MOST_PARTS = 10**6
 MOST_NAMED = 5
 
 
+@command(
+    argument("shoot SHOOT", SHOOT_HELP, type=Path),
+    *output("DIR", "folder for all results, new or old"),
+    jobs_option(
+        MOST_JOBS,
+        "convert N takes at a time, each in a process of its own; by default one for each processor, at "
+        "most one for each 1.5 GB of memory",
+    ),
+    argument("--part K/N", "convert the K-th of N shares of the takes only, as one of N machines"),
+    argument(
+        "--take NAME",
+        "convert this take only, named by its way from SHOOT; may be given several times",
+        action="append",
+    ),
+    argument("--again", "convert takes anew that are converted already"),
+    *SHOOT_OPTIONS,
+    PICTURES,
+    HANDS,
+    argument(
+        "--failed-takes",
+        "what the exit status says where takes have failed: 1 with fail, 0 with pass, so that a "
+        "farm goes on to the tasks that wait for this one; merge then names them (default: %(default)s)",
+        choices=("fail", "pass"),
+        default="fail",
+    ),
+)
 def batch_command(arguments: argparse.Namespace, console: Console) -> None:
     """Converts every take below a folder, or those of a list, each into DIR under its way from SHOOT.
 
@@ -120,39 +146,3 @@ def _usual_workers() -> int:
     memory = available_memory_bytes()
     fitting_memory = MOST_JOBS if memory is None else int(memory // WORKER_BYTES)
     return max(1, min(processor_count(), fitting_memory))
-
-
-BATCH = Command(
-    arguments=(
-        argument("shoot", metavar="SHOOT", type=Path, help=SHOOT_HELP),
-        *output("DIR", "folder for all results, new or old"),
-        jobs_option(
-            MOST_JOBS,
-            "convert N takes at a time, each in a process of its own; by default one for each processor, at "
-            "most one for each 1.5 GB of memory",
-        ),
-        argument(
-            "--part",
-            metavar="K/N",
-            help="convert the K-th of N shares of the takes only, as one of N machines",
-        ),
-        argument(
-            "--take",
-            metavar="NAME",
-            action="append",
-            help="convert this take only, named by its way from SHOOT; may be given several times",
-        ),
-        argument("--again", action="store_true", help="convert takes anew that are converted already"),
-        *SHOOT_OPTIONS,
-        PICTURES,
-        HANDS,
-        argument(
-            "--failed-takes",
-            choices=("fail", "pass"),
-            default="fail",
-            help="what the exit status says where takes have failed: 1 with fail, 0 with pass, so that a "
-            "farm goes on to the tasks that wait for this one; merge then names them (default: %(default)s)",
-        ),
-    ),
-    run=batch_command,
-)

@@ -6,7 +6,7 @@ from ....core.retarget.character import FINGER_ROLES, ROLES
 from ....core.retarget.maps.character_map import CharacterMap, write_character_map
 from ....core.retarget.retarget_record import GIVEN, SAVED
 from ....core.take.character_settings import CharacterFile
-from ..command import Command, argument, refuse_existing, require_blender
+from ..command import argument, command, refuse_existing, require_blender
 from ..console import Console, terminal_columns, wrapped
 from ..conversion.character_result import opened_character
 from ..options import CHARACTER_HELP, MAP, REPLACE_HELP, output
@@ -16,6 +16,11 @@ UNSURE = 0.75
 SOURCE_WORDS = {"preset": "convention", "names": "names", "shape": "shape", "you": "a person"}
 
 
+@command(
+    argument("character FILE[:OBJECT]", CHARACTER_HELP),
+    MAP,
+    *output("FILE", "write its character map there", required=False, replace=REPLACE_HELP),
+)
 def character_command(arguments: argparse.Namespace, console: Console) -> None:
     """Opens a character, recognizes which bones play which role, and says how surely and what it doubts.
 
@@ -88,13 +93,3 @@ def map_lines(character_map: CharacterMap) -> list[str]:
     if character_map.left_alone:
         lines.append(f"  left alone: {', '.join(character_map.left_alone)}")
     return lines
-
-
-CHARACTER = Command(
-    arguments=(
-        argument("character", metavar="FILE[:OBJECT]", help=CHARACTER_HELP),
-        MAP,
-        *output("FILE", "write its character map there", required=False, replace=REPLACE_HELP),
-    ),
-    run=character_command,
-)

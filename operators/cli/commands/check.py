@@ -16,7 +16,7 @@ from ....core.shoot.check.take_check import TakeCheck, check_take, flag_outliers
 from ....core.shoot.discovery import Shoot, ShootTake, open_shoot
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.evidence import KEYPOINTS
-from ..command import Command, argument
+from ..command import argument, command
 from ..console import Console, terminal_columns, wrapped
 from ..conversion.character_result import CharacterChecks
 from ..library_search_path import requested_libraries
@@ -35,6 +35,11 @@ SEPARATOR = "  "
 NARROWEST_NAME = 12
 
 
+@command(
+    argument("shoot SHOOT", f"{SHOOT_HELP}, or one take", type=Path),
+    jobs_option(MOST_JOBS, "look at N takes at a time"),
+    *SHOOT_OPTIONS,
+)
 def check_command(arguments: argparse.Namespace, console: Console) -> None:
     """Reads everything a batch would read, samples frames of every clip, and writes nothing.
 
@@ -235,13 +240,3 @@ def _take(check: TakeCheck) -> dict[str, Any]:
         "estimated_seconds": None if check.cost is None else round(check.cost.seconds, 1),
         "estimated_bytes": None if check.cost is None else check.cost.size_bytes,
     }
-
-
-CHECK = Command(
-    arguments=(
-        argument("shoot", metavar="SHOOT", type=Path, help=f"{SHOOT_HELP}, or one take"),
-        jobs_option(MOST_JOBS, "look at N takes at a time"),
-        *SHOOT_OPTIONS,
-    ),
-    run=check_command,
-)

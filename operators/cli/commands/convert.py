@@ -8,12 +8,19 @@ from ....core.shoot.discovery import take_path
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence import KEYPOINTS
-from ..command import Command, UsageError, argument
+from ..command import UsageError, argument, command
 from ..console import Console
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
 from ..options import HANDS, PICTURES, SETTINGS, given_settings, output, setting_options
 
 
+@command(
+    argument("take TAKE", "folder with take.json, or a clip of a shoot", type=Path),
+    *output("OUT", "folder for the result, new or old"),
+    *setting_options(*SETTINGS),
+    PICTURES,
+    HANDS,
+)
 def convert_command(arguments: argparse.Namespace, console: Console) -> None:
     """Reconstructs a take's motion.
 
@@ -47,15 +54,3 @@ def _settings(arguments: argparse.Namespace, description: Description) -> Conver
             f"{KEYPOINTS} in --evidence"
         )
     return settings if given.library is None else replace(settings, keyframes=given.keyframes)
-
-
-CONVERT = Command(
-    arguments=(
-        argument("take", metavar="TAKE", type=Path, help="folder with take.json, or a clip of a shoot"),
-        *output("OUT", "folder for the result, new or old"),
-        *setting_options(*SETTINGS),
-        PICTURES,
-        HANDS,
-    ),
-    run=convert_command,
-)

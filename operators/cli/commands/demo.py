@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ....core.errors import ConversionError
 from ....core.estimate.reconstruct import reconstruct
+from ....core.prior.texts import EVERY_LIBRARY
 from ....core.progress import run
 from ....core.review.score import Score, read_truth, score_points
 from ....core.session.pose import Posed
@@ -21,10 +22,10 @@ from ....core.take.evidence import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
 from ....core.take.examples import AEROBIC, GREETING, POSED_BY_HAND, example_folder
 from ....core.take.motion import Motion
 from ....core.take.take import Take
-from ..command import Command, argument, require_blender
+from ..command import argument, command, require_blender
 from ..console import Console
 from ..conversion.convert_take import conversion_summary, convert_take
-from ..options import HEIGHT, bare_clip_fields
+from ..options import HEIGHT
 
 MARKED = (MARKERS, CONTOURS)
 UNMARKED = (KEYPOINTS, DEPTH_HINTS, CONTOURS)
@@ -36,6 +37,14 @@ CHARACTER_FILE = "human.blend"
 COLUMNS = {"mpjpe": "all", "rooted": "about hips", "depth": "in depth", "image": "across", "jitter": "jitter"}
 
 
+@command(
+    argument(
+        "--output -o DIR",
+        "folder for the result (default: %(default)s)",
+        type=Path,
+        default=Path("keymark_demo"),
+    )
+)
 def demo_command(arguments: argparse.Namespace, console: Console) -> None:
     """Converts the take that comes with Keymark, and prints how far each method is from the truth."""
     demo = example_folder(AEROBIC)
@@ -66,7 +75,8 @@ def demo_command(arguments: argparse.Namespace, console: Console) -> None:
         console.announce(
             "Step 5 of 5: a clip in plain clothes is animated from nothing but the performer's height."
         )
-        description = describe(bare, bare_clip_fields(GREETING_M), HEIGHT)
+        fields = {"actor": {"height_m": GREETING_M}, "keyframes": EVERY_LIBRARY}
+        description = describe(bare, fields, HEIGHT)
         bare_settings = description.settings.with_defaults(ConversionSettings(character=character))
         animated = convert_take(
             description, output / ANIMATED_FOLDER, console, bare_settings, arguments.debug
@@ -147,18 +157,3 @@ def write_demo_character(file: Path) -> None:
     if done.returncode or not file.is_file():
         said = done.stderr.decode(errors="replace").strip().splitlines() or ["no reason is given"]
         raise ConversionError(f"{file}: Rigify's human cannot be generated ({said[-1]})")
-
-
-DEMO = Command(
-    arguments=(
-        argument(
-            "--output",
-            "-o",
-            metavar="DIR",
-            type=Path,
-            default=Path("keymark_demo"),
-            help="folder for the result (default: %(default)s)",
-        ),
-    ),
-    run=demo_command,
-)

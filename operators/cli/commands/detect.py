@@ -22,7 +22,7 @@ from ....core.take.clip_check import open_footage
 from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, find_shoot_files, sidecar_file
 from ....core.take.take_file import FRAME_RATE, FRAME_START
 from ....core.video.image_sequence import find_images
-from ..command import Command, UsageError, argument, refuse_existing
+from ..command import UsageError, argument, command, refuse_existing
 from ..console import Console
 from ..options import HANDS, output, setting_options
 
@@ -65,6 +65,22 @@ class Outcome:
         return {"take": self.name, "keypoints": output, "detected": found, "error": self.error}
 
 
+@command(
+    argument(
+        "target CLIP|TAKE|SHOOT",
+        "a clip, a take, a folder of takes, or a list of them (JSON Lines, .jsonl)",
+        type=Path,
+    ),
+    *setting_options("network"),
+    *output(
+        "FILE",
+        "keypoint file of a single clip or take; by default keypoints.json in the take, or "
+        "NAME.keypoints.json beside the clip",
+        required=False,
+        replace="replace keypoint files that are there",
+    ),
+    HANDS,
+)
 def detect_command(arguments: argparse.Namespace, console: Console) -> None:
     """Finds 33 points of everybody in every frame, with a guess of their depth.
 
@@ -180,25 +196,3 @@ def _footage(take: ShootTake) -> Footage:
         frame_start=read_field(fields, "frame_start", FRAME_START, 1),
         output=named[0] if len(named) == 1 else description.file_called(Path(KEYPOINT_FILE)),
     )
-
-
-DETECT = Command(
-    arguments=(
-        argument(
-            "target",
-            metavar="CLIP|TAKE|SHOOT",
-            type=Path,
-            help="a clip, a take, a folder of takes, or a list of them (JSON Lines, .jsonl)",
-        ),
-        *setting_options("network"),
-        *output(
-            "FILE",
-            "keypoint file of a single clip or take; by default keypoints.json in the take, or "
-            "NAME.keypoints.json beside the clip",
-            required=False,
-            replace="replace keypoint files that are there",
-        ),
-        HANDS,
-    ),
-    run=detect_command,
-)

@@ -11,12 +11,14 @@ from ....core.prior.library import Library, read_library, write_library
 from ....core.prior.registry import find_library, identifier_of, registered_libraries
 from ....core.prior.texts import checked_identifier
 from ..blender_silence import blender_silence
-from ..command import Command, CommandGroup, argument, refuse_existing, require_blender
+from ..command import CommandGroup, argument, command, refuse_existing, require_blender
 from ..console import Console
 from ..library_search_path import library_folders
 from ..options import REPLACE_HELP, output
 
 LIBRARY_HELP = "name or file of a library"
+LIBRARY_NAME = argument("library LIBRARY", LIBRARY_HELP)
+LIBRARY_FILE = output("FILE", "the new library file", replace=REPLACE_HELP)
 
 
 def library_summary(library: Library) -> dict[str, Any]:
@@ -73,6 +75,7 @@ def write_new_library(console: Console, arguments: argparse.Namespace, library: 
     console.finish(result, "\n".join([*library_lines(library), f"Written: {arguments.output}"]))
 
 
+@command(summary="list the libraries that can be named")
 def list_command(arguments: argparse.Namespace, console: Console) -> None:
     """Lists the libraries that come with Keymark and those in the folders of KEYMARK_LIBRARIES."""
     found = registered_libraries(library_folders())
@@ -97,12 +100,14 @@ def list_command(arguments: argparse.Namespace, console: Console) -> None:
     console.finish({"libraries": rows}, "\n".join(lines) or "There are no libraries.")
 
 
+@command(LIBRARY_NAME, summary="say what a library holds")
 def show_command(arguments: argparse.Namespace, console: Console) -> None:
     """Says what a library holds, and draws it."""
     library = find_library(arguments.library, library_folders())
     console.finish(library_summary(library), "\n".join(library_lines(library)))
 
 
+@command(argument("files FILE", "library files", type=Path, nargs="+"), summary="check library files")
 def check_command(arguments: argparse.Namespace, console: Console) -> None:
     """Reads library files as strictly as Keymark always does and says what is wrong with each that is."""
     problems, lines, good = [], [], []
@@ -119,6 +124,11 @@ def check_command(arguments: argparse.Namespace, console: Console) -> None:
     console.finish({"libraries": good}, "\n".join(lines))
 
 
+@command(
+    LIBRARY_NAME,
+    *output("DIR", "folder of the assets", replace=REPLACE_HELP),
+    summary="write a library as Blender pose assets",
+)
 def blend_command(arguments: argparse.Namespace, console: Console) -> None:
     """Writes a folder to add to Blender's asset libraries: a pose asset for each posture, the catalog.
 
@@ -139,6 +149,12 @@ def blend_command(arguments: argparse.Namespace, console: Console) -> None:
     console.finish({**library_summary(library), "files": files}, text)
 
 
+@command(
+    argument("file FILE.blend", "a .blend that Keymark wrote", type=Path),
+    argument("--identifier NAME", "which library, where the .blend holds several"),
+    *LIBRARY_FILE,
+    summary="read a library from Blender pose assets",
+)
 def read_command(arguments: argparse.Namespace, console: Console) -> None:
     """Writes as a library file what `blend` wrote, or what was posed since.
 
@@ -158,6 +174,20 @@ def read_command(arguments: argparse.Namespace, console: Console) -> None:
     write_new_library(console, arguments, chosen[0])
 
 
+@command(
+    argument("motion MOTION", "motion.json, as convert writes it", type=Path),
+    argument("--title TEXT", "what people read", required=True),
+    argument("--author TEXT", "who made it (default: %(default)s)", default="Unknown"),
+    argument(
+        "--license SPDX",
+        "what others may do with it, as in CC0-1.0 (default: %(default)s)",
+        default="LicenseRef-Proprietary",
+    ),
+    argument("--identifier NAME", "what it is known by; by default made of the title"),
+    argument("--count N", "postures; by default 10 to 40, as many as differ", type=int),
+    *LIBRARY_FILE,
+    summary="make a library of a finished motion",
+)
 def learn_command(arguments: argparse.Namespace, console: Console) -> None:
     """Makes a library of a motion's postures at spread-out, distinct frames.
 
@@ -178,68 +208,7 @@ def learn_command(arguments: argparse.Namespace, console: Console) -> None:
     write_new_library(console, arguments, library)
 
 
-LIBRARY_NAME = argument("library", metavar="LIBRARY", help=LIBRARY_HELP)
-LIBRARY_FILE = output("FILE", "the new library file", replace=REPLACE_HELP)
-
-LIST = Command(
-    summary="list the libraries that can be named",
-    run=list_command,
-)
-
-
-SHOW = Command(
-    summary="say what a library holds",
-    arguments=(LIBRARY_NAME,),
-    run=show_command,
-)
-
-
-CHECK = Command(
-    summary="check library files",
-    arguments=(argument("files", metavar="FILE", type=Path, nargs="+", help="library files"),),
-    run=check_command,
-)
-
-
-LEARN = Command(
-    summary="make a library of a finished motion",
-    arguments=(
-        argument("motion", metavar="MOTION", type=Path, help="motion.json, as convert writes it"),
-        argument("--title", metavar="TEXT", required=True, help="what people read"),
-        argument("--author", metavar="TEXT", default="Unknown", help="who made it (default: %(default)s)"),
-        argument(
-            "--license",
-            metavar="SPDX",
-            default="LicenseRef-Proprietary",
-            help="what others may do with it, as in CC0-1.0 (default: %(default)s)",
-        ),
-        argument("--identifier", metavar="NAME", help="what it is known by; by default made of the title"),
-        argument("--count", metavar="N", type=int, help="postures; by default 10 to 40, as many as differ"),
-        *LIBRARY_FILE,
-    ),
-    run=learn_command,
-)
-
-
-BLEND = Command(
-    summary="write a library as Blender pose assets",
-    arguments=(LIBRARY_NAME, *output("DIR", "folder of the assets", replace=REPLACE_HELP)),
-    run=blend_command,
-)
-
-
-READ = Command(
-    summary="read a library from Blender pose assets",
-    arguments=(
-        argument("file", metavar="FILE.blend", type=Path, help="a .blend that Keymark wrote"),
-        argument("--identifier", metavar="NAME", help="which library, where the .blend holds several"),
-        *LIBRARY_FILE,
-    ),
-    run=read_command,
-)
-
-LIBRARY = CommandGroup(
-    name="library",
+library_command = CommandGroup(
     description="Lists, looks at, checks and makes keyframe libraries.",
     epilog="""\
 examples:
@@ -248,5 +217,12 @@ examples:
   {program} learn out/walk/motion.json --title "Anna walking" --author Anna --output anna_walking.json
 
 A library is a file, or the name of one that comes with Keymark or lies in a folder of KEYMARK_LIBRARIES.""",
-    commands=(LIST, SHOW, CHECK, LEARN, BLEND, READ),
+    commands={
+        "list": list_command,
+        "show": show_command,
+        "check": check_command,
+        "learn": learn_command,
+        "blend": blend_command,
+        "read": read_command,
+    },
 )

@@ -18,7 +18,7 @@ from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion import write_motion
 from ....core.take.reference import ARMATURE_ENDINGS, REFERENCE_ENDINGS, read_reference
 from ..blender_silence import blender_silence
-from ..command import Command, UsageError, argument, require_blender
+from ..command import UsageError, argument, command, require_blender
 from ..console import Console
 from ..conversion.blender_files import hidden_files, refuse_unsupported_output
 from ..conversion.character_result import (
@@ -36,6 +36,38 @@ FILES = (MOTION, BVH, CHARACTER_BLEND, RETARGET, CHARACTER_PICTURE, *(file for _
 USUAL_RATE = 30.0
 
 
+@command(
+    argument(
+        "motion FILE[:OBJECT]",
+        "an animated armature (.bvh, .fbx, .glb, .vrm, .usd, .blend), and after a colon its name "
+        "where there are several; or points by name (.csv, .npy, .trc, .c3d), or a motion.json",
+    ),
+    *output("DIR", "folder for the result, new or old"),
+    argument(
+        "--subject NAME",
+        "whose motion of several in the file: the prefix of points, a BVH's ROOT, or an armature "
+        "(default: the most complete, which a note names)",
+    ),
+    argument(
+        "--action NAME",
+        "the Action of an armature that has several, as glTF, FBX and .blend files may "
+        "(default: its own or the first, which a note names)",
+    ),
+    argument(
+        "--posed FRAMES",
+        "frames that you have posed, with commas between them; those with keys of their own are "
+        "found. They stay, and the motion beside them follows",
+        default="",
+    ),
+    argument(
+        "--fps RATE",
+        "frames a second of points whose file does not tell (default: 30)",
+        type=checked(Number(1.0, 1000.0, "frames a second"), "--fps"),
+    ),
+    argument("--no-floor", "leave the motion at its height"),
+    FORMAT,
+    *character_options(),
+)
 def mend_command(arguments: argparse.Namespace, console: Console) -> None:
     """Mends a motion that another program made: its jitter, exchanged sides, sliding feet and floor.
 
@@ -168,45 +200,3 @@ def _posed(text: str) -> tuple[int, ...]:
         raise UsageError(
             f"--posed is {text}; frames with commas between them are valid, as in 12,40,88"
         ) from error
-
-
-MEND = Command(
-    arguments=(
-        argument(
-            "motion",
-            metavar="FILE[:OBJECT]",
-            help="an animated armature (.bvh, .fbx, .glb, .vrm, .usd, .blend), and after a colon its name "
-            "where there are several; or points by name (.csv, .npy, .trc, .c3d), or a motion.json",
-        ),
-        *output("DIR", "folder for the result, new or old"),
-        argument(
-            "--subject",
-            metavar="NAME",
-            help="whose motion of several in the file: the prefix of points, a BVH's ROOT, or an armature "
-            "(default: the most complete, which a note names)",
-        ),
-        argument(
-            "--action",
-            metavar="NAME",
-            help="the Action of an armature that has several, as glTF, FBX and .blend files may "
-            "(default: its own or the first, which a note names)",
-        ),
-        argument(
-            "--posed",
-            metavar="FRAMES",
-            default="",
-            help="frames that you have posed, with commas between them; those with keys of their own are "
-            "found. They stay, and the motion beside them follows",
-        ),
-        argument(
-            "--fps",
-            metavar="RATE",
-            type=checked(Number(1.0, 1000.0, "frames a second"), "--fps"),
-            help="frames a second of points whose file does not tell (default: 30)",
-        ),
-        argument("--no-floor", action="store_true", help="leave the motion at its height"),
-        FORMAT,
-        *character_options(),
-    ),
-    run=mend_command,
-)

@@ -18,7 +18,7 @@ from ....core.shoot.outcomes import Failure, Result, Results, find_results, read
 from ....core.take.conversion_record import CHARACTER_BLEND, MOTION
 from ....core.take.motion import Motion, read_motion
 from ..blender_silence import blender_silence
-from ..command import Command, argument, require_blender
+from ..command import argument, command, require_blender
 from ..console import Console, terminal_columns, wrapped
 from ..options import output
 
@@ -34,6 +34,11 @@ MOST_NAMED = 5
 STAGE = "Gathering the motions"
 
 
+@command(
+    argument("results DIR", "folder of results, as batch writes it", type=Path),
+    *output("FILE", "the .blend to write, new or old"),
+    argument("--name NAME", "what the shoot is called; by default DIR's name"),
+)
 def merge_command(arguments: argparse.Namespace, console: Console) -> None:
     """Gathers the motions found below DIR in one .blend to add to Blender's asset libraries.
 
@@ -196,13 +201,3 @@ def _text(counts: dict[str, int], files: Sequence[str], problems: dict[str, str]
     for name in sorted(problems):
         lines += wrapped(f"{name}: {problems[name]}", 2, terminal_columns())
     return "\n".join(lines)
-
-
-MERGE = Command(
-    arguments=(
-        argument("results", metavar="DIR", type=Path, help="folder of results, as batch writes it"),
-        *output("FILE", "the .blend to write, new or old"),
-        argument("--name", metavar="NAME", help="what the shoot is called; by default DIR's name"),
-    ),
-    run=merge_command,
-)

@@ -10,11 +10,15 @@ from ....core.progress import run, within
 from ....core.shoot.discovery import find_takes
 from ....core.shoot.template import clip_lines, evidence_lines, shoot_template, survey_clips
 from ....core.take.description import SHOOT_FILE, find_shoot_files
-from ..command import Command, argument, program_name
+from ..command import argument, command, program_name
 from ..console import Console
 from ..options import output
 
 
+@command(
+    argument("shoot SHOOT", "folder of clips", type=Path),
+    *output("FILE", "where to write; by default SHOOT/shoot.json", required=False),
+)
 def new_command(arguments: argparse.Namespace, console: Console) -> None:
     """Looks at the clips below a folder and writes shoot.json there.
 
@@ -65,12 +69,3 @@ def null_fields(template: object, path: str = "") -> list[str]:
     for name, value in template.items():
         found += null_fields(value, f"{path}.{name}" if path else name)
     return found
-
-
-NEW = Command(
-    arguments=(
-        argument("shoot", metavar="SHOOT", type=Path, help="folder of clips"),
-        *output("FILE", "where to write; by default SHOOT/shoot.json", required=False),
-    ),
-    run=new_command,
-)

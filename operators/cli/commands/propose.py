@@ -12,7 +12,7 @@ from ....core.take.performer_keypoints import performer_keypoints
 from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
 from ....core.take.take_file import read_described
-from ..command import Command, argument
+from ..command import argument, command
 from ..console import Console
 from ..options import given_settings, setting_options
 
@@ -20,6 +20,12 @@ UNPOSED = "no keyframe is posed yet; pose these frames, or let convert find them
 READING_SHARE = 0.9
 
 
+@command(
+    argument("take TAKE", "take to pose, as in convert", type=Path),
+    *setting_options("keypoints", "evidence"),
+    argument("--count N", "number of keyframes; by default 10 per 100 frames", type=int),
+    argument("--largest-gap N", "most frames between two keyframes", type=int),
+)
 def propose_command(arguments: argparse.Namespace, console: Console) -> None:
     """Proposes frames to pose as keyframes: about evenly spaced, where the performer moves slowly.
 
@@ -49,14 +55,3 @@ def _speed_job(take: Take) -> Job[EvidenceSpeed]:
     keypoints = performer_keypoints(take, reading.tracks)
     moved = evidence_speed(reading.tracks, take.marker_segments, keypoints, reading.album)
     return (yield from within("Measuring the speed", moved, READING_SHARE, 1.0))
-
-
-PROPOSE = Command(
-    arguments=(
-        argument("take", metavar="TAKE", type=Path, help="take to pose, as in convert"),
-        *setting_options("keypoints", "evidence"),
-        argument("--count", metavar="N", type=int, help="number of keyframes; by default 10 per 100 frames"),
-        argument("--largest-gap", metavar="N", type=int, help="most frames between two keyframes"),
-    ),
-    run=propose_command,
-)

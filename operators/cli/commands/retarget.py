@@ -15,7 +15,7 @@ from ....core.take.character_settings import CharacterSettings
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, CHARACTER_PICTURE, MOTION
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion import read_motion
-from ..command import Command, argument, require_blender
+from ..command import argument, command, require_blender
 from ..console import Console
 from ..conversion.blender_files import refuse_unsupported_output
 from ..conversion.character_result import (
@@ -39,6 +39,12 @@ FIGURES = {
 }
 
 
+@command(
+    argument("motion OUT|motion.json", "folder of a result, as convert writes it, or its motion", type=Path),
+    *output("DIR", "folder for the result, new or old"),
+    FORMAT,
+    *character_options(required=True),
+)
 def retarget_command(arguments: argparse.Namespace, console: Console) -> None:
     """Puts the motion of a finished conversion onto a character.
 
@@ -123,19 +129,3 @@ def _text(record: RetargetRecord, notes: tuple[str, ...], files: list[Path]) -> 
     figures = {name: record.quality.get(name) for name in FIGURES}
     lines += [f"  {FIGURES[name].format(value)}" for name, value in figures.items() if value is not None]
     return "\n".join([*lines, *(f"  {file}" for file in files)])
-
-
-RETARGET = Command(
-    arguments=(
-        argument(
-            "motion",
-            metavar="OUT|motion.json",
-            type=Path,
-            help="folder of a result, as convert writes it, or its motion",
-        ),
-        *output("DIR", "folder for the result, new or old"),
-        FORMAT,
-        *character_options(required=True),
-    ),
-    run=retarget_command,
-)

@@ -47,10 +47,9 @@ EXPORTS |= {"glb": ("GLTF", "character.glb"), "usd": ("USD", "character.usdc")}
 EXPORTS |= {"trc": ("TRC", "character.trc"), "c3d": ("C3D", "character.c3d")}
 """By the word for it: the format of `bridge/export_formats`, and the file."""
 FORMAT = argument(
-    "--format",
-    metavar=",".join(EXPORTS),
+    f"--format {','.join(EXPORTS)}",
+    "further files of the character with its motion, separated by commas",
     default="",
-    help="further files of the character with its motion, separated by commas",
 )
 Result = TypeVar("Result")
 ShowFootage = Callable[["bpy.types.Scene", Motion], "Array"]

@@ -32,8 +32,8 @@ from keymark.core.take import (
     motion,
     take_file,
 )
-from keymark.operators.cli.commands.character import CHARACTER
-from keymark.operators.cli.commands.retarget import RETARGET
+from keymark.operators.cli.commands.character import character_command
+from keymark.operators.cli.commands.retarget import retarget_command
 
 PATH = re.compile(r"(?:core|operators|tests|presets|tools|benchmarks|docs)/[\w/.]*\w")
 NOTES = re.compile(r"^\| it says \|.*\n\|[-|]+\|\n((?:\|.*\n)+)", re.MULTILINE)
@@ -189,7 +189,7 @@ def test_character_maps_have_every_field_and_role_and_an_example_laid_out_as_one
 
 def test_characters_have_every_option_and_field_and_an_example(tmp_path: Path) -> None:
     text = page("characters")
-    for command in (CHARACTER, RETARGET):
+    for command in (character_command, retarget_command):
         parser = argparse.ArgumentParser()
         for names, settings in command.arguments:
             parser.add_argument(*names, **settings)
