@@ -56,6 +56,6 @@ def work(job: dict[str, Any]) -> None:
 print("Blender 9.9 says good morning")
 if log.name == "broken.log":
     sys.exit("the module cv9 is missing")
-say("ready")
+say("step", stage="", fraction=0.0)
 for line in sys.stdin:
     work(json.loads(line))

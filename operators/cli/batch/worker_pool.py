@@ -4,29 +4,19 @@ A job is retried where its worker crashes or stalls, and where another process h
 """
 
 import signal
-import time
 from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
+from math import inf
 from queue import Empty
+from time import monotonic
 from types import FrameType
 
 from ....core.errors import ConversionError
 from ....core.shoot.outcomes import CRASH
 from .outcomes import BatchOutcomes
-from .worker_process import (
-    BUSY,
-    FAILED,
-    START_TIMEOUT_S,
-    Done,
-    Events,
-    Job,
-    Message,
-    Ready,
-    Step,
-    WorkerProcess,
-)
+from .worker_process import BUSY, FAILED, START_TIMEOUT_S, Done, Events, Job, Message, Step, WorkerProcess
 
 MOST_ATTEMPTS = 2
 """A job whose worker is lost is retried once, by a new worker; the start of a worker likewise."""
@@ -34,8 +24,6 @@ LARGEST_WORKER_BYTES = 2**30
 """A worker that holds more memory than this after a job is replaced by a new one."""
 SHORTEST_BACKOFF_S, LONGEST_BACKOFF_S = 0.5, 10.0
 """Wait before the retry of a job that another process is at work on; it doubles with each retry."""
-LONGEST_WAIT_S = 1.0
-"""For the next event: on Windows no signal is handled meanwhile."""
 
 
 @dataclass(eq=False)
@@ -57,22 +45,21 @@ class WorkerPool:
         heartbeat_timeout_s: float,
         debug: bool,
     ) -> None:
-        self._queue = deque(_QueuedJob(job) for job in jobs)
-        self._words, self._debug = words, debug
-        self._outcomes = outcomes
+        self._queue = deque(map(_QueuedJob, jobs))
+        self._words, self._debug, self._outcomes = words, debug, outcomes
         self._heartbeat_timeout_s = heartbeat_timeout_s
         self._events: Events = Events()
         self._workers: dict[WorkerProcess, _QueuedJob | None] = {}
-        self._failed_starts, self._start_error = 0, ""
+        self._start_errors: list[str] = []
+        """Why the last starts of workers have failed."""
 
     def run(self, workers: int) -> None:
         """Run all jobs, as many at a time as there are workers."""
         with self._interruptible():
             try:
                 while self._queue or any(self._workers.values()):
-                    self._hand_out()
-                    self._start_workers(workers)
-                    self._handle_events()
+                    self._employ(workers)
+                    self._take_event()
                 for worker in self._workers:
                     worker.close()
             except BaseException:
@@ -83,63 +70,64 @@ class WorkerPool:
                 for worker in self._workers:
                     worker.wait()
 
-    def _hand_out(self) -> None:
-        """Give idle workers the next jobs; those that other processes hold come last, and wait."""
+    def _employ(self, most: int) -> None:
+        """Give idle workers the next jobs, and start workers for those that are left.
+
+        Jobs that other processes hold come last, and wait.
+        """
         for worker, current in self._workers.items():
-            if current is None and worker.ready and self._queue:
+            if current is None and worker.started and self._queue:
                 free = (each for each in self._queue if not each.busy_answers)
                 queued = next(free, None) or min(self._queue, key=lambda each: each.not_before)
-                if queued.not_before > time.monotonic():
-                    return
+                if queued.not_before > monotonic():
+                    break
                 self._queue.remove(queued)
                 self._workers[worker] = queued
-                worker.deadline = time.monotonic() + self._heartbeat_timeout_s
+                worker.deadline = monotonic() + self._heartbeat_timeout_s
                 worker.send(queued.job)
-
-    def _start_workers(self, most: int) -> None:
         idle = sum(job is None for job in self._workers.values())
         for _ in range(min(most - len(self._workers), len(self._queue) - idle)):
-            if self._failed_starts >= MOST_ATTEMPTS:
+            if len(self._start_errors) >= MOST_ATTEMPTS:
                 break
             try:
                 self._workers[WorkerProcess(self._words, self._debug, self._events)] = None
             except OSError as error:
-                self._note_failed_start(f"{self._words[0]}: cannot be run ({error.strerror or error})")
-        if self._queue and not self._workers and self._failed_starts >= MOST_ATTEMPTS:
-            raise ConversionError(f"no worker process starts: {self._start_error}")
+                self._start_errors.append(f"{self._words[0]}: cannot be run ({error.strerror or error})")
+        if self._queue and not self._workers and len(self._start_errors) >= MOST_ATTEMPTS:
+            raise ConversionError(f"no worker process starts: {self._start_errors[-1]}")
 
-    def _note_failed_start(self, reason: str) -> None:
-        self._failed_starts, self._start_error = self._failed_starts + 1, reason
-
-    def _handle_events(self) -> None:
+    def _take_event(self) -> None:
+        """Wait for the next event, and give up the workers that have been silent for too long."""
         moments = [worker.deadline for worker in self._workers]
-        if any(worker.ready and job is None for worker, job in self._workers.items()):
+        if any(worker.started and job is None for worker, job in self._workers.items()):
             moments += [queued.not_before for queued in self._queue]
-        wait_s = min(moments, default=0.0) - time.monotonic()
-        with suppress(Empty):
-            event = self._events.get(timeout=min(max(wait_s, 0.0), LONGEST_WAIT_S))
+        wait_s = min(moments, default=0.0) - monotonic()
+        with suppress(Empty):  # within a second: on Windows no signal is handled meanwhile
+            event = self._events.get(timeout=min(max(wait_s, 0.0), 1.0))
             if event is None:
                 raise KeyboardInterrupt
             worker, message = event
             if worker in self._workers:  # else it was given up
                 self._handle(worker, message)
-        now = time.monotonic()
+        now = monotonic()
         for worker in [each for each in self._workers if each.deadline < now]:
-            silent_s = self._heartbeat_timeout_s if worker.ready else START_TIMEOUT_S
+            silent_s = self._heartbeat_timeout_s if worker.started else START_TIMEOUT_S
             self._lose(worker, f"told of no progress for {silent_s / 60.0:.3g} minutes")
 
     def _handle(self, worker: WorkerProcess, message: Message | None) -> None:
-        queued = self._workers[worker]
-        if isinstance(message, Ready):
-            worker.rest()
-            self._failed_starts = 0
-        elif message is None:
+        if message is None:
             self._lose(worker, worker.exit_description())
-        elif queued is not None and isinstance(message, Step):
-            worker.deadline = time.monotonic() + self._heartbeat_timeout_s
+            return
+        worker.started = True
+        self._start_errors.clear()
+        queued = self._workers[worker]
+        if queued is None:
+            worker.deadline = inf  # no message is due before the next job
+        elif isinstance(message, Step):
+            worker.deadline = monotonic() + self._heartbeat_timeout_s
             self._outcomes.job_progressed(queued.job, message)
-        elif queued is not None and isinstance(message, Done):
-            worker.rest()
+        else:
+            worker.deadline = inf
             self._workers[worker] = None
             self._finish(queued, message)
             if (message.memory_bytes or 0) > LARGEST_WORKER_BYTES:
@@ -154,7 +142,7 @@ class WorkerPool:
         if not queued.busy_answers:
             self._outcomes.job_requeued(queued.job, f"{done.error}; it is waited for")
         backoff_s = min(SHORTEST_BACKOFF_S * 2.0 ** min(queued.busy_answers, 10), LONGEST_BACKOFF_S)
-        queued.not_before = time.monotonic() + backoff_s
+        queued.not_before = monotonic() + backoff_s
         queued.busy_answers += 1
         queued.job = replace(queued.job, again=False)  # what the other process leaves is new enough
         self._queue.append(queued)
@@ -162,21 +150,20 @@ class WorkerPool:
     def _lose(self, worker: WorkerProcess, how: str) -> None:
         """Do without a worker that has ended or was given up; retry its job once."""
         queued = self._workers.pop(worker)
-        if not worker.ready:
-            self._note_failed_start(worker.last_line or how)
+        if not worker.started:
+            self._start_errors.append(worker.last_line() or how)
         worker.terminate()
         worker.wait()
         if queued is None:
             return
         queued.lost_workers += 1
+        lost = f"the process that converted it {how}"
         if queued.lost_workers < MOST_ATTEMPTS:
             self._queue.append(queued)
-            self._outcomes.job_requeued(
-                queued.job, f"the process that converted it {how}; it is tried once more"
-            )
+            self._outcomes.job_requeued(queued.job, f"{lost}; it is tried once more")
         else:
-            error = f"the process that converted it {how}, and so did the one that tried again"
-            self._outcomes.job_finished(queued.job, Done(FAILED, error=error, kind=CRASH))
+            error = f"{lost}, and so did the one that tried again"
+            self._outcomes.job_finished(queued.job, Done(FAILED, error, CRASH))
 
     @contextmanager
     def _interruptible(self) -> Iterator[None]:
@@ -185,9 +172,8 @@ class WorkerPool:
 
         def interrupt(_signal: int, _frame: FrameType | None) -> None:
             nonlocal asked
-            if asked:
-                for worker in list(self._workers):
-                    worker.kill()
+            for worker in list(self._workers) if asked else ():
+                worker.process.kill()
             asked = True
             self._events.put(None)
 

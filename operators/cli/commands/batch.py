@@ -104,7 +104,7 @@ def batch_command(arguments: argparse.Namespace, console: Console) -> None:
             f"{len(failed)} of {len(jobs)} takes failed: {listed(failed, MOST_NAMED)}{where}"
         )
     if outcomes.write_errors:
-        raise ConversionError(outcomes.write_errors[0])
+        raise ConversionError(next(iter(outcomes.write_errors)))
 
 
 def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], ConversionSettings]:

@@ -212,7 +212,7 @@ def test_workers_end_when_their_batch_does(shoot: Path, tmp_path: Path) -> None:
     words = [*command.worker_command_line()]
     worker = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert worker.stdin is not None and worker.stdout is not None
-    assert b"ready" in worker.stdout.readline()
+    assert b"step" in worker.stdout.readline()
     from keymark.core.shoot.discovery import find_takes
     from keymark.core.take.conversion_settings import NO_SETTINGS
     from keymark.operators.cli.batch.worker_process import Job

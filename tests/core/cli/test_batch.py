@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from keymark.core.shoot.outcomes import read_failure
 from keymark.operators.cli.batch import worker_pool
-from keymark.operators.cli.batch.outcomes import BatchProgress
+from keymark.operators.cli.batch.outcomes import share_done
 from keymark.operators.cli.command import program_name
 from keymark.operators.cli.commands import batch as command
 from keymark.operators.cli.main import main
@@ -254,14 +254,17 @@ def test_an_unusable_shoot_writes_nothing(studio: Studio, capsys: pytest.Capture
     assert not studio.out.exists() and studio.received_jobs == []
 
 
-def test_the_share_of_all_work_counts_frames_where_they_are_known() -> None:
-    progress = BatchProgress([300, None, 100])
-    assert progress.fraction == 0.0
-    progress.update(0, 1.0)
-    assert progress.fraction == pytest.approx(300 / 600)
-    progress.update(1, 0.5)
-    assert progress.fraction == pytest.approx((300 + 100) / 600)
-    progress.update(1, 1.0, 50)
-    assert progress.fraction == pytest.approx(350 / 450)
-    progress.update(2, 1.0, 100)
-    assert progress.fraction == pytest.approx(1.0) and BatchProgress([]).fraction == 1.0
+@pytest.mark.parametrize(
+    ("done", "frames", "share"),
+    [
+        ([0.0, 0.0, 0.0], [300, None, 100], 0.0),
+        ([1.0, 0.5, 0.0], [300, None, 100], (300 + 100) / 600),
+        ([1.0, 1.0, 0.0], [300, 50, 100], 350 / 450),
+        ([0.5, 0.0], [None, None], 0.25),
+        ([], [], 1.0),
+    ],
+)
+def test_the_share_of_all_work_counts_frames_where_they_are_known(
+    done: list[float], frames: list[int | None], share: float
+) -> None:
+    assert share_done(done, frames) == pytest.approx(share)
