@@ -3,7 +3,8 @@
 import os
 import unicodedata
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path, PurePath, PurePosixPath
 from typing import Any
@@ -14,7 +15,6 @@ from ..files.json_file import parse_json
 from ..files.kinds import safe_path
 from ..files.paths import check_symlinks, regular_file_size
 from ..take.conversion_record import RECORD_FILE, find_record
-from ..take.conversion_settings import NO_SETTINGS, ConversionSettings
 from ..take.description import (
     SETTING_FIELDS,
     SHARED_FIELDS,
@@ -23,7 +23,6 @@ from ..take.description import (
     Description,
     clip_name,
     describe,
-    effective_settings,
     find_shoot_files,
 )
 from ..video.image_sequence import is_image, stem_of_number
@@ -47,12 +46,6 @@ class ShootTake:
         """Merge all files that describe the take."""
         return describe(self.path, self.overrides, self.overrides_location)
 
-    def settings(
-        self, description: Description, defaults: ConversionSettings = NO_SETTINGS
-    ) -> ConversionSettings:
-        """The settings of its conversion; `defaults` for what the description leaves out."""
-        return effective_settings(description, defaults)
-
 
 @dataclass(frozen=True, eq=False)
 class Shoot:
@@ -68,11 +61,6 @@ class Shoot:
         return self.path if self.path.is_dir() else self.path.parent
 
 
-def part_of(takes: Collection[ShootTake], part: int, parts: int) -> list[ShootTake]:
-    """The share of one of several machines: every `parts`-th take, beginning with the `part`-th, from 1."""
-    return [take for index, take in enumerate(takes) if index % parts == part - 1]
-
-
 RESERVED = (".keymark", "summary.html", "summary.jsonl")
 """Files and folders that a batch itself writes into the folder of the results."""
 
@@ -86,7 +74,7 @@ def check_names(shoot: Path, takes: Sequence[ShootTake]) -> None:
     """Refuse takes whose results would lie in one folder on some file system, or one below another."""
     known: dict[str, ShootTake] = {}
     for take in takes:
-        if PurePosixPath(take.name).parts[:1] and _folded(PurePosixPath(take.name).parts[0]) in RESERVED:
+        if _folded(take.name.split("/")[0]) in RESERVED:
             raise InputError(
                 f"{take.path}: its results would lie where a batch keeps its own {take.name.split('/')[0]}; "
                 "rename it"
@@ -130,11 +118,9 @@ def _folded(name: str) -> str:
     return unicodedata.normalize("NFC", "/".join(parts)).casefold()
 
 
-ENDING = ".jsonl"
 LARGEST_BYTES = 64 * 2**20
 LONGEST_LINE_BYTES = 2**20
 TAKE_FIELD = "take"
-TAKE_VALID = "a path inside the list's folder, as in day1/clip01.mp4"
 KNOWN_FIELDS = (TAKE_FIELD, "clip", "frame_count", "keyframes", *SHARED_FIELDS, *SETTING_FIELDS)
 
 
@@ -145,20 +131,6 @@ def read_take_list(path: Path) -> Shoot:
         InputError: The list cannot be read, is too large or holds no take; or a line is no object, or has an
             unknown field, a path outside the folder or the name of another take.
     """
-    takes: list[ShootTake] = []
-    for number, line in enumerate(_lines(path), 1):
-        if not line.strip():
-            continue
-        takes.append(_take(path, f"{path}, line {number}", line))
-        if len(takes) > MOST_TAKES:
-            raise InputError(f"{path}: lists more than {MOST_TAKES} takes; make several lists of it")
-    if not takes:
-        raise InputError(f'{path}: lists no take; it must hold lines such as {{"take": "day1/clip01.mp4"}}')
-    check_names(path, takes)
-    return Shoot(path, tuple(sorted(takes, key=lambda take: take.name)))
-
-
-def _lines(path: Path) -> list[str]:
     valid = "a list of takes in UTF-8, one JSON object a line"
     regular_file_size(path, valid)
     try:
@@ -166,47 +138,49 @@ def _lines(path: Path) -> list[str]:
             content = file.read(LARGEST_BYTES + 1)
         if len(content) > LARGEST_BYTES:
             raise InputError(f"{path}: is longer than {LARGEST_BYTES // 2**20} MiB; it must be {valid}")
-        return content.decode("utf-8-sig").split("\n")
+        lines = content.decode("utf-8-sig").split("\n")
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(f"{path}: cannot be read ({reason}); it must be {valid}") from error
+    numbered = [(number, line) for number, line in enumerate(lines, 1) if line.strip()]
+    if len(numbered) > MOST_TAKES:
+        raise InputError(f"{path}: lists more than {MOST_TAKES} takes; make several lists of it")
+    if not numbered:
+        raise InputError(f'{path}: lists no take; it must hold lines such as {{"take": "day1/clip01.mp4"}}')
+    return _shoot(path, [_listed_take(path, f"{path}, line {number}", line) for number, line in numbered])
 
 
-def _take(path: Path, where: str, line: str) -> ShootTake:
+def _listed_take(path: Path, where: str, line: str) -> ShootTake:
     if len(line) > LONGEST_LINE_BYTES:
         raise InputError(f"{where}: has {len(line)} characters; at most {LONGEST_LINE_BYTES} are read")
     values: dict[str, Any] = parse_json(line, where)
-    fields = Fields(values, where)
+    fields, valid = Fields(values, where), "a path inside the list's folder, as in day1/clip01.mp4"
     fields.refuse_others([*KNOWN_FIELDS, *(name for name in values if name.startswith(COMMENT_PREFIX))])
-    take = safe_path(fields, TAKE_FIELD, path.parent, TAKE_VALID)
+    take = safe_path(fields, TAKE_FIELD, path.parent, valid)
     check_symlinks([take], [path.parent])
     relative = take.relative_to(path.parent)
     if not relative.parts:
-        raise InputError(f"{where}: {TAKE_FIELD} is {shown(values[TAKE_FIELD])}; it must be {TAKE_VALID}")
+        raise InputError(f"{where}: {TAKE_FIELD} is {shown(values[TAKE_FIELD])}; it must be {valid}")
     if os.path.isfile(take):  # which is false for an impossible file name, too
         relative = relative.with_name(clip_name(take))
     overrides = {name: value for name, value in values.items() if name != TAKE_FIELD}
     return ShootTake(take_name(relative), take, overrides, where)
 
 
+def _shoot(path: Path, takes: Sequence[ShootTake]) -> Shoot:
+    check_names(path, takes)
+    return Shoot(path, tuple(sorted(takes, key=lambda take: take.name)))
+
+
 VIDEOS = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".mts", ".mxf", ".webm", ".wmv"})
-NO_TAKE = (
-    f"holds no take; a take is a folder with {TAKE_FILE}, or a clip with a {SHOOT_FILE}, "
-    "which keymark new writes"
-)
-NO_CLIP = "holds no clip; a clip is a video or a folder of numbered images"
-DEEPEST = 64
-"""Levels of folders that are searched: more are a cycle in the file system."""
 
 
 def open_shoot(path: Path, excluded: Path | None = None) -> Shoot:
     """Find the takes of a folder, a list (.jsonl) or one video; their files are not read yet."""
-    if path.suffix.lower() == ENDING and not path.is_dir():
+    if path.suffix.lower() == ".jsonl" and not path.is_dir():
         return read_take_list(path)
     if path.suffix.lower() in VIDEOS and path.is_file():
-        takes = (ShootTake(take_name(Path(path.stem)), path),)
-        check_names(path, takes)
-        return Shoot(path, takes)
+        return _shoot(path, [ShootTake(take_name(Path(path.stem)), path)])
     return find_takes(path, excluded)
 
 
@@ -232,79 +206,71 @@ def find_takes(folder: Path, excluded: Path | None = None, undescribed: bool = F
     real_excluded = None if excluded is None else os.path.realpath(excluded)
     if os.path.realpath(folder) == real_excluded:
         raise InputError(f"{excluded}: is the shoot's own folder; name another one, which may lie in it")
-    search = _Search(folder, real_excluded)
-    search.visit(folder, described=undescribed or bool(find_shoot_files(folder)))
-    if not search.takes:
-        raise InputError(f"{folder}: {NO_CLIP if undescribed else NO_TAKE}")
-    takes = tuple(sorted(search.takes, key=lambda take: take.name))
-    check_names(folder, takes)
-    return Shoot(folder, takes)
-
-
-class _Search:
-    """A depth-first search for takes."""
-
-    def __init__(self, folder: Path, excluded: str | None) -> None:
-        self.folder = folder
-        self.excluded = excluded
-        self.takes: list[ShootTake] = []
-
-    def visit(self, folder: Path, described: bool, depth: int = 0) -> None:
-        """Add the takes in a folder and below it; `described`: whether a `shoot.json` describes clips."""
-        if os.path.realpath(folder) == self.excluded:
-            return
-        if depth > DEEPEST:
-            raise InputError(
-                f"{folder}: lies more than {DEEPEST} folders deep; name a folder nearer to the takes"
-            )
-        try:
-            inside = sorted(file for file in folder.iterdir() if not file.name.startswith("."))
-            names = {file.name for file in inside}
-            kinds = [(file, file.is_dir(), file.is_symlink()) for file in inside]
-        except OSError as error:
-            if depth == 0:
-                raise InputError(
-                    f"{folder}: cannot be read ({error.strerror}); a shoot is a folder of takes"
-                ) from error
-            self._add(folder)
-            return
-        described = described or SHOOT_FILE in names
-        if TAKE_FILE in names:
-            if depth == 0 or RECORD_FILE not in names or not is_result_take(folder):
-                self._add(folder)
-            return
-        if RECORD_FILE in names and SHOOT_FILE not in names:
-            return
-        below = [file for file, is_folder, is_link in kinds if is_folder and not is_link]
-        videos = [file for file, is_folder, _ in kinds if not is_folder and file.suffix.lower() in VIDEOS]
-        # Images are a clip where they are a folder's only content, or numbered; else they are stills.
-        images = [file for file in inside if is_image(file)]
-        stems = Counter(stem_of_number(image) for image in images)
-        numbered = any(count > 1 for stem, count in stems.items() if stem is not None)
-        if described and not videos and images and (numbered or not below):
-            self._add(folder)
-            return
-        for video in videos if described else ():
-            self._add(video)
-        for child in below:
-            self.visit(child, described, depth + 1)
-
-    def _add(self, path: Path) -> None:
-        relative = path.relative_to(self.folder)
+    found: list[Path] = []
+    described = undescribed or bool(find_shoot_files(folder))
+    for path in _paths_below(folder, folder, real_excluded, described):
+        found.append(path)
+        if len(found) > MOST_TAKES:
+            raise InputError(f"{folder}: holds more than {MOST_TAKES} takes; name a folder of fewer")
+    if not found:
+        if undescribed:
+            raise InputError(f"{folder}: holds no clip; a clip is a video or a folder of numbered images")
+        raise InputError(
+            f"{folder}: holds no take; a take is a folder with {TAKE_FILE}, or a clip with a {SHOOT_FILE}, "
+            "which keymark new writes"
+        )
+    takes = []
+    for path in found:
+        relative = path.relative_to(folder)
         if relative.parts and path.is_file():
             relative = relative.with_name(clip_name(path))
-        self.takes.append(ShootTake(take_name(relative), path))
-        if len(self.takes) > MOST_TAKES:
-            raise InputError(f"{self.folder}: holds more than {MOST_TAKES} takes; name a folder of fewer")
+        takes.append(ShootTake(take_name(relative), path))
+    return _shoot(folder, takes)
+
+
+def _paths_below(top: Path, folder: Path, excluded: str | None, described: bool) -> Iterator[Path]:
+    """The takes in a folder and below it; `described`: whether a `shoot.json` describes clips."""
+    if os.path.realpath(folder) == excluded:
+        return
+    if len(folder.relative_to(top).parts) > 64:  # a cycle in the file system
+        raise InputError(f"{folder}: lies more than 64 folders deep; name a folder nearer to the takes")
+    try:
+        inside = sorted(file for file in folder.iterdir() if not file.name.startswith("."))
+        names = {file.name for file in inside}
+        kinds = [(file, file.is_dir(), file.is_symlink()) for file in inside]
+    except OSError as error:
+        if folder == top:
+            reason = f"cannot be read ({error.strerror})"
+            raise InputError(f"{folder}: {reason}; a shoot is a folder of takes") from error
+        yield folder
+        return
+    described = described or SHOOT_FILE in names
+    if TAKE_FILE in names:
+        if folder == top or RECORD_FILE not in names or not is_result_take(folder):
+            yield folder
+        return
+    if RECORD_FILE in names and SHOOT_FILE not in names:
+        return
+    below = [file for file, is_folder, is_link in kinds if is_folder and not is_link]
+    videos = [file for file, is_folder, _ in kinds if not is_folder and file.suffix.lower() in VIDEOS]
+    # Images are a clip where they are a folder's only content, or numbered; else they are stills.
+    images = [file for file in inside if is_image(file)]
+    stems = Counter(stem_of_number(image) for image in images)
+    numbered = any(count > 1 for stem, count in stems.items() if stem is not None)
+    if described and not videos and images and (numbered or not below):
+        yield folder
+        return
+    yield from videos if described else ()
+    for child in below:
+        yield from _paths_below(top, child, excluded, described)
 
 
 def is_result_take(folder: Path) -> bool:
     """Whether a conversion has made the take in a folder, as where it found the camera: it is a result."""
-    try:
+    with suppress(InputError):
         record = find_record(folder)
-    except InputError:
-        return False
-    return record is not None and TAKE_FILE in record.files
+        return record is not None and TAKE_FILE in record.files
+    return False
 
 
 def take_path(file: Path) -> Path:

@@ -67,23 +67,18 @@ def remove_failures_of_deleted_takes(output: Path, shoot: Shoot) -> None:
 
     A list or one clip does not tell whether other takes exist.
     """
-    known = {take.name for take in shoot.takes}
-    for failure in read_failures(output):
-        if failure.take not in known and _is_deleted(shoot.path, failure.take):
-            remove_failure(output, failure.take)
-
-
-def _is_deleted(folder: Path, take: str) -> bool:
-    """Whether neither the folder nor the clip of a take exists any more."""
-    if not folder.is_dir():
-        return False
-    try:
-        siblings = [file.relative_to(folder) for file in (folder / take).parent.iterdir()]
-    except (FileNotFoundError, NotADirectoryError):
-        return True
-    except (OSError, ValueError):  # it may exist
-        return False
-    return take not in {take_name(path.with_name(clip_name(folder / path))) for path in siblings}
+    known, folder = {take.name for take in shoot.takes}, shoot.path
+    for take in (failure.take for failure in read_failures(output) if folder.is_dir()):
+        names: set[str] = set()
+        try:
+            siblings = [file.relative_to(folder) for file in (folder / take).parent.iterdir()]
+            names = {take_name(path.with_name(clip_name(folder / path))) for path in siblings}
+        except (FileNotFoundError, NotADirectoryError):
+            pass
+        except (OSError, ValueError):  # it may exist
+            continue
+        if take not in known and take not in names:
+            remove_failure(output, take)
 
 
 def _read(path: Path) -> Failure | None:
@@ -141,17 +136,11 @@ class Result:
     record: ConversionRecord
 
 
-@dataclass(frozen=True, eq=False)
-class Results:
-    """Results below a folder, in the order of their names."""
+def find_results(folder: Path) -> tuple[list[Result], dict[str, str]]:
+    """Every result below a folder, and by name of each whose record is unusable, why, in a sentence.
 
-    sound: tuple[Result, ...]
-    damaged: dict[str, str]
-    """By name of each result whose record is unusable, the reason in a sentence."""
-
-
-def find_results(folder: Path) -> Results:
-    """Find every result below a folder; hidden folders and links to folders are skipped."""
+    Both are in the order of their names; hidden folders and links to folders are skipped.
+    """
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder; it must be a folder of results, as batch writes it")
     sound: list[Result] = []
@@ -174,7 +163,7 @@ def find_results(folder: Path) -> Results:
             f"{folder}: holds no result; a result is a folder with {RECORD_FILE}, "
             "as convert and batch write it"
         )
-    return Results(tuple(sorted(sound, key=lambda result: result.name)), dict(sorted(damaged.items())))
+    return sorted(sound, key=lambda result: result.name), dict(sorted(damaged.items()))
 
 
 def _result_folders(folder: Path) -> Iterator[tuple[Path, OSError | None]]:

@@ -20,16 +20,16 @@ class Findings:
     """Sentences on a take: problems stop its conversion, warnings are what is likely to go wrong."""
 
     def __init__(self) -> None:
-        self.problems: tuple[str, ...] = ()
-        self.warnings: tuple[str, ...] = ()
+        self.problems: dict[str, None] = {}
+        self.warnings: dict[str, None] = {}
 
     def problem(self, *sentences: str) -> None:
         """Add problems; the same sentence is kept once."""
-        self.problems = tuple(dict.fromkeys((*self.problems, *sentences)))
+        self.problems |= dict.fromkeys(sentences)
 
     def warn(self, *sentences: str) -> None:
         """Add warnings; the same sentence is kept once."""
-        self.warnings = tuple(dict.fromkeys((*self.warnings, *sentences)))
+        self.warnings |= dict.fromkeys(sentences)
 
     @contextmanager
     def catching(self) -> Iterator[None]:
@@ -40,8 +40,6 @@ class Findings:
             self.problem(str(error))
 
 
-LONGEST_GAP_S = 1.0
-"""Longest gap between keyframes without a warning where none are found in it: ten in 100 frames are usual."""
 MOST_NAMED = 3
 
 
@@ -61,52 +59,30 @@ def check_keyframes(take: Take, frames: int, others_found: bool, findings: Findi
         check_in_front(take)
     if findings.problems or not take.keyframes:
         return
-    if not others_found:
-        _check_gaps(take, frames, findings)
-    _check_picture(take, findings)
-
-
-def _check_gaps(take: Take, frames: int, findings: Findings) -> None:
     ends = [0, *(index for index in take.keyframe_indices if index < frames), frames - 1]
     gaps = np.diff(ends)
     longest = int(np.argmax(gaps))
     seconds = gaps[longest] / take.fps
-    if seconds > LONGEST_GAP_S:
+    if seconds > 1.0 and not others_found:  # ten in 100 frames are usual
         first, last = ends[longest] + take.frame_start, ends[longest + 1] + take.frame_start
         findings.warn(
             f"{len(take.keyframes)} keyframes for {frames} frames are few: from frame {first} to "
             f"{last}, {seconds:.1f} s, there is none; pose more, or let --keyframes auto find the "
             "others"
         )
-
-
-def _check_picture(take: Take, findings: Findings) -> None:
-    width, height = take.camera.resolution
-    outside = []
+    size, outside = np.array(take.camera.resolution), []
     for keyframe in take.keyframes:
         points = take.body.points(take.body.pose(keyframe.posture))
-        x, y = np.moveaxis(take.camera.project(points, keyframe.index)[0], -1, 0)
-        inside = (x >= 0.0) & (x <= width) & (y >= 0.0) & (y <= height)
-        if inside.mean() < 0.5:
-            outside.append(keyframe.index + take.frame_start)
+        pixel = take.camera.project(points, keyframe.index)[0]
+        if ((pixel >= 0.0) & (pixel <= size)).all(axis=-1).mean() < 0.5:
+            outside.append(str(keyframe.index + take.frame_start))
     if outside:
-        which = listed(map(str, outside), MOST_NAMED)
+        which = listed(outside, MOST_NAMED)
         which = f"the keyframes {which}" if len(outside) > 1 else f"keyframe {which}"
         findings.warn(
             f"through this camera {which} would be seen outside the picture for the most "
             "part; check where the camera stands and its lens"
         )
-
-
-LARGEST_ERROR = 0.1
-"""Median distance of keypoints from posed joints that is still one of the same person, as a share of the
-performer's height in the picture: detectors place hips and shoulders up to half as far from the joint."""
-USUAL_ERROR = 0.03
-"""The same where nothing is wrong: the detector's error and that of posing."""
-MUCH_BETTER = 0.5
-"""Share of an unusual error that another reading of the file must leave to be named."""
-MOST_SHIFTED_S = 0.5
-"""Longest delay that is looked for; with a longer one the movement may be another that looks alike."""
 
 
 @dataclass(frozen=True)
@@ -164,20 +140,24 @@ def _readout(take: Take, people: People, findings: Findings) -> KeypointReadout:
 
 
 def _check_agreement(take: Take, performer: Keypoints, name: str, findings: Findings) -> float | None:
-    """Median distance from the posed joints [px]; warns where it is too large, and says of what it looks."""
+    """Median distance from the posed joints [px]; warns where it is too large, and says of what it looks.
+
+    Detectors place hips and shoulders up to half as far from the joint as is still one of the same person: a
+    tenth of the performer's height in the picture. 3 % are the detector's error and that of posing.
+    """
     posed, height_px = _posed_joints(take)
     plain = _error(performer, posed, 0, str)
-    if plain is None or plain <= USUAL_ERROR * height_px:
+    if plain is None or plain <= 0.03 * height_px:
         return plain
-    reach = round(MOST_SHIFTED_S * take.fps)
     readings = {"left and right seem to be exchanged": _error(performer, posed, 0, mirrored_point)}
+    reach = round(0.5 * take.fps)  # with a longer delay the movement may be another that looks alike
     for shift in (step for step in range(-reach, reach + 1) if step):
         when = "late" if shift > 0 else "early"
         readings[f"they seem to be {abs(shift)} frames {when}"] = _error(performer, posed, shift, str)
     known = {words: error for words, error in readings.items() if error is not None}
     best = min(known, key=lambda words: known[words], default=None)
-    explained = best is not None and known[best] < MUCH_BETTER * plain
-    if explained or plain > LARGEST_ERROR * height_px:
+    explained = best is not None and known[best] < 0.5 * plain
+    if explained or plain > 0.1 * height_px:
         findings.warn(
             f"{name}: its joints lie {plain:.0f} px from those of the posed keyframes, where the "
             f"performer is {height_px:.0f} px tall; "
@@ -204,14 +184,12 @@ def _error(
     performer: Keypoints, posed: dict[int, dict[str, Array]], shift: int, name_of: Callable[[str], str]
 ) -> float | None:
     """Median distance [px] of the joints seen so many frames after the keyframes, under these names."""
-    distances = []
-    for index, joints in posed.items():
-        if not 0 <= index + shift < performer.frame_count:
-            continue
-        for column, name in enumerate(performer.names):
-            if name_of(name) in joints:
-                distances.append(
-                    np.linalg.norm(performer.pixel[index + shift, column] - joints[name_of(name)])
-                )
+    distances = [
+        np.linalg.norm(performer.pixel[index + shift, column] - joints[name_of(name)])
+        for index, joints in posed.items()
+        if 0 <= index + shift < performer.frame_count
+        for column, name in enumerate(performer.names)
+        if name_of(name) in joints
+    ]
     known = np.array(distances)[np.isfinite(distances)] if distances else np.zeros(0)
     return float(np.median(known)) if len(known) else None

@@ -17,14 +17,10 @@ from ...video.image_sequence import ImageSequence
 from ...video.video_file import VideoFile
 from .evidence_check import Findings
 
-ENOUGH_FRAMES = SAMPLED_FRAMES // 2
-"""Sampled frames without a marker's color from which on the conversion will not find it either."""
 MOST_EXPECTED = 5000
 """Frames of the longest clip for which the markers' expected regions are computed."""
 ASTRAY = 0.8
 """Share of a marker's regions near where keyframes put it, below which a warning is given."""
-BLACK, DARK = 16.0, 40.0
-"""Brightest tenth of a picture that is black, or dark, in levels of 255."""
 
 
 def count_frames(clip: Clip, findings: Findings) -> int:
@@ -63,7 +59,8 @@ def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tu
     if not take.markers:
         return ()
     check = _find_markers(take, samples, frames, findings)
-    missing = _missing_markers(check, samples)
+    enough = len(samples.images) >= min(SAMPLED_FRAMES // 2, samples.indices[-1] + 1)
+    missing = tuple(check.missing.values()) if enough else ()  # else the conversion may find them
     if len(missing) == len(take.markers) > 1:
         findings.problem(
             f"{take.clip}: the color of no marker is in any of {len(samples.images)} sampled frames; "
@@ -73,28 +70,22 @@ def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tu
     findings.problem(*(f"{take.clip}: marker {sentence}" for sentence in missing))
     for readout in check.readouts:
         findings.warn(*(warning for warning in readout.warnings if warning not in missing))
-    _propose_to_ignore(take, check, findings)
-    return check.readouts
-
-
-def _propose_to_ignore(take: Take, check: MarkerCheck, findings: Findings) -> None:
-    """Say what take.json must hold for the still areas of the markers' colors to be left out."""
     names = [readout.name for readout in check.readouts if readout.still_boxes]
-    if not names:
-        return
-    boxes = dict.fromkeys(box for readout in check.readouts for box in readout.still_boxes)
-    every = [*take.ignored_regions, *(IgnoredRegion(box=box) for box in boxes)]
-    field = json.dumps(ignored_region_fields(every, take.frame_start))
-    findings.warn(
-        f"still areas have the color of {' and '.join(names)}; they are left out where {take.file.name} says "
-        f'"{IGNORED_REGIONS}": {field}'
-    )
+    if names:
+        boxes = dict.fromkeys(box for readout in check.readouts for box in readout.still_boxes)
+        every = [*take.ignored_regions, *(IgnoredRegion(box=box) for box in boxes)]
+        field = json.dumps(ignored_region_fields(every, take.frame_start))
+        findings.warn(
+            f"still areas have the color of {' and '.join(names)}; they are left out where {take.file.name} "
+            f'says "{IGNORED_REGIONS}": {field}'
+        )
+    return check.readouts
 
 
 def _check_light(samples: ClipSamples, findings: Findings) -> bool:
     """Whether many frames are dark; warns of them."""
     bright = np.array([np.percentile(image.max(axis=-1), 90.0) for image in samples.images])
-    for limit, word in ((BLACK, "black"), (DARK, "dark")):
+    for limit, word in ((16.0, "black"), (40.0, "dark")):  # levels of 255 of the brightest tenth
         count = int(np.count_nonzero(bright < limit))
         if count >= max(0.25 * len(bright), 1):
             findings.warn(
@@ -103,12 +94,6 @@ def _check_light(samples: ClipSamples, findings: Findings) -> bool:
             )
             return True
     return False
-
-
-def _missing_markers(check: MarkerCheck, samples: ClipSamples) -> tuple[str, ...]:
-    """Sentences on markers found in no frame; none where too few frames were sampled to tell."""
-    enough = len(samples.images) >= min(ENOUGH_FRAMES, samples.indices[-1] + 1)
-    return tuple(check.missing.values()) if enough else ()
 
 
 def _find_markers(take: Take, samples: ClipSamples, frames: int, findings: Findings) -> MarkerCheck:

@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 from ...detect.pose_network import PoseNetwork
 from ...estimate.reconstruct import check_method
@@ -14,7 +13,7 @@ from ...session.described import described, is_detected
 from ...take.character_settings import CharacterSettings
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import METHODS, NO_SETTINGS, ConversionSettings
-from ...take.description import Description
+from ...take.description import Description, effective_settings
 from ...take.evidence import CONTOURS, KEYPOINTS, MARKERS, in_order
 from ...take.take import Take, evidence_of
 from ...take.take_file import read_described
@@ -57,24 +56,9 @@ def find_unfilled_fields(fields: Fields) -> tuple[str, ...]:
 
 
 def _child(fields: Fields, name: str) -> Fields:
-    value: Any = fields.values.get(name)
-    values: Mapping[str, Any] = value if isinstance(value, Mapping) else {}
-    return Fields(values, child_location(fields.source_of(name), name))
-
-
-SECONDS_A_TAKE = 0.9
-"""Writing Blender's files and drawing pictures."""
-SECONDS_A_FRAME = {"map": 0.004, "ekf": 0.004, "interpolation": 0.002}
-"""By method, without reading the frame and without what follows."""
-SECONDS_FOR_KEYPOINTS = 0.001
-SECONDS_FOR_CONTOURS, SECONDS_FOR_WIDE_CONTOURS = 0.006, 0.009
-"""A frame, with markers and without, where contours are searched far and wide."""
-SECONDS_A_MEGAPIXEL = 0.012
-"""Decoding and following the markers."""
-SECONDS_TO_POSE = 0.1
-SECONDS_TO_DETECT = 0.1
-BYTES_A_TAKE = 1_800_000
-BYTES_A_FRAME = 5_000
+    value = fields.values.get(name)
+    location = child_location(fields.source_of(name), name)
+    return Fields(value if isinstance(value, Mapping) else {}, location)
 
 
 @dataclass(frozen=True)
@@ -94,19 +78,18 @@ def estimate_cost(
     detects: bool = False,
 ) -> CostEstimate:
     """Estimate the cost of converting a take, whose conversion may have to detect keypoints."""
-    a_frame = SECONDS_A_FRAME[method] + SECONDS_A_MEGAPIXEL * size[0] * size[1] / 1e6
+    a_frame = 0.012 * size[0] * size[1] / 1e6  # decoding and following the markers
+    a_frame += 0.002 if method == "interpolation" else 0.004
     if method == "map":
-        a_frame += SECONDS_FOR_KEYPOINTS * (KEYPOINTS in evidence)
-    if method == "map" and CONTOURS in evidence:
-        a_frame += SECONDS_FOR_CONTOURS if MARKERS in evidence else SECONDS_FOR_WIDE_CONTOURS
-    a_frame += SECONDS_TO_POSE * (library is not None) + SECONDS_TO_DETECT * detects
-    return CostEstimate(SECONDS_A_TAKE + frames * a_frame, BYTES_A_TAKE + frames * BYTES_A_FRAME)
+        a_frame += 0.001 * (KEYPOINTS in evidence)
+        # Without markers contours are searched far and wide.
+        a_frame += (0.006 if MARKERS in evidence else 0.009) * (CONTOURS in evidence)
+    a_frame += 0.1 * (library is not None) + 0.1 * detects
+    # Beside what grows with the frames, writing Blender's files and drawing pictures.
+    return CostEstimate(0.9 + frames * a_frame, 1_800_000 + frames * 5_000)
 
 
-CONTOURS_ALONE = (
-    "the motion is held against contours alone, which tell least of all evidence; keypoints of a "
-    "detector, as of keymark detect, or markers in strong colors tell more"
-)
+READY, LOOK, FAILS = "ready", "look", "fails"
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,9 +115,9 @@ class TakeCheck:
     """Cost of its conversion; None where it would not convert."""
 
     @property
-    def converts(self) -> bool:
-        """Whether no problem is known that would stop the conversion."""
-        return not self.problems
+    def status(self) -> str:
+        """Whether the take would convert, would but something is likely to go wrong, or would not."""
+        return FAILS if self.problems else LOOK if self.warnings else READY
 
 
 def check_take(
@@ -149,8 +132,8 @@ def check_take(
     with findings.catching():
         description = found.describe()
     if description is None:
-        return TakeCheck(found.name, findings.problems, findings.warnings)
-    settings = found.settings(description, defaults)
+        return TakeCheck(found.name, tuple(findings.problems), tuple(findings.warnings))
+    settings = effective_settings(description, defaults)
     if settings.library is not None:
         with findings.catching():
             find_libraries(settings.library)
@@ -165,35 +148,38 @@ def check_take(
     frames = None if clip is None else count_frames(clip, findings)
     take = None if missing or clip is None else _read(description, settings, findings)
     evidence: tuple[str, ...] = ()
-    if take is not None:  # what its motion will be held against, keypoints that are yet to be detected too
-        evidence = in_order((*evidence_of(take), *(KEYPOINTS,) * is_detected(description, settings)))
     markers: tuple[MarkerReadout, ...] = ()
     keypoints: tuple[KeypointReadout, ...] = ()
+    method = settings.method or METHODS[0]
     if take is not None and clip is not None and frames is not None:
+        detects = is_detected(description, settings)
+        # What its motion will be held against, keypoints that are yet to be detected too.
+        evidence = in_order((*evidence_of(take), *(KEYPOINTS,) * detects))
         with findings.catching():
-            check_method(take, settings.method or METHODS[0])
-        if is_detected(description, settings):
-            with findings.catching():
+            check_method(take, method)
+        with findings.catching():
+            if detects:
                 PoseNetwork()
-        elif settings.library is not None:
-            with findings.catching():
+            elif settings.library is not None:
                 check_followed(take)
         check_keyframes(take, frames, settings.library is not None, findings)
         keypoints = check_keypoints(take, frames, findings)
         markers = check_footage(take, clip, frames, findings)
         if evidence == (CONTOURS,) and not findings.problems:
-            findings.warn(CONTOURS_ALONE)
-    cost, method = None, settings.method or METHODS[0]
+            findings.warn(
+                "the motion is held against contours alone, which tell least of all evidence; keypoints of a "
+                "detector, as of keymark detect, or markers in strong colors tell more"
+            )
+    cost = None
     if clip is not None and frames is not None and not findings.problems:
         detects = take is not None and KEYPOINTS in evidence and not take.keypoints
         cost = estimate_cost(frames, clip.size, method, settings.library, evidence, detects)
-    said_fps = None if take is None else take.fps
     return TakeCheck(
         name=found.name,
-        problems=findings.problems,
-        warnings=findings.warnings,
+        problems=tuple(findings.problems),
+        warnings=tuple(findings.warnings),
         size=None if clip is None else clip.size,
-        fps=clip.fps if clip is not None and clip.knows_its_rate else said_fps,
+        fps=clip.fps if clip is not None and clip.knows_its_rate else None if take is None else take.fps,
         frames=frames,
         evidence=evidence,
         markers=markers,

@@ -20,21 +20,19 @@ def resident_bytes() -> int | None:
     return most if sys.platform == "darwin" else most * 1024
 
 
-def available_memory_bytes() -> int | None:
-    """Memory that this process may use: the machine's, or less where a container limits it."""
-    known = []
+def usual_workers(most: int) -> int:
+    """A worker for each processor that this process may use, as far as each gets the memory it may need.
+
+    The memory is the machine's, or less where a container limits it.
+    """
+    memory = [most * 1.5 * 2**30]
     with suppress(OSError, ValueError, AttributeError):
-        known.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+        memory.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     with suppress(OSError, ValueError):  # of a Linux container; the word max stands for no limit
-        known.append(int(Path("/sys/fs/cgroup/memory.max").read_text(encoding="ascii")))
-    return min((size for size in known if size > 0), default=None)
-
-
-def processor_count() -> int:
-    """Number of processors that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+        memory.append(int(Path("/sys/fs/cgroup/memory.max").read_text(encoding="ascii")))
+    fitting = int(min(size for size in memory if size > 0) // (1.5 * 2**30))
+    own = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(1, min(own, fitting))
 
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -11,10 +11,11 @@ import cv2
 from ....core.errors import BusyError, InputError, KeymarkError, describe_unexpected
 from ....core.progress import Progress
 from ....core.shoot.outcomes import CONVERSION, CRASH, INPUT
+from ....core.take.description import effective_settings
 from ..blender_silence import blender_silence
 from ..command import UsageError
 from ..console import JOB_SHARE, Console
-from ..conversion.convert_take import convert_if_changed
+from ..conversion.convert_take import UpToDate, convert_take
 from .machine_resources import resident_bytes
 from .worker_process import BUSY, CONVERTED, FAILED, UNCHANGED, Done, Job, Message, Step, message_line
 
@@ -38,10 +39,12 @@ def run_job(job: Job, send: Callable[[Message], None]) -> Done:
     how: tuple[str, ...]
     try:
         description = job.take.describe()
-        settings = job.take.settings(description, job.defaults)
+        settings = effective_settings(description, job.defaults)
         console = _JobConsole(send)
-        made = convert_if_changed(description, job.folder, console, settings, job.debug, job.again)
-        how = (UNCHANGED if made is None else CONVERTED,)
+        convert_take(description, job.folder, console, settings, job.debug, again=job.again)
+        how = (CONVERTED,)
+    except UpToDate:
+        how = (UNCHANGED,)
     except BusyError as busy:
         how = BUSY, str(busy)
     except (InputError, UsageError) as wrong:

@@ -7,7 +7,6 @@ import argparse
 import errno
 import os
 import re
-from collections.abc import Sequence
 from contextlib import suppress
 from difflib import get_close_matches
 from pathlib import Path
@@ -15,9 +14,9 @@ from pathlib import Path
 from ....core.errors import ConversionError, InputError
 from ....core.files.fields import listed
 from ....core.report.batch_page import current_record
-from ....core.shoot.discovery import Shoot, ShootTake, check_output, open_shoot, part_of
+from ....core.shoot.discovery import Shoot, ShootTake, check_output, open_shoot
 from ....core.take.conversion_settings import ConversionSettings
-from ..batch.machine_resources import available_memory_bytes, processor_count
+from ..batch.machine_resources import usual_workers
 from ..batch.outcomes import BatchOutcomes
 from ..batch.worker_pool import WorkerPool
 from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, Job, worker_command_line
@@ -25,10 +24,7 @@ from ..command import UsageError, argument, command, require_blender
 from ..console import Console
 from ..options import HANDS, PICTURES, SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option, output
 
-WORKER_BYTES = 1.5 * 2**30
-"""Memory that a worker may need; the default number of jobs leaves each this much."""
 MOST_JOBS = 1000
-MOST_PARTS = 10**6
 MOST_NAMED = 5
 
 
@@ -79,7 +75,7 @@ def batch_command(arguments: argparse.Namespace, console: Console) -> None:
     outcomes = BatchOutcomes(shoot, output, jobs, console)
     pool = WorkerPool(jobs, worker_command_line(), outcomes, HEARTBEAT_TIMEOUT_S, arguments.debug)
     try:
-        pool.run(arguments.jobs or _usual_workers())
+        pool.run(arguments.jobs or usual_workers(MOST_JOBS))
         outcomes.finish()
     except KeyboardInterrupt:
         with suppress(KeyboardInterrupt):  # a second interrupt skips the summary
@@ -109,7 +105,12 @@ def batch_command(arguments: argparse.Namespace, console: Console) -> None:
 
 def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], ConversionSettings]:
     """The whole shoot, its takes to convert, and the settings of those that have none of their own."""
-    part, parts = _parsed_part(arguments.part)
+    found = re.fullmatch(
+        r"(\d{1,7})/(\d{1,7})", ("1/1" if arguments.part is None else arguments.part).strip(), re.ASCII
+    )
+    part, parts = (int(number) for number in found.groups()) if found else (0, 0)
+    if not 1 <= part <= parts <= 10**6:
+        raise UsageError(f"--part is {arguments.part}; K/N is valid with K from 1 to N, as in 2/5")
     defaults = given_settings(arguments)
     if defaults.library is not None:
         from ..library_search_path import requested_libraries  # a batch that asks for none needs no SciPy
@@ -117,32 +118,12 @@ def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], Conver
         requested_libraries(defaults.library)
     shoot = open_shoot(arguments.shoot, excluded=arguments.output)
     check_output(shoot, arguments.output)
-    takes = _named_takes(shoot, arguments.take) if arguments.take else shoot.takes
-    return shoot, part_of(takes, part, parts), defaults
-
-
-def _parsed_part(text: str | None) -> tuple[int, int]:
-    if text is None:
-        return 1, 1
-    found = re.fullmatch(r"(\d{1,7})/(\d{1,7})", text.strip(), re.ASCII)
-    part, parts = (int(number) for number in found.groups()) if found else (0, 0)
-    if not 1 <= part <= parts <= MOST_PARTS:
-        raise UsageError(f"--part is {text}; K/N is valid with K from 1 to N, as in 2/5")
-    return part, parts
-
-
-def _named_takes(shoot: Shoot, names: Sequence[str]) -> list[ShootTake]:
+    wanted = {name.rstrip("/") for name in arguments.take or ()}
     by_name = {take.name: take for take in shoot.takes}
-    for name in names:
+    for name in arguments.take or ():
         if name.rstrip("/") not in by_name:
             close = get_close_matches(name[:200], list(by_name)[:1000], n=1)
             hint = f" (is {close[0]} meant?)" if close else ""
             raise UsageError(f"--take is {name}{hint}; {shoot.path} has {listed(by_name, MOST_NAMED)}")
-    wanted = {name.rstrip("/") for name in names}
-    return [take for take in shoot.takes if take.name in wanted]
-
-
-def _usual_workers() -> int:
-    memory = available_memory_bytes()
-    fitting_memory = MOST_JOBS if memory is None else int(memory // WORKER_BYTES)
-    return max(1, min(processor_count(), fitting_memory))
+    takes = [take for take in shoot.takes if not wanted or take.name in wanted]
+    return shoot, takes[part - 1 :: parts], defaults

@@ -12,7 +12,7 @@ from ....core.errors import ConversionError, describe_unexpected, pluralize
 from ....core.files.fields import listed
 from ....core.files.paths import absolute_path
 from ....core.progress import Job, Progress, run
-from ....core.shoot.check.take_check import TakeCheck, check_take, flag_outliers
+from ....core.shoot.check.take_check import FAILS, LOOK, READY, TakeCheck, check_take, flag_outliers
 from ....core.shoot.discovery import Shoot, ShootTake, open_shoot
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.evidence import KEYPOINTS
@@ -24,10 +24,8 @@ from ..options import SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option
 
 MOST_JOBS = 64
 STAGE = "Looking at the takes"
-READY, LOOK, FAILS = "ready", "look", "fails"
-"""The take would convert; it would, but something is likely to go wrong; it would not."""
-STOPS, LIKELY = "!", "-"
-"""Before a problem that stops the conversion, and before a warning."""
+STOPS = "!"
+"""Before a problem that stops the conversion."""
 FEWEST_IN_COMMON = 3
 """Number of takes from which on a sentence that they share is printed once."""
 MOST_NAMED = 3
@@ -52,7 +50,7 @@ def check_command(arguments: argparse.Namespace, console: Console) -> None:
     job = _check_takes(shoot, defaults, characters, arguments.jobs or 1, arguments.debug)
     checks = run(job, console.progress)
     console.finish(check_summary(checks), check_text(shoot, checks, terminal_columns()))
-    failing = sum(not check.converts for check in checks)
+    failing = sum(check.status == FAILS for check in checks)
     if failing:
         raise ConversionError(f"{failing} of {pluralize(len(checks), 'take')} would not convert")
 
@@ -87,7 +85,7 @@ def _check_takes(
 
 def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
     """The checks as an object for `--json`."""
-    counts = Counter(map(_status, checks))
+    counts = Counter(check.status for check in checks)
     costs = [check.cost for check in checks if check.cost is not None]
     return {
         "takes": [_take(check) for check in checks],
@@ -114,7 +112,7 @@ def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = 
         lines += [line for sentence in sentences for line in wrapped(sentence, 2, columns)]
     held: dict[tuple[str, ...], list[str]] = {}
     for check in checks:
-        if check.evidence and check.converts:
+        if check.evidence and check.status != FAILS:
             held.setdefault(check.evidence, []).append(check.name)
     lines.append("")
     for kinds, names in held.items():
@@ -122,7 +120,17 @@ def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = 
         words = f"Held against {', '.join(most)} and {last}" if most else f"Held against {last}"
         which = f": {pluralize(len(names), 'take')} ({listed(names, MOST_NAMED)})" if len(held) > 1 else ""
         lines += wrapped(f"{words}{which}.", 0, columns)
-    return "\n".join([*lines, *wrapped(_last_line(checks), 0, columns)])
+    counts = Counter(check.status for check in checks)
+    why = f" ({STOPS} says why)" if counts[FAILS] else ""
+    last = f"{counts[READY]} ready, {counts[LOOK]} to look at, {counts[FAILS]} that would not convert{why}."
+    costs = [check.cost for check in checks if check.cost is not None]
+    if costs:
+        seconds, size = sum(one.seconds for one in costs), sum(one.size_bytes for one in costs)
+        time = f"{seconds:.0f} s" if seconds < 90.0 else f"{seconds / 60.0:.0f} min"
+        time = time if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+        room = f"{size / 1e6:.0f} MB" if size < 1e9 else f"{size / 1e9:.1f} GB"
+        last += f" Roughly {time} of one processor and {room} for those that convert."
+    return "\n".join([*lines, *wrapped(f"{pluralize(len(checks), 'take')}: {last}", 0, columns)])
 
 
 def _table(
@@ -134,7 +142,7 @@ def _table(
     keypoints = (KEYPOINTS,) if any(check.keypoints for check in checks) else ()
     titles = ("", "take", "frames", "size", "rate", "keyframes", *keypoints, *markers)
     rows = [
-        (_status(check), name, *_cells(check, keypoints, markers))
+        (check.status, name, *_cells(check, keypoints, markers))
         for check, name in zip(checks, names, strict=True)
     ]
     widths = [max(map(len, column)) for column in zip(titles, *rows, strict=True)]
@@ -152,10 +160,8 @@ def _table(
 
 def _marked(check: TakeCheck) -> tuple[str, ...]:
     """All sentences on a take, marked by whether they stop its conversion."""
-    return (
-        *(f"{STOPS} {sentence}" for sentence in check.problems),
-        *(f"{LIKELY} {sentence}" for sentence in check.warnings),
-    )
+    stopping = [f"{STOPS} {sentence}" for sentence in check.problems]
+    return (*stopping, *(f"- {sentence}" for sentence in check.warnings))
 
 
 def _cells(check: TakeCheck, keypoints: Sequence[str], markers: Sequence[str]) -> tuple[str, ...]:
@@ -183,34 +189,10 @@ def _aligned(cells: Sequence[str], widths: Sequence[int]) -> list[str]:
     return [SEPARATOR.join([words, f"{name:{widths[1]}}", *numbers]).rstrip()]
 
 
-def _last_line(checks: Sequence[TakeCheck]) -> str:
-    counts = Counter(map(_status, checks))
-    words = [
-        f"{counts[READY]} ready",
-        f"{counts[LOOK]} to look at",
-        f"{counts[FAILS]} that would not convert{f' ({STOPS} says why)' if counts[FAILS] else ''}",
-    ]
-    costs = [check.cost for check in checks if check.cost is not None]
-    line = f"{pluralize(len(checks), 'take')}: {', '.join(words)}."
-    if not costs:
-        return line
-    seconds, size = sum(one.seconds for one in costs), sum(one.size_bytes for one in costs)
-    time = f"{seconds:.0f} s" if seconds < 90.0 else f"{seconds / 60.0:.0f} min"
-    time = time if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
-    room = f"{size / 1e6:.0f} MB" if size < 1e9 else f"{size / 1e9:.1f} GB"
-    return f"{line} Roughly {time} of one processor and {room} for those that convert."
-
-
-def _status(check: TakeCheck) -> str:
-    if not check.converts:
-        return FAILS
-    return LOOK if check.warnings else READY
-
-
 def _take(check: TakeCheck) -> dict[str, Any]:
     return {
         "take": check.name,
-        "status": _status(check),
+        "status": check.status,
         "problems": list(check.problems),
         "warnings": list(check.warnings),
         "size": None if check.size is None else list(check.size),
@@ -220,12 +202,9 @@ def _take(check: TakeCheck) -> dict[str, Any]:
         "library": check.library,
         "evidence": list(check.evidence),
         "keypoints": [
-            {
-                **vars(readout),
-                "seen_frames": round(readout.seen_frames, 4),
-                "seen_points": round(readout.seen_points, 4),
-                "error_px": None if readout.error_px is None else round(readout.error_px, 2),
-            }
+            vars(readout)
+            | {name: round(getattr(readout, name), 4) for name in ("seen_frames", "seen_points")}
+            | {"error_px": None if readout.error_px is None else round(readout.error_px, 2)}
             for readout in check.keypoints
         ],
         "markers": {

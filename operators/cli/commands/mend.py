@@ -20,13 +20,14 @@ from ....core.take.reference import ARMATURE_ENDINGS, REFERENCE_ENDINGS, read_re
 from ..blender_silence import blender_silence
 from ..command import UsageError, argument, command, require_blender
 from ..console import Console
-from ..conversion.blender_files import hidden_files, refuse_unsupported_output
+from ..conversion.blender_files import refuse_unsupported_output
 from ..conversion.character_result import (
     EXPORTS,
     FORMAT,
     check_exporters,
     export_formats,
     silenced,
+    write_character,
     write_character_result,
 )
 from ..library_search_path import library_folders
@@ -169,7 +170,6 @@ def _mend_armature(
     console.stage("Reading the motion")
     with blender_silence(debug):
         from ...bridge.blend_files import own_scene, showing_scene
-        from ...bridge.character.import_character import write_character_files
         from ...bridge.motions.import_motion import import_motion
         from ...bridge.motions.mend_action import mend_action, write_mended
     check_exporters(own[2] if own is not None else ())
@@ -183,13 +183,9 @@ def _mend_armature(
         except InputError as error:
             raise InputError(f"{file.path}: {error}") from error
         if own is not None:
-            staging, folder, formats = own
-            exports = {EXPORTS[word][0]: EXPORTS[word][1] for word in formats}
-            names = (CHARACTER_BLEND, *exports.values())
-            with blender_silence(debug), hidden_files(names, staging, folder) as hidden:
+            with blender_silence(debug):
                 action = write_mended(imported.armature, found)
-                paths = {name: hidden[other] for name, other in exports.items()}
-                write_character_files(scene, imported, action, hidden[CHARACTER_BLEND], paths)
+                write_character(scene, imported, action, own[:2], own[2])
     return found.mended, (*imported.notes, *chosen.doubts)
 
 

@@ -3,7 +3,7 @@
 import argparse
 import os
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,9 +14,9 @@ from ....core.files.paths import absolute_path
 from ....core.progress import Progress
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.retarget.retarget_record import read_retarget_record
-from ....core.shoot.outcomes import Failure, Result, Results, find_results, read_failures
+from ....core.shoot.outcomes import Result, find_results, read_failures
 from ....core.take.conversion_record import CHARACTER_BLEND, MOTION
-from ....core.take.motion import Motion, read_motion
+from ....core.take.motion import read_motion
 from ..blender_silence import blender_silence
 from ..command import argument, command, require_blender
 from ..console import Console, terminal_columns, wrapped
@@ -48,10 +48,11 @@ def merge_command(arguments: argparse.Namespace, console: Console) -> None:
     """
     require_blender("an asset library needs")
     console.stage("Looking for results")
-    found = find_results(arguments.results)
-    _check_output(arguments.output, found)
+    sound, damaged = find_results(arguments.results)
+    _check_output(arguments.output, sound)
+    damaged |= {failure.take: failure.error for failure in read_failures(arguments.results)}
     name = arguments.name or absolute_path(arguments.results).name
-    gathering = MotionGathering(found, read_failures(arguments.results), name, console)
+    gathering = MotionGathering(sound, damaged, name, console)
     console.stage(STAGE)
     with blender_silence(arguments.debug):
         from ...bridge.asset_catalogs import NAME
@@ -59,9 +60,15 @@ def merge_command(arguments: argparse.Namespace, console: Console) -> None:
 
         write_motion_library(arguments.output, gathering.assets())
     files = [str(arguments.output), str(arguments.output.parent / NAME)]
-    problems = gathering.problems
-    counts = {"motions": gathering.count, "character_actions": gathering.character_count}
-    console.finish({**counts, "wrong": problems, "files": files}, _text(counts, files, problems))
+    counts, problems = gathering.counts, gathering.problems
+    heading = pluralize(counts["motions"], "motion")
+    if counts["character_actions"]:
+        heading += f" and {pluralize(counts['character_actions'], 'Action')} of characters"
+    lines = [f"{heading}:", *(f"  {file}" for file in files)]
+    lines += ["Takes that are not in it, or as they were before:"] * bool(problems)
+    for take in sorted(problems):
+        lines += wrapped(f"{take}: {problems[take]}", 2, terminal_columns())
+    console.finish({**counts, "wrong": problems, "files": files}, "\n".join(lines))
     if problems:
         named = listed(sorted(problems), MOST_NAMED)
         raise ConversionError(f"{arguments.output} lacks takes or holds earlier results of them: {named}")
@@ -70,85 +77,80 @@ def merge_command(arguments: argparse.Namespace, console: Console) -> None:
 class MotionGathering:
     """Yields the assets of sound results one by one, and collects the problems of the others."""
 
-    def __init__(self, found: Results, failures: Sequence[Failure], shoot: str, console: Console) -> None:
-        self.problems = dict(found.damaged)
+    def __init__(
+        self, sound: Sequence[Result], problems: dict[str, str], shoot: str, console: Console
+    ) -> None:
+        self.problems = problems
         """The problem of each take that the library lacks or has of an earlier input, in a sentence."""
-        self.problems |= {failure.take: failure.error for failure in failures}
-        self.count = 0
-        self.character_count = 0
-        self._found, self._shoot, self._console = found, shoot, console
+        self.counts = {"motions": 0, "character_actions": 0}
+        self._sound, self._shoot, self._console = sound, shoot, console
 
     def assets(self) -> "Iterator[MotionAsset]":
         """Yield the asset of every sound motion, one at a time: together they may not fit into memory."""
-        from ...bridge.assets import MotionAsset
-
         names: set[str] = set()
-        for index, result in enumerate(self._found.sound):
-            self._console.progress(Progress(STAGE, index / len(self._found.sound)))
+        for index, result in enumerate(self._sound):
+            self._console.progress(Progress(STAGE, index / len(self._sound)))
             try:
-                file = result.folder / MOTION
-                if content_digest(file) != result.record.files.get(MOTION):
-                    raise InputError(f"{file}: is not the file that the conversion wrote")
-                motion = read_motion(file)
+                yield from self._assets_of(result, names)
             except InputError as error:
                 self.problems[result.name] = str(error)
-                continue
-            name = asset_name(result.name, names)
-            names.add(name)
-            self.count += 1
-            # Slashes and colons have a meaning in a catalog's path.
-            parts = (re.sub(r"[:/\\]", "-", part) for part in (self._shoot, *result.name.split("/")[:-1]))
-            catalog = "/".join("".join(one if one.isprintable() else "-" for one in part) for part in parts)
-            marks = _short_tags("keymark", result.record.method, result.record.library)
-            yield MotionAsset(name, catalog, description(result), marks, motion)
-            yield from self._character(result, catalog, marks, motion, names)
         if not names:
             reasons = [self.problems[name] for name in sorted(self.problems)]
             more = [f"{len(reasons) - MOST_NAMED} more"] * (len(reasons) > MOST_NAMED)
             first = "; ".join([*reasons[:MOST_NAMED], *more])
             raise ConversionError(f"none of the results can be used: {first}")
 
-    def _character(
-        self, result: Result, catalog: str, marks: tuple[str, ...], motion: Motion, names: set[str]
-    ) -> "Iterator[MotionAsset]":
-        """The asset of a result's character, where it has one; a problem of the take where it is unusable."""
+    def _assets_of(self, result: Result, names: set[str]) -> "Iterator[MotionAsset]":
+        """The assets of a motion and, where it has one, of its character.
+
+        Raises:
+            InputError: The motion, or the character, is unusable.
+        """
         from ...bridge.assets import MotionAsset, load_character_action
 
-        made = result.record.files
-        if CHARACTER_BLEND not in made:
+        record, about = result.record, description(result)
+        motion = read_motion(_as_written(result, MOTION))
+        # Slashes and colons have a meaning in a catalog's path.
+        parts = (re.sub(r"[:/\\]", "-", part) for part in (self._shoot, *result.name.split("/")[:-1]))
+        catalog = "/".join("".join(one if one.isprintable() else "-" for one in part) for part in parts)
+        marks = _short_tags("keymark", record.method, record.library)
+        self.counts["motions"] += 1
+        yield MotionAsset(asset_name(result.name, names), catalog, about, marks, motion)
+        if CHARACTER_BLEND not in record.files:
             return
-        try:
-            if content_digest(result.folder / RETARGET) != made.get(RETARGET):
-                raise InputError(f"{result.folder / RETARGET}: is not the file that the conversion wrote")
-            record = read_retarget_record(result.folder)
-            blend = result.folder / CHARACTER_BLEND
-            action = load_character_action(blend, record.action, made[CHARACTER_BLEND])
-        except InputError as error:
-            self.problems[result.name] = str(error)
-            return
-        name = asset_name(f"{result.name} {record.character.object}", names)
-        names.add(name)
-        self.character_count += 1
-        words = f"For the character '{record.character.object}' of {record.character.file}. "
-        about = shortened(words + description(result))
-        marks += _short_tags(record.character.object, record.map.preset)
+        made = read_retarget_record(_as_written(result, RETARGET).parent)
+        action = load_character_action(
+            result.folder / CHARACTER_BLEND, made.action, record.files[CHARACTER_BLEND]
+        )
+        name = asset_name(f"{result.name} {made.character.object}", names)
+        self.counts["character_actions"] += 1
+        about = shortened(f"For the character '{made.character.object}' of {made.character.file}. {about}")
+        marks += _short_tags(made.character.object, made.map.preset)
         yield MotionAsset(name, catalog, about, marks, motion, action)
 
 
-def asset_name(take: str, taken: Collection[str]) -> str:
-    """A unique name for a take's Action, short enough for Blender not to cut it.
+def _as_written(result: Result, name: str) -> Path:
+    """A file of a result, which must be the one that the conversion wrote."""
+    file = result.folder / name
+    if content_digest(file) != result.record.files.get(name):
+        raise InputError(f"{file}: is not the file that the conversion wrote")
+    return file
 
-    Of a long name the end is kept, for there takes differ.
+
+def asset_name(take: str, names: set[str]) -> str:
+    """A name for a take's Action that is not among the names, to which it is added.
+
+    It is short enough for Blender not to cut it; of a long name the end is kept, for there takes differ.
     """
-    whole = " ".join(take.split("/"))
-    for number in range(1, len(taken) + 2):
-        number_suffix = "" if number == 1 else f" {number}"
-        name = whole
-        while len(f"{name}{number_suffix}".encode()) > LONGEST_NAME_BYTES:
+    for number in range(1, len(names) + 2):
+        suffix = "" if number == 1 else f" {number}"
+        name = " ".join(take.split("/"))
+        while len(f"{name}{suffix}".encode()) > LONGEST_NAME_BYTES:
             name = f"…{name.lstrip('…')[1:]}"
-        if f"{name}{number_suffix}" not in taken:
+        if f"{name}{suffix}" not in names:
             break
-    return f"{name}{number_suffix}"
+    names.add(f"{name}{suffix}")
+    return f"{name}{suffix}"
 
 
 def description(result: Result) -> str:
@@ -178,26 +180,14 @@ def _short_tags(*words: str | None) -> tuple[str, ...]:
     )
 
 
-def _check_output(output: Path, found: Results) -> None:
+def _check_output(output: Path, sound: Sequence[Result]) -> None:
     if output.suffix.lower() != SUFFIX:
         raise InputError(f"{output}: is no name of a .blend; it must end in {SUFFIX}, as in library.blend")
     if output.is_dir():
         raise InputError(f"{output}: is a folder; it must be a file to write, as in library.blend")
     real = Path(os.path.realpath(output))
-    for result in found.sound:
+    for result in sound:
         if Path(os.path.realpath(result.folder)) in real.parents:
             raise InputError(
                 f"{output}: lies in the results of the take {result.name}; name a file outside of them"
             )
-
-
-def _text(counts: dict[str, int], files: Sequence[str], problems: dict[str, str]) -> str:
-    heading = pluralize(counts["motions"], "motion")
-    if counts["character_actions"]:
-        heading += f" and {pluralize(counts['character_actions'], 'Action')} of characters"
-    lines = [f"{heading}:", *(f"  {file}" for file in files)]
-    if problems:
-        lines.append("Takes that are not in it, or as they were before:")
-    for name in sorted(problems):
-        lines += wrapped(f"{name}: {problems[name]}", 2, terminal_columns())
-    return "\n".join(lines)

@@ -138,16 +138,21 @@ def write_character_result(
         formats: Words of `EXPORTS`.
         picture: Whether to draw the character beside the footage, where the scene shows some.
     """
-    staging_folder, output = folders
+    staging_folder, _ = folders
     yield Progress("Opening the character", 0.0)
     with opened_character(settings.character_file, settings.map, debug) as (scene, opened):
-        from ...bridge.character.import_character import write_character_files
         from ...bridge.character.retarget import retarget
 
         with blender_silence(debug):
             frames = show_footage(scene, motion)[motion.there]
         character_map, options = opened.chosen.character_map, settings.options
-        character_map, note = _without_unseen(character_map, motion.unseen)
+        note: tuple[str, ...] = ()
+        if motion.unseen:  # limbs that the footage never shows are left alone, and their figures unmeasured
+            roles = [role for limb in motion.unseen for role in LIMBS[limb] if role in character_map.roles]
+            alone = tuple(dict.fromkeys((*character_map.left_alone, *roles)))
+            character_map = replace(character_map, left_alone=alone)
+            seen = "never seen in the footage, so that the character keeps its own"
+            note = (f"{named_limbs(motion.unseen)} {seen}",)
         armature = opened.imported.armature
         job = retarget(armature, motion_segments(motion), frames, character_map, options)
         try:
@@ -155,16 +160,14 @@ def write_character_result(
         except InputError as error:
             raise InputError(f"{settings.file}: {error}") from error
         yield Progress("Writing the character", 1.0)
-        exports = {EXPORTS[word][0]: EXPORTS[word][1] for word in formats}
-        names = (CHARACTER_BLEND, *exports.values())
-        with blender_silence(debug), hidden_files(names, staging_folder, output) as hidden:
+        with blender_silence(debug):
             action = retargeted.write(scene, f"{take} {armature.name}")
-            paths = {name: hidden[file] for name, file in exports.items()}
-            curves = write_character_files(scene, opened.imported, action, hidden[CHARACTER_BLEND], paths)
+            curves = write_character(scene, opened.imported, action, folders, formats)
             action_name, rate = action.name, scene.render.fps / scene.render.fps_base
         if picture:
             _draw(scene, armature, retargeted, staging_folder / CHARACTER_PICTURE)
-        quality = {**retargeted.quality.to_dict(), **dict.fromkeys(_unmeasured(motion.unseen))}
+        unmeasured = {f"{limb.partition('.')[0]}s_deg": None for limb in motion.unseen}
+        quality = {**retargeted.quality.to_dict(), **unmeasured}
         record = RetargetRecord(
             keymark=version(),
             take=take,
@@ -188,21 +191,20 @@ def write_character_result(
         return record
 
 
-def _without_unseen(
-    character_map: CharacterMap, unseen: tuple[str, ...]
-) -> tuple[CharacterMap, tuple[str, ...]]:
-    """The map with limbs that the motion's footage never shows left alone, and a note on them."""
-    if not unseen:
-        return character_map, ()
-    roles = [role for limb in unseen for role in LIMBS[limb] if role in character_map.roles]
-    alone = tuple(dict.fromkeys((*character_map.left_alone, *roles)))
-    note = f"{named_limbs(unseen)} never seen in the footage, so that the character keeps its own"
-    return replace(character_map, left_alone=alone), (note,)
+def write_character(
+    scene: "bpy.types.Scene",
+    imported: "ImportedCharacter",
+    action: "bpy.types.Action",
+    folders: tuple[Path, Path],
+    formats: tuple[str, ...],
+) -> str:
+    """Write character.blend and the files of further formats; returns the digest of the Action's curves."""
+    from ...bridge.character.import_character import write_character_files
 
-
-def _unmeasured(unseen: tuple[str, ...]) -> list[str]:
-    """Figures of limbs that are not the performer's."""
-    return [f"{kind}s_deg" for kind in ("arm", "leg") if any(limb.startswith(kind) for limb in unseen)]
+    exports = dict(EXPORTS[word] for word in formats)
+    with hidden_files((CHARACTER_BLEND, *exports.values()), *folders) as hidden:
+        paths = {kind: hidden[file] for kind, file in exports.items()}
+        return write_character_files(scene, imported, action, hidden[CHARACTER_BLEND], paths)
 
 
 def _draw(
@@ -257,13 +259,27 @@ class CharacterChecks:
     """What is wrong with characters, and what is doubtful about them."""
 
     def __init__(self, shoot: Shoot, debug: bool) -> None:
-        self._debug = debug
         self._findings: dict[Wanted, tuple[KeymarkError | None, Sequence[str]]] = {}
         for take in shoot.takes:
+            settings = None
             with suppress(KeymarkError):  # its own check says so
                 settings = take.describe().settings.character
-                if settings is not None:
-                    self._look_at(settings)
+            if settings is None or (settings.character_file, settings.map) in self._findings:
+                continue
+            error: KeymarkError | None = None
+            doubts: Sequence[str] = ()
+            try:
+                doubts = _doubts(settings, debug)
+            except KeymarkError as wrong:
+                error = wrong
+            except Exception as unexpected:
+                if debug:
+                    raise
+                what = describe_unexpected(unexpected)
+                error = InputError(
+                    f"{settings.file}: the check failed unexpectedly ({what}); --debug shows where"
+                )
+            self._findings[settings.character_file, settings.map] = error, doubts
 
     def check(self, settings: CharacterSettings) -> Sequence[str]:
         """What is doubtful about a character."""
@@ -272,27 +288,13 @@ class CharacterChecks:
             raise error
         return doubts
 
-    def _look_at(self, settings: CharacterSettings) -> None:
-        wanted = (settings.character_file, settings.map)
-        if wanted in self._findings:
-            return
-        try:
-            self._findings[wanted] = None, self._doubts(settings)
-        except KeymarkError as error:
-            self._findings[wanted] = error, ()
-        except Exception as error:
-            if self._debug:
-                raise
-            what = describe_unexpected(error)
-            sentence = f"{settings.file}: the check failed unexpectedly ({what}); --debug shows where"
-            self._findings[wanted] = InputError(sentence), ()
 
-    def _doubts(self, settings: CharacterSettings) -> Sequence[str]:
-        file = settings.file
-        if importlib.util.find_spec("bpy") is None:
-            regular_file_size(file, "a character file")
-            map_digests(settings.map, library_folders())
-            return (f"{file}: the character is not looked at, which needs Blender",)
-        with opened_character(settings.character_file, settings.map, self._debug) as (_, opened):
-            doubts = (*opened.imported.notes, *opened.chosen.doubts)
-        return tuple(doubt if str(file) in doubt else f"{file}: {doubt}" for doubt in doubts)
+def _doubts(settings: CharacterSettings, debug: bool) -> Sequence[str]:
+    file = settings.file
+    if importlib.util.find_spec("bpy") is None:
+        regular_file_size(file, "a character file")
+        map_digests(settings.map, library_folders())
+        return (f"{file}: the character is not looked at, which needs Blender",)
+    with opened_character(settings.character_file, settings.map, debug) as (_, opened):
+        doubts = (*opened.imported.notes, *opened.chosen.doubts)
+    return tuple(doubt if str(file) in doubt else f"{file}: {doubt}" for doubt in doubts)

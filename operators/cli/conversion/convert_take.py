@@ -1,7 +1,6 @@
 """Conversion of one take into one complete folder of results."""
 
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +8,6 @@ from ....core.api import convert
 from ....core.estimate.reconstruct import Reconstruction
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
-from ....core.poses.found_poses import FoundPoses
 from ....core.prior.library import library_digest
 from ....core.progress import Job, run
 from ....core.report.pictures import performer_contours, write_pictures
@@ -42,6 +40,10 @@ from .blender_files import refuse_unsupported_paths, write_blender_files
 from .character_result import opened_character, write_character_result
 
 
+class UpToDate(Exception):  # noqa: N818
+    """The folder holds the result already."""
+
+
 def convert_take(
     description: Description,
     output: Path,
@@ -51,33 +53,17 @@ def convert_take(
     formats: tuple[str, ...] = (),
     keep: Keep = keep_nothing,
     notes: tuple[str, ...] = (),
+    again: bool = True,
 ) -> Conversion:
     """Convert a take; `output` changes only when all results are complete.
 
     Where keyframes are found, only posed ones that the settings name count beside them. `debug` lets
     Blender's messages through; `formats` are words of `EXPORTS`, further files of the character. `keep` gets
     each stage (`advance`); `notes` are sentences on how the clip was read.
-    """
-    made = convert_if_changed(description, output, console, settings, debug, True, formats, keep, notes)
-    assert made is not None
-    return made
 
-
-def convert_if_changed(
-    description: Description,
-    output: Path,
-    console: Console,
-    settings: ConversionSettings,
-    debug: bool = False,
-    again: bool = False,
-    formats: tuple[str, ...] = (),
-    keep: Keep = keep_nothing,
-    notes: tuple[str, ...] = (),
-) -> Conversion | None:
-    """Convert a take as `convert_take` does, but return None where `output` holds the result already.
-
-    That is so where the digest of the input (`core/take/conversion_digest`) is that in the result's record,
-    and every file of the record is there; times of files do not count. `again`: convert it nevertheless.
+    Raises:
+        UpToDate: `again` is not set, the digest of the input (`core/take/conversion_digest`) is that in the
+            result's record, and every file of the record is there; times of files do not count.
     """
     console.stage("Reading the take")
     require_blender("writing motion.blend needs")
@@ -90,7 +76,7 @@ def convert_if_changed(
         maps = () if character is None else map_digests(character.map, library_folders())
         digest = conversion_digest(description, settings, digests, output, version(), maps)
         if not again and is_up_to_date(output, digest):
-            return None
+            raise UpToDate
         if settings.library is not None:
             refuse_own_folder(description, output)
         if character is not None:
@@ -115,7 +101,14 @@ def convert_if_changed(
             )
 
         bridge = {} if character is None else {"retarget": retarget}
-        way = convert(description, settings, libraries, partial(_reference, debug), bridge, keep)
+
+        def read_armature(file: Path, subject: str | None) -> ReferenceMotion:
+            from ...bridge.motions.import_motion import armature_reference
+
+            with blender_silence(debug):
+                return armature_reference(file, subject, library_folders())
+
+        way = convert(description, settings, libraries, read_armature, bridge, keep)
         session = run(way, console.progress)
         take, result = session[Posed].seen.take, session[Reconstruction]
         console.stage("Writing the motion")
@@ -148,18 +141,10 @@ def _filmed(session: Session) -> Take:
     return replace(seen.take, camera=followed_camera(seen.take, seen.reading))
 
 
-def _reference(debug: bool, file: Path, subject: str | None) -> ReferenceMotion:
-    """A motion of an armature's file, which only Blender reads."""
-    from ...bridge.motions.import_motion import armature_reference
-
-    with blender_silence(debug):
-        return armature_reference(file, subject, library_folders())
-
-
 def conversion_summary(conversion: Conversion) -> dict[str, Any]:
     """The result of a conversion as an object for `--json`."""
-    motion = conversion.reconstruction.motion
-    return {
+    motion, found, first = conversion.reconstruction.motion, conversion.found, conversion.take.frame_start
+    summary: dict[str, Any] = {
         "files": [str(file) for file in conversion.files],
         "method": motion.method,
         "frames": len(motion.time_s),
@@ -168,29 +153,27 @@ def conversion_summary(conversion: Conversion) -> dict[str, Any]:
         "keyframes": [index + motion.frame_start for index in motion.keyframe_indices],
         "notes": list(conversion.notes),
         "warnings": list(conversion.warnings),
-        **({} if conversion.found is None else _found_summary(conversion.take, conversion.found)),
     }
-
-
-def _found_summary(take: Take, found: FoundPoses) -> dict[str, Any]:
-    matches = [(key.index + take.frame_start, key.matched) for key in take.keyframes if key.matched]
-    return {
+    if found is None:
+        return summary
+    return summary | {
         "library": found.library,
         "fit": round(float(found.fit), 4),
         "reason": found.reason,
         "floor_m": found.floor_m,
         "matches": [
             {
-                "frame": frame,
-                "posture": match.posture,
-                "mirrored": match.mirrored,
-                "confidence": round(float(match.confidence), 4),
-                "doubtful": match.is_doubtful,
+                "frame": key.index + first,
+                "posture": key.matched.posture,
+                "mirrored": key.matched.mirrored,
+                "confidence": round(float(key.matched.confidence), 4),
+                "doubtful": key.matched.is_doubtful,
             }
-            for frame, match in matches
+            for key in conversion.take.keyframes
+            if key.matched is not None
         ],
         "contradictions": [
-            {"frame": index + take.frame_start, "evidence": list(names)}
+            {"frame": index + first, "evidence": list(names)}
             for index, names in sorted(found.contradictions.items())
         ],
     }

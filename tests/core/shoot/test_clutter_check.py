@@ -28,7 +28,7 @@ def warnings(take: Take) -> tuple[str, ...]:
     findings, clip = Findings(), open_clip(take)
     check_footage(take, clip, clip.frame_count, findings)
     assert not findings.problems
-    return findings.warnings
+    return tuple(findings.warnings)
 
 
 def said(take: Take) -> dict[str, object]:

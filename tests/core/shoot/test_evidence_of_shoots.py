@@ -41,7 +41,7 @@ def names(shoot: Path, defaults: ConversionSettings = NO_SETTINGS) -> list[list[
     found = []
     for take in open_shoot(shoot).takes:
         described = take.describe()
-        settings = take.settings(described, defaults)
+        settings = effective_settings(described, defaults)
         people = read_described(described, settings.keyframes, settings=settings).keypoints
         folder = shoot if shoot.is_dir() else shoot.parent
         found.append([Path(one.file).relative_to(folder).as_posix() for one in people])
