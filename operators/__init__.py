@@ -64,10 +64,10 @@ def unregister() -> None:
 def _do(way: str, module: ModuleType) -> None:
     """Register or unregister a module: by its own function, or else Blender's classes in it.
 
-    What needs these classes is in `ATTACHED`, properties of Blender's own types by path, or is added by
-    `attach` and removed by `detach`.
+    What needs these classes is in `ATTACHED`, properties of Blender's own types by path; `HANDLERS` are
+    functions by Blender's lists of handlers, `MENUS` those that draw into menus, and `detach` ends what runs.
     """
-    from bpy import types
+    from bpy import app, types
     from bpy.utils import register_classes_factory
 
     classes = [
@@ -76,16 +76,21 @@ def _do(way: str, module: ModuleType) -> None:
         if name.startswith("KEYMARK_") and each.__module__ == module.__name__
     ]
     by_classes = dict(zip(("register", "unregister"), register_classes_factory(classes), strict=True))
-    attached = getattr(module, "ATTACHED", {})
+    attached = [path.split(".") for path in getattr(module, "ATTACHED", ())]
+    added = [(getattr(app.handlers, name), each) for name, each in getattr(module, "HANDLERS", {}).items()]
+    added += [(getattr(types, name), each) for name, each in getattr(module, "MENUS", {}).items()]
     if way == "unregister":
         getattr(module, "detach", tuple)()
-        for path in attached:
-            delattr(getattr(types, path.split(".")[0]), path.split(".")[1])
+        for owner, name in attached:
+            delattr(getattr(types, owner), name)
+        for place, each in added:
+            place.remove(each)
     getattr(module, way, by_classes[way])()
     if way == "register":
-        for path, field in attached.items():
-            setattr(getattr(types, path.split(".")[0]), path.split(".")[1], field)
-        getattr(module, "attach", tuple)()
+        for owner, name in attached:
+            setattr(getattr(types, owner), name, module.ATTACHED[f"{owner}.{name}"])
+        for place, each in added:
+            place.append(each)
 
 
 def _listed(folder: str, names: str) -> tuple[str, ...]:

@@ -27,7 +27,7 @@ from ..take.description import (
 )
 from ..video.image_sequence import is_image, stem_of_number
 
-MOST_TAKES = 100_000
+MOST_TAKES, DEEPEST = 100_000, 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,8 +232,10 @@ def _paths_below(top: Path, folder: Path, excluded: str | None, described: bool)
     """The takes in a folder and below it; `described`: whether a `shoot.json` describes clips."""
     if os.path.realpath(folder) == excluded:
         return
-    if len(folder.relative_to(top).parts) > 64:  # a cycle in the file system
-        raise InputError(f"{folder}: lies more than 64 folders deep; name a folder nearer to the takes")
+    if len(folder.relative_to(top).parts) > DEEPEST:  # a cycle in the file system
+        raise InputError(
+            f"{folder}: lies more than {DEEPEST} folders deep; name a folder nearer to the takes"
+        )
     try:
         inside = sorted(file for file in folder.iterdir() if not file.name.startswith("."))
         names = {file.name for file in inside}

@@ -109,11 +109,4 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, f"'{library.title}' is in this file now: {count} pose assets")
 
 
-def attach() -> None:
-    """Add an entry to File > Import."""
-    bpy.types.TOPBAR_MT_file_import.append(_draw_import)
-
-
-def detach() -> None:
-    """Remove it."""
-    bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
+MENUS = {"TOPBAR_MT_file_import": _draw_import}

@@ -144,21 +144,17 @@ class ClickSequence:
                 self.ask(context)
                 return {"RUNNING_MODAL"}
             if event.type == "LEFTMOUSE":
-                return self._pressed(context, event)
+                pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
+                area = area_under(context, event.mouse_x, event.mouse_y)
+                if pixel is not None:
+                    return self.clicked(context, pixel)
+                if area is not None and area.type in SCRUBBED:
+                    return {"PASS_THROUGH"}
+                if self.ends_beside:
+                    return {*self.done(context), "PASS_THROUGH"}
+                context.workspace.status_text_set("That is not on the footage; click in it   |   Esc: Cancel")
         return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
 
     def ask(self, context: Context) -> None:
         """Show what is asked for now."""
         ask(context, *self.request(context))
-
-    def _pressed(self, context: Context, event: Event) -> set[str]:
-        pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
-        if pixel is not None:
-            return self.clicked(context, pixel)
-        area = area_under(context, event.mouse_x, event.mouse_y)
-        if area is not None and area.type in SCRUBBED:
-            return {"PASS_THROUGH"}
-        if self.ends_beside:
-            return {*self.done(context), "PASS_THROUGH"}
-        context.workspace.status_text_set("That is not on the footage; click in it   |   Esc: Cancel")
-        return {"RUNNING_MODAL"}

@@ -120,7 +120,12 @@ class JobOperator(BaseOperator):
                 self._slice_end = monotonic()
             except StopIteration as stop:
                 self.cancel(context)
-                self.finish(self._scene(), stop.value)
+                scene = next((one for one in bpy.data.scenes if one.session_uid == self._scene_uid), None)
+                if scene is None:  # it may have been renamed
+                    raise InputError(
+                        "the scene of this job was removed while it ran; nothing was changed"
+                    ) from None
+                self.finish(scene, stop.value)
                 return {"FINISHED"}
             except BaseException:
                 self.cancel(context)
@@ -141,17 +146,6 @@ class JobOperator(BaseOperator):
             context.workspace.status_text_set(None)
         redraw_sidebars(context)
         redraw_sidebars_soon()
-
-    def _scene(self) -> Scene:
-        """The scene that the job was started in, which may have been renamed.
-
-        Raises:
-            InputError: It was removed.
-        """
-        for scene in bpy.data.scenes:
-            if scene.session_uid == self._scene_uid:
-                return scene
-        raise InputError("the scene of this job was removed while it ran; nothing was changed")
 
     def _show(self, context: Context, stage: str, fraction: float) -> None:
         left = time_left(monotonic() - self._begun, fraction)

@@ -77,16 +77,5 @@ def _on_change(_scene: object = None, depsgraph: bpy.types.Depsgraph | None = No
         keys_changed()
 
 
-HANDLERS = ("depsgraph_update_post", "load_post", "undo_post", "redo_post")
-
-
-def register() -> None:
-    """Add handlers that tell when keys may have changed."""
-    for name in HANDLERS:
-        getattr(bpy.app.handlers, name).append(_on_change)
-
-
-def unregister() -> None:
-    """Remove the handlers."""
-    for name in HANDLERS:
-        getattr(bpy.app.handlers, name).remove(_on_change)
+HANDLERS = dict.fromkeys(("depsgraph_update_post", "load_post", "undo_post", "redo_post"), _on_change)
+"""They tell when keys may have changed."""

@@ -7,7 +7,8 @@ import bpy
 from ..bridge.actor_bones import is_actor, missing_bones
 from ..bridge.keys import keys_changed
 from .job_progress import job_is_running
-from .take_state import TakeState, state_of
+from .take_state import TakeState
+from .takes import find_take
 
 Requirement = Callable[[bpy.types.Context, TakeState | None], str | None]
 """Of the context, and the state of the active take; None without a take."""
@@ -95,39 +96,39 @@ def weak_frames(_context: bpy.types.Context, state: TakeState | None) -> str | N
     return None if len(state.take.review.weak_frames) else "No frame needs another keyframe"
 
 
-def registered_library(context: bpy.types.Context, _state: TakeState | None) -> str | None:
-    """The registry has a keyframe library."""
-    there = len(context.window_manager.keymark_shelf.libraries)
-    return None if there else "Load a keyframe library first"
+def of_context(has: Callable[[bpy.types.Context], object], otherwise: str) -> Requirement:
+    """Something that must be so whatever the take."""
+    return lambda context, _: None if has(context) else otherwise
 
 
-def object_mode_possible(context: bpy.types.Context, _state: TakeState | None) -> str | None:
-    """The active object is in Object Mode, in which Blender adds objects."""
+def _mode(context: bpy.types.Context) -> str:
+    """The mode of the active object; Blender adds objects in Object Mode alone."""
     active = context.view_layer.objects.active
-    return None if active is None or active.mode == "OBJECT" else "Leave the active object's mode first (Tab)"
+    return "OBJECT" if active is None else active.mode
 
 
-def bones_editable(context: bpy.types.Context, _state: TakeState | None) -> str | None:
-    """The active object is in Object or Pose Mode, from which bones can be edited."""
-    active = context.view_layer.objects.active
-    free = active is None or active.mode in ("OBJECT", "POSE")
-    return None if free else "Leave the active object's mode first (Tab)"
-
-
-def idle(context: bpy.types.Context, _state: TakeState | None) -> str | None:
-    """No job of Keymark's runs."""
-    running = "Another of Keymark's jobs is running; wait for it, or stop it with Esc"
-    return running if job_is_running(context) else None
+registered_library = of_context(
+    lambda context: len(context.window_manager.keymark_shelf.libraries), "Load a keyframe library first"
+)
+object_mode_possible = of_context(
+    lambda context: _mode(context) == "OBJECT", "Leave the active object's mode first (Tab)"
+)
+bones_editable = of_context(
+    lambda context: _mode(context) in ("OBJECT", "POSE"), "Leave the active object's mode first (Tab)"
+)
+idle = of_context(
+    lambda context: not job_is_running(context),
+    "Another of Keymark's jobs is running; wait for it, or stop it with Esc",
+)
 
 
 def all_met(
     operator_class: type[bpy.types.Operator], context: bpy.types.Context, *requirements: Requirement
 ) -> bool:
     """Whether all requirements are met; the sentence of the first unmet one becomes the tooltip."""
-    state = state_of(context.scene)
-    for requirement in requirements:
-        sentence = requirement(context, state)
-        if sentence is not None:
-            operator_class.poll_message_set(sentence)
-            return False
-    return True
+    take = find_take(context.scene)
+    state = None if take is None else TakeState(take)
+    unmet = next(filter(None, (requirement(context, state) for requirement in requirements)), None)
+    if unmet is not None:
+        operator_class.poll_message_set(unmet)
+    return unmet is None

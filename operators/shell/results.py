@@ -156,10 +156,4 @@ def _store() -> ArrayCache:
     return ArrayCache(folder)
 
 
-def register() -> None:
-    """Add nothing: results are loaded on demand."""
-
-
-def unregister() -> None:
-    """Drop all results from memory."""
-    clear_cache()
+unregister = clear_cache

@@ -8,7 +8,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
-import bpy
 from bpy.types import Action, Object, PropertyGroup
 
 from ...core.body.human import HUMAN
@@ -21,7 +20,7 @@ from ..bridge.keys import FOUND, PICTURED, revision
 from .contradictions import SAME_FRAME, SEPARATOR
 from .keyed_frames import has_frame
 from .results import LruCache
-from .takes import NO_GUESS, as_numbers, assigned_tracks, find_take
+from .takes import NO_GUESS, as_numbers, assigned_tracks
 
 DOUBTFUL = 0.5
 """Confidence below which a found keyframe, or a motion, is doubtful: no better than chance."""
@@ -48,12 +47,6 @@ def digest_of(action: Action | None) -> str:
     if action is None:
         return ""
     return _digests.known(f"{action.session_uid} {revision()}", lambda: action_digest(action)) or ""
-
-
-def state_of(scene: bpy.types.Scene) -> "TakeState | None":
-    """The state of the active take; None if the scene has no take."""
-    take = find_take(scene)
-    return None if take is None else TakeState(take)
 
 
 @dataclass(frozen=True, eq=False)
@@ -321,55 +314,52 @@ class TakeState:
     @cached_property
     def next(self) -> tuple[str, str]:
         """The step that the work has come to, and what is next, short enough for a narrow sidebar."""
-        return self._of_evidence() or self._of_keyframes() or self._of_motion()
+        take, final = self.take, self.take.finish.action
+        unsure = (final is None or self.final_is_outdated) and 0.0 <= self.confidence < DOUBTFUL
+        if take.clip is None:
+            found = "footage", "load the footage"
+        elif take.clip_state.missing:
+            found = "footage", "find the clip's file"
+        elif self.placement_is_guess or take.camera is None:
+            found = "footage", "say where the camera stood"
+        elif self.lacks_colors:
+            found = "actor", "pick the markers' colors"
+        elif self.has_lost_actor:
+            found = "actor", "bring the actor back"
+        # Contours need nothing to be done: whoever goes on to the actor follows these alone.
+        elif not self.has_points and not (self.actor is not None and self.has_contours):
+            found = "actor", "choose what to follow"
+        elif self.actor is None:
+            found = "actor", "build the actor"
+        elif not self.proposed and not self.keyed.all:
+            found = "keyframes", "pose all keyframes" if self.has_points else "propose keyframes"
+        elif take.motion_action is None and self.unposed and not self.matched:
+            found = "keyframes", "pose all keyframes" if self.has_points else "pose the proposed frames"
+        elif take.motion_action is None and len(self.keyed.all) < 2:
+            found = "keyframes", "pose and store keyframes"
+        elif take.motion_action is None:
+            found = "keyframes", "check the doubtful poses" if self.doubtful else "reconstruct the motion"
+        elif self.motion_is_outdated:
+            found = "keyframes", "correct more, or update"
+        elif unsure and self.doubtful:
+            found = "reconstruct", "check the doubtful poses"
+        elif unsure and self.open_weak:
+            found = "reconstruct", "pose the weak frames"
+        elif unsure:
+            again = len(take.review.weak_frames)
+            found = "reconstruct", "reconstruct again" if again else "pose more keyframes"
+        elif self.final_is_outdated:
+            found = "reconstruct", "review, then bake again"
+        elif self.has_outdated_result:
+            found = "reconstruct", "retarget again"
+        elif self.results:
+            found = "character", "export, or another take"
+        elif final is not None:
+            found = "character", "a character, or export"
+        else:
+            found = "reconstruct", "review, then a character"
+        return found
 
     def is_behind(self, step: str) -> bool:
         """Whether the work has left a step behind."""
         return STEPS.index(step) < STEPS.index(self.next[0])
-
-    def _of_evidence(self) -> tuple[str, str] | None:
-        if self.take.clip is None:
-            return "footage", "load the footage"
-        if self.take.clip_state.missing:
-            return "footage", "find the clip's file"
-        if self.placement_is_guess or self.take.camera is None:
-            return "footage", "say where the camera stood"
-        if self.lacks_colors:
-            return "actor", "pick the markers' colors"
-        if self.has_lost_actor:
-            return "actor", "bring the actor back"
-        # Contours need nothing to be done: whoever goes on to the actor follows these alone.
-        if not self.has_points and not (self.actor is not None and self.has_contours):
-            return "actor", "choose what to follow"
-        return None if self.actor is not None else ("actor", "build the actor")
-
-    def _of_keyframes(self) -> tuple[str, str] | None:
-        if not self.proposed and not self.keyed.all:
-            return "keyframes", "pose all keyframes" if self.has_points else "propose keyframes"
-        if self.take.motion_action is not None:
-            return None
-        if self.unposed and not self.matched:
-            return "keyframes", "pose all keyframes" if self.has_points else "pose the proposed frames"
-        if len(self.keyed.all) < 2:
-            return "keyframes", "pose and store keyframes"
-        return "keyframes", "check the doubtful poses" if self.doubtful else "reconstruct the motion"
-
-    def _of_motion(self) -> tuple[str, str]:
-        review, final = self.take.review, self.take.finish.action
-        if self.motion_is_outdated:
-            return "keyframes", "correct more, or update"
-        if (final is None or self.final_is_outdated) and 0.0 <= self.confidence < DOUBTFUL:
-            if self.doubtful:
-                return "reconstruct", "check the doubtful poses"
-            if self.open_weak:
-                return "reconstruct", "pose the weak frames"
-            return "reconstruct", "reconstruct again" if review.weak_frames else "pose more keyframes"
-        if self.final_is_outdated:
-            return "reconstruct", "review, then bake again"
-        if self.has_outdated_result:
-            return "reconstruct", "retarget again"
-        if self.results:
-            return "character", "export, or another take"
-        return (
-            ("character", "a character, or export") if final else ("reconstruct", "review, then a character")
-        )

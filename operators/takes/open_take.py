@@ -203,11 +203,4 @@ class KEYMARK_FH_take(bpy.types.FileHandler):
         return _over_an_editor(context) or (context.area is not None and context.area.ui_type == "ASSETS")
 
 
-def attach() -> None:
-    """Add an entry to File > Import."""
-    bpy.types.TOPBAR_MT_file_import.append(_draw_import)
-
-
-def detach() -> None:
-    """Remove it."""
-    bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
+MENUS = {"TOPBAR_MT_file_import": _draw_import}

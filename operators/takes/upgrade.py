@@ -67,18 +67,10 @@ def _on_load(*_arguments: Any) -> None:
     ensure_unique_identifiers(bpy.data.scenes)
 
 
-HANDLERS = ("load_post", "blend_import_post")
+HANDLERS = {"load_post": _on_load, "blend_import_post": _on_load}
 
 
 def register() -> None:
-    """Upgrade the open file, and add handlers for the files that are opened."""
-    for name in HANDLERS:
-        getattr(bpy.app.handlers, name).append(_on_load)
-    if hasattr(bpy.data, "scenes"):  # while Blender starts, there are none yet
+    """Upgrade the open file; while Blender starts, there is none yet."""
+    if hasattr(bpy.data, "scenes"):
         _on_load()
-
-
-def unregister() -> None:
-    """Remove the handlers."""
-    for name in HANDLERS:
-        getattr(bpy.app.handlers, name).remove(_on_load)
