@@ -16,8 +16,7 @@ from ..console import Console
 from ..library_search_path import library_folders
 from ..options import REPLACE_HELP, output
 
-LIBRARY_HELP = "name or file of a library"
-LIBRARY_NAME = argument("library LIBRARY", LIBRARY_HELP)
+LIBRARY_NAME = argument("library LIBRARY", "name or file of a library")
 LIBRARY_FILE = output("FILE", "the new library file", replace=REPLACE_HELP)
 
 
