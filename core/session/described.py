@@ -20,9 +20,9 @@ from ..take.reference import ReadArmature
 from ..take.take import with_evidence
 from ..take.take_file import read_described
 from .lens import lens_of
-from .place import Placed, camera_in_words
-from .pose import Posed
-from .see import Sight, people_in_words
+from .made import Placed, Posed, Sight
+from .place import camera_in_words
+from .see import people_in_words
 from .session import Inputs, Session
 
 

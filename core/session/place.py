@@ -6,7 +6,7 @@ performer is in the middle of these moments. How high the camera stands is settl
 how far knees are bent.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,37 +19,14 @@ from ..errors import pluralize
 from ..markers.reading import Reading
 from ..progress import Job, Progress, stretch
 from ..take.performer_keypoints import performer_keypoints
-from ..take.seen_take import SeenTake, seen_take
+from ..take.seen_take import seen_take
 from ..take.shots import of_one_shot
 from ..take.steady_camera import steadied
-from .lens import Lens
-from .see import Sight
+from .made import FoundCamera, Placed, Sight
 from .session import Inputs, Session, Stage
 
 FEWEST_MOMENTS = 2
 """Upright moments that tell a camera by themselves; one is the same from high above and from low."""
-
-
-@dataclass(frozen=True, eq=False)
-class FoundCamera:
-    """What a camera was found by."""
-
-    fit: CameraFit | None
-    """None where nothing tells it."""
-    lens: Lens
-    moments: int
-    """In which the performer is upright."""
-    room: RoomView | None = None
-    """None where too few straight lines are seen."""
-
-
-@dataclass(frozen=True, eq=False)
-class Placed:
-    """A take that is seen from where its camera stands."""
-
-    seen: SeenTake
-    camera: FoundCamera | None = None
-    """None where the camera's place was known."""
 
 
 def place(session: Session) -> Job[Placed]:
@@ -69,13 +46,6 @@ def place(session: Session) -> Job[Placed]:
     turned = None if inputs.open_lens is None else turned_note(anyone)
     notes += () if turned is None else (turned,)
     return Placed(seen_take(take, steady, notes), found)
-
-
-def placed_take(session: Session) -> SeenTake:
-    """The session's take as it was placed: what it is to be posed with may have changed since."""
-    seen, take = session[Placed].seen, session.inputs.take
-    take = replace(take, camera=seen.take.camera, keypoints=seen.take.keypoints)
-    return replace(seen, take=replace(take, reference=take.reference or seen.take.reference))
 
 
 def _uses(inputs: Inputs) -> tuple[object, ...]:

@@ -1,35 +1,20 @@
 """Pose: the keyframes that a motion is made from: posed ones, those of a reference motion, and found ones."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 from ..estimate.reference_evidence import (
-    NoReference,
     ReferenceEvidence,
     reference_evidence,
     with_reference,
 )
 from ..poses.clip import pose_clip
-from ..poses.found_poses import FoundPoses, referred_poses, with_found
+from ..poses.found_poses import referred_poses, with_found
 from ..prior.library import library_digest
 from ..progress import Job
-from ..take.seen_take import SeenTake
 from ..take.take import Take
-from .place import placed_take
+from .made import Posed, placed_take
 from .session import Inputs, Session, Stage
-
-
-@dataclass(frozen=True, eq=False)
-class Posed:
-    """A take with all its keyframes."""
-
-    seen: SeenTake
-    floor_m: float | None
-    """Height of the floor [m]; None where it is not known."""
-    found: FoundPoses | None = None
-    """What was found; None where that was not wanted."""
-    referred: ReferenceEvidence | NoReference | None = None
-    """What the take's reference motion tells; None without one."""
 
 
 def pose(session: Session) -> Job[Posed]:

@@ -1,9 +1,6 @@
 """Read: one pass over the clip for all later stages, in which the pose network may look at it, too."""
 
-from dataclasses import dataclass
-
 from ..detect.closer_look import CloserLook
-from ..detect.keypoints import People
 from ..detect.pose_network import PoseNetwork
 from ..detect.pose_tracking import DETECTING, PeopleFinder
 from ..estimate.reconstruct import check_method
@@ -11,14 +8,8 @@ from ..markers.reading import Reading, reading_key
 from ..progress import Job
 from ..take.clip_check import open_footage
 from ..take.read_footage import read_footage
+from .made import WatchedReading
 from .session import Inputs, Session, Stage
-
-
-@dataclass(frozen=True, eq=False)
-class WatchedReading(Reading):
-    """A reading, and everybody whom the pose network saw in the same pass."""
-
-    people: People | None = None
 
 
 def read(session: Session) -> Job[Reading]:

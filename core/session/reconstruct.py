@@ -8,7 +8,7 @@ from ..body.fingers import SURE, Hands
 from ..estimate.reconstruct import Reconstruction, reconstruct
 from ..feet.palms import seen_hands
 from ..progress import Job
-from .pose import Posed
+from .made import Posed
 from .session import Session, Stage
 
 

@@ -41,8 +41,7 @@ from ..take.motion import write_motion
 from ..take.take import Take
 from ..take.take_file import write_take
 from .described import findings
-from .pose import Posed
-from .see import Sight
+from .made import Posed, Sight
 from .session import Session
 
 AS_MADE = ".as_made.json"

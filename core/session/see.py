@@ -1,6 +1,6 @@
 """See: the keypoints of everybody in the clip, of files or of the pose network, held against the pictures."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 from ..detect.closer_look import CloserLook
@@ -15,21 +15,11 @@ from ..take.clip_check import open_footage
 from ..take.performer_keypoints import FEWEST_KEYFRAMES, people_of
 from ..take.take import Take, with_evidence
 from ..video.frame_checks import FrameFindings
-from .read import WatchedReading
+from .made import Sight, WatchedReading
 from .session import Inputs, Session, Stage
 
 SEEN = 0.95
 """Share of the stage after which everybody is detected."""
-
-
-@dataclass(frozen=True, eq=False)
-class Sight:
-    """Everybody in the clip, by each source of keypoints."""
-
-    people: tuple[People, ...]
-    """As they were read or detected."""
-    checked: tuple[People, ...]
-    """As the pictures say that they are meant."""
 
 
 def see(session: Session) -> Job[Sight]:

@@ -7,6 +7,7 @@ from ..progress import Job, run
 from ..take.seen_take import SeenTake
 from ..take.take import Take
 from . import place, pose, read, reconstruct, see
+from .made import placed_take
 from .session import Inputs, Keep, Session, Stage, advance, keep_nothing
 
 
@@ -48,4 +49,4 @@ def reach(
 
 def seen_in(take: Take, reading: Reading, kept: MutableMapping[str, object] | None = None) -> SeenTake:
     """A take as a reading of its clip shows it; `kept` as in `advance`."""
-    return place.placed_take(run(reach(Session(Inputs(take), {"read": reading}, reading.key), "place", kept)))
+    return placed_take(run(reach(Session(Inputs(take), {"read": reading}, reading.key), "place", kept)))

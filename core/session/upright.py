@@ -7,7 +7,7 @@ from ..detect.pose_network import PoseNetwork
 from ..detect.standing_moments import turned_note
 from ..take.clip_check import open_footage
 from ..take.performer_keypoints import performer_keypoints
-from .see import Sight
+from .made import Sight
 from .session import Session
 
 SELDOM = 0.7  # share of the frames below which so few show somebody that the picture may be turned

@@ -152,7 +152,7 @@ def _clip_session(
 
 
 def _keep_keypoints(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession) -> str:
-    from ...core.session.see import Sight
+    from ...core.session.made import Sight
 
     inputs, take = made.session.inputs, take_by_identifier(scene, made.take)
     if not inputs.detects:
@@ -164,7 +164,8 @@ def _keep_keypoints(_operator: bpy.types.Operator, scene: bpy.types.Scene, made:
 
 def _keep_place(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession) -> str:
     """Put camera and actor where they are; a camera that nothing tells stays as it was put."""
-    from ...core.session.place import Placed, camera_in_words
+    from ...core.session.made import Placed
+    from ...core.session.place import camera_in_words
 
     placed, take = made.session[Placed], take_by_identifier(scene, made.take)
     camera, found = placed.seen.take.camera, placed.camera
@@ -184,7 +185,7 @@ def _keep_place(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: Sce
 
 def _keep_poses(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession) -> str:
     """Key the poses; a camera that was seen to turn turns from now on, and the floor is where they stand."""
-    from ...core.session.pose import Posed
+    from ...core.session.made import Posed
     from ...core.take.steady_camera import followed_camera
     from ..bridge.footage_to_scene import set_pose
 

@@ -13,7 +13,7 @@ from ....core.estimate.reconstruct import reconstruct
 from ....core.prior.texts import EVERY_LIBRARY
 from ....core.progress import run
 from ....core.review.score import Score, read_truth, score_points
-from ....core.session.pose import Posed
+from ....core.session.made import Posed
 from ....core.take.character_settings import CharacterSettings
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, REPORT
 from ....core.take.conversion_settings import ConversionSettings

@@ -14,7 +14,7 @@ from ....core.report.pictures import performer_contours, write_pictures
 from ....core.retarget.maps.map_registry import map_digests
 from ....core.retarget.retarget_record import RetargetRecord
 from ....core.review.frame_evidence import compare_keypoints
-from ....core.session.pose import Posed
+from ....core.session.made import Posed
 from ....core.session.result import (
     Conversion,
     finish_result,

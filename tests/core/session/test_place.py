@@ -15,7 +15,8 @@ from keymark.core.detect.keypoints import Keypoints
 from keymark.core.detect.standing_moments import standing_keypoints, turned_note
 from keymark.core.session.described import is_unplaced
 from keymark.core.session.lens import Lens, lens_of
-from keymark.core.session.place import FoundCamera, camera_in_words, find_camera
+from keymark.core.session.made import FoundCamera
+from keymark.core.session.place import camera_in_words, find_camera
 from keymark.core.take.conversion_settings import ConversionSettings
 from keymark.core.take.description import describe, keypoints_beside
 from keymark.core.video.header import FOCAL_LENGTH, stated_lens_mm

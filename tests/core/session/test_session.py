@@ -19,8 +19,7 @@ from keymark.core.markers.reading import Reading
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.progress import Progress
 from keymark.core.session import read, see
-from keymark.core.session.place import Placed
-from keymark.core.session.see import Sight
+from keymark.core.session.made import Placed, Sight
 from keymark.core.session.session import Inputs, Session, Stage, advance
 from keymark.core.session.stages import STAGES, reach
 from keymark.core.take.motion import read_motion

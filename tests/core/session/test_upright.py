@@ -8,7 +8,7 @@ import pytest
 from keymark.core.detect.pose_network import MODEL
 from keymark.core.progress import run
 from keymark.core.session.described import described
-from keymark.core.session.see import Sight
+from keymark.core.session.made import Sight
 from keymark.core.session.session import Session
 from keymark.core.session.stages import reach
 from keymark.core.session.upright import PictureTurnedError, require_upright
