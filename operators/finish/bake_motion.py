@@ -109,11 +109,10 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     requirements = (actor, motion, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[FinishedTake]":
-        return (yield from bake(scene))
+        return bake(scene)
 
     def finish(self, scene: bpy.types.Scene, result: FinishedTake) -> None:
-        said = keep_baked(self, scene, result)
-        self.report({"INFO"}, said)
+        self.report({"INFO"}, keep_baked(self, scene, result))
 
 
 class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):

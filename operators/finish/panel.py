@@ -44,25 +44,20 @@ class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
         row = column.row()
         if not draw_progress(row, context, "keymark.bake_motion"):
             row.operator("keymark.bake_motion", icon="ACTION")
-        if take.finish.action is not None and take.armature is not None:
-            _draw_result(column, context, state)
+        made = take.finish
+        if made.action is not None and take.armature is not None:
+            column.separator()
+            draw_shown_action(column, state, {"MOTION": take.motion_action, "FINAL": made.action})
+            lines = column.column(align=True)
+            if state.final_is_outdated:
+                draw_sentence(lines, context, "The motion is newer: bake again", "ERROR")
+            kept = f"{made.keys_after} keys instead of {made.keys_before}"
+            draw_sentence(lines, context, kept, "KEYFRAME_HLT")
+            if made.furthest_mm > 0.0:
+                draw_sentence(lines, context, f"At most {made.furthest_mm:.1f} mm off", "DRIVER_DISTANCE")
+            if made.rests:
+                draw_sentence(lines, context, f"Feet planted: {made.rests} rests", "PINNED")
         column.popover("KEYMARK_PT_asset", icon="ASSET_MANAGER")
-
-
-def _draw_result(column: bpy.types.UILayout, context: bpy.types.Context, state: TakeState) -> None:
-    """Draw the result of the last bake, and the switch between it and the motion."""
-    take, settings = state.take, state.take.finish
-    column.separator()
-    draw_shown_action(column, state, {"MOTION": take.motion_action, "FINAL": settings.action})
-    lines = column.column(align=True)
-    if state.final_is_outdated:
-        draw_sentence(lines, context, "The motion is newer: bake again", "ERROR")
-    kept = f"{settings.keys_after} keys instead of {settings.keys_before}"
-    draw_sentence(lines, context, kept, "KEYFRAME_HLT")
-    if settings.furthest_mm > 0.0:
-        draw_sentence(lines, context, f"At most {settings.furthest_mm:.1f} mm off", "DRIVER_DISTANCE")
-    if settings.rests:
-        draw_sentence(lines, context, f"Feet planted: {settings.rests} rests", "PINNED")
 
 
 class KEYMARK_PT_finish_options(Popover, bpy.types.Panel):
@@ -72,15 +67,12 @@ class KEYMARK_PT_finish_options(Popover, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings, column = active_take(context.scene).finish, self.column()
-        column.prop(settings, "keys")
-        few = column.column()
-        few.active = settings.keys == "TOLERANCE"
-        few.prop(settings, "tolerance_mm")
-        few.prop(settings, "shared")
-        column.prop(settings, "plant_feet")
-        feet = column.column()
-        feet.active = settings.plant_feet
-        feet.prop(settings, "stray_mm")
+        few = settings.keys == "TOLERANCE"
+        shown = {"keys": True, "tolerance_mm": few, "shared": few, "plant_feet": True}
+        for name, active in {**shown, "stray_mm": settings.plant_feet}.items():
+            row = column.row()
+            row.active = active
+            row.prop(settings, name)
 
 
 class KEYMARK_PT_asset(Popover, bpy.types.Panel):

@@ -33,10 +33,6 @@ def _chosen(finish: bpy.types.PropertyGroup) -> int:
     return names.index(finish.performer) if finish.performer in names else 0
 
 
-def _choose(finish: bpy.types.PropertyGroup, index: int) -> None:
-    finish.performer = _names(finish)[index] if index else ""
-
-
 class KEYMARK_PG_finish(bpy.types.PropertyGroup):
     """Finish of a take's motion."""
 
@@ -69,7 +65,13 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
         step=100,
     )
     performer: Text("Performer", "Whose motion is exported; empty for the first", options=HIDDEN)
-    who: Choice("Who", "Whose motion is exported", items=_items, get=_chosen, set=_choose)
+    who: Choice(
+        "Who",
+        "Whose motion is exported",
+        items=_items,
+        get=_chosen,
+        set=lambda finish, index: setattr(finish, "performer", _names(finish)[index] if index else ""),
+    )
     action: Group(
         name="Final",
         description="The Action that holds the finished motion, in keys of your own to edit",

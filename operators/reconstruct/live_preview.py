@@ -2,7 +2,6 @@
 
 from contextlib import ExitStack, suppress
 from math import floor
-from typing import Any
 
 import bpy
 import numpy as np
@@ -69,10 +68,15 @@ class LivePreview:
 
     def _begin(self) -> None:
         # Undo may have replaced both in memory.
-        self._scene, self._armature = (
-            _of_uid(items, uid)
+        found = [
+            next((item for item in items if item.session_uid == uid), None)
             for items, uid in zip((bpy.data.scenes, bpy.data.objects), self._uids, strict=True)
-        )
+        ]
+        if None in found:
+            raise InputError(
+                "the actor or the scene that the job was about has been removed meanwhile; run it again"
+            )
+        self._scene, self._armature = found
         self._changes = ExitStack()
         # The pose comes back last: going to a frame would undo what is posed and not keyed.
         self._changes.enter_context(showing_action(self._armature, None))
@@ -80,14 +84,6 @@ class LivePreview:
         for name in ENDS:
             if self._restore not in getattr(handlers, name):
                 getattr(handlers, name).append(self._restore)
-
-
-def _of_uid(items: "bpy.types.bpy_prop_collection[Any]", uid: int) -> Any:
-    """The data block of a session UID, which outlives renaming and undo."""
-    for item in items:
-        if item.session_uid == uid:
-            return item
-    raise InputError("the actor or the scene that the job was about has been removed meanwhile; run it again")
 
 
 def write_result(scene: bpy.types.Scene, made: SceneSession, judged: Review) -> bpy.types.PropertyGroup:

@@ -45,7 +45,12 @@ def reconstruct_take(
     made = yield from stretch(reading, 0.0, READ)
     take = made.session.inputs.take
     if take.reference is None or method != "map":
-        _check_enough(len(take.keyframes), made.notes)
+        count = len(take.keyframes)
+        if count < 2:
+            raise InputError(
+                f"{count} of the 2 keyframes that are needed lie in the footage; press Pose All or pose the "
+                f"actor{''.join(f'. {capitalized(note)}' for note in made.notes)}"
+            )
     check_reconstructible(take, method)
 
     def keep(stage: str, now: "SceneSession") -> None:
@@ -110,22 +115,6 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         self.report({"INFO"}, keep_motion(self, scene, *result))
 
 
-def _check_enough(count: int, notes: tuple[str, ...]) -> None:
-    """Refuse a take with fewer than two keyframes, with the notes on those that do not count."""
-    if count < 2:
-        raise InputError(
-            f"{count} of the 2 keyframes that are needed lie in the footage; press Pose All or pose the "
-            f"actor{''.join(f'. {capitalized(note)}' for note in notes)}"
-        )
-
-
-MISSING = {
-    "KEYFRAMES": "There are no keyframes yet; pose the actor and store one",
-    "MOTION": "There is no motion yet; reconstruct it",
-    "FINAL": "There is no final Action yet; bake it",
-}
-
-
 class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
     """Animate the actor by its keyframes, the reconstructed motion or the final Action"""
 
@@ -142,17 +131,15 @@ class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
         ],
     )
 
-    def run(self, context: bpy.types.Context) -> set[str] | None:
-        settings = active_take(context.scene)
-        action = {
-            "KEYFRAMES": settings.keyframe_action,
-            "MOTION": settings.motion_action,
-            "FINAL": settings.finish.action,
+    def run(self, context: bpy.types.Context) -> None:
+        take = active_take(context.scene)
+        action, missing = {
+            "KEYFRAMES": (take.keyframe_action, "there are no keyframes yet; pose the actor and store one"),
+            "MOTION": (take.motion_action, "there is no motion yet; reconstruct it"),
+            "FINAL": (take.finish.action, "there is no final Action yet; bake it"),
         }[self.which]
         if action is None:
-            self.report({"ERROR"}, MISSING[self.which])
-            return {"CANCELLED"}
+            raise InputError(missing)
         if self.which == "KEYFRAMES":
-            straighten_unposed(settings)
-        assign_action(settings.armature, action)
-        return None
+            straighten_unposed(take)
+        assign_action(take.armature, action)

@@ -28,27 +28,21 @@ class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
         number = row.row()
         number.ui_units_x = 2.2
         number.label(text=f"{item.frame:g}")
-        reason = item.bl_rna.properties["reason"].enum_items[item.reason]
-        row.label(text=reason_words(item), icon=reason.icon, translate=False)
+        row.label(text=reason_words(item), icon=_reason(item).icon, translate=False)
         if TakeState(active_take(context.scene)).is_posed(item.frame):
             row.label(text="", icon="KEYTYPE_KEYFRAME_VEC")
 
 
 def reason_words(item: PropertyGroup) -> str:
     """The reason of a weak frame, with the marker or the body point that it lies with."""
-    name = "" if item.reason == "FAR" else item.marker or item.point
+    name = item.marker or item.point
     stem, _, side = name.partition(".")
     sided = {"L": f"left {stem}", "R": f"right {stem}"}.get(side, name).replace("_", " ")
-    return capitalized(REASONS_IN_WORDS[item.reason].format(what=sided or "the motion"))
+    return capitalized(_reason(item).name.format(what=sided or "the motion"))
 
 
-REASONS_IN_WORDS = {
-    "HIDDEN": "{what} is hidden",
-    "FAST": "{what} is fast",
-    "FAR": "keyframes are far",
-    "FOOTAGE": "{what} is off",
-}
-"""Short enough for a row of a narrow sidebar."""
+def _reason(item: PropertyGroup) -> bpy.types.EnumPropertyItem:
+    return item.bl_rna.properties["reason"].enum_items[item.reason]
 
 
 def draw_review(column: UILayout, context: Context, state: TakeState) -> None:
@@ -86,18 +80,14 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
         "Listed frame to go to",
         items=[
             ("CHOSEN", "Chosen", "Go to the frame that is chosen in the list"),
-            ("NEXT", "Next", "Go to the next frame of the list, which is less weak"),
-            ("PREVIOUS", "Previous", "Go to the previous frame of the list, which is weaker"),
+            ("NEXT", "Next", "Go to the next frame of the list; the worst comes first"),
+            ("PREVIOUS", "Previous", "Go to the previous frame of the list; the worst comes first"),
         ],
     )
 
     @classmethod
     def description(cls, context: Context, properties: OperatorProperties) -> str:
-        return {
-            "CHOSEN": "Go to the frame that is chosen in the list",
-            "NEXT": "Go to the next frame of the list; the worst comes first",
-            "PREVIOUS": "Go to the previous frame of the list; the worst comes first",
-        }[properties.direction]
+        return properties.bl_rna.properties["direction"].enum_items[properties.direction].description
 
     def run(self, context: Context) -> None:
         review = active_take(context.scene).review

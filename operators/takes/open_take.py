@@ -92,12 +92,23 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if not self.properties.is_property_set("example"):
-            context.window_manager.popup_menu(_draw_examples, title=self.bl_label)
+            context.window_manager.popup_menu(self._draw_menu, title=self.bl_label)
             return {"CANCELLED"}  # each entry is a step of its own
         if not self.copy or self.directory:
             return self.execute(context)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
+
+    @staticmethod
+    def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+        """Draw each example, to be opened as it is, and once more to be copied first."""
+        for copy, icon in ((False, "FILE_MOVIE"), (True, "FILE_FOLDER")):
+            for name, title, _ in EXAMPLES:
+                text = f"Copy {title} to Folder" if copy else title
+                entry = menu.layout.operator("keymark.open_example", text=text, icon=icon, translate=False)
+                entry.example, entry.copy = name, copy
+            if not copy:
+                menu.layout.separator()
 
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.prop(self, "example", text="")
@@ -117,18 +128,6 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
         open_in_scene(self, context, opened)
 
 
-def _draw_examples(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    """Draw each example, to be opened as it is, and once more to be copied first."""
-    layout = menu.layout
-    for copy, icon in ((False, "FILE_MOVIE"), (True, "FILE_FOLDER")):
-        for name, title, _ in EXAMPLES:
-            text = f"Copy {title} to Folder" if copy else title
-            entry = layout.operator("keymark.open_example", text=text, icon=icon, translate=False)
-            entry.example, entry.copy = name, copy
-        if not copy:
-            layout.separator()
-
-
 TAKE_FILE = "take.json"
 """Or NAME.take.json beside the clip NAME; opening a take reads no file of another name."""
 
@@ -144,13 +143,10 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         with reported(self):
-            return self._delegate("INVOKE_DEFAULT")
+            return self.run(context, "INVOKE_DEFAULT")
         return {"CANCELLED"}
 
-    def run(self, context: bpy.types.Context) -> set[str]:
-        return self._delegate("EXEC_DEFAULT")
-
-    def _delegate(self, execution_context: str) -> set[str]:
+    def run(self, context: bpy.types.Context, how: str = "EXEC_DEFAULT") -> set[str]:
         """Call the operator for the file's content, and return its result."""
         from ...core.detect.keypoint_file import LARGEST_BYTES
 
@@ -170,7 +166,7 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
                 f"{path}: is neither a take's take.json nor a keyframe library; keypoints need the "
                 "footage that they are of, so load that first"
             )
-        return call(operator, execution_context, filepath=str(path))
+        return call(operator, how, filepath=str(path))
 
 
 def _over_an_editor(context: bpy.types.Context) -> bool:

@@ -96,7 +96,15 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
             if not draw_progress(layout, context):
                 _draw_beginning(layout, context)
             return
-        _draw_takes(layout, context.scene.keymark)
+        settings = context.scene.keymark
+        row = layout.row(align=len(settings.takes) == 1)
+        if len(settings.takes) == 1:
+            row.prop(take, "name", text="", icon="FILE_MOVIE")
+        else:
+            row.template_list(
+                "KEYMARK_UL_takes", "", settings, "takes", settings, "active_take", rows=3, maxrows=4
+            )
+        row.menu("KEYMARK_MT_take", text="", icon="DOWNARROW_HLT")
         # As high as the sentence, so that nothing moves when a job begins or ends.
         sentence, action, text = _headline(TakeState(take))
         beside_px = BUTTON_PX if action else 0.0
@@ -149,15 +157,3 @@ def _draw_beginning(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
     column.popover("KEYMARK_PT_guide", icon="HELP")
     if bpy.data.movieclips:
         layout.menu("KEYMARK_MT_clips", icon="TRACKER")
-
-
-def _draw_takes(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    """Draw the list of takes; a single take is one row."""
-    row = layout.row(align=len(settings.takes) == 1)
-    if len(settings.takes) == 1:
-        row.prop(settings.takes[0], "name", text="", icon="FILE_MOVIE")
-    else:
-        row.template_list(
-            "KEYMARK_UL_takes", "", settings, "takes", settings, "active_take", rows=3, maxrows=4
-        )
-    row.menu("KEYMARK_MT_take", text="", icon="DOWNARROW_HLT")

@@ -34,11 +34,6 @@ METHODS = (
 )
 
 
-def _is_actor(take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
-    """Whether an object may be the take's actor; deleted ones, which other takes still keep, may not."""
-    return is_actor(candidate) and candidate.name in take.id_data.objects
-
-
 def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     """Show the lengths of the chosen armature in the panel, and animate it by what the take has."""
     if not is_actor(take.armature):
@@ -147,7 +142,8 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         name="Actor",
         description="The performer's armature, as Keymark builds it; other characters come in the last step",
         type=bpy.types.Object,
-        poll=_is_actor,
+        # Deleted ones, which other takes still keep, are none.
+        poll=lambda take, chosen: is_actor(chosen) and chosen.name in take.id_data.objects,
         update=_armature_chosen,
     )
     stature: Number(

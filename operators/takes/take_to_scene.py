@@ -78,7 +78,18 @@ def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, open
     armature_object = add_actor(context, settings, take.body)
     settings.stature = take.body.actor.stature_m
     settings.follow.use_hands = opened.hands
-    _add_evidence(settings, opened)
+    for style in take.markers:
+        marker = settings.markers.add()
+        marker.name, marker.segment = style.name, style.segment
+        set_marker_color(marker, style.color_srgb)
+    add_ignored_regions(settings, take.ignored_regions)
+    for people in take.keypoints:
+        if people.file:
+            add_keypoint_file(settings, Path(people.file))
+    if take.reference is not None:
+        settings.follow.reference = stored_path(Path(take.reference.file))
+    for kind in EVIDENCE:
+        setattr(settings.follow, f"use_{kind}", kind in opened.kinds)
     if take.keyframes:
         action = settings.keyframe_action = new_keyframe_action(armature_object)
         write_keyframes(armature_object, action, take.keyframes, frames)
@@ -94,20 +105,3 @@ def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, open
     show_range(context)
     give_notices(settings, "footage", "files", [warn(operator, note) for note in opened.notes])
     operator.report({"INFO"}, f"Opened {take.name} with {len(take.keyframes)} keyframes")
-
-
-def _add_evidence(settings: bpy.types.PropertyGroup, opened: OpenedTake) -> None:
-    """Add markers and keypoint files, and set the switches."""
-    for style in opened.take.markers:
-        marker = settings.markers.add()
-        marker.name, marker.segment = style.name, style.segment
-        set_marker_color(marker, style.color_srgb)
-    add_ignored_regions(settings, opened.take.ignored_regions)
-    for people in opened.take.keypoints:
-        if people.file:
-            add_keypoint_file(settings, Path(people.file))
-    follow, kinds = settings.follow, opened.kinds
-    if opened.take.reference is not None:
-        follow.reference = stored_path(Path(opened.take.reference.file))
-    for kind in EVIDENCE:
-        setattr(follow, f"use_{kind}", kind in kinds)

@@ -22,7 +22,13 @@ def upgrade_scene(scene: bpy.types.Scene) -> None:
     if scene.library is not None or is_newer(scene):
         return
     for take in settings.takes:
-        _note_sources(take)
+        # A Keymark that marked outdated results by hand did not note what they were made from.
+        for made in (take.finish, *TakeState(take).results):
+            has_own = hasattr(made, "bl_system_properties_get")
+            properties = made.bl_system_properties_get() if has_own else made
+            if made.action is not None and not made.made_from and not (properties or {}).get("outdated"):
+                source = take.motion_action if made == take.finish else TakeState(take).source_of(made)
+                made.made_from = digest_of(source)
         take.clip_state.missing = is_missing(take.clip)
         if take.clip is not None:
             update_clip_digest(take)
@@ -32,15 +38,6 @@ def upgrade_scene(scene: bpy.types.Scene) -> None:
                 recolor_earlier(take.armature.data)
     if len(settings.takes):
         settings.version = VERSION
-
-
-def _note_sources(take: bpy.types.PropertyGroup) -> None:
-    """Note what results of a Keymark that marked the outdated ones by hand were made from."""
-    for made in (take.finish, *TakeState(take).results):
-        properties = made.bl_system_properties_get() if hasattr(made, "bl_system_properties_get") else made
-        if made.action is not None and not made.made_from and not (properties or {}).get("outdated"):
-            source = take.motion_action if made == take.finish else TakeState(take).source_of(made)
-            made.made_from = digest_of(source)
 
 
 def is_newer(scene: bpy.types.Scene) -> bool:
