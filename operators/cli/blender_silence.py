@@ -6,7 +6,6 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from io import TextIOWrapper
-from typing import Any
 
 
 @contextmanager
@@ -27,29 +26,22 @@ def blender_silence(debug: bool) -> Iterator[None]:
         os.dup2(2 if debug else null, 1)
         if not debug:
             os.dup2(null, 2)
-        with _escaping_output():
+        # Else paths that Blender's exporters print on Windows may be what standard output cannot encode.
+        stream = sys.stdout
+        errors = stream.errors if isinstance(stream, TextIOWrapper) else None
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+        try:
             yield
+        finally:
+            if isinstance(stream, TextIOWrapper):
+                stream.reconfigure(errors=errors)
     finally:
         _flush()
         for descriptor, copy in zip((1, 2), kept, strict=True):
             os.dup2(copy, descriptor)
             os.close(copy)
         os.close(null)
-
-
-@contextmanager
-def _escaping_output() -> Iterator[None]:
-    """Escape what standard output cannot encode, as in paths that Blender's exporters print on Windows."""
-    stream = sys.stdout
-    if not isinstance(stream, TextIOWrapper):
-        yield
-        return
-    errors = stream.errors
-    stream.reconfigure(errors="backslashreplace")
-    try:
-        yield
-    finally:
-        stream.reconfigure(errors=errors)
 
 
 def _flush() -> None:
@@ -69,10 +61,12 @@ def codec_silence(debug: bool) -> Iterator[None]:
 
     Image decoders write warnings about damaged files there, beside our one sentence.
     """
-    if debug or not _has_descriptor(sys.stderr, 2):
+    before, number = sys.stderr, -1
+    with suppress(AttributeError, OSError, ValueError):  # a replacement without one, or a closed stream
+        number = before.fileno()
+    if debug or number != 2:
         yield
         return
-    before = sys.stderr
     before.flush()
     with open(os.dup(2), "w", encoding=before.encoding, errors=before.errors, buffering=1) as own:
         null = os.open(os.devnull, os.O_WRONLY)
@@ -85,10 +79,3 @@ def codec_silence(debug: bool) -> Iterator[None]:
             sys.stderr = before
             own.flush()
             os.dup2(own.fileno(), 2)
-
-
-def _has_descriptor(stream: Any, number: int) -> bool:
-    try:
-        return bool(stream.fileno() == number)
-    except (AttributeError, OSError, ValueError):  # a replacement without a descriptor, or a closed stream
-        return False

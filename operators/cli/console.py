@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Sequence
 from shutil import get_terminal_size
 from textwrap import wrap
-from types import TracebackType
 from typing import Any
 
 from ...core.errors import ConversionError
@@ -18,8 +17,6 @@ FEWEST_COLUMNS = 60
 """Narrower terminals are wrapped as if they had this many."""
 JOB_SHARE = 0.9
 """Share of a command's progress that the job has; the rest is writing files."""
-VARIABLE, OPENJD = "KEYMARK_PROGRESS", "openjd"
-"""Environment variable that asks for progress as render farms read it, and the value that does."""
 
 
 def terminal_columns() -> int | None:
@@ -65,13 +62,9 @@ class _OpenjdBar:
             self._write(f"openjd_progress: {percent}")
 
     def clear(self) -> None:
-        pass
+        """Nothing stands before a line of text."""
 
-    def refresh(self) -> None:
-        pass
-
-    def close(self) -> None:
-        pass
+    refresh = close = clear
 
 
 class Console:
@@ -91,15 +84,13 @@ class Console:
         self._overall = ""
         self._since = time.perf_counter() if started is None else started
         self._bar: Any = None if quiet else _bar()
-        if os.environ.get(VARIABLE) == OPENJD and not quiet and not as_json:
+        if os.environ.get("KEYMARK_PROGRESS") == "openjd" and not quiet and not as_json:
             self._bar = _OpenjdBar(self._write)
 
     def __enter__(self) -> "Console":
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self._close_bar()
 
     def progress(self, progress: Progress) -> None:
@@ -129,11 +120,8 @@ class Console:
 
     def take_line(self, text: str, error: str | None) -> None:
         """Write a line on the outcome of one of many takes; with `--quiet` only an error."""
-        if self.as_json or (self.quiet and error is None):
-            return
-        if self.quiet:
-            print_error(error or "")
-            return
+        if self.quiet and not self.as_json and error is not None:
+            print_error(error)
         self.announce(" ".join(text.split("\n")))
 
     def announce(self, text: str) -> None:

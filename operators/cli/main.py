@@ -25,16 +25,7 @@ from .command import Command, UsageError, argument, print_error, program_name, v
 from .commands import SUMMARIES
 from .console import Console
 
-BLENDER_PREFIX = ["--command", "keymark"]
-"""What Blender needs before a command; accepted here too, so that farms call both programs alike."""
 DONE, FAILED, UNUSABLE, OUT_OF_BOUNDS, INTERRUPTED = 0, 1, 2, 3, 130
-ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-"""The matrices here are small: a second thread of linear algebra doubles the work and saves no time."""
-GLTF = "io_scene_gltf2.blender."
-"""Beginning of the modules that glTF's importer and exporter load when they run."""
-FIXED_IN = (5, 0)
-WORKER = "worker"
-"""The command by which a batch starts its workers; the list of commands does not have it."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -47,17 +38,18 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(words: list[str]) -> int:
     _open_standard_streams()
-    if words[: len(BLENDER_PREFIX)] == BLENDER_PREFIX:
-        words = words[len(BLENDER_PREFIX) :]
+    if words[:2] == ["--command", "keymark"]:  # as Blender needs it, so that farms call both programs alike
+        words = words[2:]
     debug = "--debug" in words
     if "numpy" not in sys.modules:  # numpy reads these when it is loaded
-        for variable in ONE_THREAD:
+        # The matrices here are small: a second thread doubles the work and saves no time.
+        for variable in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"):
             os.environ.setdefault(variable, "1")
     started = time.perf_counter()
     chosen = next((word for word in words if not word.startswith("-")), None)
     try:
         with _sigterm_as_interrupt(), codec_silence(debug):
-            if words == [WORKER]:
+            if words == ["worker"]:  # by which a batch starts its workers; the list of commands has it not
                 import_module(".batch.worker", __package__).run_worker()
                 return DONE
             arguments = build_parser(chosen).parse_args(words)
@@ -76,9 +68,8 @@ def _run(words: list[str]) -> int:
         lacking = f"the Python module {error.name}" if error.name else "a Python module"
         return _fail(f"{lacking} cannot be loaded ({error}); install Keymark anew", FAILED, debug)
     except Exception as error:
-        return _fail(
-            f"failed unexpectedly ({describe_unexpected(error)}); --debug shows where", FAILED, debug
-        )
+        what = describe_unexpected(error)
+        return _fail(f"failed unexpectedly ({what}); --debug shows where", FAILED, debug)
 
 
 def _open_standard_streams() -> None:
@@ -125,9 +116,9 @@ def _end_process(status: int) -> None:
     Blender 4.5 as a Python module may hang at its exit once it has read or written glTF.
     """
     blender = sys.modules.get("bpy")
-    if blender is None or blender.app.binary_path or blender.app.version >= FIXED_IN:
+    if blender is None or blender.app.binary_path or blender.app.version >= (5, 0):
         return
-    if not any(name.startswith(GLTF) for name in list(sys.modules)):
+    if not any(name.startswith("io_scene_gltf2.blender.") for name in list(sys.modules)):
         return
     for stream in (sys.stdout, sys.stderr):
         with suppress(OSError, ValueError, AttributeError):

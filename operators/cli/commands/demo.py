@@ -55,7 +55,12 @@ def demo_command(arguments: argparse.Namespace, console: Console) -> None:
         )
         console.announce("Step 1 of 5: a character is generated, Rigify's basic human.")
         console.stage("Generating a character")
-        character, missing = _character(Path(folder))
+        character, missing = None, ""
+        try:
+            write_demo_character(Path(folder) / CHARACTER_FILE)
+            character = CharacterSettings(file=Path(folder) / CHARACTER_FILE)
+        except ConversionError as error:
+            missing = f"Without a character: {error}"
         settings = ConversionSettings(demo / POSED_BY_HAND, evidence=MARKED, character=character)
         console.announce(
             "Step 2 of 5: the take is converted, by its markers and contours, and put on the character."
@@ -105,15 +110,6 @@ def demo_command(arguments: argparse.Namespace, console: Console) -> None:
             f"Pictures:        {output / REPORT}",
         ]
         console.finish(result, "\n".join(lines))
-
-
-def _character(folder: Path) -> tuple[CharacterSettings | None, str]:
-    """Rigify's basic human in a file of the folder; or None, and why there is none."""
-    try:
-        write_demo_character(folder / CHARACTER_FILE)
-    except ConversionError as error:
-        return None, f"Without a character: {error}"
-    return CharacterSettings(file=folder / CHARACTER_FILE), ""
 
 
 def _score(take: Take, motion: Motion) -> Score:

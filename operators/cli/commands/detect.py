@@ -40,31 +40,6 @@ class Footage:
     output: Path
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """What became of one clip of several."""
-
-    name: str
-    output: Path | None
-    people: People | None = None
-    error: str | None = None
-
-    @property
-    def text(self) -> str:
-        """A line on it."""
-        if self.error is not None:
-            return f"{self.name}: {self.error}"
-        if self.people is None:
-            return f"{self.name}: {self.output} is there already"
-        return f"{self.name}: {_found_text(self.people)}, in {self.output}"
-
-    def to_dict(self) -> dict[str, Any]:
-        """The outcome for `--json`."""
-        found = None if self.people is None else _summary(self.people)
-        output = None if self.error is not None or self.output is None else str(self.output)
-        return {"take": self.name, "keypoints": output, "detected": found, "error": self.error}
-
-
 @command(
     argument(
         "target CLIP|TAKE|SHOOT",
@@ -104,36 +79,35 @@ def detect_command(arguments: argparse.Namespace, console: Console) -> None:
         )
     target = arguments.target
     shoot = find_takes(target, undescribed=True) if target.is_dir() else open_shoot(target)
-    outcomes: list[Outcome] = []
+    results: list[dict[str, Any]] = []
+    share = 1.0 / len(shoot.takes)
     for index, take in enumerate(shoot.takes):  # one that fails does not stop the others
-        output = None
+        result: dict[str, Any] = {"take": take.name, "keypoints": None, "detected": None, "error": None}
         try:
             footage = _footage(take)
-            output = footage.output
-            outcome = Outcome(take.name, output)
-            if arguments.replace or not os.path.lexists(output):
-                share = 1.0 / len(shoot.takes)
-                part = (index * share, (index + 1) * share)
-                people = _detect(footage, networks, console, *part)
-                outcome = Outcome(take.name, output, people)
+            text = f"{footage.output} is there already"
+            if arguments.replace or not os.path.lexists(footage.output):
+                people = _detect(footage, networks, console, index * share, (index + 1) * share)
+                result["detected"], text = _summary(people), f"{_found_text(people)}, in {footage.output}"
+            result["keypoints"] = str(footage.output)
         except KeymarkError as error:
-            outcome = Outcome(take.name, output, error=str(error))
+            text = result["error"] = str(error)
         except Exception as error:
             if arguments.debug:
                 raise
-            what = f"failed unexpectedly ({describe_unexpected(error)}); --debug shows where"
-            outcome = Outcome(take.name, output, error=what)
-        outcomes.append(outcome)
-        console.take_line(outcome.text, outcome.error and outcome.text)
-    failed = [outcome.name for outcome in outcomes if outcome.error is not None]
-    there = sum(outcome.error is None and outcome.people is None for outcome in outcomes)
-    found = len(outcomes) - len(failed) - there
+            text = f"failed unexpectedly ({describe_unexpected(error)}); --debug shows where"
+            result["error"] = text
+        results.append(result)
+        console.take_line(f"{take.name}: {text}", result["error"] and f"{take.name}: {text}")
+    failed = [result["take"] for result in results if result["error"] is not None]
+    found = sum(result["detected"] is not None for result in results)
+    there = len(results) - len(failed) - found
     counts = {"detected": found, "there_already": there, "failed": len(failed)}
-    takes = pluralize(len(outcomes), "take")
+    takes = pluralize(len(results), "take")
     text = f"{takes}: {found} detected, {there} there already, {len(failed)} failed"
-    console.finish({**counts, "takes": [outcome.to_dict() for outcome in outcomes]}, text)
+    console.finish({**counts, "takes": results}, text)
     if failed:
-        raise ConversionError(f"{len(failed)} of {len(outcomes)} takes failed: {listed(failed, MOST_NAMED)}")
+        raise ConversionError(f"{len(failed)} of {len(results)} takes failed: {listed(failed, MOST_NAMED)}")
 
 
 def _found_text(people: People) -> str:

@@ -17,7 +17,6 @@ from ..console import Console
 from ..options import given_settings, setting_options
 
 UNPOSED = "no keyframe is posed yet; pose these frames, or let convert find them with --keyframes auto"
-READING_SHARE = 0.9
 
 
 @command(
@@ -51,7 +50,7 @@ def propose_command(arguments: argparse.Namespace, console: Console) -> None:
 
 def _speed_job(take: Take) -> Job[EvidenceSpeed]:
     """V_sum of the take's evidence."""
-    reading = yield from stretch(read_footage(take), 0.0, READING_SHARE)
+    reading = yield from stretch(read_footage(take), 0.0, 0.9)
     keypoints = performer_keypoints(take, reading.tracks)
     moved = evidence_speed(reading.tracks, take.marker_segments, keypoints, reading.album)
-    return (yield from within("Measuring the speed", moved, READING_SHARE, 1.0))
+    return (yield from within("Measuring the speed", moved, 0.9, 1.0))

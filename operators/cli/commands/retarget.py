@@ -9,9 +9,8 @@ from ....core.errors import InputError
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import absolute_path, real_path
 from ....core.progress import run
-from ....core.retarget.retarget_record import RECORD_FILE, RetargetRecord, read_retarget_record
+from ....core.retarget.retarget_record import RECORD_FILE, read_retarget_record
 from ....core.session.result import AS_MADE, changed_files, kept_note, write_made_digests
-from ....core.take.character_settings import CharacterSettings
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, CHARACTER_PICTURE, MOTION
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion import read_motion
@@ -56,43 +55,32 @@ def retarget_command(arguments: argparse.Namespace, console: Console) -> None:
     settings = character_settings(arguments)
     assert settings is not None, "the option is required"
     formats = export_formats(arguments.format)
-    motion_file, blend = _source(arguments.motion)
+    path: Path = arguments.motion
+    motion_file, blend = (path / MOTION, path / BLEND) if path.is_dir() else (path, None)
+    if path.is_dir() and not motion_file.exists():
+        raise InputError(
+            f"{path}: holds no {MOTION}; it must be a folder that convert has written, or a motion's file"
+        )
     output: Path = arguments.output
     refuse_unsupported_output(output)
     if (output / CONVERSION).exists():
         raise InputError(f"{output}: holds the result of a conversion; name another folder for the character")
-    record, files, notes = _retarget(
-        output, settings, formats, (motion_file, blend), console, arguments.debug
-    )
-    result = {**record.to_json(), "notes": list(notes), "files": [str(file) for file in files]}
-    console.finish(result, _text(record, notes, files))
-    console.warn(record.warnings)
-
-
-def _retarget(
-    output: Path,
-    settings: CharacterSettings,
-    formats: tuple[str, ...],
-    source: tuple[Path, Path | None],
-    console: Console,
-    debug: bool,
-) -> tuple[RetargetRecord, list[Path], tuple[str, ...]]:
     from ...bridge.character.source import show_result
 
-    motion_file, blend = source
     console.stage("Reading the motion")
     motion = read_motion(motion_file)
     check_exporters(formats)
-    kept: dict[str, str] = {}
     lost: list[str] = []
+    footage = blend if blend is not None and blend.is_file() else None
+    kept: dict[str, str] = {}
     with output_folder(output, (*RESULT_FILES, AS_MADE), RECORD_FILE, kept) as staging_folder:
         job = write_character_result(
             settings,
             motion,
             absolute_path(motion_file).parent.name,
-            lambda scene, shown: show_result(scene, blend, shown, lost),
+            lambda scene, shown: show_result(scene, footage, shown, lost),
             (staging_folder, real_path(output)),
-            debug,
+            arguments.debug,
             formats,
         )
         record = run(job, console.progress)
@@ -102,30 +90,14 @@ def _retarget(
         with suppress(InputError):
             before = read_retarget_record(output).files
         kept.update(changed_files(output, staging_folder, RESULT_FILES, (CHARACTER_BLEND,), before))
-        files = [output / name for name in (*made, RECORD_FILE)]
+    files = [str(output / name) for name in (*made, RECORD_FILE)]
     notes = (*lost, *record.notes, *(kept_note(*names) for names in kept.items()))
-    return record, files, notes
-
-
-def _source(path: Path) -> tuple[Path, Path | None]:
-    """The motion's file, and the .blend with its footage where it is a folder that has one."""
-    if not path.is_dir():
-        return path, None
-    motion, blend = path / MOTION, path / BLEND
-    if not motion.exists():
-        raise InputError(
-            f"{path}: holds no {MOTION}; it must be a folder that convert has written, or a motion's file"
-        )
-    return motion, blend if blend.is_file() else None
-
-
-def _text(record: RetargetRecord, notes: tuple[str, ...], files: list[Path]) -> str:
     lines = [f"Doubtful: {doubt.rstrip('.')}." for doubt in record.doubts]
     lines += [f"Note: {note.rstrip('.')}." for note in notes]
-    lines.append(
-        f"{record.frames} frames on '{record.character.object}' of {record.character.file} "
-        f"({record.map.title}, {record.map.origin}):"
-    )
+    character = f"'{record.character.object}' of {record.character.file}"
+    lines.append(f"{record.frames} frames on {character} ({record.map.title}, {record.map.origin}):")
     figures = {name: record.quality.get(name) for name in FIGURES}
     lines += [f"  {FIGURES[name].format(value)}" for name, value in figures.items() if value is not None]
-    return "\n".join([*lines, *(f"  {file}" for file in files)])
+    result = {**record.to_json(), "notes": list(notes), "files": files}
+    console.finish(result, "\n".join([*lines, *(f"  {file}" for file in files)]))
+    console.warn(record.warnings)
