@@ -69,8 +69,8 @@ def detect_command(arguments: argparse.Namespace, console: Console) -> None:
         footage = one if arguments.output is None else replace(one, output=arguments.output)
         refuse_existing(footage.output, arguments.replace)
         people = _detect(footage, networks, console, 0.0, 1.0)
-        result = {"keypoints": str(footage.output), **_summary(people)}
-        console.finish(result, f"{_found_text(people)}: {footage.output}")
+        summary = {"keypoints": str(footage.output), **_summary(people)}
+        console.finish(summary, f"{_found_text(people)}: {footage.output}")
         return
     if arguments.output is not None:
         raise UsageError(
