@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from ..camera.camera import Camera
 from ..camera.camera_fields import MATRICES
 from ..detect.families.table import open_network
 from ..detect.pose_tracking import refuse_picture
@@ -88,21 +87,16 @@ def _unplaced(description: Description, settings: ConversionSettings) -> Inputs:
     lens = lens_of(clip.path, clip.size, fields.values.get("camera"), fields.source_of("camera"))
     files = keypoint_files(description, settings)
     whole = replace(settings, keypoints=files, evidence=None)
-    with_lens = _with_camera(description, lens.put(clip.size))
+    values = fields.values if isinstance(fields.values, InheritedFields) else InheritedFields()
+    camera = lens.put(clip.size).to_dict()
+    values = values.overridden_by({"camera": None}, "").overridden_by({"camera": camera}, "(found)")
+    with_lens = replace(description, fields=Fields(values, fields.where))
     take = read_described(with_lens, fewest_keyframes=0, keyframes_required=False, settings=whole)
     if settings.evidence is not None:
         take = with_evidence(take, settings.evidence)
     detects, evidence = not files, settings.evidence
     network = open_network(settings.network) if detects and settings.network is not None else None
     return Inputs(take, evidence=evidence, detects=detects, network=network, open_lens=lens, floor_open=True)
-
-
-def _with_camera(description: Description, camera: Camera) -> Description:
-    """The description with a camera."""
-    fields = description.fields
-    values = fields.values if isinstance(fields.values, InheritedFields) else InheritedFields()
-    found = values.overridden_by({"camera": None}, "").overridden_by({"camera": camera.to_dict()}, "(found)")
-    return replace(description, fields=Fields(found, fields.where))
 
 
 def findings(session: Session, description: Description) -> tuple[str, ...]:

@@ -214,12 +214,16 @@ def finish_result(
     record = find_record(output)
     recorded = {} if record is None else record.files
     kept_names.update(changed_files(output, staging_folder, replaced, EDITABLE_FILES, recorded))
+    own = description.keyframes
+    unused: tuple[str, ...] = ()
+    if settings.library is not None and settings.keyframes is None and os.path.exists(own):
+        unused = (f"{own} is left aside; --keyframes {own} --library {settings.library} would use it too",)
     conversion = Conversion(
         session,
         files=tuple(output / name for name in (*written, RECORD)),
         conversion_notes=(
             *findings(session, description),
-            *_unused_keyframes_note(description, settings),
+            *unused,
             *notes,
             *(kept_note(*names) for names in kept_names.items()),
         ),
@@ -278,10 +282,3 @@ def write_made_digests(staging_folder: Path, names: Iterable[str]) -> None:
 def kept_note(name: str, other: str) -> str:
     """The note on a file that is kept under another name."""
     return f"{name} is not as Keymark had made it here and is kept as {other}"
-
-
-def _unused_keyframes_note(description: Description, settings: ConversionSettings) -> tuple[str, ...]:
-    own = description.keyframes
-    if settings.library is None or settings.keyframes is not None or not os.path.exists(own):
-        return ()
-    return (f"{own} is left aside; --keyframes {own} --library {settings.library} would use it too",)

@@ -67,11 +67,6 @@ class ClipSurvey:
         return Counter(clip.fps for clip in self.clips)
 
     @property
-    def colored(self) -> bool:
-        """Whether strongly colored garments seem to be worn in any clip."""
-        return any(MARKERS in clip.evidence for clip in self.clips)
-
-    @property
     def any_posed(self) -> bool:
         """Whether any clip has keyframes, which need the camera that they were posed through."""
         return self.unposed < len(self.clips)
@@ -136,10 +131,6 @@ FOUND_CAMERA = [
     "More exact is to state it, inside braces: lens_mm and sensor_width_mm, and where it stood still,",
     "height_m above the floor and tilt_deg, negative where it looked down; the lens alone helps as well.",
 ]
-FLOOR = {
-    "//floor_m": "height of the floor in the world; 0 where height_m above is the height over it",
-    "floor_m": 0.0,
-}
 
 
 def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
@@ -156,14 +147,24 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
     }
     if not below_another:
         fields |= {"//root": "nothing above this folder is inherited", "root": True}
-    fields |= _rate(survey)
+    rates = [fps for fps in survey.rates if fps is not None]
+    images = [clip.name for clip in survey.clips if clip.fps is None]
+    if len(rates) == 1:
+        fields["fps"] = int(rates[0]) if rates[0].is_integer() else rates[0]
+    elif not rates:
+        fields |= {"//fps": "frames per second, which images cannot tell", "fps": None}
+    else:
+        beside = ", but for images, beside which NAME.take.json must say it: "
+        these = f"{beside}{listed(images, MOST_NAMED)}" if images else ""
+        fields["//fps"] = f"left out, for the clips differ: each tells its own{these}"
     fields |= {"camera": _camera(survey)} if survey.any_posed else {"//camera": FOUND_CAMERA}
     fields["//evidence"] = [
         "what a motion is held against: markers, keypoints, depth_hints, contours; all there is, unless",
         '"evidence" says which. What the clips have:',
         *evidence_lines(survey),
     ]
-    fields |= {"markers": _markers(survey)} if survey.colored else {"//markers": NO_MARKERS}
+    worn = any(MARKERS in clip.evidence for clip in survey.clips)
+    fields |= {"markers": _markers(survey)} if worn else {"//markers": NO_MARKERS}
     fields["actor"] = {
         "//height_m": "the performer's height in meters; lengths measured one by one (segments_m) are better",
         "height_m": None,
@@ -194,21 +195,6 @@ def clip_lines(survey: ClipSurvey) -> list[str]:
     if len(survey.unreadable) > MOST_NAMED:
         lines.append(f"and {len(survey.unreadable) - MOST_NAMED} more cannot be read")
     return lines
-
-
-def _rate(survey: ClipSurvey) -> dict[str, Any]:
-    rates = {fps for fps in survey.rates if fps is not None}
-    images = [clip.name for clip in survey.clips if clip.fps is None]
-    if len(rates) == 1:
-        rate = rates.pop()
-        return {"fps": int(rate) if rate.is_integer() else rate}
-    if not rates:
-        return {"//fps": "frames per second, which images cannot tell", "fps": None}
-    comment = "left out, for the clips differ: each tells its own"
-    if not images:
-        return {"//fps": comment}
-    comment += ", but for images, beside which NAME.take.json must say it"
-    return {"//fps": f"{comment}: {listed(images, MOST_NAMED)}"}
 
 
 def _camera(survey: ClipSurvey) -> dict[str, Any]:
@@ -288,7 +274,7 @@ def _keyframes(survey: ClipSurvey) -> dict[str, Any]:
     if not survey.unposed:
         return {}
     missing = "no clip has" if survey.unposed == len(survey.clips) else f"{survey.unposed} clips have no"
-    return {
+    fields: dict[str, Any] = {
         "//keyframes": [
             f"{missing} keyframes (NAME.keyframes.json beside the clip NAME): auto finds them in the",
             "footage with all libraries. Where all clips show one kind of motion, library with a name out of",
@@ -296,8 +282,11 @@ def _keyframes(survey: ClipSurvey) -> dict[str, Any]:
             "beside found ones a few are enough.",
         ],
         "keyframes": EVERY_LIBRARY,
-        **(FLOOR if survey.any_posed else {}),
     }
+    if survey.any_posed:
+        said = "height of the floor in the world; 0 where height_m above is the height over it"
+        fields |= {"//floor_m": said, "floor_m": 0.0}
+    return fields
 
 
 def _examples(survey: ClipSurvey, names: list[str]) -> str:

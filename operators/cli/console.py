@@ -94,7 +94,6 @@ class Console:
         self._close_bar()
 
     def progress(self, progress: Progress) -> None:
-        """Show the progress of the job."""
         if progress.stage != self._stage and progress.fraction < 1.0:
             self.stage(progress.stage)
         if self._bar is not None:

@@ -159,7 +159,6 @@ class OneLineParser(argparse.ArgumentParser):
     """A parser that tells a mistake in one sentence and leaves the exit to its caller."""
 
     def error(self, message: str) -> NoReturn:
-        """Raise instead of writing several lines and leaving the process."""
         raise UsageError(f"{message}; see {self.prog} --help")
 
 

@@ -120,7 +120,6 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: Context, event: Event) -> set[str]:
-        """Store the pose, and let its joints be dragged at once."""
         done = self.execute(context)
         if done == {"FINISHED"}:
             with reported(self):
@@ -160,7 +159,6 @@ class KEYMARK_OT_look_from_side(BaseOperator, bpy.types.Operator):
     requirements = (camera, actor)
 
     def run(self, context: Context) -> None:
-        """Set the context's viewport, or all of them if the context is another editor."""
         take, own = active_take(context.scene), context.space_data
         spaces = [own] if isinstance(own, bpy.types.SpaceView3D) else list(viewports(context.window_manager))
         for space in spaces:

@@ -98,7 +98,6 @@ class BaseOperator:
 
     @classmethod
     def poll(cls, context: Context) -> bool:
-        """Whether all requirements are met."""
         return all_met(cls, context, *cls.requirements)
 
     def execute(self, context: Context) -> set[str]:

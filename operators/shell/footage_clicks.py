@@ -132,7 +132,6 @@ class ClickSequence:
         return {"CANCELLED"}
 
     def modal(self, context: Context, event: Event) -> set[str]:
-        """Take an event."""
         if cancel_click(self, context, event):
             return {"CANCELLED"}
         follow_mouse(context, event)
@@ -156,5 +155,4 @@ class ClickSequence:
         return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
 
     def ask(self, context: Context) -> None:
-        """Show what is asked for now."""
         ask(context, *self.request(context))

@@ -4,6 +4,7 @@ Footage pixels are those of the file's own picture: from its top left corner, x 
 shows the picture undistorted, as Blender's camera has no distortion; the Movie Clip editor shows it as it is.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import bpy
@@ -68,17 +69,23 @@ def footage_view(scene: Scene, take: PropertyGroup, area: Area, region: Region) 
     return None
 
 
+def _views(context: Context, take: PropertyGroup) -> Iterator[FootageView]:
+    """Every region of the window that shows the footage."""
+    for area in context.screen.areas:
+        for region in area.regions:
+            view = footage_view(context.scene, take, area, region)
+            if view is not None:
+                yield view
+
+
 def view_of_footage_under(
     context: Context, take: PropertyGroup, mouse_x: int, mouse_y: int
 ) -> FootageView | None:
     """The region under the mouse [window px] that shows the footage; the mouse may lie beside the picture."""
-    for area in context.screen.areas:
-        for region in area.regions:
-            x, y = mouse_x - region.x, mouse_y - region.y
-            if 0 <= x < region.width and 0 <= y < region.height:
-                view = footage_view(context.scene, take, area, region)
-                if view is not None:
-                    return view
+    for view in _views(context, take):
+        x, y = mouse_x - view.region.x, mouse_y - view.region.y
+        if 0 <= x < view.region.width and 0 <= y < view.region.height:
+            return view
     return None
 
 
@@ -95,11 +102,7 @@ def pixel_under(
 
 def shows_footage(context: Context, take: PropertyGroup) -> bool:
     """Whether any editor of the window shows the footage."""
-    return any(
-        footage_view(context.scene, take, area, region) is not None
-        for area in context.screen.areas
-        for region in area.regions
-    )
+    return next(_views(context, take), None) is not None
 
 
 def _camera_view(

@@ -74,7 +74,6 @@ class JobOperator(BaseOperator):
         """Remove the preview: everything is as before `watch`."""
 
     def run(self, context: Context) -> None:
-        """Run the whole job at once."""
         result = run_job(self.start(context.scene))
         keys_changed()  # a script may have set some meanwhile
         self.finish(context.scene, result)

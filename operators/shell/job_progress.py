@@ -21,7 +21,6 @@ class KEYMARK_PG_progress(bpy.types.PropertyGroup):
     frame: Number("Frame", "The scene frame at which the job was begun")
 
     def show(self, stage: str, fraction: float, time_left: str = "") -> None:
-        """Set all three."""
         self.stage = stage
         self.fraction = fraction
         self.time_left = time_left

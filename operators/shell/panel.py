@@ -37,7 +37,6 @@ class SubPanel(SidebarPanel):
     layout: UILayout
 
     def column(self) -> UILayout:
-        """The panel's column of properties."""
         return property_column(self.layout)
 
 
@@ -76,7 +75,6 @@ class RowList:
         active_data: bpy.types.AnyType,
         active_property: str,
     ) -> None:
-        """Draw one item, as Blender asks for it."""
         self.draw_row(context, layout, item)
 
     @abstractmethod

@@ -34,7 +34,6 @@ class LruCache(OrderedDict[str, Result | None]):
         return self[key]
 
     def __setitem__(self, key: str, result: Result | None) -> None:
-        """Add or replace a result."""
         super().__setitem__(key, result)
         self.move_to_end(key)
         while len(self) > self._size:

@@ -95,7 +95,6 @@ class TakeState:
 
     @cached_property
     def has_points(self) -> bool:
-        """Whether markers, keypoints or tracks are followed."""
         return bool(self.take.follow.use_markers and len(self.take.markers)) or self.has_keypoints
 
     @cached_property
@@ -106,7 +105,6 @@ class TakeState:
 
     @cached_property
     def lacks_colors(self) -> bool:
-        """Whether a marker that is followed has no color."""
         return self.take.follow.use_markers and not all(each.is_picked for each in self.take.markers)
 
     # --- Keyframes
@@ -163,7 +161,6 @@ class TakeState:
 
     @cached_property
     def unposed(self) -> list[int]:
-        """The proposed frames without a keyframe, in ascending order."""
         keyed = {round(frame) for frame in self.keyed.all}
         return [frame for frame in self.proposed if frame not in keyed]
 
@@ -211,7 +208,6 @@ class TakeState:
 
     @property
     def found_count(self) -> int:
-        """Number of the found keyframes that are still as they were found."""
         return sum(self.of_match(match) == "FOUND" for match in self.take.matching.matches)
 
     def match_at(self, frame: float) -> int:
@@ -230,7 +226,6 @@ class TakeState:
 
     @cached_property
     def shown_action(self) -> Action | None:
-        """The Action that animates the actor."""
         return None if self.take.armature is None else action_of(self.take.armature)
 
     @cached_property
@@ -273,7 +268,6 @@ class TakeState:
 
     @cached_property
     def has_outdated_result(self) -> bool:
-        """Whether a character performs an earlier motion."""
         return any(self.of_earlier(result) for result in self.results)
 
     @cached_property
@@ -361,5 +355,4 @@ class TakeState:
         return found
 
     def is_behind(self, step: str) -> bool:
-        """Whether the work has left a step behind."""
         return STEPS.index(step) < STEPS.index(self.next[0])

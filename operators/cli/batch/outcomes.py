@@ -109,12 +109,10 @@ class BatchOutcomes:
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of the takes that are converted here, by status."""
         counts = Counter(outcome.status for outcome in self.own_outcomes)
         return {status.value: counts[status] for status in Status}
 
     def job_progressed(self, job: Job, step: Step) -> None:
-        """Show the progress of a take."""
         self._done[job.take.name] = step.fraction
         self._show_progress()
 
@@ -166,7 +164,6 @@ class BatchOutcomes:
             self.summarize()
 
     def summarize(self) -> None:
-        """Write the summary of the outcomes so far."""
         started = time.monotonic()
         try:
             self.files = write_summary(self.output, self.shoot, list(self._outcomes.values()))

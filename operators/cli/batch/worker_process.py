@@ -32,7 +32,6 @@ class Job:
     debug: bool = False
 
     def to_line(self) -> bytes:
-        """Encode the job as a line."""
         return json.dumps(asdict(self), default=str).encode("ascii") + b"\n"
 
     @classmethod
