@@ -7,12 +7,11 @@ from ..bridge.scene_frames import show_frame
 from ..shell.fields import Choice, Entries, Integer, Number, Text
 
 REASONS = (
-    ("HIDDEN", "{what} is hidden", "A marker or a body point is hidden around this frame", "HIDE_ON", 0),
-    ("FAST", "{what} is fast", "The performer moves faster than usual around this frame", "FF", 1),
-    ("FAR", "keyframes are far", "The nearest keyframe is far", "ARROW_LEFTRIGHT", 2),
-    ("FOOTAGE", "{what} is off", "A marker or a keypoint is not where the motion puts it", "TRACKER", 3),
+    ("HIDDEN", "Hidden", "A marker or a body point is hidden around this frame", "HIDE_ON", 0),
+    ("FAST", "Fast Motion", "The performer moves faster than usual around this frame", "FF", 1),
+    ("FAR", "Keyframes Far", "The nearest keyframe is far", "ARROW_LEFTRIGHT", 2),
+    ("FOOTAGE", "Off", "A marker or a keypoint is not where the motion puts it", "TRACKER", 3),
 )
-"""Why a frame is weak, its name short enough for a row of a narrow sidebar."""
 
 
 def _chosen(review: PropertyGroup, context: Context) -> None:

@@ -28,21 +28,19 @@ class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
         number = row.row()
         number.ui_units_x = 2.2
         number.label(text=f"{item.frame:g}")
-        row.label(text=reason_words(item), icon=_reason(item).icon, translate=False)
+        reason = item.bl_rna.properties["reason"].enum_items[item.reason]
+        row.label(text=reason_words(item), icon=reason.icon, translate=False)
         if TakeState(active_take(context.scene)).is_posed(item.frame):
             row.label(text="", icon="KEYTYPE_KEYFRAME_VEC")
 
 
 def reason_words(item: PropertyGroup) -> str:
-    """The reason of a weak frame, with the marker or the body point that it lies with."""
+    """The reason of a weak frame, short enough for a row of a narrow sidebar, with what it lies with."""
     name = item.marker or item.point
     stem, _, side = name.partition(".")
-    sided = {"L": f"left {stem}", "R": f"right {stem}"}.get(side, name).replace("_", " ")
-    return capitalized(_reason(item).name.format(what=sided or "the motion"))
-
-
-def _reason(item: PropertyGroup) -> bpy.types.EnumPropertyItem:
-    return item.bl_rna.properties["reason"].enum_items[item.reason]
+    what = {"L": f"left {stem}", "R": f"right {stem}"}.get(side, name).replace("_", " ") or "the motion"
+    words = {"HIDDEN": "is hidden", "FAST": "is fast", "FOOTAGE": "is off"}
+    return "Keyframes are far" if item.reason == "FAR" else capitalized(f"{what} {words[item.reason]}")
 
 
 def draw_review(column: UILayout, context: Context, state: TakeState) -> None:
