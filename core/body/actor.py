@@ -66,13 +66,10 @@ class Actor(Record):
     def is_average(self) -> bool:
         """Whether all lengths follow from the stature, so that nobody has measured this performer."""
         earlier = {f"{part}.{side}": share for part, share in _SURFACE.items() for side in SIDES}
-        return any(self._has({**SHARES_OF_STATURE, **shares}) for shares in ({}, earlier))
-
-    def _has(self, shares: Mapping[str, float]) -> bool:
-        """Whether the lengths are in these proportions."""
-        stature = self.segments_m["trunk"] / shares["trunk"]
-        return all(
-            isclose(self.segments_m[name], share * stature, rel_tol=1e-3) for name, share in shares.items()
+        stature = self.segments_m["trunk"] / SHARES_OF_STATURE["trunk"]
+        return any(
+            all(isclose(self.segments_m[name], share * stature, rel_tol=1e-3) for name, share in own.items())
+            for own in (SHARES_OF_STATURE, {**SHARES_OF_STATURE, **earlier})
         )
 
     @classmethod

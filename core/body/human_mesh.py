@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..arrays import Array, IndexArray
+from .rotations import smallest
 from .skeleton import SIDES
 
 FILE = Path(__file__).resolve().parents[2] / "presets" / "body" / "human.npz"
@@ -56,7 +57,7 @@ class HumanMesh:
             offset = self.vertices[rows] - start
             along = offset @ before
             longer = girth if part.partition(".")[0] in LAST else to_length / length
-            moved = to_start + girth * (offset - along[:, None] * before) @ _turn(before, after).T
+            moved = to_start + girth * (offset - along[:, None] * before) @ smallest(before, after).T
             moved += longer * along[:, None] * after
             found[rows] += self.weights[rows, index, None] * moved
         return found
@@ -117,10 +118,3 @@ def _size(joints: Mapping[str, Array]) -> float:
 
     leg = apart("thigh.L", "shin.L") + apart("shin.L", "foot.L")
     return float((apart("thigh.L", "thigh.R") * apart("upper_arm.L", "upper_arm.R") * leg) ** (1.0 / 3.0))
-
-
-def _turn(before: Array, after: Array) -> Array:
-    """(3, 3) the smallest rotation of one direction to another that is not opposite to it."""
-    axis, cosine = np.cross(before, after), float(before @ after)
-    skew = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
-    return np.asarray(np.eye(3) + skew + skew @ skew / (1.0 + cosine))

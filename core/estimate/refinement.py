@@ -92,9 +92,9 @@ def _depth_factor(problem: ClipProblem, spans: list[Window], states: list[ClipSt
         missed = missed - np.sum(missed * sight, axis=-1, keepdims=True) * sight
         squared[frame] = 0.5 * (missed**2).sum(axis=-1)  # two axes lie across
     gap = np.searchsorted(problem.data.belief.frame, np.arange(problem.frames), side="right")
-    solved, gaps = np.isfinite(squared[:, 0]), len(problem.data.belief.frame) + 1
-    count = np.bincount(gap[solved], minlength=gaps)
-    total = np.stack([np.bincount(gap[solved], one[solved], minlength=gaps) for one in squared.T], axis=-1)
+    solved = np.isfinite(squared).all(axis=1)
+    count = np.bincount(gap, solved)
+    total = np.stack([np.bincount(gap, np.where(solved, one, 0.0)) for one in squared.T], axis=-1)
     mean = total / np.maximum(count, 1)[:, None]
     mean = (1.0 - BODY_SHARE) * mean + BODY_SHARE * mean.mean(axis=-1, keepdims=True)
     # 8.0: Factor on the depths' deviation: a frame's 13 depths and those of about five frames around err

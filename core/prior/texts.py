@@ -5,6 +5,7 @@ import unicodedata
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache, partial
+from itertools import count
 from typing import Annotated
 
 from ..errors import InputError, shown
@@ -87,9 +88,7 @@ def unique_name(name: str, taken: Iterable[str]) -> str:
     keys = {name_key(other) for other in taken}
     if name_key(name) not in keys:
         return name
-    numbered = (
-        f"{name[: LONGEST_NAME - len(f' {number}')].rstrip()} {number}" for number in range(2, len(keys) + 3)
-    )
+    numbered = (f"{name[: LONGEST_NAME - len(f' {number}')].rstrip()} {number}" for number in count(2))
     return next(candidate for candidate in numbered if name_key(candidate) not in keys)
 
 

@@ -293,6 +293,8 @@ def test_every_piece_lies_on_a_whole_meter_of_the_floor(tilt: float) -> None:
     off = np.abs(floor[..., :2] - np.round(floor[..., :2])).max(axis=1)
     assert off.min(axis=1).max() < 1e-6
     assert np.allclose(grid.depth_m, seen.depth(floor).min(axis=1))
+    onward = floor[:, 1, :2] - floor[:, 0, :2]
+    assert onward.min() > -1e-6 and (np.diff(floor[onward[:, 1] > 0.1, 0, 0]) > -1e-6).all()
     beside = np.abs(grid.lines - np.array(SIZE) / 2.0) / SIZE
     assert beside.max() <= 0.6 + 1e-9
 

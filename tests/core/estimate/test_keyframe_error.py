@@ -21,7 +21,12 @@ from keymark.core.estimate.keyframe_evidence import (
     read_belief,
     read_keyframes,
 )
-from keymark.core.estimate.performer_placement import SHOE_M, lower_ankle_m
+from keymark.core.estimate.performer_placement import (
+    SHOE_M,
+    found_ankle_m,
+    lower_ankle_m,
+    standing_ankle_m,
+)
 from keymark.core.estimate.sigma import (
     GRACE_S,
     LIMB_STD_RAD,
@@ -147,8 +152,16 @@ def test_the_lower_ankle_follows_a_library_into_flight_and_rests_on_its_floor() 
     high = float(ankle - sole_heights_m(BODY, BODY.pose(rest)).min()) + SHOE_M
     assert heights[0] == pytest.approx(high, abs=1e-6)
     assert heights[15] == pytest.approx(high + 0.4, abs=1e-6)
+    found = standing.plus(lift)
+    low = BODY.points(BODY.pose(found))[:, ANKLES, 2].min(axis=1)[0]
+    for off in (-0.11, 0.0, 0.11, 0.13):  # of a known floor from where these feet stand
+        floor_m = low - standing_ankle_m(BODY) + off
+        heights = found_ankle_m(BODY, found, np.arange(0, 30, 5), 30, floor_m)
+        assert heights[0] == pytest.approx(low + off * (0.0 < off < 0.12), abs=1e-6)
+        assert heights[15] == pytest.approx(low + 0.4, abs=1e-6)
 
 
+ANKLES = [BODY.skeleton.point_names.index(f"ankle.{side}") for side in "LR"]
 WORN = ("trunk", "forearm.L", "shin.L")
 TIME_S = np.arange(90) / 30.0
 
