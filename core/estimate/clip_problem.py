@@ -27,11 +27,10 @@ LOOSE_NECK = 3.0
 how performers turn theirs is their own."""
 
 
-def neck_dofs(skeleton: Skeleton) -> slice:
-    """The neck's degrees of freedom."""
-    joint = skeleton.joint_index("neck")
-    first = int(skeleton.dof_starts[joint])
-    return slice(first, first + skeleton.joints[joint].dof_count)
+def of_neck(skeleton: Skeleton, factor: float) -> Array:
+    """(D,) a factor on the neck's degrees of freedom, 1 on others."""
+    own = [name.startswith("neck.") for name in skeleton.dof_names]
+    return np.where(own, factor, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,9 +86,7 @@ class ClipData:
     def factor(self) -> Array:
         """(D, D) of the deviation's usual accelerations, as the keyframes have them."""
         belief = self.belief
-        loose = np.ones(self.body.skeleton.dof_count)
-        if self.heads is not None:
-            loose[neck_dofs(self.body.skeleton)] = LOOSE_NECK
+        loose = of_neck(self.body.skeleton, 1.0 if self.heads is None else LOOSE_NECK)
         return process_noise_factor(belief.postures, self.time_s[belief.frame], loose)
 
 

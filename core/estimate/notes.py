@@ -41,9 +41,12 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
             f"instead of {stated:.1f} mm as stated; check the camera"
         )
     if evidence.posing_scale > 2.0:
+        known = {"the markers' segments": take.markers, "whom the keypoints show": take.keypoints}
+        checked = [what for what, seen in known.items() if seen] or ["the poses"]
+        *lengths, last = "the actor's lengths", *checked
         notes.append(
             "the keyframes differ from the footage by much more than the usual posing error; check "
-            f"the frames they are set at, the camera, the actor's lengths{_and_what_is_seen(take)}"
+            f"{', '.join(['the frames they are set at, the camera', *lengths])} and {last}"
         )
     for marker, distrust in zip(take.markers, evidence.distrust, strict=True):
         if distrust > 3.0:
@@ -52,13 +55,6 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
                 "check whether another thing has its color"
             )
     return tuple(notes)
-
-
-def _and_what_is_seen(take: Take) -> str:
-    """The end of a list of what to check: which of its evidence a take may have wrong."""
-    checked = [("the markers' segments", take.markers), ("whom the keypoints show", take.keypoints)]
-    *first, last = [what for what, one in checked if one] or ["the poses"]
-    return "".join(f", {what}" for what in first) + f" and {last}"
 
 
 def contour_notes(take: Take, followed: bool) -> tuple[str, ...]:
@@ -75,14 +71,8 @@ def contour_notes(take: Take, followed: bool) -> tuple[str, ...]:
 def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
     """Note on found keyframes left out in favor of the posed ones around them."""
     found = sum(keyframe.matched is not None for keyframe in take.keyframes)
-    if count == 0:
-        return ()
-    return (
-        (
-            f"{count} of {found} found keyframes were left out: interpolation between the posed ones is "
-            "more accurate there"
-        ),
-    )
+    better = "interpolation between the posed ones is more accurate there"
+    return (f"{count} of {found} found keyframes were left out: {better}",) if count else ()
 
 
 def found_notes(take: Take) -> tuple[str, ...]:

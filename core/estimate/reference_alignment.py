@@ -20,6 +20,8 @@ MIRRORED = np.array([POINTS.index(mirrored_point(name)) for name in POINTS])
 HEAD = POINTS.index("head")
 
 
+UPRIGHT = Rotation.from_euler("x", -90.0, degrees=True)
+"""Z up is Y up in camera axes, where a camera that looks level has a heading alone."""
 HEADINGS = 12
 LEANS_DEG = (-30.0, 0.0, 30.0)
 LONGEST_LAG = 8  # frames
@@ -63,14 +65,6 @@ def _ratio(wanted_m: float, vectors: Array) -> float:
     found = found[np.isfinite(found)]
     usual = float(np.median(found)) if len(found) else 0.0
     return wanted_m / usual if usual > 1e-6 else 1.0
-
-
-def _without_repeats(points: Array) -> Array:
-    """Frames that repeat the one before to the last digit were absent."""
-    points = points.copy()
-    same = (points[1:] == points[:-1]).all(axis=(1, 2))
-    points[1:][same] = np.nan
-    return points
 
 
 def _sides(points: Array, seen: SeenPoints) -> BoolArray:
@@ -121,8 +115,10 @@ def align(
 
     `time_s` (F,) the clip's times [s], `fps` its rate.
     """
-    points = about_hips(_without_repeats(reference.points_m))
-    points = of_performer(body, points)
+    points = reference.points_m.copy()
+    # Frames that repeat the one before to the last digit were absent.
+    points[1:][(points[1:] == points[:-1]).all(axis=(1, 2))] = np.nan
+    points = of_performer(body, about_hips(points))
     best: tuple[float, Array, Rotation, bool] | None = None
     for at in _times(len(points), reference.fps, time_s, fps):
         for fixed in (False, True)[: 1 + seen.camera.is_moving]:
@@ -142,7 +138,9 @@ def align(
     exchanged = _sides(_in_camera(own, turn, seen, fixed), seen)
     own = np.where(exchanged[:, None, None], own[:, MIRRORED], own)
     _, turn = _refined(own, seen, fixed, turn)
-    turn = _as_stated(turn, fixed)
+    stated = Rotation.identity() if fixed else UPRIGHT
+    # 8: A network that has its motion in the camera's axes knows the vertical better than the picture does.
+    turn = stated if np.degrees((turn * stated.inv()).magnitude()) < 8.0 else turn
     inside = _in_camera(own, turn, seen, fixed)
     # 0.25: a distance is smoothed over this time
     placed = place(inside, seen, 0.25 * fps)
@@ -195,8 +193,7 @@ def _turn(points: Array, seen: SeenPoints, fixed: bool) -> tuple[float, Rotation
     # 48: that are asked for the turn
     known = known[np.unique(np.linspace(0, len(known) - 1, 48).round().astype(int))]
     some, part = points[known], seen[known]
-    # Z up is Y up in camera axes, where a camera that looks level has a heading alone.
-    upright = Rotation.identity() if fixed else Rotation.from_euler("x", -90.0, degrees=True)
+    upright = Rotation.identity() if fixed else UPRIGHT
     starts = [
         Rotation.from_euler("x", lean, degrees=True)
         * upright
@@ -208,14 +205,6 @@ def _turn(points: Array, seen: SeenPoints, fixed: bool) -> tuple[float, Rotation
     # 4: of the best of these turns, so many are refined
     refined = [_refined(some, part, fixed, starts[one]) for one in np.argsort(costs)[:4]]
     return min(refined, key=lambda one: one[0])
-
-
-def _as_stated(turn: Rotation, fixed: bool) -> Rotation:
-    """The turn, or that of the camera's own axes where it is about the same."""
-    stated = Rotation.identity() if fixed else Rotation.from_euler("x", -90.0, degrees=True)
-    apart = np.degrees((turn * stated.inv()).magnitude())
-    # 8.0: A network that has its motion in the camera's axes knows the vertical better than the picture does.
-    return stated if apart < 8.0 else turn
 
 
 def _cost(points: Array, seen: SeenPoints, fixed: bool, turn: Rotation) -> float:

@@ -152,12 +152,12 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
 
 def with_reference(take: Take, reference: ReferenceEvidence) -> Take:
     """The take with the keyframes found in its reference motion; others found stay where it is silent."""
-    kept = [key for key in take.keyframes if key.matched is None or _stays(key, reference)]
+    kept = [
+        key
+        for key in take.keyframes
+        if key.matched is None or (not key.matched.is_referred and reference.left_out[key.index])
+    ]
     return replace(take, keyframes=tuple(sorted((*kept, *reference.keyframes), key=lambda key: key.index)))
-
-
-def _stays(key: Keyframe, reference: ReferenceEvidence) -> bool:
-    return key.matched is not None and not key.matched.is_referred and bool(reference.left_out[key.index])
 
 
 def _confidence(factor: float) -> float:

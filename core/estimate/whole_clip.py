@@ -27,7 +27,7 @@ from ..terms.region_model import MarkerPlacement, RegionModel
 from ..terms.regions import ObservedRegions, limb_widths
 from ..video.album import Album
 from .belief import FEWEST_POSED, Belief
-from .clip_problem import LOOSE_NECK, ClipData, ClipProblem, KeyframeEvidence, neck_dofs
+from .clip_problem import LOOSE_NECK, ClipData, ClipProblem, KeyframeEvidence, of_neck
 from .contour_evidence import ContourEvidence, contour_rows, learn_contours
 from .contour_search import all_located, contour_schedule
 from .keyframe_evidence import SeenAtKeyframes, read_belief
@@ -139,8 +139,7 @@ def estimate_whole_clip(
 
 def _loosened(evidence: KeyframeEvidence, belief: Belief, seen: BoolArray, body: Body) -> KeyframeEvidence:
     """The evidence with less trust in how found keyframes turn heads that are seen (F,)."""
-    loose = np.ones(body.skeleton.dof_count)
-    loose[neck_dofs(body.skeleton)] = 1.0 / LOOSE_NECK
+    loose = of_neck(body.skeleton, 1.0 / LOOSE_NECK)
     believed = np.where((~belief.posed & seen[belief.frame])[:, None], loose, 1.0)
     return replace(evidence, information=evidence.information * believed[:, :, None] * believed[:, None])
 

@@ -20,6 +20,9 @@ from .keypoints import FACE
 from .state import ClipState
 from .term import Rows, Term
 
+_SIDED = [[-1.0 if name.endswith(".R") else 1.0, 1.0, 1.0] for name in FACE_POINTS]
+USUAL_FACE = np.array([FACE[name.partition(".")[0]] for name in FACE_POINTS]) * _SIDED
+"""Places of `FACE_POINTS` in the head's frame, in lengths of `neck_head`."""
 FLIP = np.diag([1.0, -1.0, -1.0])  # between these and the camera's own
 PRESENT = 0.98  # a face that is less sure is none
 NEAR_STD_RAD, ASIDE_STD_RAD, POINTS_STD_RAD = np.radians([7.0, 25.0, 16.0])
@@ -85,16 +88,10 @@ def _by_points(keypoints: Keypoints) -> Array:
         return turn
     seen = keypoints.hint_m[:, [number[name] for name in FACE_POINTS]]
     known = np.isfinite(seen).all(axis=(1, 2))
-    usual = np.array([_usual(name) for name in FACE_POINTS]) @ FACING.T
+    usual = USUAL_FACE @ FACING.T
     apart = seen[known] - seen[known].mean(axis=1, keepdims=True)
     turn[known] = nearest_rotation(np.swapaxes(apart, -1, -2) @ (usual - usual.mean(axis=0)))
     return turn
-
-
-def _usual(name: str) -> Array:
-    """(3,) place of a point of the face in the head's frame."""
-    stem, _, side = name.partition(".")
-    return np.array(FACE[stem]) * [-1.0 if side == "R" else 1.0, 1.0, 1.0]
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from keymark.core.body.rotations import exponential, logarithm, smallest
 from keymark.core.detect.face import CHIN, HALVES, POINTS, SIDE, TOP, FaceNetwork
 from keymark.core.detect.keypoints import FACE, FACING, Keypoints
 from keymark.core.detect.pose_network import LAYOUT, Crop, Pose
-from keymark.core.terms.head import FLIP, NEAR_STD_RAD, POINTS_STD_RAD, ObservedHeads, _usual
+from keymark.core.terms.head import FLIP, NEAR_STD_RAD, POINTS_STD_RAD, USUAL_FACE, ObservedHeads
 
 MIDDLE, SIZE_PX = np.array([300.0, 200.0]), 80.0
 
@@ -69,7 +69,7 @@ def test_heads_in_the_world() -> None:
     axes = CAMERA.pose()[0] @ FLIP
     axes = smallest(np.tile(axes[:, 2], (4, 1)), CAMERA.rays(pixel)[1]) @ axes
     seen = np.swapaxes(axes, -1, -2) @ world @ FACING.T
-    hint = np.array([_usual(name) for name in FACE]) @ np.swapaxes(seen @ FACING, -1, -2)
+    hint = USUAL_FACE @ np.swapaxes(seen @ FACING, -1, -2)
     face = np.column_stack([pixel, logarithm(seen), [0.99, 0.5, 0.99, 0.99]])
     face[2, 2:5] = logarithm(seen[2] @ exponential(np.array([0.0, np.pi, 0.0])))  # from behind
     face[3] = np.nan
