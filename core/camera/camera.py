@@ -75,6 +75,10 @@ class Camera:
         """Focal length in pixels."""
         return self.lens_mm / self.sensor_width_mm * self.resolution[0]
 
+    def pixels_per_meter(self, depth: ArrayLike) -> Array:
+        """Pixels (...) of a meter across the view at depths (...) [m], of which the least counts as 0.1."""
+        return np.asarray(self.focal_px / np.maximum(depth, 0.1))
+
     @property
     def principal_point(self) -> Array:
         """The principal point (2,) [px]: the image's center moved against the shifts."""

@@ -238,8 +238,7 @@ class _Problem:
 
     @property
     def _scale(self) -> float:
-        depth = float(self.camera.depth(self.place, int(self.frame[0])))
-        return self.camera.focal_px / max(depth, 0.1)
+        return float(self.camera.pixels_per_meter(self.camera.depth(self.place, int(self.frame[0]))))
 
     def _pose(self, x: Array, body: Body) -> Pose:
         return body.pose(self.posture(x, body))

@@ -84,7 +84,7 @@ def find_shifts(
         np.zeros(shape),
         np.full(shape, np.inf),
         lines.direction,
-        model.camera.focal_px / np.maximum(outlines.depth.mean(axis=-1), 0.1),
+        model.camera.pixels_per_meter(outlines.depth.mean(axis=-1)),
     )
     samples = len(model.part_of) // shape[1]
     joined = np.concatenate([model.adjoining[::samples], np.ones((shape[1], 1), dtype=np.bool_)], axis=1)

@@ -191,7 +191,7 @@ def contour_schedule(
     if all_located(body, marked):
         return BY_MARKERS
     depth = np.median(camera.depth(prior.translation, np.arange(prior.batch[0])))
-    scale = camera.focal_px / max(float(depth), 0.1) / factor
+    scale = float(camera.pixels_per_meter(depth)) / factor
     last = np.array([NARROW.reach, NARROW.prior_std, NARROW.farthest])
     # 36: bound of the first look's reach, for the sake of time
     first = np.array(WIDEST_M) * min(scale, 36 / WIDEST_M[0])

@@ -274,4 +274,4 @@ def _pooled(
 def _scale(model: KeypointModel, known: KnownKeypoints) -> Array:
     """(J, N) pixels of a meter at each point."""
     depth = model.camera.depth(model.world(known.pose), known.frame[:, None])
-    return np.asarray(model.camera.focal_px / np.maximum(depth, 0.1))
+    return model.camera.pixels_per_meter(depth)

@@ -43,8 +43,8 @@ def keypoint_trust(
     `points` are those of all F frames, `pose` and `frame` (K,) the posed keyframes'.
     """
     predicted, depth = model.camera.project(model.world(pose), frame[:, None])
-    predicted *= np.maximum(depth, 0.1)[..., None] / model.camera.focal_px  # to meters across the view
-    scale = np.maximum(depth, 0.1) / model.camera.focal_px
+    scale = 1.0 / model.camera.pixels_per_meter(depth)
+    predicted *= scale[..., None]  # to meters across the view
     at_keyframes = _distances(points, predicted, scale, frame)
     usual = np.array([USUAL_PLACES[name].error_std_m for name in model.names])
     # 0.07: about the half-width of a thigh and the width of an arm [m]

@@ -66,7 +66,7 @@ def frame_residuals(
     own = evidence.keypoints.model
     depth = own.camera.depth(own.world(pose), index[:, None])[0]
     point_off = np.linalg.norm(own.pixels(pose, index) - points.pixel, axis=-1)[0]
-    scale = own.camera.focal_px / np.maximum(depth, 0.1)
+    scale = own.camera.pixels_per_meter(depth)
     misplaced = np.flatnonzero(is_misplaced_point(point_off, scale, points.confidence[0]))
     names = tuple(dict.fromkeys(own.names[row] for row in misplaced))
     return FrameResiduals(off, point_off, tuple(map(int, markers)), names)
@@ -138,9 +138,8 @@ def calibrated(
 def expected_in_frame(model: RegionModel, belief: FramePrior, frame: int) -> ExpectedRegions:
     """Each marker's place in the picture by a belief, (1, M), with a generous radius."""
     predicted = model.evaluate(model.body.pose(Posture.stack([belief.posture])), np.array([frame]))
-    depth = max(float(model.camera.depth(belief.posture.translation, frame)), 0.1)
     # 0.9: largest distance of a marker from where it is believed to be
-    radius = 0.9 * model.camera.focal_px / depth
+    radius = 0.9 * model.camera.pixels_per_meter(model.camera.depth(belief.posture.translation, frame))
     return ExpectedRegions(predicted.centroid, np.full(predicted.visible.shape, radius))
 
 

@@ -151,8 +151,7 @@ def _swaps(
     if not keypoints.names:
         return np.zeros(keypoints.seen.shape, dtype=bool)
     frame = np.arange(len(time_s))
-    depth = model.camera.depth(prior.translation, frame)
-    scale = model.camera.focal_px / np.maximum(depth, 0.1)
+    scale = model.camera.pixels_per_meter(model.camera.depth(prior.translation, frame))
     predicted = model.pixels(model.body.pose(prior), frame)
     return find_swaps(keypoints, predicted, scale, keyframes, time_s)
 

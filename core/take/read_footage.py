@@ -56,7 +56,7 @@ def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
     frame, posed = np.arange(frame_count), np.array(sorted(take.keyframe_indices))
     away = np.abs(frame[:, None] - posed).min(axis=1) / take.fps
     reach = EXPECTED_RADIUS_M + RADIUS_GROWTH_M_PER_S * np.maximum(away - KNOWN_S, 0.0)
-    radius = reach * take.camera.focal_px / np.maximum(depth, 0.1)
+    radius = reach * take.camera.pixels_per_meter(depth)
     # To a fraction of a pixel, so that a posture read from Blender once more expects the same.
     center, radius = np.round(64.0 * center) / 64.0, np.round(64.0 * radius) / 64.0
     return ExpectedRegions(center, np.repeat(radius[:, None], len(take.markers), axis=1))

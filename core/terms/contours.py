@@ -110,7 +110,7 @@ class ContourModel:
         slope = self.camera.project_jacobian(world, frame[:, None])
         normal = (slope @ out[..., None])[..., 0]
         normal = normal / np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-9)
-        scale = self.camera.focal_px / np.maximum(depth, 0.1)
+        scale = self.camera.pixels_per_meter(depth)
         return ContourPrediction(world, pixel, depth, normal, slope, half * scale, rate * scale[..., None])
 
     def normal_jacobian(self, predicted: ContourPrediction, normal: Array, pose: Pose) -> Array:

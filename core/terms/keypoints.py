@@ -242,7 +242,7 @@ class KeypointTerm(Term):
     def errors(self, pose: Pose, frame: IndexArray) -> tuple[Array, Array, BoolArray]:
         """Errors (F, N, 2) in standard deviations, these (F, N) [px], and which are compared (F, N)."""
         pixel, depth = self.model.camera.project(self.model.world(pose), frame[:, None])
-        scale = self.model.camera.focal_px / np.maximum(depth, 0.1)
+        scale = self.model.camera.pixels_per_meter(depth)
         sure = np.maximum(self.observed.confidence, LEAST_CONFIDENCE)
         std_px = np.hypot(self.std_m * scale / sure, PIXEL_STD)
         error = (pixel - self.observed.pixel) / std_px[..., None]

@@ -116,7 +116,7 @@ def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tupl
 
 def limb_widths(model: RegionModel, places: Array, frame: IndexArray) -> Array:
     """(F, M) image half-width [px] of each marker's limb on a body at world places (F, 3)."""
-    scale = model.camera.focal_px / np.maximum(model.camera.depth(places, frame), 0.1)
+    scale = model.camera.pixels_per_meter(model.camera.depth(places, frame))
     return np.asarray(scale[:, None] * model.half_widths_m)
 
 

@@ -176,7 +176,7 @@ def _posed_joints(take: Take) -> tuple[dict[int, dict[str, Array]], float]:
         pixel, _ = take.camera.project(points, keyframe.index)
         joints[keyframe.index] = dict(zip(take.body.skeleton.point_names, pixel, strict=True))
         depth = float(np.median(take.camera.depth(points, keyframe.index)))
-        heights.append(take.camera.focal_px * take.body.actor.stature_m / max(depth, 0.1))
+        heights.append(float(take.camera.pixels_per_meter(depth)) * take.body.actor.stature_m)
     return joints, float(np.median(heights)) if heights else 0.0
 
 
