@@ -13,6 +13,7 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from . import rotations
+from .human import HUMAN
 from .kinematics import Body, Pose
 from .posture import Posture, headings_rad, yaw_rotation
 from .skeleton import SIDES, Segment, Skeleton
@@ -32,6 +33,8 @@ HALF_WIDTHS: dict[str, tuple[tuple[float, float], tuple[float, float]]] = {
 HEAD_OVERSHOOT = 1.40  # position of the crown along the head segment, whose end is the head's center
 TRUNK = "trunk"
 TRUNK_PARTS = ("pelvis", "chest")
+MARKER_SEGMENTS = (TRUNK, *(one.name for one in HUMAN.segments if one.name.split(".")[0] in HALF_WIDTHS))
+"""What a marker may be bound to: every segment with a volume, and the trunk as a whole."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,11 +154,6 @@ def body_pieces(body: Body) -> tuple[Piece, ...]:
         for segment in body.skeleton.segments
         if segment.name.split(".")[0] in HALF_WIDTHS
     )
-
-
-def marker_segments(body: Body) -> tuple[str, ...]:
-    """Names a marker may be bound to: every segment with a volume, and the trunk as a whole."""
-    return (TRUNK, *(piece.segment for piece in body_pieces(body)))
 
 
 def marker_parts(segment: str) -> tuple[str, ...]:

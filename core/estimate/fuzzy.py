@@ -84,12 +84,7 @@ def aggregate(near: OutputSet, far: OutputSet) -> tuple[Array, Array]:
 
     The joined membership is a broken line; its moments are exact: on each straight piece Simpson's rule
     integrates membership times value squared, a cubic, without error.
-
-    Raises:
-        ValueError: Both degrees are zero.
     """
-    if near.degree <= 0.0 and far.degree <= 0.0:
-        raise ValueError("neither rule applies: the degrees of near and far are both 0")
     # Values relative to the middle, so that the variance does not cancel when the centers are large.
     middle = 0.5 * (near.center + far.center)
     value = np.sort(np.concatenate([near.corners, far.corners]), axis=0)  # (8, D)

@@ -57,11 +57,9 @@ def update(covariance: Array, measurement_matrix: Array, innovation: Array) -> U
     keeps the covariance symmetric and positive where rounding would not.
 
     `covariance`: M (D, D), before the update; `measurement_matrix`: H (m, D), each row divided by its
-    standard deviation; m may be 0; `innovation`: ν (m,), observed - predicted, likewise divided.
+    standard deviation; `innovation`: ν (m,), observed - predicted, likewise divided.
     """
     M, H = covariance, measurement_matrix
-    if not len(H):
-        return Update(np.zeros(len(M)), M, 0.0)
     MHt = M @ H.T
     factor = cho_factor(H @ MHt + np.eye(len(H)), lower=True)
     K = cho_solve(factor, MHt.T).T
@@ -249,17 +247,8 @@ def filter_clip(
     """Estimate every frame of a clip by the paper's method.
 
     `prior`: F postures; `keyframes`: increasing indices, at least one.
-
-    Raises:
-        InputError: a marker's segment is unknown.
-        ValueError: frames or markers of the arguments disagree, or there is no keyframe.
     """
-    frames, markers = tracks.centroid.shape[:2]
-    if prior.batch != (frames,) or len(marker_segments) != markers or not len(keyframes):
-        raise ValueError(
-            f"the tracks have {frames} frames and {markers} markers, the prior {prior.batch} frames; "
-            f"{len(marker_segments)} segments and {len(keyframes)} keyframes are given"
-        )
+    frames = tracks.frame_count
     line_ends = LineEnds(body, camera, tuple(marker_segments))
     estimator = FuzzyKalmanFilter(line_ends, prior, keyframes, options or FilterOptions())
     observed = observed_characteristics(tracks)

@@ -12,11 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, IndexArray
-from ..body.body_volume import TRUNK, marker_parts, marker_segments, segment_piece
+from ..body.body_volume import TRUNK, marker_parts, segment_piece
 from ..body.kinematics import Body, Pose
 from ..body.skeleton import SIDES
 from ..camera.camera import Camera
-from ..errors import InputError
 from ..markers.moments import axis_angle_difference, characteristics
 from ..markers.region_tracks import RegionTracks
 
@@ -27,24 +26,11 @@ JointPoint = tuple[int, Array]  # a joint and a point in its frame, (3,) [m]
 
 @dataclass(frozen=True, eq=False)
 class LineEnds:
-    """The paper's measurement model of M marked segments.
-
-    Raises:
-        InputError: A segment is unknown.
-    """
+    """The paper's measurement model of M marked segments."""
 
     body: Body
     camera: Camera
     segments: tuple[str, ...]  # the skeleton's, or `trunk` (from hips' to shoulders' midpoint)
-
-    def __post_init__(self) -> None:
-        """Refuse unknown segments."""
-        known = marker_segments(self.body)
-        for name in self.segments:
-            if name not in known:
-                raise InputError(
-                    f"a marker is bound to the unknown segment '{name}'; known are {', '.join(known)}"
-                )
 
     @cached_property
     def width_m(self) -> Array:

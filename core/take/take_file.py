@@ -12,8 +12,7 @@ from typing import Annotated, Any
 
 from .. import FRAME_STARTS, MOST_FRAMES
 from ..body.actor import Actor, Segments
-from ..body.body_volume import TRUNK
-from ..body.human import HUMAN
+from ..body.body_volume import MARKER_SEGMENTS
 from ..body.kinematics import Body
 from ..camera.camera import Camera
 from ..camera.camera_fields import CameraFields
@@ -39,8 +38,6 @@ from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
 from .reference import ReadArmature, reference_of_take
 from .take import Take, check_evidence, with_evidence
 
-MARKER_SEGMENTS = (TRUNK, *(segment.name for segment in HUMAN.segments))
-"""What a marker may be bound to: a segment of the skeleton, or all between hips and shoulders."""
 MOST_MARKERS, LONGEST_MARKER_NAME = 64, 200
 MARKER_NAME = Text(
     LONGEST_MARKER_NAME, f"one line of at most {LONGEST_MARKER_NAME} visible characters", one_line=True

@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from keymark.core.body.body_volume import marker_segments
+from keymark.core.body.body_volume import MARKER_SEGMENTS
 from keymark.core.body.human import HUMAN
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 
 def test_markers_can_be_bound_to_what_core_knows(body) -> None:  # noqa: ANN001
-    assert set(SEGMENTS) == set(marker_segments(body))
+    assert set(SEGMENTS) == set(MARKER_SEGMENTS)
 
 
 def test_opening_a_take_fills_the_scene(opened: bpy.types.Scene, tiny_take: Take) -> None:

@@ -40,11 +40,6 @@ def test_two_sets_apart_mix_by_their_areas() -> None:
     assert variance[0] == pytest.approx((4.0 / 7.0) / 6.0 + (3.0 / 7.0) * 5.0 / 24.0 + between, rel=1e-12)
 
 
-def test_no_rule_at_all_is_an_error() -> None:
-    with pytest.raises(ValueError, match="neither rule"):
-        aggregate(output(0.0, 1.0, 0.0), output(0.0, 1.0, 0.0))
-
-
 degrees = st.floats(0.0, 1.0)
 widths = st.floats(0.05, 3.0)
 centers = st.floats(-5.0, 5.0)

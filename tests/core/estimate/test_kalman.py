@@ -11,7 +11,6 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.skeleton import Joint, JointKind, PrincipalPoint, Segment, Skeleton
 from keymark.core.camera.camera import Camera
-from keymark.core.errors import InputError
 from keymark.core.estimate.fuzzy import Memberships
 from keymark.core.estimate.kalman import (
     FilterOptions,
@@ -236,20 +235,6 @@ def test_a_lost_limb_is_called_back(line_ends: LineEnds, see: See) -> None:
     assert distance[-1] < 2.0 < 30.0 < distance[0]
 
 
-def test_arguments_that_disagree_are_refused(line_ends: LineEnds, see: See) -> None:
-    prior, truth = drifting(line_ends, 4)
-    tracks, body, camera = see(truth), line_ends.body, line_ends.camera
-    for segments, frames, keyframes in (
-        (line_ends.segments, 3, [0]),
-        (line_ends.segments[:4], 4, [0]),
-        (line_ends.segments, 4, []),
-    ):
-        with pytest.raises(ValueError, match="4 frames and 5 markers"):
-            next(filter_clip(body, camera, tracks, segments, prior[:frames], keyframes))
-    with pytest.raises(InputError, match="'wing'"):
-        next(filter_clip(body, camera, tracks, ("wing", *line_ends.segments[1:]), prior, [0]))
-
-
 def test_the_a_priori_depths_are_those_of_the_prior(line_ends: LineEnds) -> None:
     prior, _ = drifting(line_ends, 5)
     estimator = FuzzyKalmanFilter(line_ends, prior, [0, 4])
@@ -278,14 +263,6 @@ def test_the_gain_agrees_with_the_information_form() -> None:
     assert normalized_innovation_squared(M, H, innovation) == pytest.approx(
         result.normalized_innovation_squared
     )
-
-
-def test_nothing_seen_changes_nothing() -> None:
-    M = np.diag([1.0, 2.0])
-    result = update(M, np.zeros((0, 2)), np.zeros(0))
-    np.testing.assert_array_equal(result.step, 0.0)
-    np.testing.assert_array_equal(result.covariance, M)
-    assert result.normalized_innovation_squared == 0.0
 
 
 @pytest.mark.parametrize("M", ILL_CONDITIONED)

@@ -7,7 +7,6 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera
-from keymark.core.errors import InputError
 from keymark.core.estimate.line_ends import (
     ANGLE,
     LOG_RATIO,
@@ -71,11 +70,6 @@ def test_the_jacobian_agrees_with_central_differences_on_the_manifold(
     analytic = observation.jacobian(BODY.pose(posture), 1)
     assert analytic.shape == (5, 4, 34)
     np.testing.assert_allclose(analytic, numeric, rtol=1e-5, atol=1e-4)
-
-
-def test_an_unknown_segment_is_refused_by_name() -> None:
-    with pytest.raises(InputError, match=r"'tail'.*trunk.*shin\.L"):
-        LineEnds(BODY, CAMERA, ("tail",))
 
 
 def test_a_segment_behind_the_camera_predicts_nothing() -> None:
