@@ -139,8 +139,8 @@ MISTAKES: list[tuple[str, Callable[[dict[str, Any]], object], str]] = [
     ("markers mistyped", lambda v: v.update(marker=v.pop("markers")), "markers is missing .*'marker' meant"),
     (
         "unknown segment",
-        lambda v: v["markers"].update(tail={"color_srgb": [1, 2, 3]}),
-        "'tail'.*known are trunk",
+        lambda v: v["markers"].update({"girdle.L": {"color_srgb": [1, 2, 3]}}),
+        "'girdle.L'.*known are trunk",
     ),
     ("segment number", lambda v: v["markers"]["trunk"].update(segment=3), "segment is 3"),
     ("color short", lambda v: v["markers"]["trunk"].update(color_srgb=[1, 2]), r"color_srgb is \[1, 2\]"),
