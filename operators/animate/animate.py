@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import InputError
-from ...core.video.turned import TURNS as TURNS_DEG
 from ..actor.properties import Stature
 from ..character.characters import candidates
 from ..follow.network import draw_network
@@ -27,7 +26,8 @@ if TYPE_CHECKING:
 
 TURNS = [("AUTO", "Upright", "So that people are upright; MP4 and QuickTime alone")]
 TURNS += [
-    (str(turn), f"{turn}°" if turn else "As It Is", f"Clockwise by {turn} degrees") for turn in TURNS_DEG
+    (str(turn), f"{turn}°" if turn else "As It Is", f"Clockwise by {turn} degrees")
+    for turn in (0, 90, 180, 270)
 ]
 CHARACTER_PATTERNS = "*.blend;*.fbx;*.glb;*.gltf;*.vrm"
 CLIP, CHARACTER = "CLIP", "CHARACTER"
