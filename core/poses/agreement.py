@@ -65,10 +65,9 @@ def agreement(
         probability *= own
         said = f"the feet are {abs(off_m) * 100.0:.0f} cm {'above' if off_m > 0.0 else 'below'} the floor"
         (agree if own >= AGREES else against).append("the floor" if own >= AGREES else said)
-    share = float(given.there.mean())
-    probability *= share
-    if share < SEEN_SHARE:
-        against.append(f"nobody is seen in {1.0 - share:.0%} of the frames")
+    probability *= given.share
+    if given.share < SEEN_SHARE:
+        against.append(f"nobody is seen in {1.0 - given.share:.0%} of the frames")
     if given.unseen:
         probability *= 0.5 ** len(given.unseen)  # that a limb which is never seen is about right
         against.append(f"{named_limbs(given.unseen)} never seen")

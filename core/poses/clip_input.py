@@ -19,6 +19,7 @@ from ..prior.keyframe_proposals import evidence_speed, propose_keyframes
 from ..prior.keyframes import Keyframe
 from ..progress import run
 from ..take.seen_take import SeenTake
+from ..take.shots import within_shot
 from ..take.take import Take
 from .match_evidence import MatchEvidence
 
@@ -72,6 +73,7 @@ class PosingInput:
     there: BoolArray  # (F,) frames in which the performer is there; others have no posture
     unseen: tuple[str, ...] = ()  # limbs that are never seen
     feet_seen: tuple[bool, bool] = (True, True)
+    share: float = 1.0  # of the frames of the shot that is animated, in which the performer is there
     first: int = 0  # index of the first of these frames in the clip
 
     @cached_property
@@ -125,6 +127,7 @@ def posing_input(seen: SeenTake, keyframe_count: int | None = None) -> PosingInp
         there,
         seen.unseen,
         seen.feet_seen,
+        float(there[within_shot(seen.reading)].mean()),
     )
 
 
@@ -172,6 +175,7 @@ def stretch_of(whole: PosingInput, first: int, last: int) -> PosingInput:
         ),
         keypoints=whole.keypoints.frames(own),
         there=np.ones(last + 1 - first, dtype=np.bool_),  # a person asks for them
+        share=1.0,
         first=whole.first + first,
     )
 

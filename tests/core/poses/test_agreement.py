@@ -74,7 +74,7 @@ def test_a_performer_of_another_size_is_doubtful() -> None:
 
 
 def test_who_is_away_for_half_of_the_clip_leaves_half_of_it_usable() -> None:
-    given = replace(seen(), there=np.arange(FRAMES) < FRAMES // 2)
+    given = replace(seen(), share=0.5)
     probability, said = agreement(given, truth(), frames(), on_floor())
     assert probability == pytest.approx(0.5 * agreement(seen(), truth(), frames(), on_floor())[0], rel=0.03)
     assert said.endswith("nobody is seen in 50% of the frames")
