@@ -8,9 +8,13 @@ import bpy
 import numpy as np
 from _boot import ROOT
 from _characters import plain_character, plain_map
+from keymark.core.body.kinematics import SegmentMotion
+from keymark.core.progress import run
 from keymark.core.retarget.character import Character, CharacterBone
 from keymark.core.retarget.maps.character_map import CharacterMap
+from keymark.core.take.character_settings import RetargetOptions
 from keymark.operators.bridge.actions import curves_of
+from keymark.operators.bridge.character.retarget import Retargeted, retarget
 from keymark.operators.bridge.keys import keys_changed
 from mathutils import Matrix
 
@@ -167,6 +171,18 @@ def add_rig(file: Path, name: str = "Human", link: bool = False) -> bpy.types.Ob
     bpy.context.view_layer.objects.active = rig
     bpy.context.view_layer.update()
     return rig
+
+
+def retargeted(
+    character: bpy.types.Object,
+    character_map: CharacterMap,
+    source: SegmentMotion,
+    options: RetargetOptions = RetargetOptions(),  # noqa: B008
+) -> Retargeted:
+    """A motion on a character, written and assigned from frame 11 on."""
+    made = run(retarget(character, source, 11.0 + np.arange(len(source.time_s)), character_map, options))
+    made.write(bpy.context.scene, "Steps")
+    return made
 
 
 def move_a_key(action: bpy.types.Action) -> None:

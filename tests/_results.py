@@ -6,7 +6,6 @@ from pathlib import Path
 
 import bpy
 from _faults import tree
-from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.files.digest import content_digest
 from keymark.core.files.paths import real_path
@@ -46,7 +45,7 @@ def made_up_frames(motion: Motion, confidences: Mapping[int, float]) -> tuple[Ma
 def shown(take: bpy.types.PropertyGroup, frame: int) -> Posture:
     """The posture that the actor shows at a frame."""
     bpy.context.scene.frame_set(frame)
-    return read_posture(take.armature, read_body(take.armature, HUMAN)).posture
+    return read_posture(take.armature, read_body(take.armature)).posture
 
 
 # --- The posture that the actor of a scene's active take shows
@@ -55,7 +54,7 @@ def shown(take: bpy.types.PropertyGroup, frame: int) -> Posture:
 def posture_of(scene: bpy.types.Scene) -> Posture:
     """The actor's posture."""
     armature_object = active_take(scene).armature
-    return read_posture(armature_object, read_body(armature_object, HUMAN)).posture
+    return read_posture(armature_object, read_body(armature_object)).posture
 
 
 # --- The content of result folders that is the same in every run

@@ -1,6 +1,7 @@
 """Make the performer's armature: from a body height, from lengths, or measured in the footage."""
 
 import bpy
+from bpy.types import Context, Event
 
 from ...core.body.actor import Actor
 from ..follow.evidence import scene_evidence
@@ -29,13 +30,13 @@ class KEYMARK_OT_build_actor(Stature, BaseOperator, bpy.types.Operator):
         default=True,
     )
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         take = find_take(context.scene)
         if take is not None:
             self.stature = take.stature
         return self.execute(context)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Build or resize the actor, stand it in the footage, and report which."""
         from ...core.body.kinematics import Body
         from ..bridge.pose import write_posture
@@ -51,12 +52,11 @@ class KEYMARK_OT_build_actor(Stature, BaseOperator, bpy.types.Operator):
         stance = performers_stance(context.scene, take, body) if self.place else None
         sentence = "The actor stands at the world's origin"
         if stance is not None:
-            posture, is_seen = stance
-            write_posture(take.armature, posture)
+            write_posture(take.armature, stance[0])
             sentence = "The actor stands where the performer is seen in this frame"
-            if not is_seen:
-                sentence = "The actor stands in the middle of the picture"
-                sentence += "; with markers or keypoints it would stand at the performer"
+            if not stance[1]:
+                sentence = "The actor stands in the middle of the picture; with markers or keypoints it would"
+                sentence += " stand at the performer"
         elif had_actor:
             sentence = f"The actor is {self.stature:.4g} m tall now"
         self.report({"INFO"}, sentence)
@@ -68,7 +68,7 @@ class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
     bl_label = "Apply Lengths"
     requirements = (any_actor, bones_editable, idle)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Bring back an actor that is gone; resize the bones of one that is there."""
         from ...core.body.kinematics import Body
         from ..bridge.actor_lengths import set_lengths
@@ -106,20 +106,20 @@ class KEYMARK_OT_measure_actor(ClickSequence, Stature, BaseOperator, bpy.types.O
 
     _head: tuple[float, float] | None = None
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         self.stature, self._head = active_take(context.scene).stature, None
         return super().invoke(context, event)
 
-    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+    def request(self, context: Context) -> tuple[FootageRequest, str]:
         if self._head is None:
             return FootageRequest("Click on the top of the head"), "Esc: Cancel"
         wanted = FootageRequest("Now click on the floor", "between the feet", head=self._head)
         return wanted, "Backspace: Back   |   Esc: Cancel"
 
-    def go_back(self, context: bpy.types.Context) -> None:
+    def go_back(self, context: Context) -> None:
         self._head = None
 
-    def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
+    def clicked(self, context: Context, pixel: tuple[float, float]) -> set[str]:
         if self._head is None:
             self._head = pixel
             self.ask(context)
@@ -128,7 +128,7 @@ class KEYMARK_OT_measure_actor(ClickSequence, Stature, BaseOperator, bpy.types.O
         self.cancel(context)
         return self.execute(context)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Measure the performer, resize the actor, and stand it there unless it has keyframes."""
         from ..bridge.pose import write_posture
         from ..bridge.single_frame_fit import frame_in_footage, measured_in_frame

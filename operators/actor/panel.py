@@ -1,6 +1,7 @@
 """The panel of the second step: the performer's actor, and what of the performer is followed in the clip."""
 
 import bpy
+from bpy.types import Context, UILayout
 
 from ..bridge.actor_bones import is_actor
 from ..follow.network import draw_network
@@ -8,7 +9,7 @@ from ..follow.panel import draw_evidence, followed
 from ..shell.panel import Popover, StepPanel, draw_sentence
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take
-from .properties import MIDDLE, SIDED, length_property
+from .properties import DESCRIPTIONS, LENGTHS, MIDDLE, SIDED
 
 
 class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
@@ -32,11 +33,18 @@ class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
     def action(cls, state: TakeState) -> tuple[str, str]:
         return ("keymark.build_actor", "Build Actor") if state.take.armature is None else ("", "")
 
-    def draw_step(self, context: bpy.types.Context, body: bpy.types.UILayout, state: TakeState) -> None:
+    def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         take = state.take
         column = body.column()
         if state.has_lost_actor:
-            _draw_lost(column, context, state)
+            box = column.box().column()
+            sentence = "The actor is gone from the scene"
+            if take.keyframe_action is not None and take.motion_action is not None:
+                sentence += "; its keyframes and its motion are kept"
+            elif state.kept_actions:
+                sentence += "; its keyframes are kept"
+            draw_sentence(box, context, sentence, "ERROR")
+            box.operator("keymark.apply_lengths", text="Bring Actor Back", icon="LOOP_BACK")
         elif take.armature is None:
             column.prop(take, "stature")
             row = column.row()
@@ -49,25 +57,12 @@ class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
         draw_evidence(body, context, take)
 
 
-def _draw_lost(layout: bpy.types.UILayout, context: bpy.types.Context, state: TakeState) -> None:
-    """Draw that the actor is gone, what of it is kept, and the button that brings it back."""
-    box, take = layout.box().column(), state.take
-    if take.keyframe_action is not None and take.motion_action is not None:
-        sentence = "The actor is gone from the scene; its keyframes and its motion are kept"
-    elif state.kept_actions:
-        sentence = "The actor is gone from the scene; its keyframes are kept"
-    else:
-        sentence = "The actor is gone from the scene"
-    draw_sentence(box, context, sentence, "ERROR")
-    box.operator("keymark.apply_lengths", text="Bring Actor Back", icon="LOOP_BACK")
-
-
 class KEYMARK_PT_actor_options(Popover, bpy.types.Panel):
     """The actor's height and lengths, and whether a detector's depths count."""
 
     bl_label = "Performer Options"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         take, column = active_take(context.scene), self.column()
         column.operator("keymark.measure_actor", text="Measure in This Frame", icon="ARROW_LEFTRIGHT")
         column.prop(take.follow, "use_depth_hints")
@@ -82,12 +77,12 @@ class KEYMARK_PT_actor_options(Popover, bpy.types.Panel):
         lengths = take.lengths
         column.prop(lengths, "symmetric")
         for name in MIDDLE:
-            column.prop(lengths, length_property(name))
+            column.prop(lengths, LENGTHS[name])
         for part in SIDED:
             group = column.column(align=True)
             if lengths.symmetric:
-                group.prop(lengths, length_property(f"{part}.L"), text=part.replace("_", " ").title())
+                group.prop(lengths, LENGTHS[f"{part}.L"], text=DESCRIPTIONS[part][0])
                 continue
-            group.prop(lengths, length_property(f"{part}.L"))
-            group.prop(lengths, length_property(f"{part}.R"))
+            group.prop(lengths, LENGTHS[f"{part}.L"])
+            group.prop(lengths, LENGTHS[f"{part}.R"])
         column.operator("keymark.apply_lengths", icon="CHECKMARK")

@@ -1,13 +1,14 @@
 """Properties of the actor's lengths, as edited in the panel before they are applied to the armature."""
 
+from typing import Any
+
 import bpy
+from bpy.types import Context, PropertyGroup
 
 from ..shell.fields import Number, Switch
 
 SIDED = ("upper_arm", "forearm", "hand", "thigh", "shin", "foot")
 MIDDLE = ("trunk", "neck_head", "shoulder_width", "hip_width")
-LEAST_CM, MOST_CM = 50.0, 300.0
-"""Heights that somebody has in centimeters, and nobody in meters."""
 DESCRIPTIONS = {
     "upper_arm": ("Upper Arm", "From the shoulder joint to the elbow"),
     "forearm": ("Forearm", "From the elbow to the wrist"),
@@ -20,39 +21,27 @@ DESCRIPTIONS = {
     "shoulder_width": ("Shoulder Width", "Between the shoulder joints"),
     "hip_width": ("Hip Width", "Between the hip joints"),
 }
+LENGTHS = {
+    name: name.replace(".", "_") for name in (*MIDDLE, *(f"{part}.{side}" for part in SIDED for side in "LR"))
+}
+"""Core's lengths, and the names of their properties."""
 
 
-def length_property(name: str) -> str:
-    """Return the name of the property for one of core's lengths, without its dot."""
-    return name.replace(".", "_")
-
-
-def length_names() -> tuple[str, ...]:
-    """Return the names of all of core's lengths."""
-    return (*MIDDLE, *(f"{part}.{side}" for part in SIDED for side in ("L", "R")))
-
-
-def panel_lengths(lengths: bpy.types.PropertyGroup) -> dict[str, float]:
+def panel_lengths(lengths: PropertyGroup) -> dict[str, float]:
     """Return the lengths in the panel [m] by core's names."""
-    return {name: getattr(lengths, length_property(name)) for name in length_names()}
+    return {name: getattr(lengths, own) for name, own in LENGTHS.items()}
 
 
-def _mirror(part: str, side: str) -> "bpy.types.AnyType":
-    other = length_property(f"{part}.{'R' if side == 'L' else 'L'}")
-    own = length_property(f"{part}.{side}")
-
-    def update(lengths: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-        # Equal lengths are not written again, which ends the mutual updates of the two sides.
-        if lengths.symmetric and getattr(lengths, other) != getattr(lengths, own):
-            setattr(lengths, other, getattr(lengths, own))
-
-    return update
-
-
-def _length(name: str) -> "bpy.types.AnyType":
+def _length(name: str) -> Any:
     part, _, side = name.partition(".")
     label, description = DESCRIPTIONS[part]
-    options = {"update": _mirror(part, side)} if side else {}
+    own, other = LENGTHS[name], LENGTHS.get(f"{part}.{'R' if side == 'L' else 'L'}", "")
+
+    def mirror(lengths: PropertyGroup, context: Context) -> None:
+        # Equal lengths are not written again, which ends the mutual updates of the two sides.
+        if other and lengths.symmetric and getattr(lengths, other) != getattr(lengths, own):
+            setattr(lengths, other, getattr(lengths, own))
+
     return Number(
         f"{label} {side}".rstrip(),
         description,
@@ -62,13 +51,13 @@ def _length(name: str) -> "bpy.types.AnyType":
         default=0.3,
         min=0.02,
         max=2.0,
-        **options,
+        update=mirror,
     )
 
 
-def in_meters(owner: bpy.types.PropertyGroup, _context: bpy.types.Context | None = None) -> None:
+def in_meters(owner: PropertyGroup, _context: Context | None = None) -> None:
     """Take a height that was typed in centimeters as meters."""
-    if LEAST_CM <= owner.stature <= MOST_CM:
+    if 50.0 <= owner.stature <= 300.0:  # which nobody has in meters
         owner.stature /= 100.0
 
 
@@ -101,4 +90,4 @@ class KEYMARK_PG_lengths(bpy.types.PropertyGroup):
     symmetric: Switch("Symmetric", "Left and right limbs are equally long", default=True)
 
 
-KEYMARK_PG_lengths.__annotations__.update({length_property(name): _length(name) for name in length_names()})
+KEYMARK_PG_lengths.__annotations__.update({own: _length(name) for name, own in LENGTHS.items()})

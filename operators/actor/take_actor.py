@@ -1,8 +1,10 @@
 """A take's actor in its scene: built, sized, placed, and brought back with its keyframes and its motion."""
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import bpy
+from bpy.types import Context, Object, PropertyGroup, Scene
 from mathutils import Matrix, Vector
 
 from ...core.body.actor import Actor
@@ -17,18 +19,17 @@ from ..shell.notices import give_notices
 from ..shell.results import reading_of
 from ..shell.take_state import TakeState
 from ..shell.takes import footage_of
-from .properties import length_names, length_property, panel_lengths
+from .properties import LENGTHS, SIDED, panel_lengths
 
 if TYPE_CHECKING:
     from ...core.body.posture import Posture
 
 
-def restore_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+def restore_actor(context: Context, take: PropertyGroup) -> None:
     """Bring a take's actor back into the scene, selected.
 
-    One that was deleted in the viewport is still in the file and is linked again. Else an armature of the
-    scene that the take's Actions animate is the actor; else one is built of the lengths in the panel, with
-    the hips at rest where they were, so that all keys put it where they put the other.
+    One that was deleted in the viewport is still in the file. Else an armature that the take's Actions move
+    is the actor; else one is built of the panel's lengths, its hips at rest where keys expect them.
     """
     scene = context.scene
     if take.armature is not None:
@@ -44,7 +45,7 @@ def restore_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> 
     select_alone(context, take.armature)
 
 
-def new_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bpy.types.Object:
+def new_actor(context: Context, take: PropertyGroup, body: Body) -> Object:
     """Build an armature, selected, as a take's actor; what the take has of another animates it."""
     leave_mode(context)
     armature_object = build_armature(context.scene, body, f"{take.name} Actor")
@@ -52,25 +53,25 @@ def new_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: B
         away = Vector(take.rest_hips) - Vector(hips_at_rest(armature_object))
         armature_object.data.transform(Matrix.Translation(away))
     select_alone(context, armature_object)
-    take.armature = armature_object  # its update calls `reattach`
+    take.armature = armature_object  # its update calls `reattach` and `show_lengths`
     return armature_object
 
 
-def reattach(take: bpy.types.PropertyGroup) -> None:
+def reattach(take: PropertyGroup) -> None:
     """Let a take's motion, or else its keyframes, animate an actor that nothing animates yet."""
     actions = [action for action in (take.motion_action, take.keyframe_action) if action is not None]
     if take.armature is not None and actions and action_of(take.armature) is None:
         assign_action(take.armature, actions[0])
 
 
-def leave_mode(context: bpy.types.Context) -> None:
+def leave_mode(context: Context) -> None:
     """Leave the mode of the active object, as Blender does before it adds objects."""
     active = context.view_layer.objects.active
     if active is not None and active.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def select_alone(context: bpy.types.Context, armature_object: bpy.types.Object) -> None:
+def select_alone(context: Context, armature_object: Object) -> None:
     """Select an armature alone, and make it active."""
     leave_mode(context)
     layer = context.view_layer
@@ -80,50 +81,32 @@ def select_alone(context: bpy.types.Context, armature_object: bpy.types.Object) 
     layer.objects.active = armature_object
 
 
-def add_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bpy.types.Object:
-    """Build a take's armature, selected and active, and return the armature object."""
-    armature_object = new_actor(context, take, body)
-    show_lengths(take, body)
-    return armature_object
-
-
-def size_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bool:
-    """Give the take's actor a body's lengths, or the take an actor; return whether it had one.
-
-    Pose and keyframes stay; one that was deleted is brought back with them.
-
-    Raises:
-        InputError: The take's armature cannot be changed.
-    """
+def size_actor(context: Context, take: PropertyGroup, body: Body) -> bool:
+    """Give the take's actor, even a deleted one, a body's lengths, or build one; return if it had one."""
     if TakeState(take).has_lost_actor:
         restore_actor(context, take)
     elif take.armature is None:
-        add_actor(context, take, body)
+        new_actor(context, take, body)
         return False
     set_lengths(take.armature, body)
     show_lengths(take, body)
     return True
 
 
-def show_lengths(take: bpy.types.PropertyGroup, body: Body) -> None:
+def show_lengths(take: PropertyGroup, body: Body) -> None:
     """Set the lengths in the panel to a body's."""
     segments = body.actor.segments_m
     take.rest_hips = hips_at_rest(take.armature)
     give_notices(take, "actor", "lengths")  # of other lengths
     lengths = take.lengths
-    pairs = [(f"{part}.L", f"{part}.R") for part in {name.split(".")[0] for name in segments if "." in name}]
-    lengths.symmetric = all(abs(segments[left] - segments[right]) < 5e-4 for left, right in pairs)
-    for name in length_names():
-        setattr(lengths, length_property(name), segments[name])
+    apart = [abs(segments[f"{part}.L"] - segments[f"{part}.R"]) for part in SIDED]
+    lengths.symmetric = max(apart) < 5e-4
+    for name, own in LENGTHS.items():
+        setattr(lengths, own, segments[name])
 
 
-def performers_stance(
-    scene: bpy.types.Scene, take: bpy.types.PropertyGroup, body: Body
-) -> "tuple[Posture, bool] | None":
-    """Return the posture of a performer who stands in the current frame, and whether evidence located them.
-
-    None without footage and camera, or if the current frame is not one of the footage's.
-    """
+def performers_stance(scene: Scene, take: PropertyGroup, body: Body) -> "tuple[Posture, bool] | None":
+    """Posture of a performer who stands in the footage's current frame, and if evidence located them."""
     from ..bridge.single_frame_fit import frame_in_footage, posed_standing
 
     if take.clip is None or take.camera is None:
@@ -134,16 +117,13 @@ def performers_stance(
         keypoints = frame.keypoints(body)
     except InputError:
         return None
-    if frame.styles:
-        try:
-            regions = frame.regions()
-        except InputError:  # a color that is not found yet must not prevent building the actor
-            regions = None
+    with suppress(InputError):  # a color that is not found yet must not prevent building the actor
+        regions = frame.regions() if frame.styles else None
     seen = regions is not None and bool(regions.visible.any())
     seen |= bool(keypoints.frame(frame.index).seen.any())
     return posed_standing(frame, body, regions, keypoints), seen
 
 
-def has_keyframes(take: bpy.types.PropertyGroup) -> bool:
+def has_keyframes(take: PropertyGroup) -> bool:
     """Whether the animator has keyed the actor already, so that its pose must stay."""
     return take.keyframe_action is not None and len(take.keyframe_action.slots) > 0

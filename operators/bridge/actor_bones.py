@@ -5,47 +5,43 @@ Nothing that starts slowly is imported, so that fields can ask while Blender sta
 
 from collections.abc import Iterable
 
-import bpy
+from bpy.types import Action, Armature, Bone, Object
 
 from ...core.body.human import HUMAN, LIGHT, SHADED, side_of
+from .actions import curves_of
 
-ACTOR_BONES = frozenset(segment.name for segment in HUMAN.segments)
-ROOT = "pelvis"
-MOVED = (ROOT, "girdle.L")  # bones that every motion of an actor moves; other rigs have hardly both
-TURNS = ("rotation_quaternion", "rotation_euler", "rotation_axis_angle")
+ACTOR_BONES = tuple(segment.name for segment in HUMAN.segments)
 
 
-def is_actor(candidate: bpy.types.Object | None) -> bool:
+def is_actor(candidate: Object | None) -> bool:
     """Whether an object is an armature with all the bones of Keymark's skeleton."""
     if candidate is None or candidate.type != "ARMATURE" or candidate.data is None:
         return False
-    return ACTOR_BONES <= set(candidate.data.bones.keys())
+    return not missing_bones(candidate)
 
 
-def missing_bones(armature_object: bpy.types.Object) -> list[str]:
+def missing_bones(armature_object: Object) -> list[str]:
     """Bones of Keymark's skeleton that an armature lacks, in the skeleton's order."""
-    there = armature_object.data.bones
-    return [segment.name for segment in HUMAN.segments if segment.name not in there]
+    return [name for name in ACTOR_BONES if name not in armature_object.data.bones]
 
 
-def hips_at_rest(armature_object: bpy.types.Object) -> tuple[float, float, float]:
+def hips_at_rest(armature_object: Object) -> tuple[float, float, float]:
     """Where an actor's hips are at rest, in its own space; keys move them from there."""
-    return tuple(armature_object.data.bones[ROOT].head_local)
+    return tuple(armature_object.data.bones["pelvis"].head_local)
 
 
-def moves_an_actor(action: bpy.types.Action) -> bool:
+def moves_an_actor(action: Action) -> bool:
     """Whether an Action turns the bones of a Keymark actor."""
-    bags = [bag for layer in action.layers for strip in layer.strips for bag in strip.channelbags]
-    paths = [[f'pose.bones["{bone}"].{turn}' for turn in TURNS] for bone in MOVED]
-    return any(all(any(map(bag.fcurves.find, turns)) for turns in paths) for bag in bags)
+    # Every motion of an actor moves these bones; other rigs have hardly both.
+    moved = [f'pose.bones["{bone}"].rotation_' for bone in ("pelvis", "girdle.L")]
+    paths = [path for path, _ in curves_of(action)]
+    return all(any(path.startswith(begin) for path in paths) for begin in moved)
 
 
-WHITER = 0.55  # share of white in the color of the active bone, which outshines the selected ones
-EARLIER = {"L": "THEME01", "R": "THEME04", "": "THEME09"}
-"""Palettes that actors of earlier versions have: red on the left and blue on the right."""
+EARLIER = {"L": "THEME01", "R": "THEME04", "": "THEME09"}  # palettes that actors of earlier versions have
 
 
-def color_bones(bones: Iterable[bpy.types.Bone]) -> None:
+def color_bones(bones: Iterable[Bone]) -> None:
     """Give bones the colors of their sides: the strong one, lighter where it is selected or active."""
     for bone in bones:
         side = side_of(bone.name)
@@ -53,9 +49,9 @@ def color_bones(bones: Iterable[bpy.types.Bone]) -> None:
         bone.color.palette = "CUSTOM"
         custom = bone.color.custom
         custom.normal, custom.select = normal, light
-        custom.active = [level + WHITER * (1.0 - level) for level in light]
+        custom.active = [0.45 * level + 0.55 for level in light]  # whiter, to outshine the selected ones
 
 
-def recolor_earlier(armature: bpy.types.Armature) -> None:
+def recolor_earlier(armature: Armature) -> None:
     """Give the bones of an actor of an earlier version their colors, except those colored by hand."""
     color_bones(bone for bone in armature.bones if bone.color.palette == EARLIER[side_of(bone.name)])

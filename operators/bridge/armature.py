@@ -19,6 +19,7 @@ from math import pi
 
 import bpy
 import numpy as np
+from bpy.types import EditBone, Object, Scene, bpy_prop_collection
 from mathutils import Vector
 
 from ...core.arrays import Array
@@ -26,10 +27,12 @@ from ...core.body.fingers import finger_bones
 from ...core.body.human import side_of
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
-from ...core.body.skeleton import SIDES, JointKind, Segment, Skeleton
+from ...core.body.skeleton import SIDES, JointKind
+from ...core.errors import InputError
 from ...core.retarget.character import Similarity
 from .actor_bones import color_bones
 
+MODES = ("OBJECT", "POSE")  # from which bones may be edited for a moment
 HINGE_ORDER = "YZX"  # Euler angles of bones that hinges turn; all others have quaternions
 
 
@@ -38,7 +41,7 @@ class BoneModel:
     """A segment as a bone."""
 
     name: str
-    parent: str | None
+    parent: str | None  # None of the root, which carries the body's location in the world
     joint: int  # the joint whose frame the bone moves with
     chain: tuple[int, ...]
     """Elementary joints between the parent's frame and this one's, outermost last; empty for rigid leaves."""
@@ -46,18 +49,19 @@ class BoneModel:
     start: Array  # (3,) the bone's head in its joint's frame [m]
     end: Array  # (3,) the bone's tail in its joint's frame [m]
 
-    @property
-    def is_root(self) -> bool:
-        """Whether the bone carries the body's location in the world."""
-        return self.parent is None
-
 
 def bone_models(body: Body) -> tuple[BoneModel, ...]:
     """The body's bones, parents first."""
     skeleton = body.skeleton
     along = {s.name: body.local(s.end) - body.local(s.start) for s in skeleton.segments}
     along = {name: np.asarray(way / np.linalg.norm(way)) for name, way in along.items()}
-    chains = {segment.name: _chain(skeleton, segment) for segment in skeleton.segments}
+    chains: dict[str, tuple[int, ...]] = {}
+    for segment in skeleton.segments:
+        above = skeleton.segment(segment.parent).joint if segment.parent else -1
+        chain = [segment.joint] if segment.joint != above else []
+        while chain and skeleton.joints[chain[0]].parent != above:
+            chain.insert(0, skeleton.joints[chain[0]].parent)
+        chains[segment.name] = tuple(chain)
     hinges = {  # the axis of the first hinge of those that have any
         name: np.asarray(skeleton.joints[joint].axis)
         for name, chain in chains.items()
@@ -124,28 +128,13 @@ def finger_models(body: Body) -> tuple[BoneModel, ...]:
     return tuple(models)
 
 
-def _chain(skeleton: Skeleton, segment: Segment) -> tuple[int, ...]:
-    above = next((s.joint for s in skeleton.segments if s.name == segment.parent), -1)
-    chain: list[int] = []
-    joint = segment.joint
-    while joint != above:
-        chain.insert(0, joint)
-        joint = skeleton.joints[joint].parent
-    return tuple(chain)
-
-
-COLLECTIONS = {"L": "Left", "R": "Right", "": "Middle"}  # bone collection of each side
-
-
-def build_armature(scene: bpy.types.Scene, body: Body, name: str = "Actor") -> bpy.types.Object:
+def build_armature(scene: Scene, body: Body, name: str = "Actor") -> Object:
     """Add an armature for `body` to a scene and make it the active object of its first view layer."""
     armature = bpy.data.armatures.new(name)
     armature_object = bpy.data.objects.new(name, armature)
     scene.collection.objects.link(armature_object)
     bones = bones_at_rest(body)
-    layer = scene.view_layers[0]
-    layer.objects.active = armature_object
-    with editing(scene, layer, armature_object) as edit_bones:
+    with editing(armature_object) as edit_bones:
         for model in bones.models:
             bone = edit_bones.new(model.name)
             bone.head = bones.rest[model.name][:3, 3]
@@ -154,10 +143,11 @@ def build_armature(scene: bpy.types.Scene, body: Body, name: str = "Actor") -> b
             if model.parent:
                 bone.parent = edit_bones[model.parent]
                 bone.use_connect = (bone.head - bone.parent.tail).length < 1e-6
+    scene.view_layers[0].objects.active = armature_object
     armature.display_type = "OCTAHEDRAL"
     armature_object.show_in_front = True
     armature_object.display_type = "WIRE"  # the footage is to be seen through it
-    for side, title in COLLECTIONS.items():
+    for side, title in {"L": "Left", "R": "Right", "": "Middle"}.items():
         collection = armature.collections.new(title)
         for model in bones.models:
             if side_of(model.name) == side:
@@ -166,42 +156,50 @@ def build_armature(scene: bpy.types.Scene, body: Body, name: str = "Actor") -> b
     for model in bones.models:
         pose_bone = armature_object.pose.bones[model.name]
         pose_bone.rotation_mode = bones.modes[model.name]
-        _set_freedoms(pose_bone, body.skeleton, model)
+        # Locked is what a bone cannot do; its IK is limited to the joints' ranges.
+        pose_bone.lock_scale, pose_bone.lock_location = (True,) * 3, (model.parent is not None,) * 3
+        joints = [body.skeleton.joints[index] for index in model.chain]
+        ranges = [pair for joint in joints for pair in zip(np.eye(3), joint.limits_deg, strict=False)]
+        if bones.modes[model.name] == HINGE_ORDER:
+            free = [any(abs(model.axes[:, axis] @ joint.axis) > 0.5 for joint in joints) for axis in range(3)]
+            pose_bone.lock_rotation = [not axis for axis in free]
+            pose_bone.lock_ik_x, pose_bone.lock_ik_y, pose_bone.lock_ik_z = (not axis for axis in free)
+            ranges = [(joint.axis, joint.limits_deg[0]) for joint in joints]
+        for axis, limits_deg in ranges:
+            along = model.axes.T @ np.asarray(axis)  # the bone's axes are the joint's up to order and sign
+            column = int(np.argmax(np.abs(along)))
+            low, high = np.radians(limits_deg) if along[column] > 0.0 else -np.radians(limits_deg)[::-1]
+            letter = "xyz"[column]
+            setattr(pose_bone, f"use_ik_limit_{letter}", True)
+            # Blender keeps IK limits on their own side of rest: the lower at most 0, the upper at least 0.
+            setattr(pose_bone, f"ik_min_{letter}", max(-pi, min(0.0, low)))
+            setattr(pose_bone, f"ik_max_{letter}", min(pi, max(0.0, high)))
     return armature_object
 
 
 @contextmanager
-def editing(
-    scene: bpy.types.Scene, layer: bpy.types.ViewLayer, active: bpy.types.Object
-) -> "Iterator[bpy.types.bpy_prop_collection[bpy.types.EditBone]]":
-    """The edit bones of a layer's active armature: they exist in edit mode only, which the context enters."""
-    with bpy.context.temp_override(scene=scene, view_layer=layer, object=active, active_object=active):
-        bpy.ops.object.mode_set(mode="EDIT")
-        try:
-            yield active.data.edit_bones
-        finally:
+def editing(armature_object: Object) -> "Iterator[bpy_prop_collection[EditBone]]":
+    """The armature's edit bones, which exist in Edit Mode only; mode and active object are as before then."""
+    scene = armature_object.users_scene[0]
+    layer = bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
+    active = layer.objects.active
+    if active is not None and active.mode not in MODES:
+        raise InputError(f"leave the mode that '{active.name}' is in first (Tab)")
+    mode = "OBJECT" if active is None else active.mode
+    hidden = armature_object.hide_get(view_layer=layer)
+    with bpy.context.temp_override(scene=scene, view_layer=layer):
+        if mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
-
-
-def _set_freedoms(pose_bone: bpy.types.PoseBone, skeleton: Skeleton, model: BoneModel) -> None:
-    """Lock what a bone cannot do, and limit its IK to the joints' ranges."""
-    pose_bone.lock_scale = (True, True, True)
-    pose_bone.lock_location = (not model.is_root,) * 3
-    joints = [skeleton.joints[index] for index in model.chain]
-    hinges = [joint for joint in joints if joint.kind is JointKind.HINGE]
-    ranges = [(joint.axis, joint.limits_deg[0]) for joint in hinges]
-    if hinges:
-        free = [any(abs(model.axes[:, axis] @ joint.axis) > 0.5 for joint in hinges) for axis in range(3)]
-        pose_bone.lock_rotation = [not axis for axis in free]
-        pose_bone.lock_ik_x, pose_bone.lock_ik_y, pose_bone.lock_ik_z = (not axis for axis in free)
-    else:
-        ranges = [pair for joint in joints for pair in zip(np.eye(3), joint.limits_deg, strict=False)]
-    for axis, limits_deg in ranges:
-        along = model.axes.T @ np.asarray(axis)  # the bone's own axes are the joint's up to order and sign
-        column = int(np.argmax(np.abs(along)))
-        low, high = np.radians(limits_deg) if along[column] > 0.0 else -np.radians(limits_deg)[::-1]
-        letter = "xyz"[column]
-        setattr(pose_bone, f"use_ik_limit_{letter}", True)
-        # Blender keeps IK limits on their own side of rest: the lower at most 0, the upper at least 0.
-        setattr(pose_bone, f"ik_min_{letter}", max(-pi, min(0.0, low)))
-        setattr(pose_bone, f"ik_max_{letter}", min(pi, max(0.0, high)))
+        armature_object.hide_set(False, view_layer=layer)
+        layer.objects.active = armature_object
+        with bpy.context.temp_override(object=armature_object, active_object=armature_object):
+            bpy.ops.object.mode_set(mode="EDIT")
+            try:
+                yield armature_object.data.edit_bones
+            finally:
+                bpy.ops.object.mode_set(mode="OBJECT")
+        armature_object.hide_set(hidden, view_layer=layer)
+        layer.objects.active = active
+        if mode != "OBJECT":
+            with bpy.context.temp_override(object=active, active_object=active):
+                bpy.ops.object.mode_set(mode=mode)

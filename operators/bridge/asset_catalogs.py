@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import bpy
+from bpy.types import ID, BlendData
 
 from ...core.errors import InputError
 from ...core.files.json_file import write_atomically
@@ -24,22 +25,17 @@ HEADER = (
     '# Other lines are of the format "UUID:catalog/path/for/assets:simple catalog name"\n\n'
     f"{VERSION}\n\n"
 )
-NAMESPACE = uuid.UUID("5b1f3c0e-6a52-4a43-9b57-3d1f6f4c2a90")
-"""The same path gets the same identifier in every file, so that libraries can be joined."""
+NAMESPACE = uuid.UUID("5b1f3c0e-6a52-4a43-9b57-3d1f6f4c2a90")  # one path has one identifier in all files
 
 
 def catalog_file() -> Path:
-    """The catalog file of the open .blend: at the root of its asset library, or beside it.
-
-    Raises:
-        InputError: The .blend has never been saved.
-    """
-    if not bpy.data.filepath:
-        raise InputError(
-            "the asset catalog is kept beside the .blend, which has not been saved; save it first, or leave "
-            "Catalog empty"
-        )
-    return asset_root(Path(bpy.data.filepath).parent) / NAME
+    """The catalog file of the open .blend, which must be saved: at its asset library's root, or beside it."""
+    if bpy.data.filepath:
+        return asset_root(Path(bpy.data.filepath).parent) / NAME
+    raise InputError(
+        "the asset catalog is kept beside the .blend, which has not been saved; save it first, or leave "
+        "Catalog empty"
+    )
 
 
 def asset_root(folder: Path) -> Path:
@@ -89,11 +85,7 @@ def _clean(catalog: str) -> str:
 
 
 def read_catalogs(file: Path) -> str:
-    """The text of a file of catalogs; empty where there is none.
-
-    Raises:
-        InputError: It cannot be read, or is of another kind.
-    """
+    """The text of a file of catalogs, empty where there is none; InputError where it is of another kind."""
     try:
         content = file.read_text("utf-8")
     except FileNotFoundError:
@@ -101,28 +93,17 @@ def read_catalogs(file: Path) -> str:
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{file}: cannot be read as a file of asset catalogs ({error})") from error
     meant = [line for line in content.splitlines() if line.strip() and not line.startswith("#")]
-    if meant and meant[0].strip() != VERSION:
-        raise InputError(
-            f"{file}: begins with '{meant[0][:40]}'; a file of asset catalogs begins with {VERSION}"
-        )
-    return content
+    if not meant or meant[0].strip() == VERSION:
+        return content
+    raise InputError(f"{file}: begins with '{meant[0][:40]}'; a file of asset catalogs begins with {VERSION}")
 
 
-# --- A .blend of assets, and the file of their catalogs beside it
-
-
-def write_asset_blend(
-    path: Path, root: Path, data: bpy.types.BlendData, assets: Iterable[tuple[bpy.types.ID, str]]
-) -> None:
+def write_asset_blend(path: Path, root: Path, data: BlendData, assets: Iterable[tuple[ID, str]]) -> None:
     """Write assets, with what they need and nothing else, into a .blend, and their catalogs into a file.
 
     Both files appear whole, or neither. `root` is the folder of the asset library that `path` lies in, where
-    its catalogs are kept; `assets`, each with its catalog, may be made while they are asked for.
-
-    Raises:
-        InputError: The file of catalogs is of another kind, nothing can be written there, or it is the open
-            file.
-        ConversionError: A file cannot be written.
+    its catalogs are kept; `assets`, each with its catalog, may be made meanwhile. Raises InputError where the
+    file of catalogs is of another kind or `path` is the open file, ConversionError where none can be written.
     """
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == path.resolve():
         raise InputError(f"{path}: is the open file, of which only assets would be left; name another")
@@ -130,7 +111,7 @@ def write_asset_blend(
     with output_folder(root) as new:
         if (root / NAME).exists():
             shutil.copyfile(root / NAME, new / NAME)
-        made: set[bpy.types.ID] = set()
+        made: set[ID] = set()
         for asset, catalog in assets:
             asset.asset_data.catalog_id = ensure_catalog(new / NAME, catalog)
             made.add(asset)

@@ -7,6 +7,7 @@ from pathlib import Path
 import bpy
 import cv2
 import numpy as np
+from bpy.types import ID, Action, Object, Scene
 
 from ...core.arrays import Image
 from ...core.errors import InputError
@@ -19,7 +20,6 @@ from .asset_catalogs import write_asset_blend
 from .blend_files import check_blend, load_blocks, own_scene
 from .fcurves import posture_columns
 from .keys import MOTION, write_keys
-from .rig import shown_motion
 from .scene_frames import scene_frames
 
 
@@ -34,11 +34,8 @@ class AssetDetails:
     description: str
 
 
-def mark_asset(asset: bpy.types.ID, details: AssetDetails, picture: Image | None) -> None:
-    """Mark a data-block as an asset, or change an asset's details; its tags are replaced.
-
-    `picture` (S, S, 3), blue, green, red, is its preview; None keeps the present one.
-    """
+def mark_asset(asset: ID, details: AssetDetails, picture: Image | None) -> None:
+    """Mark a data-block as an asset, with a preview (S, S, 3), blue, green, red, or the one that it has."""
     asset.asset_mark()
     data = asset.asset_data
     if details.catalog:
@@ -56,16 +53,6 @@ def mark_asset(asset: bpy.types.ID, details: AssetDetails, picture: Image | None
         preview.image_pixels_float.foreach_set(np.ascontiguousarray(rgba).ravel())
 
 
-def action_picture(
-    scene: bpy.types.Scene, armature_object: bpy.types.Object, action: bpy.types.Action
-) -> Image:
-    """A small picture of the motion an Action holds for an actor, (256, 256, 3) blue, green, red."""
-    return thumbnail(shown_motion(scene, armature_object, action, most_frames=25))
-
-
-# --- Motions as assets: Actions and actors, and characters' Actions out of results
-
-
 @dataclass(frozen=True, eq=False)
 class MotionAsset:
     """A motion with its details for the asset browser."""
@@ -75,40 +62,23 @@ class MotionAsset:
     description: str
     tags: tuple[str, ...]
     motion: Motion
-    action: bpy.types.Action | None = None  # of a character, made from the motion
+    action: Action | None = None  # of a character, made from the motion
 
 
-def load_character_action(blend: Path, name: str, curves: str) -> bpy.types.Action:
-    """Append a character's Action out of a character.blend; the character itself stays where it is.
-
-    Raises:
-        InputError: The file cannot be read, lacks the Action, or its curves have another digest than
-            `curves`.
-    """
+def load_character_action(blend: Path, name: str, curves: str) -> Action:
+    """Append a character's Action out of a character.blend; InputError where it is not that of the digest."""
     check_blend(blend, "a character")
     advice = "convert the take again"
     found = load_blocks(blend, "actions", advice, lambda names: [one for one in names if one == name])
     if not found:
         raise InputError(f"{blend}: lacks its Action; {advice}")
-    (action,) = found
-    if action_digest(action) != curves:
-        raise InputError(f"{blend}: is not the file that the conversion wrote; convert the take again")
-    return action
+    if action_digest(found[0]) != curves:
+        raise InputError(f"{blend}: is not the file that the conversion wrote; {advice}")
+    return found[0]
 
 
 MOTIONS, ACTORS, CHARACTERS = "Keymark", "Keymark Actors", "Keymark Characters"
 """Parents of the catalogs of all shoots."""
-
-
-def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
-    """Write a motion into an empty Action: a GENERATED key for each frame and channel."""
-    motion = motion.without_absence()
-    frames = scene_frames(motion.time_s, motion.frame_start, motion.fps)
-    extremities = natural_extremities(motion.body, motion.posture, motion.time_s, hands=motion.hands)
-    columns = posture_columns(bones_at_rest(motion.body), motion.posture, extremities)
-    write_keys(channelbag_for(action), columns, frames, MOTION)
-    action.use_frame_range = True
-    action.frame_start, action.frame_end = float(frames[0]), float(frames[-1])
 
 
 def write_motion_library(path: Path, assets: Iterable[MotionAsset]) -> None:
@@ -121,13 +91,11 @@ def write_motion_library(path: Path, assets: Iterable[MotionAsset]) -> None:
         write_asset_blend(path, path.parent, bpy.data, _motion_assets(scene, assets))
 
 
-def _motion_assets(
-    scene: bpy.types.Scene, assets: Iterable[MotionAsset]
-) -> Iterator[tuple[bpy.types.ID, str]]:
+def _motion_assets(scene: Scene, assets: Iterable[MotionAsset]) -> Iterator[tuple[ID, str]]:
     """The Action and the actor of each motion, with their catalogs; motions of one body share an armature."""
-    actors: dict[tuple[tuple[str, float], ...], bpy.types.Object] = {}
+    actors: dict[tuple[tuple[str, float], ...], Object] = {}
     for asset in assets:
-        picture = thumbnail(asset.motion)
+        picture, motion = thumbnail(asset.motion), asset.motion.without_absence()
         details = AssetDetails("", asset.tags, author="", license="", description=asset.description)
         action = asset.action or bpy.data.actions.new(asset.name)
         mark_asset(action, details, picture)
@@ -135,7 +103,12 @@ def _motion_assets(
             action.name = asset.name
             yield action, f"{CHARACTERS}/{asset.catalog}"
             continue
-        write_motion_curves(action, asset.motion)
+        frames = scene_frames(motion.time_s, motion.frame_start, motion.fps)
+        extremities = natural_extremities(motion.body, motion.posture, motion.time_s, hands=motion.hands)
+        columns = posture_columns(bones_at_rest(motion.body), motion.posture, extremities)
+        write_keys(channelbag_for(action), columns, frames, MOTION)
+        action.use_frame_range = True
+        action.frame_start, action.frame_end = float(frames[0]), float(frames[-1])
         yield action, f"{MOTIONS}/{asset.catalog}"
         body = asset.motion.body
         lengths = tuple(sorted(body.actor.segments_m.items()))

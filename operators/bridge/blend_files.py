@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+from bpy.types import ID, BlendData, Scene
 
 from ...core.errors import ConversionError, InputError
 from ...core.files.paths import real_path, regular_file_size
 
 
 @contextmanager
-def own_scene(name: str) -> Iterator[bpy.types.Scene]:
+def own_scene(name: str) -> Iterator[Scene]:
     """A scene for the time being; it and everything made or loaded meanwhile is removed again."""
     before = {block.as_pointer() for block in bpy.data.user_map()}
     scene = bpy.data.scenes.new(name)
@@ -25,10 +26,10 @@ def own_scene(name: str) -> Iterator[bpy.types.Scene]:
 
 
 @contextmanager
-def showing_scene(scene: bpy.types.Scene) -> Iterator[None]:
+def showing_scene(scene: Scene) -> Iterator[None]:
     """Let a scene be the one that operators work in; then the one before is again."""
     window = bpy.context.window
-    if window is None:  # a Blender without any window: operators find the scene in the context alone
+    if window is None:  # operators find the scene in the context alone
         with bpy.context.temp_override(scene=scene, view_layer=scene.view_layers[0]):
             yield
         return
@@ -40,23 +41,18 @@ def showing_scene(scene: bpy.types.Scene) -> Iterator[None]:
         window.scene = before
 
 
-BLEND_MAGIC = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")
-"""First bytes of .blend files: plain, Zstandard and gzip."""
+BLEND_MAGIC = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")  # plain, Zstandard and gzip
 
 
 def check_blend(path: Path, what: str, largest_bytes: int | None = None) -> None:
-    """Refuse a file that is no .blend, or too large for `what` it should hold.
-
-    Raises:
-        InputError: It is missing, no regular file, no .blend, or too large.
-    """
+    """Raise InputError where a file is missing, no .blend, or too large for `what` it should hold."""
     size = regular_file_size(path, "a .blend")
     try:
         with path.open("rb") as file:
             magic = file.read(8)
     except OSError as error:
         raise InputError(
-            f"{path}: cannot be read ({(error.strerror or error)}); it must be a .blend"
+            f"{path}: cannot be read ({error.strerror or error}); it must be a .blend"
         ) from error
     if largest_bytes is not None and size > largest_bytes:
         raise InputError(
@@ -69,11 +65,7 @@ def check_blend(path: Path, what: str, largest_bytes: int | None = None) -> None
 def load_blocks(
     path: Path, kind: str, advice: str, choose: Callable[[list[str]], list[str]], **options: object
 ) -> list[Any]:
-    """Append datablocks of a kind out of a .blend: those whose names are chosen of all.
-
-    Raises:
-        InputError: Blender cannot read the file; `advice` ends the sentence.
-    """
+    """Append datablocks of a kind out of a .blend, by chosen names; where Blender cannot, with `advice`."""
     try:
         with bpy.data.libraries.load(str(real_path(path)), link=False, **options) as (inside, wanted):
             setattr(wanted, kind, choose(list(getattr(inside, kind))))
@@ -83,17 +75,9 @@ def load_blocks(
 
 
 def write_blend(
-    path: Path,
-    blocks: set[bpy.types.ID],
-    data: bpy.types.BlendData | None = None,
-    named: Path | None = None,
-    **options: object,
+    path: Path, blocks: set[ID], data: BlendData | None = None, named: Path | None = None, **options: object
 ) -> None:
-    """Write datablocks and all that they use into a compressed .blend; sentences call it `named`.
-
-    Raises:
-        ConversionError: Blender could not write the file, or not all of it.
-    """
+    """Write datablocks and all that they use into a .blend, or raise ConversionError on the file `named`."""
     where = named or path
     try:
         (data or bpy.data).libraries.write(str(path), blocks, compress=True, **options)

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 import bmesh
 import bpy
 import numpy as np
+from bpy.types import Material, Mesh, Object
 from numpy.typing import NDArray
 
 from ...core.arrays import Array
@@ -18,43 +19,27 @@ from .actor_lengths import read_bones
 from .character.rigify_human import skinned
 
 SKIN = (178, 164, 150)
+LIMBS = ("upper_arm", "forearm", "hand", "thigh", "shin", "foot")
 SEGMENTS: dict[str, dict[str, float]] = {
-    "hips": {"pelvis": 1.0},
-    "waist": {"pelvis": 1.0},
-    "ribs": {"chest": 1.0},
-    "chest": {"chest": 1.0},
-    "neck": {"chest": 0.5, "head": 0.5},
-    "head": {"head": 1.0},
-} | {
-    f"{part}.{side}": {f"{segment}.{side}": 1.0}
-    for side in SIDES
-    for part, segment in (
-        ("shoulder", "girdle"),
-        ("upper_arm", "upper_arm"),
-        ("forearm", "forearm"),
-        ("hand", "hand"),
-        ("thigh", "thigh"),
-        ("shin", "shin"),
-        ("foot", "foot"),
-        ("toe", "foot"),
-    )
+    **{"hips": {"pelvis": 1.0}, "waist": {"pelvis": 1.0}, "ribs": {"chest": 1.0}, "chest": {"chest": 1.0}},
+    **{"neck": {"chest": 0.5, "head": 0.5}, "head": {"head": 1.0}},
+    **{f"{part}.{side}": {f"{part}.{side}": 1.0} for part in LIMBS for side in SIDES},
+    **{f"shoulder.{side}": {f"girdle.{side}": 1.0} for side in SIDES},
+    **{f"toe.{side}": {f"foot.{side}": 1.0} for side in SIDES},
 }
 """What of each segment every part of the skin is moved by."""
 NECK, CROWN = 0.43, 1.40  # where the skull begins and ends along the head's segment, in its lengths
 BALL = 0.73  # where the toes begin along the foot's segment
-BESIDE_M = 0.2  # faces so near to a marker's edge are cut along it, at a stature of `STATURE_M`
-STATURE_M = 1.75
+BESIDE = 0.2 / 1.75  # faces so near to a marker's edge are cut along it, in statures
 
 
-def build_body_mesh(
-    armature_object: bpy.types.Object, body: Body, markers: Sequence[MarkerStyle]
-) -> bpy.types.Object:
+def build_body_mesh(armature_object: Object, body: Body, markers: Sequence[MarkerStyle]) -> Object:
     """Add a skin that the armature moves smoothly; returns its object.
 
     The skin around a marker's segment, from joint to joint, has the marker's color, without shading from
     lights or view transform beyond what the renderer adds. `trunk` covers pelvis and chest.
     """
-    human, bones = HumanMesh.read(), read_bones(armature_object, body.skeleton)
+    human, bones = HumanMesh.read(), read_bones(armature_object)
     weights = human.on_bones(SEGMENTS)
     standing = human.fitted(body_joints(body))
     pose, axes = body.pose(Posture.rest(body.skeleton)), {model.name: model.axes for model in bones.models}
@@ -68,11 +53,10 @@ def build_body_mesh(
         share[:, None] * placed(name, standing - body.segment_ends(pose, name)[0])
         for name, share in weights.items()
     )
-    mesh = bpy.data.meshes.new(f"{armature_object.name} Body")
-    mesh.from_pydata(np.asarray(vertices).tolist(), [], human.triangles.tolist())
-    mesh.polygons.foreach_set("use_smooth", np.ones(len(human.triangles), bool))
+    name = f"{armature_object.name} Body"
+    body_object = skinned(armature_object, name, np.asarray(vertices), human, weights)
+    mesh = body_object.data
     mesh.materials.append(_material("Body", SKIN))
-    body_object = skinned(armature_object, mesh, weights)
     ends = {}
     for part in {part for marker in markers for part in marker_parts(marker.segment)}:
         piece = segment_piece(body, part)
@@ -105,7 +89,7 @@ def body_joints(body: Body) -> dict[str, Array]:
     neck, along = ends["head"][0], ends["head"][1] - ends["head"][0]
     found = {"neck": neck, "head": neck + NECK * along, "crown": neck + CROWN * along}
     for side in SIDES:
-        for part in ("upper_arm", "forearm", "hand", "thigh", "shin", "foot"):
+        for part in LIMBS:
             found[f"{part}.{side}"] = ends[f"{part}.{side}"][0]
         found[f"hand_end.{side}"] = ends[f"hand.{side}"][1]
         ankle, tip = ends[f"foot.{side}"]
@@ -114,25 +98,16 @@ def body_joints(body: Body) -> dict[str, Array]:
     return found
 
 
-def _cut(
-    mesh: bpy.types.Mesh,
-    worn: Sequence[tuple[str, ...]],
-    ends: Mapping[str, Array],
-    stature_m: float,
-) -> None:
+def _cut(mesh: Mesh, worn: Sequence[tuple[str, ...]], ends: Mapping[str, Array], stature_m: float) -> None:
     """Cut the faces straight where markers end, across their first and their last segment."""
-    near = BESIDE_M * stature_m / STATURE_M
     shape = bmesh.new()
     shape.from_mesh(mesh)
     for parts in worn:
         for part, last in ((parts[0], False), (parts[-1], True)):
             start, end = ends[part]
             place = end if last else start
-            beside = [
-                face
-                for face in shape.faces
-                if np.linalg.norm(np.array(face.calc_center_median()) - place) < near
-            ]
+            away = [np.linalg.norm(np.array(face.calc_center_median()) - place) for face in shape.faces]
+            beside = [face for face, far in zip(shape.faces, away, strict=True) if far < BESIDE * stature_m]
             edges = {edge for face in beside for edge in face.edges}
             vertices = {vertex for face in beside for vertex in face.verts}
             bmesh.ops.bisect_plane(
@@ -142,7 +117,7 @@ def _cut(
     shape.free()
 
 
-def _face_segments(body_object: bpy.types.Object) -> NDArray[np.str_]:
+def _face_segments(body_object: Object) -> NDArray[np.str_]:
     """(Q,) name of the segment that moves each face most."""
     mesh, names = body_object.data, [group.name for group in body_object.vertex_groups]
     weights = np.zeros((len(mesh.vertices), len(names)))
@@ -153,7 +128,7 @@ def _face_segments(body_object: bpy.types.Object) -> NDArray[np.str_]:
     return np.array(names)[strongest]
 
 
-def _material(name: str, color_srgb: tuple[int, int, int]) -> bpy.types.Material:
+def _material(name: str, color_srgb: tuple[int, int, int]) -> Material:
     material = bpy.data.materials.new(name)
     level = np.array(color_srgb) / 255.0
     linear = (*np.where(level <= 0.04045, level / 12.92, ((level + 0.055) / 1.055) ** 2.4).tolist(), 1.0)

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-import bpy
 import numpy as np
+from bpy.types import Object
 from mathutils import Matrix
 
 from ...core.arrays import Array
@@ -18,17 +18,22 @@ from .scene_frames import at_scene_frame
 
 def read_camera(footage: Footage, frames: Array) -> Camera:
     """The camera that took the footage, with its lens, and its poses at scene frames (F,) if it moves."""
-    return replace(read_lens(footage), matrix_world=_poses(footage.scene, footage.camera, frames))
+    lens, camera_object = read_lens(footage), footage.camera
+    if not may_move(camera_object):
+        return replace(lens, matrix_world=_rigid(evaluated(camera_object).matrix_world))
+    poses = np.empty((len(frames), 4, 4))
+    with at_scene_frame(footage.scene) as go_to:
+        for row, frame in enumerate(frames):
+            go_to(float(frame))
+            poses[row] = _rigid(evaluated(camera_object).matrix_world)
+    still = np.abs(poses - poses[0]).max() < 1e-6
+    return replace(lens, matrix_world=poses[0] if still else poses)
 
 
 def read_lens(footage: Footage) -> Camera:
-    """The camera's lens, with the pose of the world's origin; nothing is evaluated.
-
-    Raises:
-        InputError: There is no camera or clip, or the camera is of an unsupported type.
-    """
+    """The camera's lens, at the world's origin; InputError for an unsupported one. Nothing is evaluated."""
     scene, camera_object, clip = footage.scene, footage.camera, footage.clip
-    data = camera_object.data
+    data, tracking = camera_object.data, clip.tracking.camera
     if data.type != "PERSP":
         raise InputError(
             f"camera '{camera_object.name}' is of type {data.type}; footage needs a perspective one"
@@ -38,8 +43,24 @@ def read_lens(footage: Footage) -> Camera:
             f"scene '{scene.name}' has the pixel aspect {scene.render.pixel_aspect_x:g} to "
             f"{scene.render.pixel_aspect_y:g}; only square pixels are supported"
         )
+    model = tracking.distortion_model
+    distortion = (float(tracking.k1), float(tracking.k2), float(tracking.k3))
+    if model != "POLYNOMIAL":
+        distortion = (0.0, 0.0, 0.0)
+        untouched = {
+            "DIVISION": (tracking.division_k1, tracking.division_k2),
+            "NUKE": (tracking.nuke_k1, tracking.nuke_k2),
+            "BROWN": (tracking.brown_k1, tracking.brown_k2, tracking.brown_k3, tracking.brown_k4),
+        }
+        if any(untouched.get(model, ())):
+            raise InputError(f"clip '{clip.name}' has the distortion model {model}; choose Polynomial")
     width, height = clip.size
-    sensor_width, unit = _horizontal_sensor(data, width, height)
+    # What spans the image's width, and the pixels that one unit of shift stands for. Unless a side is chosen,
+    # Blender lays the sensor's *width* along the longer side of the image.
+    sensor_width, unit = data.sensor_width, width
+    if data.sensor_fit == "VERTICAL" or (data.sensor_fit == "AUTO" and height > width):
+        side = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
+        sensor_width, unit = side * width / height, height
     return Camera(
         lens_mm=float(data.lens),
         sensor_width_mm=sensor_width,
@@ -47,49 +68,8 @@ def read_lens(footage: Footage) -> Camera:
         matrix_world=np.eye(4),
         shift_x=data.shift_x * unit / width,
         shift_y=data.shift_y * unit / width,
-        distortion=_distortion(clip),
+        distortion=distortion,
     )
-
-
-def _horizontal_sensor(data: bpy.types.Camera, width: int, height: int) -> tuple[float, int]:
-    """Sensor width [mm] that spans the image's width, and the pixels that one unit of shift stands for."""
-    fit = data.sensor_fit
-    if fit == "AUTO":
-        # Blender lays the sensor's *width* along the longer side of the image.
-        return (data.sensor_width, width) if width >= height else (data.sensor_width * width / height, height)
-    if fit == "VERTICAL":
-        return data.sensor_height * width / height, height
-    return data.sensor_width, width
-
-
-def _distortion(clip: bpy.types.MovieClip) -> tuple[float, float, float]:
-    tracking = clip.tracking.camera
-    coefficients = (float(tracking.k1), float(tracking.k2), float(tracking.k3))
-    if tracking.distortion_model == "POLYNOMIAL":
-        return coefficients
-    untouched = {
-        "DIVISION": (tracking.division_k1, tracking.division_k2),
-        "NUKE": (tracking.nuke_k1, tracking.nuke_k2),
-        "BROWN": (tracking.brown_k1, tracking.brown_k2, tracking.brown_k3, tracking.brown_k4),
-    }
-    if any(untouched.get(tracking.distortion_model, ())):
-        raise InputError(
-            f"clip '{clip.name}' has the distortion model {tracking.distortion_model}; choose Polynomial"
-        )
-    return (0.0, 0.0, 0.0)
-
-
-def _poses(scene: bpy.types.Scene, camera_object: bpy.types.Object, frames: Array) -> Array:
-    """Camera to world: (4, 4) of a still camera, (F, 4, 4) of a moving one."""
-    if not may_move(camera_object):
-        return _rigid(evaluated(camera_object).matrix_world)
-    poses = np.empty((len(frames), 4, 4))
-    with at_scene_frame(scene) as go_to:
-        for row, frame in enumerate(frames):
-            go_to(float(frame))
-            poses[row] = _rigid(evaluated(camera_object).matrix_world)
-    still = np.abs(poses - poses[0]).max() < 1e-6
-    return poses[0] if still else poses
 
 
 def _rigid(matrix: Matrix) -> Array:
@@ -99,10 +79,7 @@ def _rigid(matrix: Matrix) -> Array:
     return rigid
 
 
-# --- Height, tilt and roll of a still camera in a scene
-
-
-def fixed_reason(camera_object: bpy.types.Object | None) -> str | None:
+def fixed_reason(camera_object: Object | None) -> str | None:
     """Why a camera's pose cannot be set; None if it can."""
     if camera_object is None:
         return "Choose the camera that the footage was taken with first"
@@ -113,12 +90,12 @@ def fixed_reason(camera_object: bpy.types.Object | None) -> str | None:
     return None
 
 
-def read_placement(camera_object: bpy.types.Object) -> CameraPlacement:
+def read_placement(camera_object: Object) -> CameraPlacement:
     """The placement of a camera, in the scene's current frame."""
     return CameraPlacement.of(_rigid(_matrix(camera_object)))
 
 
-def write_placement(camera_object: bpy.types.Object, placement: CameraPlacement) -> None:
+def write_placement(camera_object: Object, placement: CameraPlacement) -> None:
     """Give a still camera another placement; its place on the floor, heading and display size stay."""
     pose = Matrix(placement.applied_to(_rigid(_matrix(camera_object))).tolist())
     scale = _matrix(camera_object).to_scale()
@@ -138,7 +115,7 @@ def write_found_camera(footage: Footage, camera: Camera) -> None:
     write_placement(footage.camera, CameraPlacement.of(camera.matrix_world))
 
 
-def _matrix(camera_object: bpy.types.Object) -> Matrix:
+def _matrix(camera_object: Object) -> Matrix:
     """World matrix of a camera: its own channels where nothing else moves it, which are never out of date."""
     own = camera_object.parent is None and not may_move(camera_object)
     shifted = any(camera_object.delta_location) or any(camera_object.delta_rotation_euler)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from bpy.types import Action, Object, Scene
 
 from ...core.errors import ConversionError, InputError
 from ...core.files.json_file import write_atomically
@@ -24,37 +25,27 @@ class ExportFormat:
     name: str
     suffix: str
     description: str  # tooltip: what the format is for
-    write: Callable[[bpy.types.Object, Path], None]
-    """Write the motion of an armature over its scene's frames, with the other selected objects."""
-    operator_type: str = ""
-    """Class name of the exporter that an add-on registers; empty where Blender has it built in."""
+    write: Callable[[Object, Path], None]  # of an armature over its scene's frames, with what is selected
+    operator_type: str = ""  # class name of the exporter that an add-on registers; else empty
     addon: str = ""  # name of the add-on, as in the Preferences
     built_in: bool = False  # whether Keymark writes it itself
     of_actor: bool = False  # whether it holds the performer's own motion alone
 
     def missing(self) -> str | None:
         """Why this Blender cannot write the format; None where it can."""
-        if self.operator_type:
-            if hasattr(bpy.types, self.operator_type):
-                return None
+        if self.operator_type and not hasattr(bpy.types, self.operator_type):
             return f"Enable the add-on {self.addon} in the Preferences"
-        if self.built_in or bpy.app.build_options.usd:
-            return None
-        return f"This Blender is built without {self.name}"
+        there = self.operator_type or self.built_in or bpy.app.build_options.usd
+        return None if there else f"This Blender is built without {self.name}"
 
 
-def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
-    """Export an armature's motion over its scene's frames with Blender's own BVH exporter.
-
-    Raises:
-        ConversionError: The exporter failed.
-    """
+def write_bvh(armature_object: Object, path: Path) -> None:
+    """Export a motion over its scene's frames with Blender's BVH exporter; ConversionError if that fails."""
     scene = armature_object.users_scene[0]
     layer = scene.view_layers[0]
     layer.objects.active = armature_object
-    with bpy.context.temp_override(
-        scene=scene, view_layer=layer, object=armature_object, active_object=armature_object
-    ):
+    shown = {"object": armature_object, "active_object": armature_object}
+    with bpy.context.temp_override(scene=scene, view_layer=layer, **shown):
         try:
             bpy.ops.export_anim.bvh(
                 filepath=str(path),
@@ -67,18 +58,18 @@ def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
             raise ConversionError(f"{path}: Blender's BVH exporter failed ({str(error).strip()})") from error
 
 
-def _written_by(exporter: str, **options: object) -> Callable[[bpy.types.Object, Path], None]:
+def _written_by(exporter: str, **options: object) -> Callable[[Object, Path], None]:
     """The writer by an operator such as `export_scene.fbx`."""
     group, name = exporter.split(".")
 
-    def write(_: bpy.types.Object, path: Path) -> None:
+    def write(_: Object, path: Path) -> None:
         operator = getattr(getattr(bpy.ops, group), name)
         operator(filepath=str(path), check_existing=False, **options)
 
     return write
 
 
-def _write_points(armature_object: bpy.types.Object, path: Path) -> None:
+def _write_points(armature_object: Object, path: Path) -> None:
     """Write the joints of an armature over its scene's frames."""
     from ...core.take import point_files
     from .motions.read_poses import joint_paths
@@ -87,14 +78,14 @@ def _write_points(armature_object: bpy.types.Object, path: Path) -> None:
     write(path, *joint_paths(armature_object))
 
 
-def _write_keymark(armature_object: bpy.types.Object, path: Path) -> None:
+def _write_keymark(armature_object: Object, path: Path) -> None:
     """Write an actor's motion as `motion.json`, which the command line retargets and learns from."""
     from ...core.take.motion import write_motion
     from .rig import present_frames, shown_motion
 
     action = armature_object.animation_data.action
     motion = shown_motion(armature_object.users_scene[0], armature_object, action)
-    present = present_frames(armature_object, action, motion.body, motion.fps)
+    present = present_frames(armature_object, action, motion.fps)
     write_motion(motion.emptied(np.isin(np.round(motion.scene_frames), present)), path)
 
 
@@ -182,64 +173,54 @@ FORMATS = {
 
 
 def export_motion(
-    scene: bpy.types.Scene,
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
+    scene: Scene,
+    armature_object: Object,
+    action: Action,
     frames: tuple[int, int],
     export_format: ExportFormat,
     path: Path,
-    along: Sequence[bpy.types.Object] = (),
+    along: Sequence[Object] = (),
 ) -> None:
     """Write an actor's or a character's motion over `frames`, first to last, into a whole file or none.
 
     The objects `along` are written too, where the format has any; nothing else is. Scene, selection and frame
-    are as before afterwards.
-
-    Raises:
-        InputError: The actor is hidden with its collection.
-        ConversionError: The exporter failed, or the file cannot be written.
+    are as before afterwards. Raises InputError where the actor is hidden with its collection, ConversionError
+    where the exporter failed, or the file cannot be written.
     """
-    with (
-        _only(scene, armature_object, along),
-        _frame_range(scene, frames),
-        showing_action(armature_object, action),
-    ):
 
-        def write(beside: Path) -> None:
-            try:
-                export_format.write(armature_object, beside)
-            except RuntimeError as error:
-                raise ConversionError(f"{path}: the exporter failed ({str(error).strip()})") from error
-            if not beside.exists():
-                raise ConversionError(f"{path}: the exporter wrote nothing")
+    def write(beside: Path) -> None:
+        try:
+            export_format.write(armature_object, beside)
+        except RuntimeError as error:
+            raise ConversionError(f"{path}: the exporter failed ({str(error).strip()})") from error
+        if not beside.exists():
+            raise ConversionError(f"{path}: the exporter wrote nothing")
 
-        write_atomically(path, write)
-
-
-@contextmanager
-def _frame_range(scene: bpy.types.Scene, frames: tuple[int, int]) -> Iterator[None]:
-    """Set the scene's range to `frames`, without a preview range; then restore range and current frame."""
     before = scene.frame_start, scene.frame_end, scene.use_preview_range
-    at = scene.frame_current, scene.frame_subframe
-    scene.frame_start, scene.frame_end, scene.use_preview_range = *frames, False
-    try:
-        yield
-    finally:
-        scene.frame_start, scene.frame_end, scene.use_preview_range = before
-        scene.frame_set(at[0], subframe=at[1])
+    at, subframe = scene.frame_current, scene.frame_subframe
+    with _only(scene, armature_object, along), showing_action(armature_object, action):
+        scene.frame_start, scene.frame_end, scene.use_preview_range = *frames, False
+        try:
+            write_atomically(path, write)
+        finally:
+            scene.frame_start, scene.frame_end, scene.use_preview_range = before
+            scene.frame_set(at, subframe=subframe)
 
 
 @contextmanager
-def _only(
-    scene: bpy.types.Scene, chosen: bpy.types.Object, along: Sequence[bpy.types.Object]
-) -> Iterator[None]:
+def _only(scene: Scene, chosen: Object, along: Sequence[Object]) -> Iterator[None]:
     """Select some objects only and make one active, in object mode; then restore selection and mode."""
+
+    def set_mode(mode: str, now: str) -> None:
+        if mode != now and bpy.ops.object.mode_set.poll():
+            bpy.ops.object.mode_set(mode=mode)
+
     layer = bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
     active, hidden = layer.objects.active, chosen.hide_get(view_layer=layer)
     mode = active.mode if active is not None else "OBJECT"
     selected = [one for one in layer.objects if one.select_get(view_layer=layer)]
     try:
-        _set_mode("OBJECT", mode)
+        set_mode("OBJECT", mode)
         chosen.hide_set(False, view_layer=layer)
         if not chosen.visible_get(view_layer=layer):
             raise InputError(f"'{chosen.name}' is hidden with its collection; show it to export its motion")
@@ -255,9 +236,4 @@ def _only(
             one.select_set(one in selected, view_layer=layer)
         chosen.hide_set(hidden, view_layer=layer)
         layer.objects.active = active
-        _set_mode(mode, "OBJECT")
-
-
-def _set_mode(mode: str, now: str) -> None:
-    if mode != now and bpy.ops.object.mode_set.poll():
-        bpy.ops.object.mode_set(mode=mode)
+        set_mode(mode, "OBJECT")

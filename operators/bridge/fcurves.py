@@ -2,12 +2,12 @@
 
 import bpy
 import numpy as np
+from bpy.types import Action, Object
 
 from ...core.arrays import Array
 from ...core.body.fingers import finger_turns
 from ...core.body.kinematics import RIGID, Extremities
 from ...core.body.posture import Posture
-from ...core.body.skeleton import Skeleton
 from ...core.feet.natural_extremities import natural_extremities
 from ...core.take.motion import Motion
 from .actions import assign_action, channelbag_for
@@ -19,10 +19,7 @@ from .rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
 
 
 def posture_columns(bones: ActorBones, postures: Posture, extremities: Extremities = RIGID) -> list[Column]:
-    """The F-curves by which bones show F postures in the world, grouped by bone, in their rotation modes.
-
-    Hands and feet that are not listed get none. Locations [m] are before the object's scale.
-    """
+    """F-curves by which bones, and listed hands and feet, show F postures in the world, grouped by bone."""
     frames: dict[str, Array] = {}
     axes: dict[str, Array] = {}  # the bones' in the object's space
     columns: list[Column] = []
@@ -52,32 +49,30 @@ def posture_columns(bones: ActorBones, postures: Posture, extremities: Extremiti
     return columns
 
 
-def moved_paths(armature_object: bpy.types.Object, skeleton: Skeleton) -> tuple[str, ...]:
+def moved_paths(armature_object: Object) -> tuple[str, ...]:
     """Data paths of all channels of a posture: rotations in every mode, and the root's location."""
     return tuple(
         bone_path(model.name, channel)
-        for model in skeleton_bones(armature_object, skeleton)
+        for model in skeleton_bones(armature_object)
         if model.chain
-        for channel in (*ALL_PATHS, *(("location",) if model.is_root else ()))
+        for channel in (*ALL_PATHS, *(("location",) if model.parent is None else ()))
     )
 
 
 def write_motion(
-    armature_object: bpy.types.Object,
+    armature_object: Object,
     motion: Motion,
-    action: bpy.types.Action | None = None,
-    keyframe_action: bpy.types.Action | None = None,
+    action: Action | None = None,
+    keyframe_action: Action | None = None,
     frames: Array | None = None,
-) -> bpy.types.Action:
+) -> Action:
     """Write a motion as an Action, a new one by default, and let it animate the armature.
 
-    A group for each bone, a GENERATED key for each frame and channel, in the bone's own rotation mode.
-    Written again into the same Action, it replaces only such keys; the animator's stay and win their frames.
-    Hands, fingers and feet that are posed in `keyframe_action` move as their curves there say, the others as
-    they are seen or naturally.
-    `frames` (F,) are scene frames; the motion's own by default.
+    It has a GENERATED key for each frame and channel, in the bone's own rotation mode. Written again, it
+    replaces only such keys; the animator's stay and win their frames. Hands, fingers and feet that are posed
+    in `keyframe_action` move as their curves there say, the others as they are seen or naturally. `frames`
+    (F,) are scene frames.
     """
-    skeleton = motion.body.skeleton
     posed = posed_extremities(armature_object, keyframe_action)
     frames = (motion.scene_frames if frames is None else frames)[motion.there]
     shown = motion.without_absence()  # no keys where the performer is not there
@@ -86,11 +81,10 @@ def write_motion(
         add_fingers(armature_object, shown.body)
         turns = {**turns, **finger_turns(shown.hands)}
     extremities = Extremities(turns).without(posed)
-    columns = posture_columns(read_bones(armature_object, skeleton), shown.posture, extremities)
-    if action is None:
-        action = bpy.data.actions.new(f"{armature_object.name} Motion")
+    columns = posture_columns(read_bones(armature_object), shown.posture, extremities)
+    action = action or bpy.data.actions.new(f"{armature_object.name} Motion")
     channelbag = channelbag_for(action, armature_object)
-    remove_generated_keys(channelbag, [*moved_paths(armature_object, skeleton), *EXTREMITY_PATHS])
+    remove_generated_keys(channelbag, [*moved_paths(armature_object), *EXTREMITY_PATHS])
     write_keys(channelbag, columns, frames, MOTION)
     if keyframe_action is not None:
         copy_posed_extremities(armature_object, keyframe_action, posed, channelbag)

@@ -3,15 +3,14 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import bpy
 import numpy as np
+from bpy.types import Action, Object
 
 from ...core.arrays import Array, BoolArray, IndexArray
 from ...core.body.fingers import FINGER_BONES
-from ...core.body.human import HUMAN
 from ...core.body.kinematics import RIGID, Body, Extremities
 from ...core.body.posture import Posture
-from ...core.body.skeleton import SIDES, Skeleton
+from ...core.body.skeleton import SIDES
 from ...core.feet.contacts import Contact
 from ...core.feet.ground import floor_notes
 from ...core.feet.natural_extremities import natural_extremities
@@ -44,6 +43,7 @@ REVIEW = " (Keymark)"  # end of the names of properties in which 0.1.0 told how 
 READ, SEEN, PLANTED, BODY_KEYED = 0.1, 0.3, 0.4, 0.8
 """Shares of the job at which the motion is read, its postures are known, the feet are planted, and the keys
 of the body are found where fingers have some."""
+MOVED_BY_FEET = ("pelvis", "thigh", "shin")  # segments that planting feet moves
 NOTICEABLE_M = 0.005  # distance between a pose and its nearest posture above which a note is made [m]
 
 
@@ -51,11 +51,9 @@ NOTICEABLE_M = 0.005  # distance between a pose and its nearest posture above wh
 class FinishOptions:
     """Options of the final motion."""
 
-    tolerance_m: float | None
-    """Largest distance of the body from the motion [m]; None for a key on every frame."""
+    tolerance_m: float | None  # largest distance of the body from the motion; None for a key on every frame
     whole_pose: bool  # whether all bones are keyed on the same frames
-    stray_m: float | None
-    """Distance that a resting foot may stray and still be held [m]; None to leave feet alone."""
+    stray_m: float | None  # how far a resting foot may stray and still be held; None to leave feet alone
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,8 +63,7 @@ class Finished:
     body: Body
     rig: Rig
     frames: Array  # (F,) scene frames
-    motion: Sequence[Array] | Sequence[Spline]
-    """For each bone of the rig its values on every frame, or few keys."""
+    motion: Sequence[Array] | Sequence[Spline]  # by bone of the rig, values on every frame or few keys
     furthest_m: float  # the largest distance from the motion that reducing the keys makes [m]
     contacts: tuple[Contact, ...]  # the planted feet
     notes: tuple[str, ...]
@@ -76,9 +73,7 @@ class Finished:
         """Number of keys before the reduction."""
         return sum(values_of(held).shape[1] for held in self.motion) * len(self.frames)
 
-    def write(
-        self, armature_object: bpy.types.Object, source: bpy.types.Action, action: bpy.types.Action
-    ) -> int:
+    def write(self, armature_object: Object, source: Action, action: Action) -> int:
         """Write the motion as ordinary keys, replacing all that the Action held for the actor.
 
         Other curves of `source`, from which the motion was read (posed hands and feet, properties), are
@@ -92,7 +87,7 @@ class Finished:
             fcurve = ensure_fcurve(channelbag, path, index, self.rig.bones[bone].name)
             write_column(fcurve, self.frames, self.motion[bone], column)
             count += len(fcurve.keyframe_points)
-        written = set(moved_paths(armature_object, self.body.skeleton))
+        written = set(moved_paths(armature_object))
         written |= {bone_path(bone.name, channel) for bone in self.rig.bones for channel in ALL_PATHS}
         for (path, index), fcurve in curves_of(source, armature_object).items():
             if path not in written and REVIEW not in path:
@@ -104,42 +99,42 @@ class Finished:
 
 
 def finish_motion(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    keyframe_action: bpy.types.Action | None,
+    armature_object: Object,
+    action: Action,
+    keyframe_action: Action | None,
     options: FinishOptions,
     frame_s: float,
 ) -> Job[Finished]:
     """Finish the motion that an Action holds, with the animator's changes; nothing in Blender is changed.
 
     Frames of the animator's keyframes stay keys; `frame_s` is the time from one scene frame to the next [s].
-
-    Raises:
-        InputError: The Action has no motion of the actor, or the armature is not an actor's.
+    Raises InputError where the Action has no motion of the actor, or the armature is not an actor's.
     """
-    body = read_body(armature_object, HUMAN)
+    body = read_body(armature_object)
     turned = turned_extremities(armature_object, action, keyframe_action)
     rig = read_rig(armature_object, body, turned)
-    frames = motion_frames(armature_object, action, body)
-    exact = posed_indices(armature_object, keyframe_action, body.skeleton, frames)
+    frames = motion_frames(armature_object, action)
+    exact = _posed_indices(armature_object, keyframe_action, frames)
     reading = read_values(armature_object, action, rig, frames)
     values = yield from within("Reading the motion", reading, 0.0, READ)
     yield Progress(PLANTING, READ)
     time_s = (frames - frames[0]) * frame_s
     shown = rig.pose(values)
     planted = PlantedFeet(shown_postures(rig, shown, body), ())
-    away = absence_note(armature_object, action, body, 1.0 / frame_s)
+    away = absence_note(armature_object, action, 1.0 / frame_s)
     notes: tuple[str, ...] = (away,) if away else ()
     yield Progress(PLANTING, SEEN)
     if options.stray_m is not None:
         before = planted.posture
         planting = plant_feet(body, before, time_s, options.stray_m)
         planted = yield from within(PLANTING, planting, SEEN, PLANTED)
-        notes += _planting_notes(rig, shown, body, before, len(planted.contacts))
+        moved = [row for row, bone in enumerate(rig.bones) if bone.name.partition(".")[0] in MOVED_BY_FEET]
         if planted.contacts:
-            every = np.ones(len(frames), dtype=bool)
-            moved = {bone.name: every for bone in rig.bones if _is_moved_by_feet(bone.name)}
-            values = _replaced(armature_object, rig, values, planted.posture, moved)
+            notes += _reach_notes(rig, shown, moved, body, before)
+            every = {rig.bones[row].name: np.ones(len(frames), dtype=bool) for row in moved}
+            values = _replaced(armature_object, rig, values, planted.posture, every)
+        else:
+            notes += ("No foot rests long enough to be planted; raise Feet May Sway to hold feet that sway",)
     if turned:
         contacts = planted.contacts or None
         natural = natural_extremities(body, planted.posture, time_s, contacts)
@@ -154,64 +149,70 @@ def finish_motion(
     floor_m = None
     if planted.contacts:
         floor_m = ground_of(body, body.pose(planted.posture), time_s, planted.contacts).height_m
-    if options.tolerance_m is None:
-        notes += _floor_notes(rig, rig.pose(values), floor_m, frames)
-        return Finished(body, rig, frames, values, 0.0, planted.contacts, notes)
-    near = None if floor_m is None else _sole_heights_m(rig, rig.pose(values)) - floor_m < NEAR_FLOOR_M
-    allowed = point_tolerances(rig, len(frames), options.tolerance_m, planted.contacts, near)
+
+    furthest_m = 0.0
+    motion: Sequence[Array] | Sequence[Spline] = values
+    if options.tolerance_m is not None:
+        near = None if floor_m is None else _soles_m(rig, values) - floor_m < NEAR_FLOOR_M
+        allowed = point_tolerances(rig, len(frames), options.tolerance_m, planted.contacts, near)
+        splines, furthest_m = yield from _few_keys(rig, frames, values, allowed, exact, options)
+        values = [spline.evaluate(frames, 0, len(frames) - 1) for spline in splines]
+        motion = splines
+    if floor_m is not None:
+        depths = (floor_m - _soles_m(rig, values)).T
+        notes += floor_notes(dict(zip(SIDES, depths, strict=True)), frames)
+    return Finished(body, rig, frames, motion, furthest_m, planted.contacts, notes)
+
+
+def _few_keys(
+    rig: Rig, frames: Array, values: list[Array], allowed: Array, exact: IndexArray, options: FinishOptions
+) -> Job[tuple[tuple[Spline, ...], float]]:
+    """Few keys for each bone of a rig within distances that are allowed (F, points), and the farthest [m]."""
     # Fingers come last and move nothing else: apart from the body they take a fraction of the time.
     fingers = 0 if options.whole_pose else sum(bone.name in FINGER_BONES for bone in rig.bones)
     count = len(rig.bones) - fingers
     points = allowed[:, : rig.point_slices[count - 1].stop]
     reducing = reduce_keys(Rig(rig.bones[:count]), frames, values[:count], points, exact, options.whole_pose)
     reduced = yield from within("Finding the keys", reducing, PLANTED, BODY_KEYED if fingers else 1.0)
-    splines = reduced.splines
-    if fingers:
-        apart = Rig(tuple(replace(bone, parent=max(bone.parent - count, -1)) for bone in rig.bones[count:]))
-        reducing = reduce_keys(apart, frames, values[count:], options.tolerance_m, exact)
-        bent = yield from within("Finding the keys", reducing, BODY_KEYED, 1.0)
-        splines += bent.splines
-    few = rig.pose([spline.evaluate(frames, 0, len(frames) - 1) for spline in splines])
-    notes += _floor_notes(rig, few, floor_m, frames)
-    return Finished(body, rig, frames, splines, reduced.furthest_m, planted.contacts, notes)
+    if not fingers or options.tolerance_m is None:
+        return reduced.splines, reduced.furthest_m
+    apart = Rig(tuple(replace(bone, parent=max(bone.parent - count, -1)) for bone in rig.bones[count:]))
+    reducing = reduce_keys(apart, frames, values[count:], options.tolerance_m, exact)
+    bent = yield from within("Finding the keys", reducing, BODY_KEYED, 1.0)
+    return reduced.splines + bent.splines, reduced.furthest_m
 
 
-def _sole_heights_m(rig: Rig, shown: RigPose) -> Array:
+def _posed_indices(armature_object: Object, keyframe_action: Action | None, frames: Array) -> IndexArray:
+    """Indices of the frames that the animator posed."""
+    if keyframe_action is None:
+        return np.zeros(0, dtype=np.intp)
+    found = unchanged_keyframes(armature_object, keyframe_action, FOUND)
+    posed = np.setdiff1d(keyed_frames(armature_object, keyframe_action), found)
+    return np.flatnonzero(np.isin(frames, np.round(posed)))
+
+
+def _soles_m(rig: Rig, values: list[Array]) -> Array:
     """(F, 2) height of the lower of heel and tip of each foot [m]; infinite without bones of their own."""
+    shown = rig.pose(values)
     heights = [shown.points[:, foot_rows(rig, side)[1:], 2] for side in SIDES]
     return np.stack([own.min(axis=1, initial=np.inf) for own in heights], axis=1)
 
 
-def _floor_notes(rig: Rig, shown: RigPose, floor_m: Array | None, frames: Array) -> tuple[str, ...]:
-    if floor_m is None:
+def _reach_notes(
+    rig: Rig, shown: RigPose, moved: Sequence[int], body: Body, before: Posture
+) -> tuple[str, ...]:
+    """A note on legs of the rig that no posture reaches."""
+    pose, slices = body.pose(before), rig.point_slices
+    ends = {row: body.segment_ends(pose, rig.bones[row].name)[1] for row in moved}
+    off = [np.linalg.norm(shown.points[:, slices[row].start + 1] - end, axis=-1) for row, end in ends.items()]
+    if np.max(off) <= NOTICEABLE_M:
         return ()
-    depth = floor_m - _sole_heights_m(rig, shown)
-    return floor_notes(dict(zip(SIDES, depth.T, strict=True)), frames)
-
-
-def _planting_notes(rig: Rig, shown: RigPose, body: Body, before: Posture, rests: int) -> tuple[str, ...]:
-    """Notes on feet that do not rest, and on legs of the rig that no posture reaches."""
-    if not rests:
-        return ("No foot rests long enough to be planted; raise Feet May Sway to hold feet that sway",)
-    pose = body.pose(before)
-    beyond_m = max(
-        float(np.linalg.norm(shown.points[:, rows.start + 1] - end, axis=-1).max())
-        for bone, rows in zip(rig.bones, rig.point_slices, strict=True)
-        if _is_moved_by_feet(bone.name)
-        for _, end in [body.segment_ends(pose, bone.name)]
-    )
-    if beyond_m <= NOTICEABLE_M:
-        return ()
-    note = f"The motion goes up to {1000.0 * beyond_m:.0f} mm beyond what the skeleton's legs can do; "
+    note = f"The motion goes up to {1000.0 * np.max(off):.0f} mm beyond what the skeleton's legs can do; "
     return (note + "planting the feet uses the nearest posture",)
 
 
-def _is_moved_by_feet(bone: str) -> bool:
-    return bone.partition(".")[0] in ("pelvis", "thigh", "shin")
-
-
 def _replaced(
-    armature_object: bpy.types.Object,
+    armature_object: Object,
     rig: Rig,
     values: Sequence[Array],
     posture: Posture,
@@ -219,7 +220,7 @@ def _replaced(
     extremities: Extremities = RIGID,
 ) -> list[Array]:
     """Values with those of postures in the frames `where` (F,) says of each bone; the rest stays."""
-    columns = posture_columns(read_bones(armature_object, HUMAN), posture, extremities)
+    columns = posture_columns(read_bones(armature_object), posture, extremities)
     stored = {(path, index): column for path, index, _, column in columns}
     changed = [column.copy() for column in values]
     for bone, column, path, index in rig_channels(rig):
@@ -227,18 +228,3 @@ def _replaced(
         if rows is not None:
             changed[bone][rows, column] = stored[path, index][rows]
     return changed
-
-
-def posed_indices(
-    armature_object: bpy.types.Object,
-    keyframe_action: bpy.types.Action | None,
-    skeleton: Skeleton,
-    frames: Array,
-) -> IndexArray:
-    """Indices of the frames that the animator posed."""
-    if keyframe_action is None:
-        return np.zeros(0, dtype=np.intp)
-    keyed = keyed_frames(armature_object, keyframe_action, skeleton)
-    matched = unchanged_keyframes(armature_object, keyframe_action, skeleton, FOUND)
-    posed = np.array(sorted(set(keyed) - set(matched)))
-    return np.flatnonzero(np.isin(frames, np.round(posed)))

@@ -6,22 +6,13 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
+from bpy.types import MovieClip, Object, Scene
 from numpy.typing import ArrayLike
 
 from ...core.camera.camera import Camera, default_camera_pose, guess_lens
 from ...core.camera.camera_fields import CameraPlacement
 from ...core.errors import InputError
-from .footage_camera import (
-    clip_lens,
-    follow_solution,
-    lens_is_untouched,
-    may_move,
-    new_camera,
-    set_background,
-    set_lens,
-    set_still_pose,
-    solver_constraint,
-)
+from . import footage_camera
 
 if TYPE_CHECKING:
     from ...core.video.clip import Clip
@@ -31,33 +22,23 @@ if TYPE_CHECKING:
 class Footage:
     """A clip and its camera in a scene."""
 
-    scene: bpy.types.Scene
-    movie_clip: bpy.types.MovieClip | None
-    camera_object: bpy.types.Object | None
+    scene: Scene
+    movie_clip: MovieClip | None
+    camera_object: Object | None
 
     @property
-    def clip(self) -> bpy.types.MovieClip:
-        """The movie clip.
-
-        Raises:
-            InputError: There is none.
-        """
+    def clip(self) -> MovieClip:
+        """The movie clip; InputError without one."""
         if self.movie_clip is None:
             raise InputError(f"the take in scene '{self.scene.name}' has no footage; load a clip first")
         return self.movie_clip
 
     @property
-    def camera(self) -> bpy.types.Object:
-        """The camera object.
-
-        Raises:
-            InputError: There is none.
-        """
+    def camera(self) -> Object:
+        """The camera object; InputError without one."""
         if self.camera_object is None or self.camera_object.type != "CAMERA":
-            raise InputError(
-                f"the take in scene '{self.scene.name}' has no camera; add one where the footage was "
-                "taken from"
-            )
+            where = f"the take in scene '{self.scene.name}'"
+            raise InputError(f"{where} has no camera; add one where the footage was taken from")
         return self.camera_object
 
     @property
@@ -88,31 +69,24 @@ class Footage:
         return Clip.open(self.path, self.rate, (self.clip.size[0], self.clip.size[1]))
 
 
-def clip_path(clip: bpy.types.MovieClip) -> Path:
-    """The file of a movie clip.
-
-    Raises:
-        InputError: The file is missing.
-    """
+def clip_path(clip: MovieClip) -> Path:
+    """The file of a movie clip; InputError where it is missing."""
     path = Path(bpy.path.abspath(clip.filepath, library=clip.library))
-    if not path.exists():
-        raise InputError(
-            f"{path}: the footage is not there; say where it is now with Find Clip in the step Clip"
-        )
-    return path
+    if path.exists():
+        return path
+    raise InputError(f"{path}: the footage is not there; say where it is now with Find Clip in the step Clip")
 
 
-def clip_rate(clip: bpy.types.MovieClip, fps: float) -> float:
-    """Frames per second of a clip on a scene's time line.
+def clip_rate(clip: MovieClip, fps: float) -> float:
+    """Frames per second of a clip on a scene's time line; `fps` for images, which have no rate.
 
-    For clips of variable rate Blender computes its own mean rate and shows frames by their time, so keys
-    belong at `frame_start + time * clip.fps`. Image sequences have no rate of their own: `fps` is returned.
+    With Blender's own mean of a variable rate, keys belong at `frame_start + time * clip.fps`.
     """
     return float(clip.fps) if clip.source == "MOVIE" and clip.fps > 0.0 else fps
 
 
 def set_scene_range(
-    scene: bpy.types.Scene, size: tuple[int, int], fps: float, frame_start: int, frame_count: int
+    scene: Scene, size: tuple[int, int], fps: float, frame_start: int, frame_count: int
 ) -> None:
     """Set a scene's size [px], frames per second and frame range to those of a clip."""
     render = scene.render
@@ -126,11 +100,7 @@ def set_scene_range(
 
 
 def footage_color(footage: Footage, pixel: ArrayLike, scene_frame: int | None = None) -> tuple[int, int, int]:
-    """Red, green, blue (0 to 255) at a pixel (2,) of the footage, by default in the scene's current frame.
-
-    Raises:
-        InputError: There is no footage, no frame of it at the scene's, or the pixel lies outside.
-    """
+    """Red, green, blue (0 to 255) at a pixel (2,) of the footage in a scene frame, by default the current."""
     from ...core.video.clip import FrameReader
 
     width, height = footage.clip.size
@@ -151,17 +121,13 @@ def footage_color(footage: Footage, pixel: ArrayLike, scene_frame: int | None = 
 class AttachedFootage:
     """The camera that a clip was attached to."""
 
-    camera: bpy.types.Object
+    camera: Object
     guessed_lens_mm: float  # focal length, where it is a guess [mm]; 0 where it is known
-    guessed_placement: CameraPlacement | None = None
-    """Where a new camera was put; None for one that was there already."""
+    guessed_placement: CameraPlacement | None = None  # where a new camera was put; None for another
 
 
 def attach_footage(
-    scene: bpy.types.Scene,
-    clip: bpy.types.MovieClip,
-    camera_object: bpy.types.Object | None = None,
-    guessed_lens_mm: float = 0.0,
+    scene: Scene, clip: MovieClip, camera_object: Object | None = None, guessed_lens_mm: float = 0.0
 ) -> AttachedFootage:
     """Put a clip behind a camera and give the scene the clip's size, rate and range, if its file is there.
 
@@ -177,30 +143,32 @@ def attach_footage(
         size = (scene.render.resolution_x, scene.render.resolution_y)
     scene.active_clip = clip
     is_new = camera_object is None
-    camera_object = camera_object or new_camera(scene)
+    camera_object = camera_object or footage_camera.new_camera(scene)
     scene.camera = camera_object
     if camera_object.library is not None or camera_object.data.library is not None:
         return AttachedFootage(camera_object, 0.0)  # linked data cannot be changed
-    set_background(camera_object.data, clip)
+    footage_camera.set_background(camera_object.data, clip)
     solved = clip.tracking.reconstruction.is_valid
-    stays = is_new or not may_move(camera_object)
-    follows = bool(solved and (stays or solver_constraint(scene, camera_object, clip)))
+    stays = is_new or not footage_camera.may_move(camera_object)
+    follows = bool(solved and (stays or footage_camera.solver_constraint(scene, camera_object, clip)))
     placement = None
     data = camera_object.data
-    lens, guessed = clip_lens(clip), 0.0
+    lens, guessed = footage_camera.clip_lens(clip), 0.0
     if lens is None or not (stays or follows):
         lens = None
-        if is_new or is_guess(data, guessed_lens_mm) or (stays and lens_is_untouched(data)):
+        if is_new or is_guess(data, guessed_lens_mm) or (stays and footage_camera.lens_is_untouched(data)):
             guess = guess_lens(size)
             lens, guessed = Camera(guess.lens_mm, guess.sensor_width_mm, size, np.eye(4)), guess.lens_mm
     if lens is not None:
-        set_lens(data, lens)
+        footage_camera.set_lens(data, lens)
         if is_new:
             stand = default_camera_pose(lens.lens_mm, lens.sensor_width_mm, size)
-            set_still_pose(camera_object, replace(lens, matrix_world=stand))
+            footage_camera.set_still_pose(camera_object, replace(lens, matrix_world=stand))
             placement = CameraPlacement.of(stand)
     if follows:
-        follow_solution(scene, camera_object, clip)
+        following = footage_camera.solver_constraint(scene, camera_object, clip)
+        following = following or camera_object.constraints.new("CAMERA_SOLVER")
+        following.clip, following.use_active_clip = clip, False  # the scene's clip changes with its take
     return AttachedFootage(camera_object, guessed, None if follows else placement)
 
 

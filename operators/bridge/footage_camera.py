@@ -2,23 +2,18 @@
 
 import bpy
 import numpy as np
+from bpy.types import CameraSolverConstraint, MovieClip, Object, Scene
 from mathutils import Matrix
 
 from ...core.camera.camera import Camera
 
 CAMERA_NAME = "Footage Camera"
 
-UNTOUCHED_CLIP_MM = (24.0, 35.0)  # default focal length and sensor width of a clip's tracking camera [mm]
-UNTOUCHED_CAMERA_MM = (50.0, 36.0)  # default focal length and sensor width of a camera object [mm]
-STARTUP_LOCATION_M = (7.3589, -6.9258, 4.9583)  # location of the camera in Blender's startup file [m]
-SYMBOL_M = 0.3
-"""Display size of the camera [m]: the default of 1 m would be in the picture of every other view."""
 
-
-def new_camera(scene: bpy.types.Scene) -> bpy.types.Object:
+def new_camera(scene: Scene) -> Object:
     """Add a camera to a scene."""
     camera_object = bpy.data.objects.new(CAMERA_NAME, bpy.data.cameras.new(CAMERA_NAME))
-    camera_object.data.display_size = SYMBOL_M
+    camera_object.data.display_size = 0.3  # the default of 1 m would be in the picture of every other view
     scene.collection.objects.link(camera_object)
     return camera_object
 
@@ -33,22 +28,18 @@ def set_lens(data: bpy.types.Camera, camera: Camera) -> None:
     data.shift_x, data.shift_y = camera.shift_x, camera.shift_y
 
 
-def clip_lens(clip: bpy.types.MovieClip) -> Camera | None:
-    """The lens that was set in a clip's tracking camera, with the pose of the world's origin.
-
-    None where it has Blender's defaults, or where the clip has no size.
-    """
+def clip_lens(clip: MovieClip) -> Camera | None:
+    """The lens that was set in a clip's tracking camera; None for Blender's defaults, or without a size."""
     tracking, (width, height) = clip.tracking.camera, clip.size
     if not (width and height):
         return None
     x, y = tracking.principal_point_pixels
-    untouched = (
-        _same((tracking.focal_length, tracking.sensor_width), UNTOUCHED_CLIP_MM)
+    if (
+        _same((tracking.focal_length, tracking.sensor_width), (24.0, 35.0))  # a new clip's [mm]
         and _same((x, y), (width / 2, height / 2))
         and not any((tracking.k1, tracking.k2, tracking.k3))
         and not clip.tracking.reconstruction.is_valid
-    )
-    if untouched:
+    ):
         return None
     return Camera(
         lens_mm=float(tracking.focal_length),
@@ -60,7 +51,7 @@ def clip_lens(clip: bpy.types.MovieClip) -> Camera | None:
     )
 
 
-def set_clip_lens(clip: bpy.types.MovieClip, camera: Camera) -> None:
+def set_clip_lens(clip: MovieClip, camera: Camera) -> None:
     """Set the lens of a clip's tracking camera, which Blender's tracking and undistortion use."""
     tracking = clip.tracking.camera
     tracking.units = "MILLIMETERS"
@@ -74,17 +65,19 @@ def set_clip_lens(clip: bpy.types.MovieClip, camera: Camera) -> None:
 
 def lens_is_untouched(data: bpy.types.Camera) -> bool:
     """Whether a camera has Blender's default lens."""
-    return _same((data.lens, data.sensor_width), UNTOUCHED_CAMERA_MM) and not (data.shift_x or data.shift_y)
+    return _same((data.lens, data.sensor_width), (50.0, 36.0)) and not (data.shift_x or data.shift_y)
 
 
-def is_startup_camera(camera_object: bpy.types.Object) -> bool:
+def is_startup_camera(camera_object: Object) -> bool:
     """Whether a camera is that of Blender's startup file, unchanged, and so not one of footage."""
     animated = camera_object.animation_data is not None or len(camera_object.constraints)
     location = camera_object.matrix_basis.translation
-    return lens_is_untouched(camera_object.data) and not animated and _same(location, STARTUP_LOCATION_M)
+    return (
+        lens_is_untouched(camera_object.data) and not animated and _same(location, (7.3589, -6.9258, 4.9583))
+    )
 
 
-def may_move(blender_object: bpy.types.Object | None) -> bool:
+def may_move(blender_object: Object | None) -> bool:
     """Whether an object or one of its parents is animated, driven or constrained."""
     while blender_object is not None:
         data = blender_object.animation_data
@@ -95,9 +88,7 @@ def may_move(blender_object: bpy.types.Object | None) -> bool:
     return False
 
 
-def solver_constraint(
-    scene: bpy.types.Scene, camera_object: bpy.types.Object, clip: bpy.types.MovieClip
-) -> bpy.types.CameraSolverConstraint | None:
+def solver_constraint(scene: Scene, camera_object: Object, clip: MovieClip) -> CameraSolverConstraint | None:
     """The constraint by which a camera follows the clip's solution."""
     for constraint in camera_object.constraints:
         if constraint.type == "CAMERA_SOLVER" and constraint.enabled:
@@ -107,24 +98,13 @@ def solver_constraint(
     return None
 
 
-def solved_camera(scene: bpy.types.Scene, clip: bpy.types.MovieClip) -> bpy.types.Object | None:
+def solved_camera(scene: Scene, clip: MovieClip) -> Object | None:
     """The camera of a scene that follows the clip's solution, the active camera first."""
     cameras = [scene.camera, *(each for each in scene.objects if each.type == "CAMERA")]
     return next((each for each in cameras if each and solver_constraint(scene, each, clip)), None)
 
 
-def follow_solution(
-    scene: bpy.types.Scene, camera_object: bpy.types.Object, clip: bpy.types.MovieClip
-) -> None:
-    """Let a camera follow the clip's solution, whichever clip is the scene's active one."""
-    constraint = solver_constraint(scene, camera_object, clip)
-    if constraint is None:
-        constraint = camera_object.constraints.new("CAMERA_SOLVER")
-    constraint.clip = clip
-    constraint.use_active_clip = False  # the scene's clip changes with its take
-
-
-def shows_behind(camera_object: bpy.types.Object | None, clip: bpy.types.MovieClip) -> bool:
+def shows_behind(camera_object: Object | None, clip: MovieClip) -> bool:
     """Whether a camera has the clip as its background."""
     if camera_object is None or camera_object.type != "CAMERA":
         return False
@@ -132,7 +112,7 @@ def shows_behind(camera_object: bpy.types.Object | None, clip: bpy.types.MovieCl
     return any(image.source == "MOVIE_CLIP" and image.clip == clip for image in images)
 
 
-def set_background(camera_data: bpy.types.Camera, clip: bpy.types.MovieClip) -> None:
+def set_background(camera_data: bpy.types.Camera, clip: MovieClip) -> None:
     """Make a clip the camera's background, filling the frame."""
     images = camera_data.background_images
     background = next((image for image in images if image.source == "MOVIE_CLIP"), None) or images.new()
@@ -146,7 +126,7 @@ def set_background(camera_data: bpy.types.Camera, clip: bpy.types.MovieClip) -> 
     camera_data.show_background_images = True
 
 
-def set_still_pose(camera_object: bpy.types.Object, camera: Camera) -> None:
+def set_still_pose(camera_object: Object, camera: Camera) -> None:
     """Give a camera the pose of core's still camera."""
     camera_object.animation_data_clear()
     camera_object.matrix_world = Matrix(camera.matrix_world.tolist())

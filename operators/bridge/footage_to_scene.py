@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import bpy
+from bpy.types import MovieClip, Object, Scene
 
 from ...core.arrays import Array
 from ...core.body.rotations import continuous_quaternions, to_quaternions
@@ -17,12 +18,8 @@ from .keys import MOTION, write_keys
 from .scene_frames import scene_frames
 
 
-def load_footage(path: Path) -> bpy.types.MovieClip:
-    """Load a clip: a video, a folder of images, or a pattern of numbered images.
-
-    Raises:
-        InputError: Blender cannot read it.
-    """
+def load_footage(path: Path) -> MovieClip:
+    """Load a video, a folder of images, or a pattern of numbered images; InputError if Blender cannot."""
     file = clip_file(path)
     before = set(bpy.data.movieclips)
     try:
@@ -32,9 +29,8 @@ def load_footage(path: Path) -> bpy.types.MovieClip:
     if not clip.frame_duration:  # Blender gives what it cannot decode a size, but no frames
         if clip not in before:
             bpy.data.movieclips.remove(clip)
-        raise InputError(
-            f"{file}: Blender cannot decode this clip; convert it to H.264 or to numbered images"
-        )
+        advice = "convert it to H.264 or to numbered images"
+        raise InputError(f"{file}: Blender cannot decode this clip; {advice}")
     return clip
 
 
@@ -56,13 +52,12 @@ def stored_path(file: Path) -> str:
 
 
 def show_footage(
-    scene: bpy.types.Scene, camera: Camera, clip_path: Path, fps: float, frame_start: int, time_s: Array
-) -> tuple[bpy.types.Object, Array]:
+    scene: Scene, camera: Camera, clip_path: Path, fps: float, frame_start: int, time_s: Array
+) -> tuple[Object, Array]:
     """Show a clip behind a new camera, which is returned, with the scene frames (F,) of the clip's.
 
-    The scene takes the clip's size, rate and range, so that scene frame `frame_start` shows its first frame;
-    Blender's own reading of the clip's rate counts where it has one (see `clip_rate`). A moving camera has
-    its poses at the frames, whose times are (F,) [s].
+    The scene takes the clip's size, rate (see `clip_rate`) and range, so that scene frame `frame_start` shows
+    its first frame. A moving camera has its poses at the frames, whose times are (F,) [s].
     """
     clip = load_footage(clip_path)
     rate = clip_rate(clip, fps)
@@ -78,7 +73,7 @@ def show_footage(
     return camera_object, frames
 
 
-def set_pose(camera_object: bpy.types.Object, camera: Camera, frames: Array) -> None:
+def set_pose(camera_object: Object, camera: Camera, frames: Array) -> None:
     """Give a camera the pose of core's; a moving one has its poses at scene frames (F,)."""
     if not camera.is_moving:
         set_still_pose(camera_object, camera)

@@ -4,37 +4,25 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
-import bpy
 import numpy as np
+from bpy.types import Action, Object, PropertyGroup, Scene
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
-from ...core.body.skeleton import Skeleton
 from ...core.prior.keyframes import Keyframe, Matched
+from . import keys
 from .actions import channelbag_for, curves_of, existing_channelbag
 from .actor_lengths import read_bones
 from .armature import BoneModel
 from .fcurves import moved_paths, posture_columns
-from .keys import (
-    FOUND,
-    PICTURED,
-    POSED,
-    Column,
-    KeyKind,
-    animator_frames,
-    give_to_animator,
-    remove_keys,
-    unchanged_frames,
-    write_keys,
-)
 from .pose import read_posture
 from .rotation_modes import bone_path, rotation_path
 from .scene_frames import at_scene_frame, showing_action
 
 
-def candidate_posture(candidate: bpy.types.PropertyGroup) -> Posture:
+def candidate_posture(candidate: PropertyGroup) -> Posture:
     """The posture of a found keyframe's candidate, in the world."""
     return Posture.from_vector(HUMAN, np.array([*candidate.place, *candidate.turns]))
 
@@ -45,86 +33,65 @@ def candidate_posture(candidate: bpy.types.PropertyGroup) -> Posture:
 DIGITS = 3  # decimals to which frames are told apart, as in `keyed_frames`
 
 
-def unchanged_keyframes(
-    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, kind: KeyKind
-) -> tuple[float, ...]:
-    """Scene frames at which all bones with degrees of freedom have keys of a kind, unchanged, in order.
-
-    FOUND: what was found and left as it is; PICTURED: what a person put right in the picture alone.
-    """
+def unchanged_keyframes(armature_object: Object, action: Action, kind: keys.KeyKind) -> tuple[float, ...]:
+    """Scene frames at which all bones with degrees of freedom have unchanged FOUND or PICTURED keys."""
     curves = curves_of(action, armature_object)
     found: set[float] | None = None
-    for model, path, index, _ in _channels(armature_object, skeleton):
+    for model, path, index, _ in _channels(armature_object):
         if model.chain and found != set():
             curve = curves.get((path, index))
-            frames = () if curve is None else np.round(unchanged_frames(curve, kind), DIGITS).tolist()
+            frames = () if curve is None else np.round(keys.unchanged_frames(curve, kind), DIGITS).tolist()
             found = set(frames) if found is None else found & set(frames)
     return tuple(sorted(found or ()))
 
 
 def write_matched(
-    armature_object: bpy.types.Object, action: bpy.types.Action, frames: Array, postures: Sequence[Posture]
+    armature_object: Object, action: Action, frames: Array, postures: Sequence[Posture]
 ) -> None:
-    """Key K postures at scene frames (K,) as found keyframes; other keys there are replaced."""
-    channelbag = channelbag_for(action, armature_object)
-    columns = posture_columns(read_bones(armature_object, HUMAN), Posture.stack(list(postures)))
-    turned = _turned_to_neighbors(curves_of(action, armature_object), columns, frames)
-    remove_keys(channelbag, moved_paths(armature_object, HUMAN), frames)
-    write_keys(channelbag, turned, frames, FOUND)
+    """Key K postures at scene frames (K,) as found keyframes; other keys there are replaced.
 
-
-def remove_keyframes(
-    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, frames: Collection[float]
-) -> None:
-    """Remove keyframes; keys of hands and feet stay."""
-    channelbag = existing_channelbag(action, armature_object)
-    if channelbag is not None:
-        remove_keys(channelbag, moved_paths(armature_object, skeleton), np.array(sorted(frames)))
-
-
-def take_over(
-    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, frames: Collection[float]
-) -> None:
-    """Turn found keyframes into the animator's own, put right in the picture alone."""
-    channelbag = existing_channelbag(action, armature_object)
-    if channelbag is not None:
-        give_to_animator(channelbag, moved_paths(armature_object, skeleton), np.array(sorted(frames)))
-
-
-def _channels(
-    armature_object: bpy.types.Object, skeleton: Skeleton
-) -> Iterator[tuple[BoneModel, str, int, float]]:
-    """Bone, data path, array index and value of all channels, in the bones' present rotation modes."""
-    for model in read_bones(armature_object, skeleton).models:
-        bone = armature_object.pose.bones[model.name]
-        for channel in (rotation_path(bone.rotation_mode), *(("location",) if model.is_root else ())):
-            for index, value in enumerate(getattr(bone, channel)):
-                yield model, bone_path(model.name, channel), index, value
-
-
-def _turned_to_neighbors(
-    curves: Mapping[tuple[str, int], bpy.types.FCurve], columns: Sequence[Column], frames: Array
-) -> list[Column]:
-    """Columns with quaternions of the sign by which bones do not turn the long way round.
-
-    A quaternion and its negative are the same posture, but Blender interpolates number by number.
+    A quaternion and its negative are the same posture, but Blender interpolates number by number: keyed is
+    the one by which bones do not turn the long way round.
     """
+    channelbag, curves = channelbag_for(action, armature_object), curves_of(action, armature_object)
+    columns = posture_columns(read_bones(armature_object), Posture.stack(list(postures)))
     signs: dict[str, Array] = {}  # (K,) by data path
     for path in {path for path, *_ in columns if path.endswith("rotation_quaternion")}:
         values = np.stack([column for other, _, _, column in columns if other == path])  # (4, K)
-        there = [curve for index in range(len(values)) if (curve := curves.get((path, index))) is not None]
-        if len(there) == len(values) and all(len(curve.keyframe_points) for curve in there):
+        there = [curve for index in range(4) if (curve := curves.get((path, index))) is not None]
+        if len(there) == 4 and all(len(curve.keyframe_points) for curve in there):
             shown = np.array([[curve.evaluate(float(frame)) for frame in frames] for curve in there])
             signs[path] = np.where(np.sum(values * shown, axis=0) < 0.0, -1.0, 1.0)
-    return [(path, index, bone, column * signs.get(path, 1.0)) for path, index, bone, column in columns]
+    turned = [(path, index, bone, column * signs.get(path, 1.0)) for path, index, bone, column in columns]
+    keys.remove_keys(channelbag, moved_paths(armature_object), frames)
+    keys.write_keys(channelbag, turned, frames, keys.FOUND)
+
+
+def remove_keyframes(armature_object: Object, action: Action, frames: Collection[float]) -> None:
+    """Remove keyframes; keys of hands and feet stay."""
+    if (channelbag := existing_channelbag(action, armature_object)) is not None:
+        keys.remove_keys(channelbag, moved_paths(armature_object), np.array(sorted(frames)))
+
+
+def take_over(armature_object: Object, action: Action, frames: Collection[float]) -> None:
+    """Turn found keyframes into the animator's own, put right in the picture alone."""
+    if (channelbag := existing_channelbag(action, armature_object)) is not None:
+        keys.give_to_animator(channelbag, moved_paths(armature_object), np.array(sorted(frames)))
+
+
+def _channels(armature_object: Object) -> Iterator[tuple[BoneModel, str, int, float]]:
+    """Bone, data path, array index and value of all channels, in the bones' present rotation modes."""
+    for model in read_bones(armature_object).models:
+        bone = armature_object.pose.bones[model.name]
+        for channel in (rotation_path(bone.rotation_mode), *(("location",) if model.parent is None else ())):
+            for index, value in enumerate(getattr(bone, channel)):
+                yield model, bone_path(model.name, channel), index, value
 
 
 # --- Keyframes of the animator
 
 
-Matches = Mapping[float, Matched]
-"""What found keyframes resemble, by scene frame as `unchanged_keyframes` gives them."""
-
+Matches = Mapping[float, Matched]  # what found keyframes resemble, by frame of `unchanged_keyframes`
 NOT_MATCHED: Matches = MappingProxyType({})
 NEAREST = 0.5  # a key farther than this [frames] from every frame of the clip belongs to none
 NOTICEABLE_M = 0.005  # distance between a pose and its nearest posture above which a note is made [m]
@@ -138,38 +105,32 @@ class PosedKeyframes:
     notes: tuple[str, ...]  # notes for the animator, one sentence each
 
 
-def keyed_frames(
-    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton
-) -> tuple[float, ...]:
-    """Scene frames at which any bone that has degrees of freedom is keyed, in order.
-
-    Keys that a motion left do not count; those of matched keyframes do.
-    """
-    wanted, curves = set(moved_paths(armature_object, skeleton)), curves_of(action, armature_object)
-    frames = [animator_frames(curve) for (path, _), curve in curves.items() if path in wanted]
+def keyed_frames(armature_object: Object, action: Action) -> tuple[float, ...]:
+    """Scene frames at which a bone with degrees of freedom is keyed, posed or found, in order."""
+    wanted, curves = set(moved_paths(armature_object)), curves_of(action, armature_object)
+    frames = [keys.animator_frames(curve) for (path, _), curve in curves.items() if path in wanted]
     return tuple(np.unique(np.round(np.concatenate([np.zeros(0), *frames]), DIGITS)).tolist())
 
 
 def read_keyframes(
-    scene: bpy.types.Scene,
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
+    scene: Scene,
+    armature_object: Object,
+    action: Action,
     body: Body,
     clip_frames: Array,
     matches: Matches = NOT_MATCHED,
 ) -> PosedKeyframes:
-    """The postures that the armature shows at the frames keyed in `action`.
+    """The postures that the armature shows at the frames keyed in `action`; nothing in the scene changes.
 
-    Each is the whole pose as Blender evaluates it there, so a bone without a key of its own on that frame
-    counts as the animator sees it. Keys beside `clip_frames` (F,), the scene frames of the clip's, are left
-    out with a note. Scene, Action and pose are as before afterwards.
+    Each is the whole pose as Blender evaluates it there, also of bones without a key on that frame. Keys
+    beside `clip_frames` (F,), the scene frames of the clip's, are left out with a note.
     """
     notes: list[str] = []
     found: dict[int, tuple[float, Keyframe]] = {}
     outside: list[str] = []
-    pictured = set(unchanged_keyframes(armature_object, action, body.skeleton, PICTURED))
+    pictured = set(unchanged_keyframes(armature_object, action, keys.PICTURED))
     with showing_action(armature_object, action), at_scene_frame(scene) as go_to:
-        for frame in keyed_frames(armature_object, action, body.skeleton):
+        for frame in keyed_frames(armature_object, action):
             index = int(np.argmin(np.abs(clip_frames - frame)))
             apart = abs(float(clip_frames[index]) - frame)
             if apart > NEAREST + 1e-6:
@@ -183,52 +144,35 @@ def read_keyframes(
                     "what the skeleton can do; the nearest posture is used"
                 )
             if index not in found or apart < found[index][0]:
-                residual = float(np.mean(reading.distance_m))
                 matched = matches.get(frame)
                 depth_found = matched is None and frame in pictured
-                found[index] = (apart, Keyframe(index, reading.posture, residual, matched, depth_found))
+                found[index] = (apart, Keyframe(index, reading.posture, reading.mean_m, matched, depth_found))
     if outside:
         notes.append(f"Keys at {', '.join(outside)} lie outside the footage and are not used")
     return PosedKeyframes(tuple(found[index][1] for index in sorted(found)), tuple(notes))
 
 
-def store_pose(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    skeleton: Skeleton,
-    frame: float,
-    depth_found: bool = False,
-) -> None:
-    """Key the armature's pose as it stands, hands and feet included, in `action` at a scene frame.
-
-    `depth_found`: whether it was put right in the picture alone.
-    """
-    channels = _channels(armature_object, skeleton)
+def store_pose(armature_object: Object, action: Action, frame: float, depth_found: bool = False) -> None:
+    """Key the armature's whole pose as it stands; `depth_found` if it was put right in the picture alone."""
+    channels = _channels(armature_object)
     columns = [(path, index, model.name, np.array([value])) for model, path, index, value in channels]
-    kind = PICTURED if depth_found else POSED
-    write_keys(channelbag_for(action, armature_object), columns, np.array([frame]), kind)
+    kind = keys.PICTURED if depth_found else keys.POSED
+    keys.write_keys(channelbag_for(action, armature_object), columns, np.array([frame]), kind)
 
 
 def write_keyframes(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    keyframes: Sequence[Keyframe],
-    clip_frames: Array,
+    armature_object: Object, action: Action, keyframes: Sequence[Keyframe], clip_frames: Array
 ) -> None:
-    """Key postures in `action`, as if the animator had posed them; matched ones as `write_matched` does.
-
-    `clip_frames` (F,) are the scene frames of the clip's.
-    """
+    """Key postures as the animator's, matched ones as found ones; `clip_frames` (F,) are scene frames."""
     frames = clip_frames[[keyframe.index for keyframe in keyframes]]
-    channelbag = channelbag_for(action, armature_object)
     postures = Posture.stack([keyframe.posture for keyframe in keyframes])
     posed = np.array([keyframe.matched is None for keyframe in keyframes])
     pictured = np.array([keyframe.depth_found for keyframe in keyframes])
-    columns = posture_columns(read_bones(armature_object, postures.skeleton), postures)
-    for own, kind in ((posed & ~pictured, POSED), (posed & pictured, PICTURED)):
+    columns = posture_columns(read_bones(armature_object), postures)
+    for own, kind in ((posed & ~pictured, keys.POSED), (posed & pictured, keys.PICTURED)):
         if own.any():
             rows = [(path, index, bone, column[own]) for path, index, bone, column in columns]
-            write_keys(channelbag, rows, frames[own], kind)
+            keys.write_keys(channelbag_for(action, armature_object), rows, frames[own], kind)
     if not posed.all():
         matched = [keyframe.posture for keyframe in keyframes if keyframe.matched is not None]
         write_matched(armature_object, action, frames[~posed], matched)

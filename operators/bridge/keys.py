@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
+from bpy.types import ActionChannelbag, FCurve
 from numpy.typing import NDArray
 
 from ...core.arrays import Array, BoolArray, SingleArray
@@ -56,20 +57,16 @@ class KeyKind:
 
 
 POSED = KeyKind()  # as the animator sets keys, with Blender's usual smooth interpolation
-LINEAR = KeyKind(interpolation="LINEAR")
-PICTURED = KeyKind(
-    amplitude=-2.0
-)  # the animator's, put right in the picture alone: as deep as they were found
+PICTURED = KeyKind(amplitude=-2.0)  # put right by the animator in the picture alone: as deep as found
 FOUND = KeyKind("GENERATED", amplitude=-1.0)  # those of a found keyframe
 MOTION = KeyKind("GENERATED", "LINEAR", gives_way=True)
 
 
 def _generated(keys: Keys) -> BoolArray:
     """(N,) which keys are Keymark's and have the values it gave them."""
-    back = keys["back"]
-    changed = (back != _value_mark(keys)) & (back != UNMARKED)
-    changed &= keys["interpolation"] != _enum_value("interpolation", "BACK")
-    return (keys["type"] == _enum_value("type", "GENERATED")) & ~changed
+    as_made = (keys["back"] == _value_mark(keys)) | (keys["back"] == UNMARKED)
+    as_made |= keys["interpolation"] == _enum_value("interpolation", "BACK")
+    return (keys["type"] == _enum_value("type", "GENERATED")) & as_made
 
 
 def _value_mark(keys: Keys) -> SingleArray:
@@ -81,11 +78,8 @@ def _value_mark(keys: Keys) -> SingleArray:
 def _as_generated(keys: Keys) -> Keys:
     """The keys as Keymark's own."""
     used = keys["interpolation"] == _enum_value("interpolation", "BACK")
-    return {
-        **keys,
-        "type": np.full(len(used), _enum_value("type", "GENERATED"), np.int32),
-        "back": np.where(used, keys["back"], _value_mark(keys)).astype(np.float32),
-    }
+    types = np.full(len(used), _enum_value("type", "GENERATED"), np.int32)
+    return {**keys, "type": types, "back": np.where(used, keys["back"], _value_mark(keys))}
 
 
 def _as_animators(keys: Keys) -> Keys:
@@ -99,21 +93,18 @@ def _enum_value(name: str, item: str) -> int:
     return int(bpy.types.Keyframe.bl_rna.properties[name].enum_items[item].value)
 
 
-def _read_keys(fcurve: bpy.types.FCurve) -> Keys:
+def _read_keys(fcurve: FCurve) -> Keys:
     """Every property of every key: (N,) or, for pairs, (N, 2)."""
     points = fcurve.keyframe_points
     keys: Keys = {}
     for name in (*PAIRS, *FLOATS, *ENUMS, *FLAGS):
-        values = np.empty(
-            len(points) * (2 if name in PAIRS else 1),
-            np.bool_ if name in FLAGS else np.int32 if name in ENUMS else np.float32,
-        )
-        points.foreach_get(name, values)
-        keys[name] = values.reshape(-1, 2) if name in PAIRS else values
+        kind = np.bool_ if name in FLAGS else np.int32 if name in ENUMS else np.float32
+        keys[name] = np.empty((len(points), 2) if name in PAIRS else len(points), kind)
+        points.foreach_get(name, keys[name].ravel())
     return keys
 
 
-def _write_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
+def _write_keys(fcurve: FCurve, keys: Keys) -> None:
     points = fcurve.keyframe_points
     points.clear()
     points.add(len(keys["co"]))
@@ -126,14 +117,11 @@ def _write_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
 
 def _new_keys(frames: Array, values: Array, kind: KeyKind) -> Keys:
     """Keys that are not selected, so that what the animator does next does not move them."""
-    count = len(frames)
+    count, defaults = len(frames), bpy.types.Keyframe.bl_rna.properties
     coordinates = np.column_stack([frames, values]).astype(np.float32)
     keys: Keys = {name: coordinates.copy() for name in PAIRS}
-    for name in FLOATS:
-        default = bpy.types.Keyframe.bl_rna.properties[name].default
-        keys[name] = np.full(count, default, np.float32)
-    for name in FLAGS:
-        keys[name] = np.zeros(count, np.bool_)
+    keys |= {name: np.full(count, defaults[name].default, np.float32) for name in FLOATS}
+    keys |= {name: np.zeros(count, np.bool_) for name in FLAGS}
     items = (kind.interpolation, "AUTO", "AUTO_CLAMPED", "AUTO_CLAMPED", kind.type)
     for name, item in zip(ENUMS, items, strict=True):
         keys[name] = np.full(count, _enum_value(name, item), np.int32)
@@ -147,7 +135,7 @@ def _new_keys(frames: Array, values: Array, kind: KeyKind) -> Keys:
 # --- Frames with keys
 
 
-def animator_frames(fcurve: bpy.types.FCurve) -> Array:
+def animator_frames(fcurve: FCurve) -> Array:
     """Frames (N,) of the keys that are not GENERATED, and of those of found keyframes."""
     # Read as little as possible: the timeline's draw function asks for all of an armature's curves.
     points = fcurve.keyframe_points
@@ -162,7 +150,7 @@ def animator_frames(fcurve: bpy.types.FCurve) -> Array:
     return np.asarray(coordinates[counted, 0], dtype=np.float64)
 
 
-def unchanged_frames(fcurve: bpy.types.FCurve, kind: KeyKind) -> Array:
+def unchanged_frames(fcurve: FCurve, kind: KeyKind) -> Array:
     """Frames (N,) of the keys of a kind that nobody has changed; MOTION stands for all that are GENERATED."""
     keys = _read_keys(fcurve)
     if kind.type == "GENERATED":
@@ -177,17 +165,14 @@ def unchanged_frames(fcurve: bpy.types.FCurve, kind: KeyKind) -> Array:
 # --- Keys written, handed over and removed
 
 
-def write_keys(
-    channelbag: bpy.types.ActionChannelbag, columns: Iterable[Column], frames: Array, kind: KeyKind
-) -> None:
+def write_keys(channelbag: ActionChannelbag, columns: Iterable[Column], frames: Array, kind: KeyKind) -> None:
     """Set keys of a kind at scene frames (F,); all other keys of the curves stay."""
     for path, index, group, values in columns:
-        _join_keys(
-            ensure_fcurve(channelbag, path, index, group), _new_keys(frames, values, kind), kind.gives_way
-        )
+        fcurve = ensure_fcurve(channelbag, path, index, group)
+        _join_keys(fcurve, _new_keys(frames, values, kind), kind.gives_way)
 
 
-def _join_keys(fcurve: bpy.types.FCurve, keys: Keys, gives_way: bool) -> None:
+def _join_keys(fcurve: FCurve, keys: Keys, gives_way: bool) -> None:
     """Add keys to a curve; of two on one frame the new one goes, or else the old one."""
     kept = _read_keys(fcurve)
     if gives_way:
@@ -208,16 +193,13 @@ def _chosen(keys: Keys, which: NDArray[np.generic]) -> Keys:
     return {name: column[which] for name, column in keys.items()}
 
 
-def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]) -> None:
-    """Remove the GENERATED keys of the curves with these data paths, and curves left without keys.
-
-    Keys that the animator has given another value stay, and get the animator's own type.
-    """
+def remove_generated_keys(channelbag: ActionChannelbag, paths: Iterable[str]) -> None:
+    """Remove GENERATED keys of these paths, and empty curves; changed keys become the animator's."""
     for fcurve, keys in _curves(channelbag, paths):
         _keep(channelbag, fcurve, _as_animators(keys), ~_generated(keys))
 
 
-def remove_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
+def remove_keys(channelbag: ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
     """Remove all keys on frames (K,) from the curves with these data paths, and curves left without keys."""
     for fcurve, keys in _curves(channelbag, paths):
         there = _are_on(keys, frames)
@@ -225,11 +207,8 @@ def remove_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], fr
             _keep(channelbag, fcurve, keys, ~there)
 
 
-def give_to_animator(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
-    """Turn keys of found keyframes on frames (K,) into the animator's own; values and curves stay.
-
-    The animator vouches for the picture alone: nobody has touched the depth.
-    """
+def give_to_animator(channelbag: ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
+    """Turn keys of found keyframes on frames (K,) into the animator's, who vouches for the picture alone."""
     for fcurve, keys in _curves(channelbag, paths):
         there = _are_on(keys, frames) & (keys["amplitude"] == FOUND.amplitude)
         if there.any():
@@ -238,18 +217,14 @@ def give_to_animator(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str
             _write_keys(fcurve, keys)
 
 
-def _curves(
-    channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]
-) -> Iterator[tuple[bpy.types.FCurve, Keys]]:
+def _curves(channelbag: ActionChannelbag, paths: Iterable[str]) -> Iterator[tuple[FCurve, Keys]]:
     """The curves of some data paths, with their keys."""
     wanted = set(paths)
     for fcurve in [curve for curve in channelbag.fcurves if curve.data_path in wanted]:
         yield fcurve, _read_keys(fcurve)
 
 
-def _keep(
-    channelbag: bpy.types.ActionChannelbag, fcurve: bpy.types.FCurve, keys: Keys, kept: BoolArray
-) -> None:
+def _keep(channelbag: ActionChannelbag, fcurve: FCurve, keys: Keys, kept: BoolArray) -> None:
     """Leave a curve some of its keys only; without any it is removed."""
     if kept.any():
         _write_keys(fcurve, _chosen(keys, kept))
@@ -258,17 +233,16 @@ def _keep(
         keys_changed()
 
 
-def mark_generated(channelbag: bpy.types.ActionChannelbag) -> None:
+def mark_generated(channelbag: ActionChannelbag) -> None:
     """Let all keys count as Keymark's own: those that a person sets or changes later are then known."""
     for fcurve in channelbag.fcurves:
         _write_keys(fcurve, _as_generated(_read_keys(fcurve)))
 
 
-def write_column(fcurve: bpy.types.FCurve, frames: Array, held: "Array | Spline", column: int) -> None:
+def write_column(fcurve: FCurve, frames: Array, held: "Array | Spline", column: int) -> None:
     """Replace a curve's keys by the animator's own: few of them, or values on each of the frames (F,).
 
-    The handles of few keys lie at a third of the way to the next one and are aligned: between two keys the
-    curve is the cubic that has the keys' values and slopes.
+    Handles of few keys lie at a third of the way to the next: the curve is the cubic of values and slopes.
     """
     if isinstance(held, np.ndarray):
         write_linear_keys(fcurve, frames, held[:, column])
@@ -284,24 +258,22 @@ def write_column(fcurve: bpy.types.FCurve, frames: Array, held: "Array | Spline"
     _write_keys(fcurve, keys)
 
 
-def write_linear_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array) -> None:
+def write_linear_keys(fcurve: FCurve, frames: Array, values: Array) -> None:
     """Replace a curve's keys by the animator's own at rising frames (K,), linear between them."""
-    _write_keys(fcurve, _new_keys(frames, values, LINEAR))
+    _write_keys(fcurve, _new_keys(frames, values, KeyKind(interpolation="LINEAR")))
 
 
-def copy_keys(source: bpy.types.FCurve, target: bpy.types.FCurve) -> None:
+def copy_keys(source: FCurve, target: FCurve) -> None:
     """Replace a curve's keys by another's, handles and interpolation included, all as the animator's."""
     _write_keys(target, _as_animators(_read_keys(source)))
 
 
-def copy_as_generated(source: bpy.types.FCurve, target: bpy.types.FCurve) -> None:
+def copy_as_generated(source: FCurve, target: FCurve) -> None:
     """Add another curve's keys as GENERATED ones; where the animator has a key, that key stays alone."""
     _join_keys(target, _as_generated(_read_keys(source)), gives_way=True)
 
 
-def ensure_fcurve(
-    channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str
-) -> bpy.types.FCurve:
+def ensure_fcurve(channelbag: ActionChannelbag, path: str, index: int, group: str) -> FCurve:
     """The curve of one component of a property, in its group; added where missing."""
     fcurve = channelbag.fcurves.find(path, index=index) or channelbag.fcurves.new(path, index=index)
     if fcurve.group is None:

@@ -2,6 +2,7 @@
 
 import bpy
 import numpy as np
+from bpy.types import Object, Scene
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
@@ -9,12 +10,8 @@ from ...core.errors import InputError
 from ...core.retarget.character import Similarity
 
 
-def object_space(armature_object: bpy.types.Object) -> Similarity:
-    """The object's evaluated transform, parents and constraints included.
-
-    Raises:
-        InputError: The scale differs between axes or mirrors: limbs would change their lengths as they turn.
-    """
+def object_space(armature_object: Object) -> Similarity:
+    """The object's evaluated transform; InputError if scaled unevenly: limbs would change as they turn."""
     matrix = np.array(evaluated(armature_object).matrix_world, dtype=np.float64)
     linear = matrix[:3, :3]
     squared = linear.T @ linear
@@ -29,11 +26,8 @@ def object_space(armature_object: bpy.types.Object) -> Similarity:
     return Similarity(linear / scale, matrix[:3, 3], scale)
 
 
-def evaluated(blender_object: bpy.types.Object) -> bpy.types.Object:
-    """The object as its scene evaluates it now; the object itself where no scene holds it.
-
-    Of several scenes that hold it, each at a frame of its own, the context's scene counts.
-    """
+def evaluated(blender_object: Object) -> Object:
+    """The object as its scene evaluates it now, the context's scene before others; itself in no scene."""
     scenes = blender_object.users_scene
     if not scenes:
         return blender_object
@@ -43,31 +37,25 @@ def evaluated(blender_object: bpy.types.Object) -> bpy.types.Object:
     return blender_object.evaluated_get(layer.depsgraph)
 
 
-_ENDS = {
-    "shoulder": ("upper_arm", "head"),
-    "elbow": ("forearm", "head"),
-    "wrist": ("forearm", "tail"),
-    "hip": ("thigh", "head"),
-    "knee": ("shin", "head"),
-    "ankle": ("shin", "tail"),
+ENDS = {
+    **{"shoulder": ("upper_arm", "head"), "elbow": ("forearm", "head"), "wrist": ("forearm", "tail")},
+    **{"hip": ("thigh", "head"), "knee": ("shin", "head"), "ankle": ("shin", "tail")},
     "head": ("head", "tail"),
 }
 """The bone, and its end, that lies at each principal point."""
 
 
-def joint_places(armature_object: bpy.types.Object) -> Array:
+def joint_places(armature_object: Object) -> Array:
     """(13, 3) the principal points of an actor as its scene shows it now [m]."""
-    shown = evaluated(armature_object)
-    bones, matrix = shown.pose.bones, shown.matrix_world
-    places = []
+    shown, places = evaluated(armature_object), []
     for name in HUMAN.point_names:
         stem, dot, side = name.partition(".")
-        bone, end = _ENDS[stem]
-        places.append(matrix @ getattr(bones[f"{bone}{dot}{side}"], end))
+        bone, end = ENDS[stem]
+        places.append(shown.matrix_world @ getattr(shown.pose.bones[f"{bone}{dot}{side}"], end))
     return np.array(places, dtype=np.float64)
 
 
-def moved_by(scene: bpy.types.Scene, armature_object: bpy.types.Object) -> list[bpy.types.Object]:
+def moved_by(scene: Scene, armature_object: Object) -> list[Object]:
     """What an armature moves in a scene: its children, and what it deforms."""
     deformed = [
         each

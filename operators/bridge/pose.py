@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-import bpy
 import numpy as np
+from bpy.types import Object
 
 from ...core.arrays import Array
 from ...core.body.kinematics import Body
@@ -16,24 +16,16 @@ from .rotation_modes import posture_from_frames
 
 @dataclass(frozen=True, eq=False)
 class PoseReading:
-    """An armature's pose as a posture, and the distance between both."""
+    """An armature's pose as the nearest posture, and distances of the principal points between both [m]."""
 
-    posture: Posture  # the nearest posture the skeleton can take
-    distance_m: Array  # (13,) distance of each principal point between the pose and the posture [m]
-
-    @property
-    def furthest_m(self) -> float:
-        """The largest of the distances [m]: rounding only, where the pose keeps to the skeleton."""
-        return float(self.distance_m.max())
+    posture: Posture
+    mean_m: float
+    furthest_m: float  # rounding only, where the pose keeps to the skeleton
 
 
-def read_posture(armature_object: bpy.types.Object, body: Body) -> PoseReading:
-    """The posture an armature shows now, constraints and parents included; `body` as `read_body` finds it.
-
-    Exact where the pose keeps to the skeleton's freedoms; otherwise the nearest posture, and the distance
-    says by how much the armature went beyond them.
-    """
-    models = skeleton_bones(armature_object, body.skeleton)
+def read_posture(armature_object: Object, body: Body) -> PoseReading:
+    """The posture nearest to what an armature of that body shows now, parents and constraints included."""
+    models = skeleton_bones(armature_object)
     space = object_space(armature_object)
     pose_bones = evaluated(armature_object).pose.bones
     frames: dict[str, Array] = {}
@@ -43,25 +35,21 @@ def read_posture(armature_object: bpy.types.Object, body: Body) -> PoseReading:
         turn = matrix[:3, :3] / np.linalg.norm(matrix[:3, :3], axis=0)
         frames[model.name] = space.rotation @ turn @ model.axes.T
         heads[model.name] = space.to_world(matrix[:3, 3])
-    root = next(model for model in models if model.is_root)
-    hips = heads[root.name] - frames[root.name] @ root.start
-    posture = posture_from_frames(body.skeleton, models, frames, hips)
+    hips = heads[models[0].name] - frames[models[0].name] @ models[0].start  # parents are first
+    posture = posture_from_frames(models, frames, hips)
     shown = np.empty((len(body.skeleton.points), 3))
     bone_of_joint = {joint: model for model in reversed(models) for joint in (model.joint, *model.chain)}
     for row, (point, local) in enumerate(zip(body.skeleton.points, body.point_places, strict=True)):
         model = bone_of_joint[point.joint]
         start = body.local(body.skeleton.segment(model.name).start)
         shown[row] = heads[model.name] + frames[model.name] @ (local - start)
-    reached = body.points(body.pose(posture))
-    return PoseReading(posture, np.linalg.norm(reached - shown, axis=-1))
+    distance_m = np.linalg.norm(body.points(body.pose(posture)) - shown, axis=-1)
+    return PoseReading(posture, float(distance_m.mean()), float(distance_m.max()))
 
 
-def write_posture(armature_object: bpy.types.Object, posture: Posture) -> None:
-    """Show a single posture, in each bone's own rotation mode; nothing is keyed.
-
-    Bones without degrees of freedom (hands, feet) keep what they have.
-    """
-    bones = read_bones(armature_object, posture.skeleton)
+def write_posture(armature_object: Object, posture: Posture) -> None:
+    """Show a posture, in each bone's own rotation mode, hands and feet as they are; nothing is keyed."""
+    bones = read_bones(armature_object)
     for model in bones.models:
         if model.chain:
             pose_bone = armature_object.pose.bones[model.name]

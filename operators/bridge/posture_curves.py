@@ -7,8 +7,8 @@ every bone in the rotation mode it is built with. Blender's own pose library app
 from collections.abc import Mapping
 from dataclasses import replace
 
-import bpy
 import numpy as np
+from bpy.types import Action, FCurve
 
 from ...core.arrays import Array
 from ...core.body.kinematics import Body
@@ -24,20 +24,17 @@ from .rotation_modes import bone_path, rotation_path
 SAME = 2e-6  # largest relative error of channels by single precision
 
 
-def write_posture_curves(action: bpy.types.Action, body: Body, posture: Posture) -> None:
+def write_posture_curves(action: Action, body: Body, posture: Posture) -> None:
     """Give an empty Action the curves of a single posture, the floor at z = 0: one key a channel."""
     columns = posture_columns(bones_at_rest(body), Posture.stack([posture]))
     write_keys(channelbag_for(action), columns, np.ones(1), POSED)
 
 
-def read_posture_curves(
-    action: bpy.types.Action, body: Body, stored: Posture | None = None
-) -> Posture | None:
+def read_posture_curves(action: Action, body: Body, stored: Posture | None = None) -> Posture | None:
     """The posture that a pose asset's curves show; None where it has no curve of a bone of the skeleton.
 
-    Curves of anything but the skeleton's bones are ignored; bones without curves are as in `stored`, or at
-    rest. `stored` is the posture that the curves were once written from: joints whose curves are unchanged
-    are taken from it, to the last digit.
+    `stored` is the posture that the curves were once written from: joints whose curves are unchanged are
+    taken from it, to the last digit. Bones without curves are as there, or at rest.
     """
     curves = {channel: curve for channel, curve in curves_of(action).items() if not curve.is_empty}
     bones = bones_at_rest(body)
@@ -67,14 +64,14 @@ def read_posture_curves(
     turned = np.isin(skeleton.ball_joints, joints)[:, None, None]
     return Posture(
         skeleton,
-        (shown if any(model.is_root for model in changed) else stored).translation,
+        (shown if any(model.parent is None for model in changed) else stored).translation,
         np.where(turned, shown.rotations, stored.rotations),
         np.where(np.isin(skeleton.hinge_joints, joints), shown.angles, stored.angles),
     )
 
 
 def _read_bone(
-    curves: Mapping[tuple[str, int], bpy.types.FCurve], model: BoneModel, mode: str, known: Array
+    curves: Mapping[tuple[str, int], FCurve], model: BoneModel, mode: str, known: Array
 ) -> tuple[str, bool, Array]:
     """A bone's rotation mode, whether it has any curves, and its values."""
     euler = mode if len(mode) == 3 else "XYZ"

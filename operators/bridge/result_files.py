@@ -1,13 +1,10 @@
-"""A result as files for other programs: a .blend with everything in it, and a BVH.
-
-Both are made from a scene of their own, which exists only meanwhile: what the running Blender has open,
-its undo history and its window are not touched.
-"""
+"""A result as files for other programs, a .blend with everything in it and a BVH, of a scene of its own."""
 
 from pathlib import Path
 
 import bpy
 import numpy as np
+from bpy.types import Scene
 
 from ...core.arrays import Array
 from ...core.take.motion import Motion
@@ -24,14 +21,9 @@ from .footage_to_scene import show_footage
 def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | None = None) -> str:
     """Write a motion as a .blend and, if asked for, as a BVH; returns the SHA-256 of the Action's curves.
 
-    The .blend holds the actor's armature with the motion as its Action, a skin in the markers'
-    colors, and the camera with the clip behind it; the clip's path is relative where the drives allow.
-    A failure may leave half a file at these paths: the caller passes a staging folder and moves the files
-    when both are complete, as `operators/cli/conversion` does.
-
-    Raises:
-        InputError: Blender cannot read the clip.
-        ConversionError: Blender could not write a file.
+    The .blend holds the actor's armature with the motion as its Action, a skin in the markers' colors, and
+    the camera with the clip behind it; the clip's path is relative where the drives allow. An error may leave
+    half a file: the caller passes a staging folder and moves the files when both are complete.
     """
     with own_scene(f"{take.name} Motion") as scene:
         frames = show_take(scene, take, motion)
@@ -45,7 +37,7 @@ def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | N
         return curve_digest(armature_object)
 
 
-def show_take(scene: bpy.types.Scene, take: Take, motion: Motion) -> Array:
+def show_take(scene: Scene, take: Take, motion: Motion) -> Array:
     """Put footage and camera into a scene, with rate, range and look; the motion's scene frames (F,)."""
     _, frames = show_footage(scene, take.camera, take.clip, motion.fps, motion.frame_start, motion.time_s)
     scene.frame_end = max(scene.frame_end, int(np.floor(frames[-1])))
@@ -53,7 +45,7 @@ def show_take(scene: bpy.types.Scene, take: Take, motion: Motion) -> Array:
     return frames
 
 
-def set_look(scene: bpy.types.Scene) -> None:
+def set_look(scene: Scene) -> None:
     """Workbench in material colors, which every Blender has, and light for the other engines."""
     scene.render.engine = "BLENDER_WORKBENCH"
     scene.display.shading.color_type = "MATERIAL"

@@ -2,13 +2,12 @@
 
 from collections.abc import Collection, Generator
 
-import bpy
 import numpy as np
+from bpy.types import Action, FCurve, Object, Scene
 
 from ...core.arrays import Array
 from ...core.body.body_volume import sole_offsets
 from ...core.body.fingers import FINGER_BONES
-from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.rotations import continuous_quaternions
@@ -19,16 +18,16 @@ from ...core.progress import run, within
 from ...core.take.motion import Motion
 from .actions import curves_of
 from .actor_lengths import read_body, read_bones
-from .armature import ActorBones, BoneModel, bone_models, finger_models
+from .armature import ActorBones, bone_models, finger_models
 from .fcurves import moved_paths
 from .rotation_modes import bone_path, posture_from_frames, rotation_path
 
 LEVER_M = 0.2  # at whose end a point shows the turn of a finger's bone
 
 
-def read_rig(armature_object: bpy.types.Object, body: Body, extremities: Collection[str] = ()) -> Rig:
-    """The bones of an armature with degrees of freedom, with the ends of hands and feet."""
-    return rig_of(read_bones(armature_object, body.skeleton), body, extremities)
+def read_rig(armature_object: Object, body: Body, extremities: Collection[str] = ()) -> Rig:
+    """A rig of an armature's bones, as `rig_of`."""
+    return rig_of(read_bones(armature_object), body, extremities)
 
 
 def rig_of(resting: ActorBones, body: Body, extremities: Collection[str] = ()) -> Rig:
@@ -55,6 +54,15 @@ def rig_of(resting: ActorBones, body: Body, extremities: Collection[str] = ()) -
             start = model.start - starts.get(above, 0.0)
             origin, location_axes = body.offsets[model.chain[0]] if model.chain else start, None
             left = axes[model.parent] @ rest[model.parent][:3, :3].T @ own
+        # Points are the bone's own end, a foot's heel, and the ends of rigid hands and feet [m].
+        points = [model.end, *(m.end for m in models if m.parent == model.name and m not in turning)]
+        if not model.chain:
+            along = model.end - model.start
+            if model.name in FINGER_BONES:  # the end of a lever, so that the tolerance holds its turn
+                along = LEVER_M * along / np.linalg.norm(along)
+            points = [along]
+            kind, _, side = model.name.partition(".")
+            points += [sole_offsets(body)[SIDES.index(side), 0]] if kind == "foot" else []
         bones.append(
             RigBone(
                 name=model.name,
@@ -63,38 +71,16 @@ def rig_of(resting: ActorBones, body: Body, extremities: Collection[str] = ()) -
                 left=left,
                 right=axes[model.name].T,
                 origin=origin,
-                points=_fixed_points(model, body, models, names),
+                points=np.stack(points),
                 location_axes=location_axes,
             )
         )
     return Rig(tuple(bones))
 
 
-def _fixed_points(
-    model: BoneModel, body: Body, models: tuple[BoneModel, ...], turning: Collection[str]
-) -> np.ndarray:
-    """(N, 3) the bone's own end, a foot's heel, and the ends of rigid hands and feet, in its frame [m]."""
-    if not model.chain:
-        kind, _, side = model.name.partition(".")
-        heel = [sole_offsets(body)[SIDES.index(side), 0]] if kind == "foot" else []
-        along = model.end - model.start
-        if model.name in FINGER_BONES:  # the end of a lever, so that the tolerance holds its turn
-            along = LEVER_M * along / np.linalg.norm(along)
-        return np.stack([along, *heel])
-    leaves = [m.end for m in models if m.parent == model.name and not m.chain and m.name not in turning]
-    return np.stack([model.end, *leaves])
-
-
-# --- Channel values of an Action
-
-
-Channel = tuple[int, int, str, int]
-"""Index of a bone in the rig, column of its values, data path and array index of the property."""
-
-
-def rig_channels(rig: Rig) -> tuple[Channel, ...]:
-    """The armature's property for every column of every bone's values."""
-    found: list[Channel] = []
+def rig_channels(rig: Rig) -> tuple[tuple[int, int, str, int], ...]:
+    """Bone in the rig and column of its values, data path and array index of each of their properties."""
+    found: list[tuple[int, int, str, int]] = []
     for bone, model in enumerate(rig.bones):
         count = channel_count(model.mode)
         path = bone_path(model.name, rotation_path(model.mode))
@@ -104,13 +90,9 @@ def rig_channels(rig: Rig) -> tuple[Channel, ...]:
     return tuple(found)
 
 
-def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, body: Body) -> Array:
-    """(F,) whole scene frames from the first to the last key of an Action's motion.
-
-    Raises:
-        InputError: It has fewer than two.
-    """
-    ranges = [curve.range() for curve in _keyed(armature_object, action, body)] or [(0.0, 0.0)]
+def motion_frames(armature_object: Object, action: Action) -> Array:
+    """(F,) whole scene frames from the first to the last key of a motion; InputError for fewer than two."""
+    ranges = [curve.range() for curve in _keyed(armature_object, action)] or [(0.0, 0.0)]
     # Keys as near as this lie on the frame.
     first = int(np.ceil(min(first for first, _ in ranges) - 1e-3))
     last = int(np.floor(max(last for _, last in ranges) + 1e-3))
@@ -122,24 +104,22 @@ def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, b
     return np.arange(first, last + 1, dtype=np.float64)
 
 
-def _keyed(armature_object: bpy.types.Object, action: bpy.types.Action, body: Body) -> list[bpy.types.FCurve]:
-    wanted, curves = set(moved_paths(armature_object, body.skeleton)), curves_of(action, armature_object)
+def _keyed(armature_object: Object, action: Action) -> list[FCurve]:
+    wanted, curves = set(moved_paths(armature_object)), curves_of(action, armature_object)
     return [curve for (path, _), curve in curves.items() if path in wanted and not curve.is_empty]
 
 
-def present_frames(
-    armature_object: bpy.types.Object, action: bpy.types.Action, body: Body, rate: float
-) -> Array:
-    """(F,) the frames of `motion_frames` without those between two stretches of a motion.
+def present_frames(armature_object: Object, action: Action, rate: float) -> Array:
+    """(F,) the frames of `motion_frames` in which the performer is there, at the scene's rate [1/s].
 
-    Such a stretch has keys on every frame, so that a longer gap than is bridged is one in which the performer
-    is not there; an Action of few keys has no stretches. `rate` is the scene's [1/s].
+    Stretches of a motion have keys on every frame, and a longer gap than is bridged between them; an Action
+    of few keys has no stretches.
     """
     from ...core.take.presence import BRIDGED_S  # OpenCV, which Blender starts without
 
-    frames = motion_frames(armature_object, action, body)
+    frames = motion_frames(armature_object, action)
     keys = []
-    for curve in _keyed(armature_object, action, body):
+    for curve in _keyed(armature_object, action):
         places = np.empty(2 * len(curve.keyframe_points))
         curve.keyframe_points.foreach_get("co", places)
         keys.append(places[::2])
@@ -152,10 +132,10 @@ def present_frames(
     return frames[on_key | (steps[after - 1] <= BRIDGED_S * rate)]
 
 
-def absence_note(armature_object: bpy.types.Object, action: bpy.types.Action, body: Body, rate: float) -> str:
+def absence_note(armature_object: Object, action: Action, rate: float) -> str:
     """What an export has between stretches of a motion, in which nobody is seen; empty without any."""
-    frames = motion_frames(armature_object, action, body)
-    there = np.isin(frames, present_frames(armature_object, action, body, rate))
+    frames = motion_frames(armature_object, action)
+    there = np.isin(frames, present_frames(armature_object, action, rate))
     if there.all():
         return ""
     away = frames_in_words(np.round(frames[~there]))
@@ -163,23 +143,22 @@ def absence_note(armature_object: bpy.types.Object, action: bpy.types.Action, bo
 
 
 def read_values(
-    armature_object: bpy.types.Object, action: bpy.types.Action, rig: Rig, frames: Array
+    armature_object: Object, action: Action, rig: Rig, frames: Array
 ) -> Generator[float, None, list[Array]]:
-    """Evaluate an Action's curves at scene frames (F,), bone by bone; the scene is not touched.
+    """Evaluate an Action's curves at scene frames (F,) as in `Rig`, (F, C) a bone; the scene is not touched.
 
     Channels without a curve, or with a muted one, have the value that the armature has now, as when Blender
-    plays the Action. Yields the fraction done; returns values as in `Rig`, (F, C) a bone, quaternions of unit
-    length and without jumps of sign.
+    plays the Action. Quaternions are of unit length and without jumps of sign. Yields the fraction done.
     """
     curves, channels = curves_of(action, armature_object), rig_channels(rig)
     columns: list[list[Array]] = [[] for _ in rig.bones]
     for number, (bone, _, path, index) in enumerate(channels):
         fcurve = curves.get((path, index))
         if fcurve is None or fcurve.mute:
-            unkeyed = armature_object.path_resolve(path)[index]
-            columns[bone].append(np.full(len(frames), float(unkeyed)))
+            shown = [armature_object.path_resolve(path)[index]] * len(frames)
         else:
-            columns[bone].append(np.array([fcurve.evaluate(frame) for frame in frames], dtype=np.float64))
+            shown = [fcurve.evaluate(frame) for frame in frames]
+        columns[bone].append(np.array(shown, dtype=np.float64))
         yield (number + 1) / len(channels)
     values = [np.column_stack(column) for column in columns]
     for bone, model in enumerate(rig.bones):
@@ -200,18 +179,15 @@ def shown_postures(rig: Rig, shown: RigPose, body: Body) -> Posture:
     turns, models = {bone.name: shown.rotation[row] for row, bone in enumerate(rig.bones)}, bone_models(body)
     turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}
     hips = shown.points[:, rig.point_slices[0].start] - body.offsets[0]
-    return posture_from_frames(body.skeleton, models, turns, hips)
+    return posture_from_frames(models, turns, hips)
 
 
 def shown_motion(
-    scene: bpy.types.Scene,
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    most_frames: int | None = None,
+    scene: Scene, armature_object: Object, action: Action, most_frames: int | None = None
 ) -> Motion:
     """The motion that an Action holds for an actor, in every frame or in as many; no deviations are known."""
-    body = read_body(armature_object, HUMAN)
-    rig, frames = read_rig(armature_object, body), motion_frames(armature_object, action, body)
+    body = read_body(armature_object)
+    rig, frames = read_rig(armature_object, body), motion_frames(armature_object, action)
     if most_frames is not None:
         frames = frames[np.unique(np.linspace(0, len(frames) - 1, most_frames).astype(np.intp))]
     values = run(within("Reading the motion", read_values(armature_object, action, rig, frames), 0.0, 1.0))

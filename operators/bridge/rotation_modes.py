@@ -8,9 +8,10 @@ from scipy.spatial.transform import Rotation
 
 from ...core.arrays import Array
 from ...core.body import rotations
+from ...core.body.human import HUMAN
 from ...core.body.posture import Posture
 from ...core.body.rotations import continuous_quaternions, to_quaternions
-from ...core.body.skeleton import JointKind, Skeleton
+from ...core.body.skeleton import JointKind
 from .armature import BoneModel
 
 PATHS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
@@ -34,12 +35,8 @@ def rotation_values(rotation: Array, mode: str) -> Array:
     """
     if mode == "QUATERNION":
         return continuous_quaternions(to_quaternions(rotation))
-    if mode == "AXIS_ANGLE":
-        return _continuous_axis_angles(rotation)
-    return _continuous_eulers(rotation, mode)
-
-
-def _continuous_axis_angles(rotation: Array) -> Array:
+    if mode != "AXIS_ANGLE":
+        return _continuous_eulers(rotation, mode)
     vectors = Rotation.from_matrix(rotation).as_rotvec()
     angles = np.linalg.norm(vectors, axis=-1)
     turned = angles >= 1e-7
@@ -60,51 +57,45 @@ def _continuous_eulers(rotation: Array, order: str) -> Array:
     triples = np.stack([angles, angles * [1.0, -1.0, 1.0] + np.pi])
     steps = triples[None, :, 1:] - triples[:, None, :-1]
     ways = np.abs(steps - 2.0 * np.pi * np.round(steps / (2.0 * np.pi))).sum(axis=-1)  # (from, to, F - 1)
-    passes = ways[:, 1] < ways[:, 0]
-    chosen = np.zeros(len(angles), dtype=np.intp)
-    for frame, found in enumerate(passes.T.tolist()):
-        chosen[frame + 1] = found[chosen[frame]]
+    chosen = [0]
+    for nearer in (ways[:, 1] < ways[:, 0]).T.astype(int).tolist():
+        chosen.append(nearer[chosen[-1]])
     values = np.empty((len(angles), 3))
     columns = ["XYZ".index(axis) for axis in order]
     values[:, columns] = np.unwrap(triples[chosen, np.arange(len(angles))], axis=0)
     return values
 
 
-# --- Postures fitted to joint frames
-
-
-def posture_from_frames(
-    skeleton: Skeleton, models: tuple[BoneModel, ...], frames: Mapping[str, Array], hips: Array
-) -> Posture:
+def posture_from_frames(models: tuple[BoneModel, ...], frames: Mapping[str, Array], hips: Array) -> Posture:
     """The posture nearest to world orientations (..., 3, 3) of joints, by bone, and hips (..., 3) [m].
 
     Every joint is fitted against the frame its parent was fitted to, so that what a hinge cannot follow
     does not turn the limb beyond it. `models` are parents first.
     """
     still = np.broadcast_to(np.eye(3), (*hips.shape[:-1], 3, 3))
-    turns = {joint: still for joint in skeleton.ball_joints}
-    angles = {joint: np.zeros(hips.shape[:-1]) for joint in skeleton.hinge_joints}
+    turns = {joint: still for joint in HUMAN.ball_joints}
+    angles = {joint: np.zeros(hips.shape[:-1]) for joint in HUMAN.hinge_joints}
     reached: dict[str | None, Array] = {None: still}
     for model in models:
         above = reached[model.parent]
         relative = np.swapaxes(above, -1, -2) @ frames[model.name]
-        hinges = [i for i in model.chain if skeleton.joints[i].kind is JointKind.HINGE]
+        hinges = [i for i in model.chain if HUMAN.joints[i].kind is JointKind.HINGE]
         if hinges:
-            fitted = nearest_hinges([np.asarray(skeleton.joints[i].axis) for i in hinges], relative)
+            fitted = nearest_hinges([np.asarray(HUMAN.joints[i].axis) for i in hinges], relative)
             angles.update(zip(hinges, fitted, strict=True))
             relative = still
-            for joint, angle in zip(hinges, fitted, strict=True):
-                relative = relative @ rotations.hinge(np.asarray(skeleton.joints[joint].axis), angle)
+            for joint in hinges:
+                relative = relative @ rotations.hinge(np.asarray(HUMAN.joints[joint].axis), angles[joint])
         elif model.chain:
             turns[model.chain[0]] = relative
         else:
             relative = still
         reached[model.name] = above @ relative
     return Posture(
-        skeleton,
+        HUMAN,
         hips,
-        np.stack([turns[joint] for joint in skeleton.ball_joints], axis=-3),
-        np.stack([angles[joint] for joint in skeleton.hinge_joints], axis=-1),
+        np.stack([turns[joint] for joint in HUMAN.ball_joints], axis=-3),
+        np.stack([angles[joint] for joint in HUMAN.hinge_joints], axis=-1),
     )
 
 
@@ -129,23 +120,11 @@ def nearest_hinges(axes: list[Array], rotation: Array) -> list[Array]:
                     left = left @ turn
                 elif j > i:
                     right = right @ turn
-            angles[i] = _nearest_angle(
-                axis, np.swapaxes(left, -1, -2) @ rotation @ np.swapaxes(right, -1, -2)
-            )
+            # The angle that maximizes trace(rest @ hinge(angle).T).
+            rest = np.swapaxes(left, -1, -2) @ rotation @ np.swapaxes(right, -1, -2)
+            skew = rest[..., [2, 0, 1], [1, 2, 0]] - rest[..., [1, 2, 0], [2, 0, 1]]
+            along = np.trace(rest, axis1=-2, axis2=-1) - (rest @ axis) @ axis
+            angles[i] = np.asarray(np.arctan2(skew @ axis, along))
         if np.abs(np.subtract(before, angles)).max() < 1e-12:
             break
     return angles
-
-
-def _nearest_angle(axis: Array, rotation: Array) -> Array:
-    """(...,) the angle that maximizes trace(rotation @ hinge(angle).T)."""
-    skew = np.stack(
-        [
-            rotation[..., 2, 1] - rotation[..., 1, 2],
-            rotation[..., 0, 2] - rotation[..., 2, 0],
-            rotation[..., 1, 0] - rotation[..., 0, 1],
-        ],
-        axis=-1,
-    )
-    along = (rotation @ axis) @ axis
-    return np.asarray(np.arctan2(skew @ axis, np.trace(rotation, axis1=-2, axis2=-1) - along))

@@ -9,8 +9,8 @@ from pathlib import Path
 from stat import S_ISDIR
 from typing import TYPE_CHECKING
 
-import bpy
 import numpy as np
+from bpy.types import MovieClip, MovieTrackingMarker, MovieTrackingTrack
 
 from ...core.arrays import Array
 from ...core.detect.keypoints import People, SeenPeople
@@ -30,15 +30,12 @@ def read_keypoint_file(
 ) -> People:
     """Everyone whom a file of keypoints, or a folder with a file a frame, says was seen.
 
-    `frame_count` is None where it is not known; `size` is width and height of the clip [px].
-
-    Raises:
-        InputError: The file is missing or unusable, or it cannot be one of this clip.
+    `frame_count` is None where it is not known; `size` is width and height of the clip [px]. InputError where
+    the file is missing or unusable, or cannot be one of this clip.
     """
-    state = file_state(path)
-    if state is None:
-        raise InputError(f"{path}: the keypoints are not there; load them from where they are now")
-    return _read(path, state, frame_count, size, fps, frame_start)
+    if (state := file_state(path)) is not None:
+        return _read(path, state, frame_count, size, fps, frame_start)
+    raise InputError(f"{path}: the keypoints are not there; load them from where they are now")
 
 
 def file_state(path: Path) -> str | None:
@@ -66,11 +63,7 @@ def _read(
 def one_person(
     names: Sequence[str], source: str, size: tuple[int, int], pixel: Array, score: Array
 ) -> People:
-    """The people of a source that shows the performer alone.
-
-    `pixel` (F, N, 2) are places [px] of the N named points, NaN where one is not seen; `score` (F, N) is 0 to
-    1.
-    """
+    """The performer alone: N points in pixels (F, N, 2), NaN where not seen, and scores (F, N), 0 to 1."""
     unknown = np.full((1, len(names), 3), np.nan)
     nobody = SeenPeople(pixel[:0], score[:0], unknown[:0])
     there = np.isfinite(pixel).all(axis=-1).any(axis=-1)
@@ -97,11 +90,7 @@ class ClickedPoint:
 
 
 def people_of_clicks(footage: Footage, frames: Array, clicks: Sequence[ClickedPoint]) -> tuple[People, ...]:
-    """The performer as a person clicked on points; no source where none was.
-
-    Clicks outside the clip, whose frames have the scene frames (F,), are left out; the last one of a frame
-    counts.
-    """
+    """The performer as clicked on in frames (F,), each last click; no source where nobody clicked."""
     at = shown_index(frames, [footage.first_frame + click.frame for click in clicks])
     inside = [(int(index), click) for index, click in zip(at, clicks, strict=True) if index >= 0]
     names = list(dict.fromkeys(click.point for _, click in inside))
@@ -110,9 +99,8 @@ def people_of_clicks(footage: Footage, frames: Array, clicks: Sequence[ClickedPo
     pixel = np.full((len(frames), len(names), 2), np.nan)
     for index, click in inside:
         pixel[index, names.index(click.point)] = click.pixel
-    width, height = footage.clip.size
     score = np.isfinite(pixel).all(axis=-1).astype(np.float64)
-    return (one_person(names, CLICKS, (width, height), pixel, score),)
+    return (one_person(names, CLICKS, tuple(footage.clip.size), pixel, score),)
 
 
 # --- Blender's own motion tracks of a clip as keypoints
@@ -130,11 +118,9 @@ class AssignedTrack:
     point: str
 
 
-def clip_tracks(clip: bpy.types.MovieClip) -> Iterator[tuple[str, bpy.types.MovieTrackingTrack]]:
-    """Yield every track of a clip, those of its tracking objects included, with the object's name."""
-    for tracking_object in clip.tracking.objects:
-        for track in tracking_object.tracks:
-            yield tracking_object.name, track
+def clip_tracks(clip: MovieClip) -> Iterator[tuple[str, MovieTrackingTrack]]:
+    """Every track of a clip, those of its tracking objects included, with the object's name."""
+    return ((each.name, track) for each in clip.tracking.objects for track in each.tracks)
 
 
 def people_of_tracks(
@@ -142,69 +128,56 @@ def people_of_tracks(
 ) -> tuple[People, ...]:
     """The performer as tracks of a clip show them; further tracks of the same point are further sources.
 
-    A track is seen in the frames that have a marker of its own, tracked or set by hand, that is not disabled.
-    What Blender shows before, between and after them is no observation. `frames` (F,) are scene frames of the
-    clip's; tracks that the clip does not have are left out.
+    A track is seen where it has a marker of its own that is not disabled; what Blender shows before, between
+    and after is no observation. `frames` (F,) are the scene's; tracks that the clip lacks are left out.
     """
-    tracks = {(owner, track.name): track for owner, track in clip_tracks(footage.clip)}
-    sources: list[dict[str, bpy.types.MovieTrackingTrack]] = []
-    for each in assigned:
-        track = tracks.get((each.owner, each.track))
-        if track is None:
-            continue
-        source = next((points for points in sources if each.point not in points), None)
+    sources: list[dict[str, MovieTrackingTrack]] = []
+    for point, track in _assigned(footage, assigned):
+        source = next((points for points in sources if point not in points), None)
         if source is None:
             sources.append(source := {})
-        source[each.point] = track
-    return tuple(_people(footage, frames, points, rank) for rank, points in enumerate(sources))
+        source[point] = track
+    people = []
+    for rank, points in enumerate(sources):
+        pixel = np.full((len(frames), len(points), 2), np.nan)
+        score = np.zeros((len(frames), len(points)))
+        for column, track in enumerate(points.values()):
+            markers = [marker for marker in track.markers if not marker.mute] if track.weight > 0.0 else []
+            index = shown_index(frames, [footage.clip.frame_start - 1 + marker.frame for marker in markers])
+            pixel[index[index >= 0], column] = _places(footage, track, markers)[index >= 0]
+            score[index, column] = float(track.weight)
+        name = f"{TRACKS} {rank + 1}" if rank else TRACKS
+        people.append(one_person(tuple(points), name, tuple(footage.clip.size), pixel, score))
+    return tuple(people)
 
 
 def tracks_at(
     footage: Footage, scene_frame: int, assigned: Sequence[AssignedTrack]
 ) -> list[tuple[str, tuple[float, float], float]]:
     """Point, place [px] and score of each assigned track that is seen in a scene frame, for display."""
-    tracks = {(owner, track.name): track for owner, track in clip_tracks(footage.clip)}
     found = []
-    for each in assigned:
-        track = tracks.get((each.owner, each.track))
-        marker = track and track.markers.find_frame(scene_frame - _start(footage), exact=True)
-        if track is None or marker is None or marker.mute or track.weight <= 0.0:
-            continue
-        (place,) = _places(footage, track, [marker])
-        found.append((each.point, (float(place[0]), float(place[1])), float(track.weight)))
+    for point, track in _assigned(footage, assigned):
+        marker = track.markers.find_frame(scene_frame - footage.clip.frame_start + 1, exact=True)
+        if marker is not None and not marker.mute and track.weight > 0.0:
+            ((x, y),) = _places(footage, track, [marker]).tolist()
+            found.append((point, (x, y), float(track.weight)))
     return found
 
 
-def _people(
-    footage: Footage, frames: Array, points: dict[str, bpy.types.MovieTrackingTrack], rank: int
-) -> People:
-    pixel = np.full((len(frames), len(points), 2), np.nan)
-    score = np.zeros((len(frames), len(points)))
-    for column, track in enumerate(points.values()):
-        markers = [marker for marker in track.markers if not marker.mute] if track.weight > 0.0 else []
-        index = shown_index(frames, [_start(footage) + marker.frame for marker in markers])
-        pixel[index[index >= 0], column] = _places(footage, track, markers)[index >= 0]
-        score[index, column] = float(track.weight)
-    width, height = footage.clip.size
-    source = f"{TRACKS} {rank + 1}" if rank else TRACKS
-    return one_person(tuple(points), source, (width, height), pixel, score)
+def _assigned(
+    footage: Footage, assigned: Sequence[AssignedTrack]
+) -> Iterator[tuple[str, MovieTrackingTrack]]:
+    """The assigned tracks that the clip has, with their points."""
+    tracks = {(owner, track.name): track for owner, track in clip_tracks(footage.clip)}
+    keys = [(each.point, (each.owner, each.track)) for each in assigned]
+    return ((point, tracks[key]) for point, key in keys if key in tracks)
 
 
-def _places(
-    footage: Footage, track: bpy.types.MovieTrackingTrack, markers: Sequence[bpy.types.MovieTrackingMarker]
-) -> Array:
+def _places(footage: Footage, track: MovieTrackingTrack, markers: Sequence[MovieTrackingMarker]) -> Array:
     """Places (K, 2) of a track at its markers [px]; Blender counts in shares from the bottom left corner."""
     share = np.array([tuple(marker.co) for marker in markers], dtype=np.float64).reshape(-1, 2)
     width, height = footage.clip.size
     return np.asarray((share + tuple(track.offset)) * (width, -height) + (0.0, height))
-
-
-def _start(footage: Footage) -> int:
-    """Scene frame of a track's marker at frame 0."""
-    return int(footage.clip.frame_start) - 1
-
-
-# --- What a scene's take is held against
 
 
 @dataclass(frozen=True)
@@ -235,11 +208,8 @@ class SceneEvidence:
     def people(self, footage: Footage, frames: Array) -> tuple[People, ...]:
         """Everyone whom each source of keypoints saw, clicked points first; `frames` (F,) are the scene's."""
         width, height = footage.clip.size
-        files = tuple(
-            read_keypoint_file(path, len(frames), (width, height), footage.rate, footage.first_frame)
-            for path in self.files
-        )
-        if not self.depth_hints:
-            files = tuple(people.without_hints() for people in files)
+        clip = len(frames), (width, height), footage.rate, footage.first_frame
+        files = [read_keypoint_file(path, *clip) for path in self.files]
+        files = files if self.depth_hints else [people.without_hints() for people in files]
         clicks = people_of_clicks(footage, frames, self.clicks)
         return (*clicks, *people_of_tracks(footage, frames, self.tracks), *files)

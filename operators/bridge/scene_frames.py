@@ -4,15 +4,16 @@ Blender discards poses without keys as soon as it evaluates a frame: the context
 """
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from math import floor
 
-import bpy
 import numpy as np
+from bpy.types import Action, Object, Scene
 from numpy.typing import ArrayLike
 
 from ...core.arrays import Array, IndexArray
 from ...core.markers.region_tracks import is_variable_frame_rate
+from ...core.progress import Part
 from .actions import assign_action
 from .object_space import evaluated
 
@@ -23,12 +24,11 @@ CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_
 def scene_frames(time_s: Array, first: float, rate: float) -> Array:
     """Scene frames (F,) that show the frames of a clip, whose times are (F,) [s] from the first.
 
-    Whole steps for a constant rate, however the container rounds its times; by their times, and so
-    fractional, for a variable rate, as Blender shows them.
+    Whole steps for a constant rate, however the container rounds its times; fractional ones, as Blender shows
+    them, for a variable rate.
     """
-    if is_variable_frame_rate(time_s):
-        return np.asarray(first + time_s * rate)
-    return np.asarray(first + np.arange(len(time_s), dtype=np.float64))
+    steps = time_s * rate if is_variable_frame_rate(time_s) else np.arange(len(time_s), dtype=np.float64)
+    return np.asarray(first + steps)
 
 
 def shown_index(frames: Array, at: ArrayLike) -> IndexArray:
@@ -38,22 +38,18 @@ def shown_index(frames: Array, at: ArrayLike) -> IndexArray:
     return np.asarray(np.where(frame < frames[-1] + 1.0, index, -1), dtype=np.intp)
 
 
-def show_frame(scene: bpy.types.Scene, frame: float) -> None:
+def show_frame(scene: Scene, frame: float) -> None:
     """Let the scene show a frame, which may lie between whole ones."""
     whole = floor(frame)
     scene.frame_set(whole, subframe=frame - whole)
 
 
 @contextmanager
-def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
-    """Yield a function that evaluates the scene at a frame, fractional ones too; then restore its frame.
-
-    Poses without keys, of any armature in the scene, are restored as well.
-    """
+def at_scene_frame(scene: Scene) -> Iterator[Callable[[float], None]]:
+    """Yield a function that evaluates the scene at a frame; then its frame and unkeyed poses are restored."""
     before = scene.frame_current, scene.frame_subframe
     armatures = [one for one in scene.objects if one.type == "ARMATURE" and one.is_editable]
     poses = [(actor, pose_of(actor)) for actor in armatures if actor.animation_data is not None]
-
     try:
         yield lambda frame: show_frame(scene, frame)
     finally:
@@ -62,8 +58,23 @@ def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
             restore_pose(actor, pose)
 
 
+def each_frame(
+    scene: Scene,
+    frames: Array,
+    meanwhile: Callable[[], AbstractContextManager[None]],
+    look: Callable[[], None],
+) -> Part[None]:
+    """Look at scene frames (F,), with what `meanwhile` does; while it yields, the scene is as it was."""
+    for first in range(0, len(frames), 10):
+        with at_scene_frame(scene) as go_to, meanwhile():
+            for frame in frames[first : first + 10]:
+                go_to(frame)
+                look()
+        yield min(first + 10, len(frames)) / len(frames)
+
+
 @contextmanager
-def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action | None) -> Iterator[None]:
+def showing_action(armature_object: Object, action: Action | None) -> Iterator[None]:
     """Assign an Action, or none, to the armature meanwhile; then restore its Action and unkeyed pose."""
     data = armature_object.animation_data_create()
     before = data.action, data.action_slot
@@ -83,13 +94,13 @@ def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action |
         restore_pose(armature_object, pose)
 
 
-def pose_of(armature_object: bpy.types.Object) -> Pose:
+def pose_of(armature_object: Object) -> Pose:
     """All channels of an armature's bones as they stand, keyed or not."""
     bones = armature_object.pose.bones
     return {bone.name: [tuple(getattr(bone, channel)) for channel in CHANNELS] for bone in bones}
 
 
-def restore_pose(armature_object: bpy.types.Object, pose: Pose) -> None:
+def restore_pose(armature_object: Object, pose: Pose) -> None:
     """Give an armature's bones the channels that `pose_of` had."""
     for name, values in pose.items():
         bone = armature_object.pose.bones[name]

@@ -3,12 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import bpy
 import numpy as np
+from bpy.types import Action, Object
 
 from ...core.arrays import Array
 from ...core.body.actor import Actor
-from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.detect.keypoints import Keypoints
@@ -48,8 +47,7 @@ class FrameInFootage:
     footage: Footage
     evidence: SceneEvidence  # what is followed
     reading: Reading | None  # an earlier reading of the clip, if it is of this footage and these markers
-    clip_frames: Array
-    """(F,) scene frame of every frame of the clip; estimated from its header where it was not read."""
+    clip_frames: Array  # (F,) scene frames of the clip's, estimated from its header where it was not read
     index: int  # index of the current frame in the clip
 
     @property
@@ -62,26 +60,6 @@ class FrameInFootage:
         """The segment each marker is bound to."""
         return tuple(style.segment for style in self.styles)
 
-    def regions(self, expected: ExpectedRegions | None = None) -> RegionTracks:
-        """The markers' regions in the frame: from the reading, else found now.
-
-        Expected regions (1, M) tell markers of similar color apart.
-        """
-        if self.reading is not None:
-            return self.reading.tracks.frame(self.index)
-        time_s = (float(self.clip_frames[self.index]) - self.footage.first_frame) / self.footage.rate
-        if not self.styles:
-            return self.tracks.frame(self.index)
-        return regions_of_frame(
-            self.footage.open(), time_s, self.styles, expected, self.evidence.ignored_regions, self.index
-        )
-
-    def keypoints(self, body: Body, keyframes: Sequence[Keyframe] = ()) -> Keypoints:
-        """The performer's keypoints in all frames, (F, N); none where no keypoints are followed."""
-        return performers_keypoints(
-            self.footage, self.evidence, self.clip_frames, body, keyframes, self.tracks
-        )
-
     @property
     def tracks(self) -> RegionTracks:
         """The markers' regions in all frames where the clip was read, else those of no marker."""
@@ -90,15 +68,23 @@ class FrameInFootage:
         time_s = (self.clip_frames - self.footage.first_frame) / self.footage.rate
         return RegionTracks.unmarked(time_s, tuple(self.footage.clip.size))
 
+    def regions(self, expected: ExpectedRegions | None = None) -> RegionTracks:
+        """The markers' regions in the frame, read or found now; expected ones tell similar colors apart."""
+        if self.reading is not None or not self.styles:
+            return self.tracks.frame(self.index)
+        time_s, ignored = float(self.tracks.time_s[self.index]), self.evidence.ignored_regions
+        return regions_of_frame(self.footage.open(), time_s, self.styles, expected, ignored, self.index)
+
+    def keypoints(self, body: Body, keyframes: Sequence[Keyframe] = ()) -> Keypoints:
+        """The performer's keypoints in all frames, (F, N); none where no keypoints are followed."""
+        how = (self.footage, self.evidence, self.clip_frames)
+        return performers_keypoints(*how, body, keyframes, self.tracks)
+
 
 def frame_in_footage(
     footage: Footage, evidence: SceneEvidence, reading: Reading | None = None
 ) -> FrameInFootage:
-    """The scene's current frame in the footage; a reading is used if it is of this footage and these markers.
-
-    Raises:
-        InputError: The clip is missing, or the current frame lies outside it.
-    """
+    """The scene's current frame in the footage, with the reading if it is of this; InputError outside it."""
     key = reading_key(footage.path, footage.rate, evidence.markers, None, evidence.ignored_regions)
     if reading is not None and of_same_footage(reading.key, key):
         frames = scene_frames(reading.tracks.time_s, footage.first_frame, footage.rate)
@@ -109,9 +95,9 @@ def frame_in_footage(
     index = int(np.argmin(np.abs(frames - current)))
     if abs(float(frames[index]) - current) > NEAREST + 1e-6:
         if frames[0] < current < frames[-1]:
+            advice = f"go to frame {round(float(frames[index]))}"
             raise InputError(
-                f"the footage, whose rate varies, has no frame of its own at {current:g}; go to frame "
-                f"{round(float(frames[index]))}"
+                f"the footage, whose rate varies, has no frame of its own at {current:g}; {advice}"
             )
         raise InputError(
             f"frame {current:g} lies outside the footage, whose frames are {frames[0]:g} to {frames[-1]:g}"
@@ -131,18 +117,16 @@ def posed_standing(
 class FrameResult:
     """What fitting a frame has found."""
 
-    candidates: tuple[Candidate, ...]
-    """Postures that the frame may show, the likeliest first; a single one near a pose."""
+    candidates: tuple[Candidate, ...]  # postures that it may show, the likeliest first; one near a pose
     contradictions: tuple[str, ...]  # names of the markers and keypoints that the first one does not explain
-    residual_px: Array
-    """(M + N,) distances of markers and keypoints from where the first one has them [px]; NaN if hidden."""
+    residual_px: Array  # (M + N,) of markers and keypoints from where the first one has them; NaN if hidden
     cost: float = 0.0  # near a pose, what tells the likelier of several poses apart, as in `FramePoses`
 
 
 def fit_to_frame(
     frame: FrameInFootage,
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action | None,
+    armature_object: Object,
+    action: Action | None,
     start: str,
     matches: Matches = NOT_MATCHED,
     libraries: Sequence[Library] = (),
@@ -152,14 +136,10 @@ def fit_to_frame(
 
     `start` is KEYFRAMES for any posture that the frame shows, of which the nearest keyframes tell too, ANEW
     for any without asking keyframes, POSE for one near the actor's pose as it is, when no library is asked.
-    Marker placements are not calibrated on matched keyframes. The floor's height [m] is by default that of
-    the posed keyframes.
-
-    Raises:
-        InputError: Neither a marker nor a keypoint is seen in the frame, there is no library, or clip, camera
-            or a bone is missing.
+    Only posed keyframes calibrate, and say where the floor is unless `floor_m` does. InputError where neither
+    a marker nor a keypoint is seen in the frame, or something is missing.
     """
-    body = read_body(armature_object, HUMAN)
+    body = read_body(armature_object)
     keyframes: tuple[Keyframe, ...] = ()  # at other frames
     if action is not None:
         read = read_keyframes(frame.footage.scene, armature_object, action, body, frame.clip_frames, matches)
@@ -169,12 +149,11 @@ def fit_to_frame(
     keypoints = frame.keypoints(body, keyframes)
     camera = read_camera(frame.footage, frame.clip_frames[np.append(indices, frame.index)])
     model = RegionModel(body, camera, tuple(MarkerPlacement.usual(segment) for segment in frame.segments))
+    belief = None
     if start == "POSE":
         belief = prior_from_pose(read_posture(armature_object, body).posture)
     elif start == "KEYFRAMES" and keyframes:
         belief = prior_from_keyframes(keyframes, frame.index, frame.footage.rate)
-    else:
-        belief = None
     expected = belief
     if expected is None and frame.reading is None and frame.styles:
         expected = prior_from_pose(posed_standing(frame, body, frame.regions(), keypoints))
@@ -182,7 +161,12 @@ def fit_to_frame(
     points = ObservedKeypoints.of(keypoints)
     here = points[np.array([frame.index])]
     if not (regions.visible.any() or here.seen.any()):
-        raise _nothing_seen(frame, keypoints)
+        names = {"markers": frame.styles, "keypoints": keypoints.names}
+        wanted = " and ".join(name for name, has in names.items() if has)
+        why = f"none of the {wanted} is seen in frame {frame.clip_frames[frame.index]:g}"
+        if not wanted:
+            why = "neither markers nor keypoints are followed, which a pose is fitted to"
+        raise InputError(f"{why}; pose the actor by hand")
     usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
     evidence = replace(uncalibrated(model), keypoints=usual)
     if posed and (frame.reading is not None or not frame.styles):
@@ -190,29 +174,14 @@ def fit_to_frame(
         postures = Posture.stack([keyframe.posture for keyframe in posed])
         evidence = calibrated(model, seen, postures, frames, usual, points[indices])
     shown = FrameShown(evidence, len(posed), regions, keypoints.frame(frame.index), here)
-    if start == "POSE":
-        assert belief is not None
+    if start == "POSE" and belief is not None:
         found = near_pose(shown, belief)
     else:
-        if floor_m is None:
-            floor_m = PosedFrames.of(body, posed).floor_m()
+        floor_m = PosedFrames.of(body, posed).floor_m() if floor_m is None else floor_m
         found = find_frame_poses(shown, libraries, floor_m, belief)
-    posture = found.candidates[0].posture
-    off = frame_residuals(evidence, shown.regions, here, posture, len(posed))
+    off = frame_residuals(evidence, shown.regions, here, found.candidates[0].posture, len(posed))
     residual_px = np.append(off.marker_px, off.keypoint_px)
     return FrameResult(found.candidates, found.contradictions, residual_px, found.cost)
-
-
-def _nothing_seen(frame: FrameInFootage, keypoints: Keypoints) -> InputError:
-    shown = f"{frame.clip_frames[frame.index]:g}"
-    if not (frame.styles or keypoints.names):
-        return InputError(
-            "neither markers nor keypoints are followed, which a pose is fitted to; pose the actor by hand"
-        )
-    wanted = " and ".join(
-        name for name, has in (("markers", frame.styles), ("keypoints", keypoints.names)) if has
-    )
-    return InputError(f"none of the {wanted} is seen in frame {shown}; pose the actor by hand")
 
 
 def measured_in_frame(

@@ -3,10 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-import bpy
+from bpy.types import Action, Object
 
 from ...core.arrays import Array
-from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
 from ...core.camera.camera import Camera
 from ...core.detect.keypoints import Keypoints
@@ -32,10 +31,7 @@ def performers_keypoints(
     keyframes: Sequence[Keyframe],
     tracks: RegionTracks,
 ) -> Keypoints:
-    """The keypoints of the performer, whom keyframes tell from other people where there are some.
-
-    `frames` (F,) are scene frames of the clip's; `tracks` are those of no marker where it has not been read.
-    """
+    """The performer's keypoints in scene frames (F,), told from other people's by keyframes, if any."""
     if not evidence.has_keypoints:
         return Keypoints.none(len(frames))
     own = replace(evidence, markers=evidence.markers if tracks.names else (), reference=None)
@@ -46,15 +42,8 @@ def performers_keypoints(
     return performer_keypoints(take, tracks)
 
 
-# --- Read a take from a scene
-
-
 def clip_frames(footage: Footage, evidence: SceneEvidence, kept: Reading | None) -> Job[Array]:
-    """Find the scene frames (F,) that show the frames of the clip, fractional for variable frame rates.
-
-    A video is read once a session for its time stamps, since its header may be wrong; `kept`, a reading of
-    any clip, knows them where it is one of this.
-    """
+    """Find the scene frames (F,) of the clip's, by a video's time stamps, which a kept reading may have."""
     times = clip_times(footage.open(), kept, evidence.markers, evidence.ignored_regions)
     time_s = yield from within("Reading the footage's times", times, 0.0, 1.0)
     return scene_frames(time_s, footage.first_frame, footage.rate)
@@ -62,21 +51,15 @@ def clip_frames(footage: Footage, evidence: SceneEvidence, kept: Reading | None)
 
 def read_scene_take(
     footage: Footage,
-    armature_object: bpy.types.Object,
-    keyframe_action: bpy.types.Action | None,
+    armature_object: Object,
+    keyframe_action: Action | None,
     evidence: SceneEvidence,
     matches: Matches = NOT_MATCHED,
     kept: Reading | None = None,
 ) -> Job[tuple[Take, tuple[str, ...]]]:
-    """Read a scene as core's take, with notes for the animator; the scene is as before afterwards.
-
-    `kept` is a cached reading of any clip, for the times of its frames.
-
-    Raises:
-        InputError: Something is missing or unusable.
-    """
+    """Read a scene as core's take, with notes for the animator; `kept` is as in `clip_frames`."""
     frames = yield from clip_frames(footage, evidence, kept)
-    body = read_body(armature_object, HUMAN)
+    body = read_body(armature_object)
     take = scene_take(footage, evidence, frames, body, read_camera(footage, frames))
     if keyframe_action is None:
         return take, ()
@@ -85,11 +68,7 @@ def read_scene_take(
 
 
 def scene_take(footage: Footage, evidence: SceneEvidence, frames: Array, body: Body, camera: Camera) -> Take:
-    """A take without keyframes; `frames` (F,) are the scene frames of the clip's.
-
-    Raises:
-        InputError: The evidence cannot be read.
-    """
+    """A take without keyframes; `frames` (F,) are the scene frames of the clip's."""
     return Take(
         folder=footage.path.parent,
         clip=footage.path,

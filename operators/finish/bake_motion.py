@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ...core.files.fields import listed
 from ...core.progress import run as run_job
@@ -42,12 +41,14 @@ def mark_motion_asset(
         InputError: The catalog is unusable, or the pictured Action is not the actor's.
         ConversionError: The catalog cannot be written.
     """
-    from ..bridge.assets import AssetDetails, action_picture, mark_asset
+    from ...core.report.stick_figure import thumbnail
+    from ..bridge.assets import AssetDetails, mark_asset
+    from ..bridge.rig import shown_motion
 
     settings, performer = take.finish, actor or take.armature
     picture = None
     if pictured is not None and performer is not None:
-        picture = action_picture(context.scene, performer, pictured)
+        picture = thumbnail(shown_motion(context.scene, performer, pictured, most_frames=25))
     catalog = ensure_catalog(catalog_file(), settings.catalog) if settings.catalog.strip() else ""
     tags = [tag.strip() for tag in settings.tags.split(",") if tag.strip()]
     details = AssetDetails(catalog, tags, settings.author, settings.license, settings.description)
@@ -203,7 +204,6 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         self, scene: bpy.types.Scene, take: bpy.types.PropertyGroup, chosen: ExportFormat, path: Path
     ) -> None:
         """Write the actor's final Action, baked anew where there is none of the newest motion."""
-        from ..bridge.actor_lengths import read_body
         from ..bridge.rig import absence_note, motion_frames
 
         if self.bake and not chosen.of_actor and TakeState(take).newest[0] == "MOTION":
@@ -211,11 +211,11 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
             if not bpy.app.background:
                 bpy.ops.ed.undo_push(message="Bake Final Action")
         action = take.finish.action or take.motion_action
-        body, render = read_body(take.armature, HUMAN), scene.render
-        frames = motion_frames(take.armature, action, body)
+        render = scene.render
+        frames = motion_frames(take.armature, action)
         export_motion(scene, take.armature, action, (int(frames[0]), int(frames[-1])), chosen, path)
         warn_if_outdated(self, take)
-        away = absence_note(take.armature, take.motion_action, body, render.fps / render.fps_base)
+        away = absence_note(take.armature, take.motion_action, render.fps / render.fps_base)
         if away:
             warn(self, away)
 

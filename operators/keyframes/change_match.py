@@ -6,7 +6,6 @@ from math import degrees
 import bpy
 from bpy.types import Context, OperatorProperties, PropertyGroup
 
-from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ...core.prior.texts import COMPOSED
 from ..bridge.scene_frames import show_frame
@@ -81,7 +80,7 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
         if TakeState(take).of_match(match) != "FOUND":
             raise Unchanged(f"frame {match.frame:g} is no found keyframe any more")
         frame = round(match.frame, 3)
-        take_over(take.armature, take.keyframe_action, HUMAN, (frame,))
+        take_over(take.armature, take.keyframe_action, (frame,))
         note_contradictions(take, frame, ())
         self.report({"INFO"}, f"Frame {frame:g} counts as right in the picture now")
 
@@ -99,7 +98,7 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
         matching, match = take.matching, match_here(take)
         frame = round(match.frame, 3)
         if TakeState(take).of_match(match) == "FOUND":
-            remove_keyframes(take.armature, take.keyframe_action, HUMAN, (frame,))
+            remove_keyframes(take.armature, take.keyframe_action, (frame,))
         note_contradictions(take, frame, ())
         removed = TakeState(take).match_at(frame)
         matching.matches.remove(removed)

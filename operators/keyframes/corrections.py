@@ -40,7 +40,7 @@ def shown_pose(take: PropertyGroup) -> "tuple[Body, Posture]":
     from ..bridge.actor_lengths import read_body
     from ..bridge.pose import read_posture
 
-    body = read_body(take.armature, HUMAN)
+    body = read_body(take.armature)
     return body, read_posture(take.armature, body).posture
 
 

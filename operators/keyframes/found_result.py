@@ -107,8 +107,8 @@ def clear_found(take: PropertyGroup) -> int:
     actor, matching = actor_of(take), take.matching
     undecided = tuple(known_matches(take, by_hand=False))
     if take.keyframe_action is not None:
-        take_over(actor, take.keyframe_action, HUMAN, TakeState(take).posed)
-        remove_keyframes(actor, take.keyframe_action, HUMAN, undecided)
+        take_over(actor, take.keyframe_action, TakeState(take).posed)
+        remove_keyframes(actor, take.keyframe_action, undecided)
     kept = [match.by_hand and TakeState(take).of_match(match) == "FOUND" for match in matching.matches]
     for index in reversed(range(len(kept))):
         if not kept[index]:

@@ -8,7 +8,6 @@ import bpy
 import numpy as np
 from bpy.types import Context, Event, PropertyGroup, Scene
 
-from ...core.body.human import HUMAN
 from ...core.errors import KeymarkError
 from ...core.prior.texts import COMPOSED
 from ...core.progress import run
@@ -136,7 +135,7 @@ def key_pose(context: Context, take: PropertyGroup, depth_found: bool = False) -
     from ..bridge.keyframes import store_pose
 
     frame = context.scene.frame_current_final
-    store_pose(take.armature, take.keyframe_action, HUMAN, frame, depth_found)
+    store_pose(take.armature, take.keyframe_action, frame, depth_found)
     assign_action(take.armature, take.keyframe_action)
     note_contradictions(take, frame, ())
     take.offered.candidates.clear()
@@ -155,7 +154,7 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         from ..bridge.pose import read_posture
 
         take, frame = active_take(context.scene), context.scene.frame_current_final
-        body = read_body(take.armature, HUMAN)
+        body = read_body(take.armature)
         read = read_posture(take.armature, body)
         if take.keyframe_action is None:
             take.keyframe_action = new_keyframe_action(take.armature)

@@ -1,18 +1,14 @@
 """Load keyframe libraries: from a .json, or from a .blend of pose assets."""
 
-from typing import TYPE_CHECKING
-
 import bpy
+from bpy.types import Context, Event, Menu
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator, browse, chosen_file
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.requirements import idle, registered_library
 from ..shell.takes import refresh_asset_browsers
-from .registry import chosen_identifier, refresh
-
-if TYPE_CHECKING:
-    pass
+from .registry import chosen_identifier, folders, refresh
 
 
 class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
@@ -34,19 +30,22 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
     filter_glob: Text(default="*.json;*.blend", options=HIDDEN)
     filter_folder: Switch(default=True, options=HIDDEN)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         return self.execute(context) if self.filepath else browse(self, context)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Read the whole file first, then write its libraries into the user's folder."""
         from ...core.prior.library import library_digest
+        from ...core.prior.registry import registered_libraries
         from ..bridge.library.library_file import read_libraries
-        from .registry_files import find_registered, write_to_registry
+        from .registry_files import write_to_registry
 
         libraries = read_libraries(chosen_file(self, "a keyframe library, .json or .blend"))
+        found = [entry.content for entry in registered_libraries(folders())]
+        known = {library.identifier: library for library in found if library is not None}
         new = []
         for library in libraries:
-            there = find_registered(library.identifier)
+            there = known.get(library.identifier)
             if there is None or library_digest(there) != library_digest(library):
                 new.append(library)
                 if there is not None and not self.replace:
@@ -58,13 +57,11 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
         write_to_registry(new)
         refresh(libraries[0].identifier)  # the list points to it
         titles = ", ".join(f"'{library.title}'" for library in new)
-        if new:
-            self.report({"INFO"}, f"Loaded {titles}")
-        else:
-            self.report({"INFO"}, "Nothing to load: the library is at hand already")
+        nothing = "Nothing to load: the library is at hand already"
+        self.report({"INFO"}, f"Loaded {titles}" if new else nothing)
 
 
-def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+def _draw_import(menu: Menu, context: Context) -> None:
     menu.layout.operator(KEYMARK_OT_import_library.bl_idname, text="Keymark Keyframe Library (.json/.blend)")
 
 
@@ -75,7 +72,7 @@ class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER"}
     requirements = (idle,)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         refresh()
         count = len(context.window_manager.keymark_shelf.libraries)
         self.report({"INFO"}, f"{count} keyframe libraries are at hand")
@@ -91,7 +88,7 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
         "Library", "Identifier of a library at hand; empty: the one chosen in the list", options=SKIP_SAVE
     )
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Add an Action for each posture; a saved file's catalogs are named beside it."""
         from ..bridge.asset_catalogs import catalog_file, ensure_catalog
         from ..bridge.library.pose_assets import add_assets, assets_by_library, catalog_of

@@ -1,6 +1,7 @@
 """The popover of keyframe libraries."""
 
 import bpy
+from bpy.types import Context, PropertyGroup, UILayout
 
 from ...core.errors import pluralize
 from ..shell.panel import Popover, RowList, draw_sentence
@@ -13,9 +14,7 @@ MOST_LINES = 4  # Lines of a library's description, or of its problem
 class KEYMARK_UL_shelf(RowList, bpy.types.UIList):
     """Registered libraries, with an icon for shipped, own and unusable ones."""
 
-    def draw_row(
-        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
-    ) -> None:
+    def draw_row(self, context: Context, layout: UILayout, item: PropertyGroup) -> None:
         row = layout.row(align=True)
         icon = "ERROR" if item.problem else "USER" if item.is_own else "PACKAGE"
         row.label(text=item.title, translate=False, icon=icon)
@@ -31,7 +30,7 @@ class KEYMARK_PT_libraries(Popover, bpy.types.Panel):
 
     bl_label = "Libraries"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         registry, layout = context.window_manager.keymark_shelf, self.layout
         take = active_take(context.scene)
         self.column().prop(take.matching, "library", text="Pose From")
@@ -49,25 +48,17 @@ class KEYMARK_PT_libraries(Popover, bpy.types.Panel):
         if item is not None and item.problem:
             draw_sentence(column, context, item.problem, "ERROR", MOST_LINES)
         elif item is not None:
-            _draw_facts(column, context, item)
+            facts = column.column(align=True)
+            facts.scale_y = 0.85
+            size = f"{pluralize(item.postures, 'posture')}, {pluralize(item.motions, 'motion')}"
+            by = f"Version {item.version} by {item.author}"
+            for text, icon in ((size, "INFO"), (by, "BLANK1"), (item.license, "BLANK1")):
+                facts.label(text=text, icon=icon, translate=False)
+            if item.description:
+                draw_sentence(column, context, item.description, "TEXT", MOST_LINES)
             column.operator("keymark.edit_library", icon="ASSET_MANAGER").library = item.name
         saving = column.column(align=True)
         posed = saving.row()
         posed.enabled = take.keyframe_action is not None
         posed.operator("keymark.export_library", text="Save Keyframes", icon="KEYINGSET").source = "KEYFRAMES"
         saving.operator("keymark.learn_library", icon="ACTION")
-
-
-def _draw_facts(
-    layout: bpy.types.UILayout, context: bpy.types.Context, item: bpy.types.PropertyGroup
-) -> None:
-    """Draw the facts of a registered library."""
-    column = layout.column(align=True)
-    column.scale_y = 0.85
-    size = f"{pluralize(item.postures, 'posture')}, {pluralize(item.motions, 'motion')}"
-    column.label(text=size, icon="INFO", translate=False)
-    by = f"Version {item.version} by {item.author}"
-    column.label(text=by, icon="BLANK1", translate=False)
-    column.label(text=item.license, icon="BLANK1", translate=False)
-    if item.description:
-        draw_sentence(layout, context, item.description, "TEXT", MOST_LINES)

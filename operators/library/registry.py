@@ -1,7 +1,6 @@
-"""Registry of keyframe libraries: those that come with Keymark, and the user's own, as lists show them.
+"""Registry of keyframe libraries, shipped and the user's own, as lists show them.
 
-Folders are read when the sidebar is first drawn, and by operators that change files; drawing only shows what
-was found then.
+Folders are read when the sidebar is first drawn, and by operators that change files.
 """
 
 from contextlib import suppress
@@ -10,14 +9,14 @@ from zlib import crc32
 
 import bpy
 from bpy.app import timers
+from bpy.types import Context, PropertyGroup
 
 from ..shell.fields import SKIP_SAVE, Entries, Group, Integer, Switch, Text
 from ..shell.results import EXTENSION
 from ..shell.takes import redraw_sidebars
 
 Item = tuple[str, str, str, str, int]
-_items: list[Item] = []
-"""Items of the menu: Blender keeps no copy of the strings, which must live as long as it is shown."""
+_items: list[Item] = []  # Blender keeps no copy of a menu's strings, which must live as long as it is shown
 
 
 def own_folder() -> Path:
@@ -37,36 +36,32 @@ def folders() -> list[Path]:
     return [own_folder(), SHIPPED]
 
 
-def chosen_entry(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
+def chosen_entry(context: Context) -> PropertyGroup | None:
     """The entry that is chosen in the list."""
     listed = context.window_manager.keymark_shelf
     return listed.libraries[listed.active] if listed.active < len(listed.libraries) else None
 
 
-def chosen_identifier(context: bpy.types.Context) -> str:
+def chosen_identifier(context: Context) -> str:
     """Identifier of the library that is chosen in the list; empty where there is none."""
     entry = chosen_entry(context)
     return "" if entry is None else str(entry.name)
 
 
-def library_items(_properties: object, context: bpy.types.Context | None) -> list[Item]:
+def library_items(_properties: object, context: Context | None) -> list[Item]:
     """Items of a menu of all libraries that can be used."""
     manager = (context or bpy.context).window_manager
     if bpy.app.background and not len(manager.keymark_shelf.libraries):
         refresh()  # no timer runs, and nothing is drawn
     found: list[Item] = [
-        (library.name, library.title, library.description, "ASSET_MANAGER", _number(library.name))
-        for library in manager.keymark_shelf.libraries
-        if not library.problem
+        # Files store the number of an item: the same whichever other libraries there are.
+        (one.name, one.title, one.description, "ASSET_MANAGER", 1 + crc32(one.name.encode()) % (2**31 - 2))
+        for one in manager.keymark_shelf.libraries
+        if not one.problem
     ]
     if found != _items:
         _items[:] = found
     return _items
-
-
-def _number(identifier: str) -> int:
-    """Number of a library's menu item, which files store: the same whichever other libraries there are."""
-    return 1 + crc32(identifier.encode()) % (2**31 - 2)
 
 
 def refresh(choose: str = "") -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
+from bpy.types import AnyType, Context, Event
 
 from ...core.errors import InputError
 from ...core.prior.texts import identifier_from
@@ -27,7 +28,7 @@ USUAL = (
 """SPDX identifiers, and what they allow."""
 
 
-def suggest(_properties: bpy.types.AnyType, _context: bpy.types.Context, typed: str) -> list[tuple[str, str]]:
+def suggest(_properties: AnyType, _context: Context, typed: str) -> list[tuple[str, str]]:
     """The common licenses that contain the typed text, each with what it allows; all if none does."""
     return [each for each in USUAL if typed.lower() in each[0].lower()] or list(USUAL)
 
@@ -77,7 +78,7 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
     check_existing: Switch(default=True, options=HIDDEN)
     filter_glob: Text(default="*.json;*.blend", options=HIDDEN)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         self.library = self.library or chosen_identifier(context)
         name = self.library if self.source == "LIBRARY" else identifier_from(self._title(context))
         folder = "//" if bpy.data.filepath else ""
@@ -85,7 +86,7 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def check(self, context: bpy.types.Context) -> bool:
+    def check(self, context: Context) -> bool:
         stem = self.filepath
         for suffix in SUFFIXES.values():
             stem = stem.removesuffix(suffix)
@@ -94,7 +95,7 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
         self.filepath = path
         return changed
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         column = self.layout.column()
         column.prop(self, "format", expand=True)
         column.prop(self, "source")
@@ -102,7 +103,7 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
             for name in ("title", "author", "license"):
                 column.prop(self, name)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         from ...core.prior.library import write_library
         from ..bridge.asset_catalogs import asset_root
         from ..bridge.library.library_file import write_library_blend
@@ -117,14 +118,13 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
             write_library_blend(path, library, asset_root(path.parent))
         else:
             write_library(path, library)
-        count = len(library.postures)
-        self.report({"INFO"}, f"Wrote {count} postures to {path}")
+        self.report({"INFO"}, f"Wrote {len(library.postures)} postures to {path}")
 
-    def _title(self, context: bpy.types.Context) -> str:
+    def _title(self, context: Context) -> str:
         take = find_take(context.scene)
         return self.title.strip() or (take.name if take is not None else "Postures")
 
-    def _library(self, context: bpy.types.Context) -> "Library":
+    def _library(self, context: Context) -> "Library":
         from ...core.prior.learning import LibraryMetadata
         from ..bridge.library.posed_library import library_of_assets, library_of_keyframes
         from .registry_files import load_registered
@@ -159,7 +159,7 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         take = active_take(context.scene)
         if not self.title:
             self.title = take.name
@@ -167,14 +167,14 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
             self.author = take.finish.author
         return context.window_manager.invoke_props_dialog(self, width=360, confirm_text="Learn")
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         layout = self.layout
         layout.use_property_split, layout.use_property_decorate = True, False
         for name in ("title", "author", "license"):
             layout.prop(self, name)
         layout.prop(self, "count", text="Postures (0: Automatic)")
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Learn the library, and write it into the user's folder."""
         from ...core.prior.learning import LibraryMetadata
         from ...core.prior.registry import identifier_of, registered_libraries
@@ -184,12 +184,9 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
         take = active_take(context.scene)
         title = self.title.strip() or take.name
         known = set(map(identifier_of, registered_libraries(folders())))
-        about = LibraryMetadata(
-            title=title,
-            author=self.author.strip() or "Unknown",
-            license=self.license.strip(),
-            identifier=self.learned_as or identifier_from(title, known),
-        )
+        identifier = self.learned_as or identifier_from(title, known)
+        author, terms = self.author.strip() or "Unknown", self.license.strip()
+        about = LibraryMetadata(title, author, terms, identifier)
         action = take.finish.action or take.motion_action
         library = library_from_action(context.scene, take.armature, action, about, self.count or None)
         self.learned_as = library.identifier
@@ -197,5 +194,5 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
         refresh(library.identifier)
         warn_if_outdated(self, take)
         (learned,) = library.motions
-        count = len(library.postures)
-        self.report({"INFO"}, f"Learned '{title}': {count} postures over {learned.duration_s:.1f} s")
+        what = f"{len(library.postures)} postures over {learned.duration_s:.1f} s"
+        self.report({"INFO"}, f"Learned '{title}': {what}")

@@ -64,7 +64,7 @@ def candidate_points(armature_object: bpy.types.Object, match: PropertyGroup) ->
         from ..bridge.actor_lengths import read_body
         from ..bridge.keyframes import candidate_posture
 
-        body = read_body(armature_object, HUMAN)
+        body = read_body(armature_object)
         return np.stack([body.points(body.pose(candidate_posture(each))) for each in match.candidates])
 
     points = _points.known(key, found)

@@ -5,7 +5,6 @@ import numpy as np
 from bpy.types import Context, Event, OperatorProperties, PropertyGroup, UILayout
 from mathutils import Matrix, Vector
 
-from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..bridge.object_space import evaluated
@@ -142,7 +141,7 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         with showing_action(take.armature, take.motion_action), at_scene_frame(scene) as go_to:
             go_to(frame)
             straighten_unposed(take)
-            store_pose(take.armature, action, HUMAN, frame, TakeState(take).depth_is_found(frame))
+            store_pose(take.armature, action, frame, TakeState(take).depth_is_found(frame))
         take.keyframe_action = action
         assign_action(take.armature, action)
         show_frame(scene, frame)

@@ -10,7 +10,6 @@ from functools import cached_property
 
 from bpy.types import Action, Object, PropertyGroup
 
-from ...core.body.human import HUMAN
 from ...core.detect.keypoints import BODY_POINTS
 from ...core.errors import InputError
 from ..bridge.actions import action_digest, action_of
@@ -115,7 +114,7 @@ class TakeState:
         take = self.take
         if take.armature is None or take.keyframe_action is None:
             return KeyedFrames()
-        source = take.armature, take.keyframe_action, HUMAN
+        source = take.armature, take.keyframe_action
 
         def read() -> KeyedFrames:
             from ..bridge.keyframes import keyed_frames, unchanged_keyframes

@@ -5,7 +5,6 @@ from math import pi
 
 import bpy
 
-from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ..actor.properties import KEYMARK_PG_lengths, in_meters
 from ..bridge.actor_bones import is_actor
@@ -43,7 +42,7 @@ def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) 
         from ..bridge.actor_lengths import read_body
 
         reattach(take)
-        show_lengths(take, read_body(take.armature, HUMAN))
+        show_lengths(take, read_body(take.armature))
 
 
 def _height_typed(take: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:

@@ -13,7 +13,7 @@ from ...core.take.description import KEYFRAME_FILE, describe
 from ...core.take.evidence import EVIDENCE
 from ...core.take.take import Take
 from ...core.take.take_file import read_described
-from ..actor.take_actor import add_actor
+from ..actor.take_actor import new_actor
 from ..bridge.actions import assign_action
 from ..bridge.footage_to_scene import show_footage, stored_path
 from ..bridge.keyframes import write_keyframes
@@ -75,7 +75,7 @@ def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, open
     )
     settings = add_take(scene, take.name)
     settings.camera, settings.clip = camera_object, scene.active_clip
-    armature_object = add_actor(context, settings, take.body)
+    armature_object = new_actor(context, settings, take.body)
     settings.stature = take.body.actor.stature_m
     settings.follow.use_hands = opened.hands
     for style in take.markers:

@@ -7,7 +7,6 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.body.body_volume import MARKER_SEGMENTS
-from keymark.core.body.human import HUMAN
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
@@ -26,7 +25,7 @@ def test_markers_can_be_bound_to_what_core_knows(body) -> None:  # noqa: ANN001
 def test_opening_a_take_fills_the_scene(opened: bpy.types.Scene, tiny_take: Take) -> None:
     settings = active_take(opened)
     assert opened.active_clip.frame_duration == 13
-    lengths = read_body(settings.armature, HUMAN).actor.segments_m
+    lengths = read_body(settings.armature).actor.segments_m
     assert dict(lengths) == pytest.approx(dict(tiny_take.body.actor.segments_m), rel=1e-5)
     assert [(m.name, m.segment) for m in settings.markers] == [(s.name, s.segment) for s in tiny_take.markers]
     assert [round(255 * v) for v in settings.markers[1].color] == list(tiny_take.markers[1].color_srgb)
@@ -128,7 +127,7 @@ def test_building_an_actor_selects_it_alone(opened: bpy.types.Scene) -> None:
     layer = bpy.context.view_layer
     assert list(layer.objects.selected) == [active_take(opened).armature] == [layer.objects.active]
     assert active_take(opened).armature.animation_data.action == active_take(opened).keyframe_action
-    assert read_body(active_take(opened).armature, HUMAN).actor.stature_m == pytest.approx(1.6, rel=1e-4)
+    assert read_body(active_take(opened).armature).actor.stature_m == pytest.approx(1.6, rel=1e-4)
 
 
 def test_storing_a_pose_beyond_the_skeleton_warns_but_stores(opened: bpy.types.Scene) -> None:

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 
-import bpy
 import numpy as np
+from bpy.types import Object
 
 from ....core.arrays import Array
 from ....core.errors import InputError
@@ -16,27 +16,24 @@ from ..rotation_modes import bone_path, rotation_path
 from .controls import CARRYING, active_constraints, drivers
 from .held_controls import Releases
 
-MOST_NAMES = 3  # bones that a sentence names; more are counted
 ASTRAY = 0.003  # distance of a control from its place that is worth a note, in sizes of the character
 LEFT_BEHIND = 0.03  # the same of hips that is no longer the performer's motion
-ADRIFT = 0.01
-"""Distance, in sizes of the character, that random poses move a control from where its carrier has it."""
+ADRIFT = 0.01  # the same that random poses move a control from where its carrier has it
 
 
-def driven_channels(armature_object: bpy.types.Object) -> set[tuple[str, int]]:
+def driven_channels(armature_object: Object) -> set[tuple[str, int]]:
     """Data path and index of all channels that have a driver, which wins over keys."""
     return {(driver.data_path, driver.array_index) for driver in drivers(armature_object)}
 
 
 def keyed_paths(keyed: KeyedControl) -> list[tuple[str, Array | Spline]]:
     """Data path of each property of a control that is keyed, and what it holds."""
-    name, rotation = keyed.control.name, rotation_path(keyed.control.mode)
-    both = ((bone_path(name, rotation), keyed.rotation), (bone_path(name, "location"), keyed.location))
-    return [(path, held) for path, held in both if held is not None]
+    both = ((rotation_path(keyed.control.mode), keyed.rotation), ("location", keyed.location))
+    return [(bone_path(keyed.control.name, channel), held) for channel, held in both if held is not None]
 
 
 def channel_notes(
-    armature_object: bpy.types.Object,
+    armature_object: Object,
     keyed: Sequence[KeyedControl],
     motion: ControlMotion,
     scaled: Sequence[str],
@@ -54,11 +51,8 @@ def channel_notes(
         constrained = name not in releases.bones and any(
             constraint.type not in CARRYING for constraint in active_constraints(bone)
         )
-        for why, so in (
-            ("driven", driven & channels),
-            ("constrained", constrained),
-            ("locked", turned or moved),
-        ):
+        states = (("driven", driven & channels), ("constrained", constrained), ("locked", turned or moved))
+        for why, so in states:
             astray[why] += [name] * bool(so)
     notes = {
         "Drivers win over the keys of bone {}; mute them to let the motion through": astray["driven"],
@@ -78,10 +72,10 @@ def channel_notes(
         ],
     }
     quoted = {note: [f"'{name}'" for name in names] for note, names in notes.items() if names}
-    return tuple(note.format(listed(names, MOST_NAMES)) for note, names in quoted.items())
+    return tuple(note.format(listed(names, 3)) for note, names in quoted.items())
 
 
-def require_placed_hips(armature_object: bpy.types.Object, motion: ControlMotion) -> None:
+def require_placed_hips(armature_object: Object, motion: ControlMotion) -> None:
     """Raise InputError where the hips cannot go where the performer goes: the body would fold up instead."""
     bones = armature_object.data.bones
     for control, _, off in _off(motion):

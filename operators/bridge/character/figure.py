@@ -1,7 +1,9 @@
 """A character's shape in the current frame, for pictures: its meshes, or its bones where it has none."""
 
-import bpy
+from collections.abc import Iterator
+
 import numpy as np
+from bpy.types import Material, Object, Scene
 
 from ....core.arrays import Array, Image
 from ....core.numerics.vectors import across
@@ -18,23 +20,26 @@ from .import_character import skins
 
 MOST_TRIANGLES = 200_000  # with more, bones are drawn: a picture need not take half a minute
 WAIST, THICKNESS = 0.15, 0.09  # an octahedral bone's widest place and its half-width there, in bone lengths
-NEW_GRAY, GAMMA = 0.8, 2.2  # color of a new material, which nobody has chosen; and the display's exponent
+CORNERS = [(2, 3), (3, 4), (4, 5), (5, 2)]  # of the waist; the ends come before them
+OCTAHEDRON = np.array([side for a, b in CORNERS for side in ((0, b, a), (1, a, b))], dtype=np.intp)
+NEW_GRAY = 0.8  # color of a new material, which nobody has chosen
 
 
-def character_figure(armature_object: bpy.types.Object, character_map: CharacterMap) -> CharacterFigure:
+def character_figure(armature_object: Object, character_map: CharacterMap) -> CharacterFigure:
     """The character as its scene shows it now."""
-    meshes = [_mesh(one) for one in skins(armature_object)]
-    if meshes and sum(len(mesh.triangles) for mesh in meshes) <= MOST_TRIANGLES:
-        starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
-        return CharacterFigure(
-            np.concatenate([mesh.points for mesh in meshes]),
-            np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts[:-1], strict=True)]),
-            np.concatenate([mesh.colors for mesh in meshes]),
-        )
-    return _bones(armature_object, character_map)
+    figures = [_mesh(one) for one in skins(armature_object)]
+    if not 0 < sum(len(figure.triangles) for figure in figures) <= MOST_TRIANGLES:
+        figures = list(_bones(armature_object, character_map))
+    figures = figures or [CharacterFigure(np.zeros((0, 3)), OCTAHEDRON[:0], np.zeros((0, 3)))]
+    starts = np.cumsum([0, *(len(figure.points) for figure in figures[:-1])])
+    return CharacterFigure(
+        np.concatenate([figure.points for figure in figures]),
+        np.concatenate([figure.triangles + start for figure, start in zip(figures, starts, strict=True)]),
+        np.concatenate([figure.colors for figure in figures]),
+    )
 
 
-def _mesh(mesh_object: bpy.types.Object) -> CharacterFigure:
+def _mesh(mesh_object: Object) -> CharacterFigure:
     shown = evaluated(mesh_object)
     mesh = shown.to_mesh()
     try:
@@ -56,23 +61,19 @@ def _mesh(mesh_object: bpy.types.Object) -> CharacterFigure:
     )
 
 
-def _color(material: bpy.types.Material | None) -> Color:
+def _color(material: Material | None) -> Color:
     """Blue, green, red of a material in the viewport; a new material's own gray is left to `SKIN`."""
     if material is None or all(abs(value - NEW_GRAY) < 1e-3 for value in material.diffuse_color[:3]):
         return SKIN
-    red, green, blue = (
-        round(255.0 * min(max(value, 0.0), 1.0) ** (1.0 / GAMMA)) for value in material.diffuse_color[:3]
-    )
+    red, green, blue = (round(255.0 * min(max(x, 0.0), 1.0) ** (1 / 2.2)) for x in material.diffuse_color[:3])
     return blue, green, red
 
 
-def _bones(armature_object: bpy.types.Object, character_map: CharacterMap) -> CharacterFigure:
+def _bones(armature_object: Object, character_map: CharacterMap) -> Iterator[CharacterFigure]:
+    """An octahedron for each bone that plays a role, to the next one of its limb."""
     shown = evaluated(armature_object)
     world = np.array(shown.matrix_world, dtype=np.float64)
     poses = {bone.name: world @ np.array(bone.matrix, dtype=np.float64) for bone in shown.pose.bones}
-    points: list[Array] = []
-    triangles: list[tuple[int, int, int]] = []
-    colors: list[tuple[int, int, int]] = []
     chains = [(SKIN, [bone for role in MIDDLE for bone in character_map.bones(role)])]
     for limb, roles in LIMBS.items():
         bones = [bone for bone in map(character_map.bone, roles) if bone is not None]
@@ -84,42 +85,20 @@ def _bones(armature_object: bpy.types.Object, character_map: CharacterMap) -> Ch
             start, end = poses[bone][:3, 3], poses[bone] @ [0.0, shown.pose.bones[bone].bone.length, 0.0, 1.0]
             end = poses[onward][:3, 3] if onward in poses else end[:3]
             size = float(np.linalg.norm(end - start))
-            if size < 1e-6:
-                continue
-            aside = across(end - start)
-            other = np.cross((end - start) / size, aside)
-            waist = start + WAIST * (end - start)
-            out = THICKNESS * size * np.array([aside, other, -aside, -other])
-            first = 6 * len(points)
-            points.append(np.array([start, end, *(waist + out)]))
-            for corner in range(4):
-                a, b = first + 2 + corner, first + 2 + (corner + 1) % 4
-                triangles += [(first, b, a), (first + 1, a, b)]
-            colors += [color] * 8
-    return CharacterFigure(
-        np.concatenate(points) if points else np.zeros((0, 3)),
-        np.array(triangles, dtype=np.intp).reshape(-1, 3),
-        np.array(colors, dtype=np.float64).reshape(-1, 3),
-    )
-
-
-# --- The picture of a character's motion
+            if size >= 1e-6:
+                aside = across(end - start)
+                other = np.cross((end - start) / size, aside)
+                out = THICKNESS * size * np.array([aside, other, -aside, -other])
+                points = np.array([start, end, *(start + WAIST * (end - start) + out)])
+                yield CharacterFigure(points, OCTAHEDRON, np.tile(np.array(color, dtype=np.float64), (8, 1)))
 
 
 def character_picture(
-    scene: bpy.types.Scene,
-    armature_object: bpy.types.Object,
-    character_map: CharacterMap,
-    frames: Array,
-    floor_m: float,
+    scene: Scene, armature_object: Object, character_map: CharacterMap, frames: Array, floor_m: float
 ) -> Image | None:
     """Draw a character that shows its motion in a scene with the footage; None where there is no footage.
 
-    `frames` are the scene frames of the motion, the clip's frames in order; `floor_m` is the floor's height
-    under the character in the world. The scene's frame is as before afterwards.
-
-    Raises:
-        InputError: The clip cannot be read.
+    `frames` are the scene frames of the motion; `floor_m` is the floor's height under the character.
     """
     if scene.active_clip is None or scene.camera is None:
         return None

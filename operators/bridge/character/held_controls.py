@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import bpy
+from bpy.types import Constraint, FCurve, Object, PoseBone
 
 from ....core.errors import InputError
 from ....core.retarget.character import JOINTS
@@ -17,12 +18,12 @@ from .controls import (
     Property,
     Value,
     active_constraints,
+    constraint_targets,
     drivers,
     set_properties,
 )
 
-CHAINS = ("IK", "SPLINE_IK")
-"""Constraints that pose the bones above theirs, too."""
+CHAINS = ("IK", "SPLINE_IK")  # constraints that pose the bones above theirs, too
 BESIDE_KEYS = (
     *("LIMIT_DISTANCE", "LIMIT_LOCATION", "LIMIT_ROTATION", "LIMIT_SCALE", "COPY_SCALE"),
     *("MAINTAIN_VOLUME", "TRANSFORM", "ACTION", "FLOOR", "SHRINKWRAP"),
@@ -38,14 +39,13 @@ class Releases:
     """What is keyed so that controls follow their own keys."""
 
     constraints: tuple[Held, ...] = ()  # whose influence is keyed at zero
-    switches: Mapping[Property, Value] = field(default_factory=dict)
-    """Custom properties that drive an influence, with the values at which it is zero."""
+    switches: Mapping[Property, Value] = field(default_factory=dict)  # that drive one, at which it is zero
     bones: tuple[str, ...] = ()  # bones whose constraints are released by either
     stuck: tuple[Held, ...] = ()  # whose influence has a driver that no property was seen to switch off
 
 
 def find_releases(
-    armature_object: bpy.types.Object, character_map: CharacterMap, planned: Sequence[PlannedControl]
+    armature_object: Object, character_map: CharacterMap, planned: Sequence[PlannedControl]
 ) -> Releases:
     """What holds the planned controls as the armature stands now, but for limbs whose IK is keyed."""
     in_ik = {str(plan.limb) for plan in planned if plan.kind is ControlKind.GOAL}
@@ -64,29 +64,23 @@ def find_releases(
             continue
         if driver is None:
             constraints.append(held)
-        else:
-            found = _switch(armature_object, driver, held)
-            if found is None:
-                stuck.append(held)
-                continue
+        elif found := _switch(armature_object, driver, held):
             switches.update([found])
+        else:
+            stuck.append(held)
+            continue
         bones.append(bone.name)
     return Releases(tuple(constraints), switches, tuple(dict.fromkeys(bones)), tuple(stuck))
 
 
-def release(armature_object: bpy.types.Object, releases: Releases) -> None:
+def release(armature_object: Object, releases: Releases) -> None:
     """Let go of the controls for now; `posing` restores all."""
     for bone, name in releases.constraints:
         armature_object.pose.bones[bone].constraints[name].influence = 0.0
     set_properties(armature_object, releases.switches)
 
 
-def influence_path(armature_object: bpy.types.Object, held: Held) -> str:
-    """Data path of a constraint's influence."""
-    return str(armature_object.pose.bones[held[0]].constraints[held[1]].path_from_id("influence"))
-
-
-def require_released(armature_object: bpy.types.Object, releases: Releases, warnings: Sequence[str]) -> None:
+def require_released(armature_object: Object, releases: Releases, warnings: Sequence[str]) -> None:
     """Raise InputError where limbs are not the performer's and something holds them that no key switches."""
     if releases.stuck and warnings:
         bone, name = releases.stuck[0]
@@ -96,29 +90,30 @@ def require_released(armature_object: bpy.types.Object, releases: Releases, warn
         )
 
 
-def _holding(
-    armature_object: bpy.types.Object, names: Sequence[str]
-) -> Iterator[tuple[bpy.types.PoseBone, bpy.types.Constraint]]:
+def _holding(armature_object: Object, turned: Sequence[str]) -> Iterator[tuple[PoseBone, Constraint]]:
     """Constraints that pose the bones themselves, or let something else than the armature carry them."""
     bones = armature_object.pose.bones
-    wanted = set(names)
-    above = {one.name for name in names for one in bones[name].parent_recursive}
+    wanted = set(turned)
+    above = {one.name for name in turned for one in bones[name].parent_recursive}
     active = {bone.name: active_constraints(bone) for bone in bones}
-    chains = {
-        (bone.name, constraint.name): _chain(bone, constraint)
-        for bone in bones
-        for constraint in active[bone.name]
-        if constraint.type in CHAINS
-    }
-    chains = {held: chain for held, chain in chains.items() if wanted & chain}
+    chains: dict[Held, set[str]] = {}  # names of the bones that a constraint poses
+    for bone in bones:
+        for constraint in active[bone.name]:
+            if constraint.type in CHAINS:
+                chain = [bone, *bone.parent_recursive][not getattr(constraint, "use_tail", True) :]
+                names = {one.name for one in chain[: constraint.chain_count or len(chain)]}
+                if wanted & names:
+                    chains[bone.name, constraint.name] = names
     posed = wanted & set().union(*chains.values())
     for bone in bones:
         for constraint in active[bone.name]:
-            targets = constraint.targets if constraint.type == "ARMATURE" else [constraint]
-            others = {getattr(one, "target", None) for one in targets} - {armature_object, None}
+            others = {target for target, _ in constraint_targets(constraint)} - {armature_object, None}
             # Limits of a joint that inverse kinematics bends are those of its solver.
             beside = constraint.type in BESIDE_KEYS and bone.name not in posed
-            poses = bone.name in wanted and constraint.type not in CARRYING and not _adds(constraint)
+            # What adds to the bone's own keys lets these count as well.
+            adds = getattr(constraint, "mix_mode", "REPLACE") != "REPLACE"
+            adds = adds or getattr(constraint, "use_offset", False)
+            poses = bone.name in wanted and constraint.type not in CARRYING and not adds
             carries = bone.name in wanted | above and bool(others)
             if constraint.type in CHAINS:
                 poses, carries = (bone.name, constraint.name) in chains, False
@@ -126,25 +121,11 @@ def _holding(
                 yield bone, constraint
 
 
-def _chain(bone: bpy.types.PoseBone, constraint: bpy.types.Constraint) -> set[str]:
-    """Names of the bones that a constraint of `CHAINS` poses."""
-    chain = [bone, *bone.parent_recursive][not getattr(constraint, "use_tail", True) :]
-    return {one.name for one in chain[: constraint.chain_count or len(chain)]}
-
-
-def _adds(constraint: bpy.types.Constraint) -> bool:
-    """Whether a constraint adds to the bone's own keys, which count as well."""
-    mode = getattr(constraint, "mix_mode", "REPLACE")
-    return bool(mode != "REPLACE" or getattr(constraint, "use_offset", False))
-
-
-def _influence(armature_object: bpy.types.Object, held: Held) -> float:
+def _influence(armature_object: Object, held: Held) -> float:
     return float(evaluated(armature_object).pose.bones[held[0]].constraints[held[1]].influence)
 
 
-def _switch(
-    armature_object: bpy.types.Object, driver: bpy.types.FCurve, held: Held
-) -> tuple[Property, Value] | None:
+def _switch(armature_object: Object, driver: FCurve, held: Held) -> tuple[Property, Value] | None:
     """The custom property of a pose bone, and its value, at which a driven influence is zero."""
     bones = armature_object.pose.bones
     for variable in driver.driver.variables:

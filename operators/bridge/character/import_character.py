@@ -2,12 +2,13 @@
 
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 import bpy
+from bpy.types import Action, Object, Scene, Text
 
 from ....core.errors import InputError, shown
 from ....core.files.fields import listed
@@ -16,11 +17,17 @@ from ....core.take.character_settings import CharacterFile
 from ..actions import curve_digest
 from ..blend_files import check_blend, one_line, showing_scene, write_blend
 from ..export_formats import FORMATS, export_motion
+from .controls import constraint_targets
 
 MOST_NAMED = 5  # armatures named in a sentence
 BLEND, VRM = ".blend", ".vrm"
-NOT_ALONG = ("ARMATURE", "CAMERA", "LIGHT", "SPEAKER", "LIGHT_PROBE")
-"""Kinds of objects that do not belong to a character because a constraint ties them to it."""
+NOT_ALONG = (
+    "ARMATURE",
+    "CAMERA",
+    "LIGHT",
+    "SPEAKER",
+    "LIGHT_PROBE",
+)  # that look at it, and no members
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,25 +35,21 @@ class ImportedCharacter:
     """A character in a scene."""
 
     file: CharacterFile
-    armature: bpy.types.Object
-    objects: tuple[bpy.types.Object, ...]  # all that is in the scene, the armature among them
-    texts: tuple[bpy.types.Text, ...] = ()
-    """Scripts of its file that Blender registers when a person opens it, as Rigify's panel; not run here."""
+    armature: Object
+    objects: tuple[Object, ...]  # all that is in the scene, the armature among them
+    texts: tuple[Text, ...] = ()  # scripts that Blender registers when a person opens the file; not run here
     notes: tuple[str, ...] = ()  # what a person should know, in sentences without a full stop
 
 
 def import_character(
-    file: CharacterFile, scene: bpy.types.Scene, animated: bool = False, text: str | None = None
+    file: CharacterFile, scene: Scene, animated: bool = False, text: str | None = None
 ) -> ImportedCharacter:
     """Import a character into a scene of its own (see `own_scene`), which removes it again.
 
     Of a .blend objects are appended; nothing in it is run. Other files are read by Blender's own importers,
-    without their motions unless `animated`; a `text` is read in the file's place. The objects
-    get a collection with the armature's name.
-
-    Raises:
-        InputError: Blender cannot read the file, it has no such armature or none at all, or several and none
-            is named.
+    without their motions unless `animated`; a `text` is read in the file's place. The objects get a
+    collection with the armature's name. InputError where Blender cannot read the file, it has no such
+    armature or none at all, or several and none is named.
     """
     regular_file_size(file.path, "a character file")
     suffix = file.path.suffix.lower()
@@ -58,25 +61,38 @@ def import_character(
     members = _members(armature, found.values())
     notes: tuple[str, ...] = ()
     if suffix == BLEND and not animated:
-        notes = _mute_tracks(armature)
+        tracks = armature.animation_data.nla_tracks if armature.animation_data is not None else ()
+        playing = [track for track in tracks if not track.mute]
+        for track in playing:
+            track.mute = True
+        names = listed((shown(track.name) for track in playing), MOST_NAMED)
+        notes = (f"NLA tracks of '{armature.name}' are muted in the copy: {names}",) if playing else ()
     elif not animated:
-        _clear_motions(armature, members)
-    _into_collection(scene, armature.name, members)
+        for one in members:
+            one.animation_data_clear()
+            keys = getattr(one.data, "shape_keys", None)
+            if keys is not None:
+                keys.animation_data_clear()
+        for bone in armature.pose.bones:
+            bone.matrix_basis.identity()
+    for other in list(scene.collection.children):
+        scene.collection.children.unlink(other)
+    for one in list(scene.collection.objects):
+        scene.collection.objects.unlink(one)
+    collection = bpy.data.collections.new(armature.name)
+    scene.collection.children.link(collection)
+    for one in members:
+        collection.objects.link(one)
     armature.hide_viewport = False  # else Blender would not evaluate it
     scene.view_layers[0].update()
     return ImportedCharacter(file, armature, tuple(members), texts, notes)
 
 
-Appended = tuple[dict[str, bpy.types.Object], tuple[bpy.types.Text, ...]]
-
-
-def _appended(file: CharacterFile, animated: bool) -> Appended:
+def _appended(file: CharacterFile, animated: bool) -> tuple[dict[str, Object], tuple[Text, ...]]:
     check_blend(file.path, "a character")
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == file.path.resolve():
-        raise InputError(
-            f"{file.path}: is open in this Blender, which appends nothing from it; name a copy of it, "
-            "or run the command without opening it"
-        )
+        why = "is open in this Blender, which appends nothing from it"
+        raise InputError(f"{file.path}: {why}; name a copy of it, or run the command without opening it")
     try:
         with bpy.data.libraries.load(str(real_path(file.path)), link=False) as (inside, wanted):
             names = list(inside.objects)
@@ -89,9 +105,7 @@ def _appended(file: CharacterFile, animated: bool) -> Appended:
     return objects, tuple(text for text in wanted.texts if text is not None and text.use_module)
 
 
-def _imported(
-    file: CharacterFile, scene: bpy.types.Scene, animated: bool, text: str | None
-) -> dict[str, bpy.types.Object]:
+def _imported(file: CharacterFile, scene: Scene, animated: bool, text: str | None) -> dict[str, Object]:
     before = {one.name for one in bpy.data.objects}
     with showing_scene(scene), tempfile.TemporaryDirectory() as folder:
         path = real_path(file.path)
@@ -100,11 +114,9 @@ def _imported(
         if text is not None:
             path = Path(folder) / path.name
             path.write_text(text, encoding="utf-8")
+        start = path.suffix.lower()[:4]
+        importer = IMPORTERS.get(start, IMPORTERS[".g"])
         try:
-            importer = next(
-                (one for start, one in IMPORTERS.items() if path.suffix.lower().startswith(start)),
-                IMPORTERS[".g"],
-            )
             importer(animated)(filepath=str(path))
         except (RuntimeError, AttributeError, OSError, ValueError, ArithmeticError, LookupError) as error:
             raise _unreadable(file.path, error) from error
@@ -132,7 +144,7 @@ def _unreadable(path: Path, error: Exception) -> InputError:
     )
 
 
-def _chosen(file: CharacterFile, found: dict[str, bpy.types.Object]) -> bpy.types.Object:
+def _chosen(file: CharacterFile, found: dict[str, Object]) -> Object:
     armatures = {name: one for name, one in found.items() if one.type == "ARMATURE"}
     names = listed(map(shown, sorted(armatures)), MOST_NAMED)
     if not armatures:
@@ -151,7 +163,7 @@ def _chosen(file: CharacterFile, found: dict[str, bpy.types.Object]) -> bpy.type
     return next(iter(armatures.values()))
 
 
-def _members(armature: bpy.types.Object, found: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
+def _members(armature: Object, found: Iterable[Object]) -> list[Object]:
     """The armature, what hangs on it or is deformed by it, and the objects that these need."""
     objects = list(found)
     members = {armature, *armature.children_recursive}
@@ -173,48 +185,13 @@ def _members(armature: bpy.types.Object, found: Iterable[bpy.types.Object]) -> l
     return [one for one in objects if one in members]
 
 
-def _mute_tracks(armature: bpy.types.Object) -> tuple[str, ...]:
-    tracks = armature.animation_data.nla_tracks if armature.animation_data is not None else ()
-    playing = [track for track in tracks if not track.mute]
-    for track in playing:
-        track.mute = True
-    names = listed((shown(track.name) for track in playing), MOST_NAMED)
-    said = f"NLA tracks of '{armature.name}' are muted in the copy: {names}"
-    return (said,) if playing else ()
-
-
-def _clear_motions(armature: bpy.types.Object, members: Iterable[bpy.types.Object]) -> None:
-    for one in members:
-        one.animation_data_clear()
-        keys = getattr(one.data, "shape_keys", None)
-        if keys is not None:
-            keys.animation_data_clear()
-    for bone in armature.pose.bones:
-        bone.matrix_basis.identity()
-
-
-def _into_collection(scene: bpy.types.Scene, name: str, members: Sequence[bpy.types.Object]) -> None:
-    collection = bpy.data.collections.new(name)
-    scene.collection.children.link(collection)
-    for one in list(scene.objects):
-        for holder in (scene.collection, *scene.collection.children_recursive):
-            if one in holder.objects.values():  # Blender's console tells of every other
-                holder.objects.unlink(one)
-    for one in members:
-        collection.objects.link(one)
-    for other in list(scene.collection.children):
-        if other != collection:
-            scene.collection.children.unlink(other)
-
-
 # --- The meshes of a character
 
 
-CARRIERS = ("CHILD_OF", "COPY_TRANSFORMS", "ARMATURE")
-"""Constraints by which a bone carries an object as a parent does."""
+CARRIERS = ("CHILD_OF", "COPY_TRANSFORMS", "ARMATURE")  # by which a bone carries an object as a parent does
 
 
-def skins(armature_object: bpy.types.Object) -> list[bpy.types.Object]:
+def skins(armature_object: Object) -> list[Object]:
     """The rendered meshes that the armature deforms or carries, in its first scene."""
     return [
         one
@@ -226,51 +203,38 @@ def skins(armature_object: bpy.types.Object) -> list[bpy.types.Object]:
     ]
 
 
-def carrying_bone(one: bpy.types.Object, armature_object: bpy.types.Object) -> str | None:
-    """The bone that carries an object, through whatever parents; empty for the armature object itself.
-
-    None where neither carries it.
-    """
-    at: bpy.types.Object | None = one
+def carrying_bone(one: Object, armature_object: Object) -> str | None:
+    """The bone that carries an object, empty for the armature object itself; None where neither does."""
+    at: Object | None = one
     while at is not None and at != armature_object:
         for constraint in at.constraints:
             if constraint.type in CARRIERS and not constraint.mute and constraint.influence > 0.0:
-                targets = constraint.targets if constraint.type == "ARMATURE" else [constraint]
-                for target in targets:
-                    if target.target == armature_object and target.subtarget:
-                        return str(target.subtarget)
+                for target, bone in constraint_targets(constraint):
+                    if target == armature_object and bone:
+                        return bone
         if at.parent == armature_object and at.parent_type == "BONE":
             return str(at.parent_bone)
         at = at.parent
     return None if at is None else ""
 
 
-def is_deformed(mesh_object: bpy.types.Object, armature_object: bpy.types.Object) -> bool:
+def is_deformed(mesh_object: Object, armature_object: Object) -> bool:
     """Whether an armature deforms a mesh."""
-    by_modifier = any(
-        modifier.type == "ARMATURE" and modifier.object == armature_object
-        for modifier in mesh_object.modifiers
-    )
-    return by_modifier or (mesh_object.parent == armature_object and mesh_object.parent_type == "ARMATURE")
+    deforming = [one.object for one in mesh_object.modifiers if one.type == "ARMATURE"]
+    by_parent = mesh_object.parent_type == "ARMATURE" and mesh_object.parent == armature_object
+    return by_parent or armature_object in deforming
 
 
 # --- A retargeted character as files
 
 
 def write_character_files(
-    scene: bpy.types.Scene,
-    imported: ImportedCharacter,
-    action: bpy.types.Action,
-    blend: Path,
-    exports: Mapping[str, Path],
+    scene: Scene, imported: ImportedCharacter, action: Action, blend: Path, exports: Mapping[str, Path]
 ) -> str:
     """Write a character with its Action into a .blend, and into files by name of `export_formats.FORMATS`.
 
-    A failure may leave half a file at these paths: the caller passes a staging folder. Returned is the
-    SHA-256 of the Action's curves: files of one motion differ, their curves do not.
-
-    Raises:
-        ConversionError: Blender could not write a file.
+    A ConversionError may leave half a file at these paths: the caller passes a staging folder. Returned is
+    the SHA-256 of the Action's curves: files of one motion differ, their curves do not.
     """
     scene.frame_set(scene.frame_start)
     write_blend(blend, {scene, *imported.texts}, path_remap="RELATIVE_ALL", fake_user=False)
@@ -278,8 +242,3 @@ def write_character_files(
     for name, path in exports.items():
         export_motion(scene, imported.armature, action, frames, FORMATS[name], path, along=imported.objects)
     return curve_digest(imported.armature)
-
-
-def missing_exporter(name: str) -> str | None:
-    """Why this Blender cannot write a format; None where it can."""
-    return FORMATS[name].missing()

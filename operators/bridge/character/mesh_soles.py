@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import bpy
 import numpy as np
+from bpy.types import Mesh, Object, PoseBone
 
 from ....core.arrays import Array, IndexArray
 from ....core.body.skeleton import SIDES
@@ -12,7 +12,7 @@ from ....core.retarget.character import LEG, LONG_BONES, Character
 from ....core.retarget.character_motion import find_stance
 from ....core.retarget.maps.character_map import CharacterMap, Point
 from ..object_space import evaluated
-from .controls import active_constraints, constraint_bones
+from .controls import active_constraints, constraint_targets
 from .import_character import carrying_bone, is_deformed, skins
 
 PARTS = LEG[2:]
@@ -28,36 +28,45 @@ MOST_VERTICES = 400_000  # vertices of a mesh that is looked at
 class FootVertices:
     """The vertices of a mesh that a foot and its toes move, at rest."""
 
-    mesh_object: bpy.types.Object
+    mesh_object: Object
     rows: Mapping[str, IndexArray]  # (N,) indices of the mesh's vertices by role of foot and toe
     places: Mapping[str, Array]  # (N, 3) by role, in the armature's space
 
 
 def mesh_soles(
-    armature_object: bpy.types.Object, character: Character, character_map: CharacterMap
+    armature_object: Object, character: Character, character_map: CharacterMap
 ) -> dict[str, tuple[Point, ...]]:
-    """Points of the soles by role, in the armature's space; nothing where no mesh shows a foot."""
-    stance, joints = find_stance(character, character_map), _leg_joints(character, character_map)
+    """The outermost points of the soles by role, in the armature's space; none where no mesh shows a foot."""
+    stance, (joints, legs) = find_stance(character, character_map), _legs(character, character_map)
     feet = foot_vertices(armature_object, character, character_map)
     soles: dict[str, tuple[Point, ...]] = {}
-    for side in SIDES:
-        own: dict[str, list[Array]] = {}
-        for foot in feet:
-            for role, places in foot.places.items():
-                if role.endswith(f".{side}"):
-                    own.setdefault(role, []).append(places)
-        if f"foot.{side}" in own:
-            vertices = {role: np.concatenate(places) for role, places in own.items()}
-            soles |= _soles_of(vertices, joints[f"foot.{side}"], _leg_length(joints, side), stance)
+    for side, leg in legs.items():
+        roles = [f"{part}.{side}" for part in PARTS]
+        own = {role: [foot.places[role] for foot in feet if role in foot.places] for role in roles}
+        vertices = {role: np.concatenate(places) for role, places in own.items() if places}
+        if f"foot.{side}" not in vertices:
+            continue
+        ankle = joints[f"foot.{side}"]
+        low = min(float((points @ stance[2]).min()) for points in vertices.values())
+        found: dict[str, Array] = {}
+        for role, points in vertices.items():
+            sole = points[points @ stance[2] < low + SOLE * leg]
+            if len(sole):
+                level = sole @ stance[:2].T  # kept are the lowest point, and the farthest along the ground
+                outermost = (level @ [np.cos(ANGLES), np.sin(ANGLES)]).argmax(axis=0)
+                found[role] = sole[np.unique([*outermost, (sole @ stance[2]).argmin()])]
+        ahead = -((found.get(f"foot.{side}", np.zeros((0, 3))) - ankle) @ stance[1])
+        both = len(ahead) > 0 and ahead.min() < -HEEL * leg and ahead.max() > HEEL * leg
+        if both and LOWEST * leg < float(ankle @ stance[2]) - low < HIGHEST * leg:  # else these are no feet
+            soles |= {role: tuple(map(tuple, kept.tolist())) for role, kept in found.items()}
     return soles
 
 
 def foot_vertices(
-    armature_object: bpy.types.Object, character: Character, character_map: CharacterMap
+    armature_object: Object, character: Character, character_map: CharacterMap
 ) -> list[FootVertices]:
     """The vertices that feet and toes move, by deforming a mesh or by carrying one, near the feet at rest."""
-    leading = leading_roles(armature_object, character_map)
-    joints = _leg_joints(character, character_map)
+    leading, (joints, legs) = leading_roles(armature_object, character_map), _legs(character, character_map)
     found: list[FootVertices] = []
     for mesh_object in skins(armature_object):
         if len(mesh_object.data.vertices) > MOST_VERTICES:
@@ -67,8 +76,7 @@ def foot_vertices(
         places = _places(armature_object, mesh_object, bone)
         near = np.zeros(len(places), dtype=bool)
         for role in (role for role in joints if role.partition(".")[0] in PARTS):
-            reach = NEAR * _leg_length(joints, role[-1])
-            near |= np.linalg.norm(places - joints[role], axis=-1) < reach
+            near |= np.linalg.norm(places - joints[role], axis=-1) < NEAR * legs[role[-1]]
         if deformed:
             rows = foot_rows(mesh_object, mesh_object.data, np.flatnonzero(near), leading)
         else:
@@ -81,7 +89,7 @@ def foot_vertices(
 
 
 def foot_rows(
-    mesh_object: bpy.types.Object, mesh: bpy.types.Mesh, indices: IndexArray, leading: Mapping[str, str]
+    mesh_object: Object, mesh: Mesh, indices: IndexArray, leading: Mapping[str, str]
 ) -> dict[str, IndexArray]:
     """By role of foot and toe: which of some vertices (N,) the bones that follow it move most."""
     roles = {group.index: leading.get(group.name, "") for group in mesh_object.vertex_groups}
@@ -94,39 +102,37 @@ def foot_rows(
     return {role: np.array(rows, dtype=np.intp) for role, rows in found.items()}
 
 
-def _leg_joints(character: Character, character_map: CharacterMap) -> dict[str, Array]:
-    """(3,) the joints of the legs by role, in the armature's space."""
-    roles = (f"{part}.{side}" for part in LEG for side in SIDES)
-    return {
-        role: character.bone(bone).head for role in roles if (bone := character_map.bone(role)) is not None
+def _legs(character: Character, character_map: CharacterMap) -> tuple[dict[str, Array], dict[str, float]]:
+    """(3,) the joints of the legs by role, in the armature's space, and the legs' lengths by side."""
+    bones = {f"{part}.{side}": character_map.bone(f"{part}.{side}") for part in LEG for side in SIDES}
+    joints = {role: character.bone(bone).head for role, bone in bones.items() if bone is not None}
+    pairs = {side: LONG_BONES[f"leg.{side}"] for side in SIDES}
+    return joints, {
+        side: sum(float(np.linalg.norm(joints[end] - joints[start])) for start, end in bones)
+        for side, bones in pairs.items()
+        if all(role in joints for bone in bones for role in bone)
     }
 
 
-def _leg_length(joints: Mapping[str, Array], side: str) -> float:
-    return sum(float(np.linalg.norm(joints[b] - joints[a])) for a, b in LONG_BONES[f"leg.{side}"])
-
-
-def _places(armature_object: bpy.types.Object, mesh_object: bpy.types.Object, bone: str | None) -> Array:
+def _places(armature_object: Object, mesh_object: Object, bone: str | None) -> Array:
     """(N, 3) vertices of a mesh in the armature's space; those that a bone carries as its rest has them."""
     flat = np.empty(3 * len(mesh_object.data.vertices), dtype=np.float32)
     mesh_object.data.vertices.foreach_get("co", flat)
     shown = evaluated(armature_object)
     to_armature = shown.matrix_world.inverted_safe() @ evaluated(mesh_object).matrix_world
     if bone:
-        to_rest = (
-            armature_object.data.bones[bone].matrix_local @ shown.pose.bones[bone].matrix.inverted_safe()
-        )
-        to_armature = to_rest @ to_armature
+        rest, pose = armature_object.data.bones[bone].matrix_local, shown.pose.bones[bone].matrix
+        to_armature = rest @ pose.inverted_safe() @ to_armature
     matrix = np.array(to_armature, dtype=np.float64)
     return flat.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def leading_roles(armature_object: bpy.types.Object, character_map: CharacterMap) -> dict[str, str]:
+def leading_roles(armature_object: Object, character_map: CharacterMap) -> dict[str, str]:
     """By bone the role of the bone that it follows: its own, or the nearest one above."""
     role_of = {bone: role for role in character_map.roles for bone in character_map.bones(role)}
     found: dict[str, str] = {}
     for bone in armature_object.pose.bones:
-        at: bpy.types.PoseBone | None = bone
+        at: PoseBone | None = bone
         for _ in range(64):
             if at is None or at.name in role_of:
                 break
@@ -134,33 +140,10 @@ def leading_roles(armature_object: bpy.types.Object, character_map: CharacterMap
                 name
                 for constraint in active_constraints(at)
                 if constraint.type in ("COPY_TRANSFORMS", "ARMATURE")
-                for name in constraint_bones(armature_object, constraint)
+                for target, name in constraint_targets(constraint)
+                if target == armature_object and name
             ]
             at = armature_object.pose.bones.get(copied[0]) if copied else at.parent
         if at is not None and at.name in role_of:
             found[bone.name] = role_of[at.name]
     return found
-
-
-def _soles_of(
-    vertices: Mapping[str, Array], ankle: Array, leg: float, stance: Array
-) -> dict[str, tuple[Point, ...]]:
-    """The outermost points of a foot's sole by role; none where these are no feet."""
-    heights = {role: points @ stance[2] for role, points in vertices.items()}
-    low = min(float(height.min()) for height in heights.values())
-    if not LOWEST * leg < float(ankle @ stance[2]) - low < HIGHEST * leg:
-        return {}
-    soles: dict[str, tuple[Point, ...]] = {}
-    ahead = np.zeros(0)
-    for role, points in vertices.items():
-        sole = points[heights[role] < low + SOLE * leg]
-        if not len(sole):
-            continue
-        level = sole @ stance[:2].T  # kept are the lowest point, and the farthest along the ground
-        outermost = (level @ [np.cos(ANGLES), np.sin(ANGLES)]).argmax(axis=0)
-        kept = sole[np.unique([*outermost, (sole @ stance[2]).argmin()])]
-        soles[role] = tuple((float(x), float(y), float(z)) for x, y, z in kept)
-        if role.startswith("foot"):
-            ahead = -((kept - ankle) @ stance[1])
-    both = len(ahead) > 0 and ahead.min() < -HEEL * leg and ahead.max() > HEEL * leg
-    return soles if both else {}

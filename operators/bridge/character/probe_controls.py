@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
+from bpy.types import Object
 from mathutils import Matrix
-from scipy.spatial.transform import Rotation
 
 from ....core.arrays import Array
+from ....core.body.rotations import exponential
 from ....core.retarget.controls.control_channels import ALWAYS_MOVED, Control, ordered_controls
 from ....core.retarget.controls.control_plan import IN_FK, ControlKind, PlannedControl, limb_bones
 from ....core.retarget.controls.control_spaces import (
@@ -27,11 +28,10 @@ from .controls import (
     BONE_PATH,
     active_constraints,
     drivers,
+    keyed_values,
     posing,
     read_poses,
     set_properties,
-    setting_values,
-    switch_values,
 )
 from .held_controls import Releases, find_releases, release
 from .write_retargeted import ONE, scaled_bones
@@ -39,12 +39,8 @@ from .write_retargeted import ONE, scaled_bones
 STILL, MOVED = 3, 4  # poses at random, without and with locations
 FOLLOWS_RAD, FOLLOWS = 0.02, 0.01
 """Turn, and distance in sizes, up to which a bone follows its control as it was seen to; else as at rest."""
-STRAIGHT = 0.005
-"""A limb whose joints span less than this, in squares of its length, is straight and shows no plane."""
 NOTICEABLE_RAD, NOTICEABLE = 0.3, 0.05
 """Turn, and distance in sizes, by which a bone may fail to follow its control before a note is made."""
-LEAST_SHARE = 0.75
-"""Share of a control's own turns that its bone may miss; those of Rigify's spines follow two by half."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,13 +56,13 @@ class ProbedControls:
 
 
 def probe_controls(
-    armature_object: bpy.types.Object, character_map: CharacterMap, planned: Sequence[PlannedControl]
+    armature_object: Object, character_map: CharacterMap, planned: Sequence[PlannedControl]
 ) -> ProbedControls:
     """How the planned controls act, settings and switches as the motion has them; nothing stays changed."""
     roles = [name for role in character_map.roles for name in character_map.bones(role)]
     size = float(np.ptp(_rests(armature_object, roles)[:, :3, 3], axis=0).max())
     notes: list[str] = []
-    in_fk = setting_values(character_map) | switch_values(character_map, lambda _, switch: switch.fk)
+    in_fk = keyed_values(character_map, lambda _, switch: switch.fk)
     bones = armature_object.pose.bones
     # Location of a control that counts as one, in sizes of the character.
     displaced = {plan.name for plan in planned if bones[plan.name].location.length > 1e-5 * size}
@@ -97,7 +93,7 @@ def probe_controls(
     )
     offsets = _offsets(armature_object, posed, followed, planned, size, notes)
     poles = {
-        plan.name: _pole_setting(armature_object, limb_bones(character_map, str(plan.limb)), plan.name)
+        plan.name: _pole_setting(armature_object, [*limb_bones(character_map, str(plan.limb)), plan.name])
         for plan in planned
         if plan.kind is ControlKind.POLE
     }
@@ -106,7 +102,7 @@ def probe_controls(
 
 
 def _posed_at_random(
-    armature_object: bpy.types.Object, planned: Sequence[PlannedControl], size: float
+    armature_object: Object, planned: Sequence[PlannedControl], size: float
 ) -> tuple[PosedControls, Array]:
     """The controls as posed at random, the same in every run, and poses (S, C, 4, 4) of their bones."""
     rng = np.random.default_rng(4)
@@ -114,12 +110,8 @@ def _posed_at_random(
     channels, shown = [], []
     for sample in range(STILL + MOVED):
         matrices = np.tile(np.eye(4), (count, 1, 1))
-        # Standard deviation of random turns about each axis.
-        turns = rng.normal(0.0, 0.4, (count, 3))
-        if count:
-            matrices[:, :3, :3] = Rotation.from_rotvec(turns).as_matrix()
+        matrices[:, :3, :3] = exponential(rng.normal(0.0, 0.4, (count, 3)))  # by 0.4 rad about each axis
         if sample >= STILL:
-            # Standard deviation of random locations, in sizes of the character.
             matrices[:, :3, 3] = rng.normal(0.0, 0.1 * size, (count, 3))
         for name, matrix in zip(names, matrices, strict=True):  # in the rotation modes that they have
             armature_object.pose.bones[name].matrix_basis = Matrix(matrix)
@@ -130,14 +122,14 @@ def _posed_at_random(
     return PosedControls(np.array(channels), both[:, :count], STILL), both[:, count:]
 
 
-def _rests(armature_object: bpy.types.Object, names: Sequence[str]) -> Array:
+def _rests(armature_object: Object, names: Sequence[str]) -> Array:
     """(N, 4, 4) poses of bones at rest."""
     bones = armature_object.data.bones
     return np.array([bones[name].matrix_local for name in names], dtype=np.float64)
 
 
 def _offsets(
-    armature_object: bpy.types.Object,
+    armature_object: Object,
     posed: PosedControls,
     bones: Array,
     planned: Sequence[PlannedControl],
@@ -158,33 +150,34 @@ def _offsets(
         if turn_rad <= FOLLOWS_RAD and distance <= FOLLOWS * size:
             offsets[plan.name] = offset
         _, own_rad = constant_turn(posed.poses[: posed.still, index, :3, :3])
-        if turn_rad > max(NOTICEABLE_RAD, LEAST_SHARE * own_rad) or distance > NOTICEABLE * size:
+        # Three quarters of its own turns a bone may miss: those of Rigify's spines follow two by half.
+        if turn_rad > max(NOTICEABLE_RAD, 0.75 * own_rad) or distance > NOTICEABLE * size:
             notes.append(
                 f"Bone '{plan.bone}' does not follow its control '{plan.name}' rigidly; its poses may be off"
             )
     return offsets
 
 
-def _pole_setting(armature_object: bpy.types.Object, limb: Sequence[str], name: str) -> PoleSetting:
-    """Where a limb's pole belongs: as far and in the direction that it lies at rest."""
-    root, middle, end, pole = _rests(armature_object, [*limb, name])[:, :3, 3]
+def _pole_setting(armature_object: Object, names: Sequence[str]) -> PoleSetting:
+    """Where a limb's pole belongs, whose name is last: as far and in the direction that it lies at rest."""
+    root, middle, end, pole = _rests(armature_object, names)[:, :3, 3]
     length = float(np.linalg.norm(middle - root) + np.linalg.norm(end - middle))
     distance = float(np.linalg.norm(pole - middle))
-    bent = float(np.linalg.norm(np.cross(middle - root, end - root))) > STRAIGHT * length**2
+    # Joints that span less are those of a straight limb, which shows no plane.
+    bent = float(np.linalg.norm(np.cross(middle - root, end - root))) > 0.005 * length**2
     offset_rad = pole_offset(root, middle, end, pole) if bent else 0.0
     return PoleSetting(distance if distance > SHORTEST_POLE * length else 0.5 * length, offset_rad)
 
 
 def _steady(
-    armature_object: bpy.types.Object,
+    armature_object: Object,
     planned: Sequence[PlannedControl],
     spaces: Sequence[ControlSpace],
     notes: list[str],
 ) -> list[int]:
     """Indices of the controls whose rotations act in a space of their own, or that constraints keep from it.
 
-    The others are carried by something that moves and is not keyed, so that no key would show as it should;
-    sentences on them are added.
+    The others hang on something that moves and is not keyed, of which sentences are added.
     """
     paths = (BONE_PATH.match(driver.data_path) for driver in drivers(armature_object))
     driven = {bpy.utils.unescape_identifier(path[1]) for path in paths if path}
@@ -202,7 +195,7 @@ def _steady(
 
 
 def _on_goals(
-    armature_object: bpy.types.Object, planned: Sequence[PlannedControl], spaces: Sequence[ControlSpace]
+    armature_object: Object, planned: Sequence[PlannedControl], spaces: Sequence[ControlSpace]
 ) -> list[ControlSpace]:
     """The spaces with fingers on the goals of hands that are keyed by these alone: they were probed in FK."""
     found = list(spaces)
@@ -220,9 +213,7 @@ def _on_goals(
     return found
 
 
-def _placed(
-    armature_object: bpy.types.Object, control: Control, controls: Sequence[Control], size: float
-) -> Control:
+def _placed(armature_object: Object, control: Control, controls: Sequence[Control], size: float) -> Control:
     """A control that random poses did not place: where it rests on what turns it, else where it is."""
     space = control.space
     if control.plan.kind in ALWAYS_MOVED or space.residual < RIGID * size:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import bpy
+from bpy.types import Action, Object, Scene
 
 from ....core.arrays import Array
 from ....core.body.kinematics import SegmentMotion
@@ -12,7 +13,7 @@ from ....core.feet.ground import IN_FLOOR_M, floor_notes
 from ....core.progress import Job, Progress, run, stretch, within
 from ....core.retarget.character import FINGER_ROLES, Character
 from ....core.retarget.character_motion import CharacterMotion, find_stance
-from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
+from ....core.retarget.controls.control_motion import ControlMotion, dense_controls
 from ....core.retarget.controls.control_plan import ControlKind, limb_keys, planned_controls
 from ....core.retarget.controls.control_targets import on_controls
 from ....core.retarget.controls.point_tolerances import ToleranceRules
@@ -28,7 +29,7 @@ from ..actions import assign_action
 from ..object_space import object_space
 from ..rotation_modes import rotation_values
 from .channel_notes import channel_notes, require_placed_hips
-from .controls import Value, setting_values, switch_values
+from .controls import Value, keyed_values, switch_values
 from .held_controls import require_released
 from .measure import measure
 from .mesh_soles import mesh_soles
@@ -45,22 +46,17 @@ from .write_retargeted import (
 
 
 def complete_map(
-    armature_object: bpy.types.Object, character: Character, character_map: CharacterMap
+    armature_object: Object, character: Character, character_map: CharacterMap
 ) -> tuple[CharacterMap, tuple[str, ...]]:
     """Add to a map what only Blender knows, and leave out properties that the rig lacks, which notes name."""
-    bones = armature_object.pose.bones
+    lacking: list[Setting | Switch] = []
 
     def there(one: Setting | Switch) -> bool:
-        return isinstance(bones[one.bone].get(one.property), int | float)
+        if isinstance(armature_object.pose.bones[one.bone].get(one.property), int | float):
+            return True
+        lacking.append(one)
+        return False
 
-    used: list[Setting | Switch] = [*character_map.settings]
-    used += [own.switch for own in character_map.ik.values() if own.switch is not None]
-    notes = tuple(
-        f"Bone '{one.bone}' has no property '{one.property}' that could be keyed; the rig may be of another "
-        f"version than the map '{character_map.title}'"
-        for one in used
-        if not there(one)
-    )
     completed = replace(
         character_map,
         settings=tuple(filter(there, character_map.settings)),
@@ -68,6 +64,11 @@ def complete_map(
             limb: own if own.switch is None or there(own.switch) else replace(own, switch=None)
             for limb, own in character_map.ik.items()
         },
+    )
+    notes = tuple(
+        f"Bone '{one.bone}' has no property '{one.property}' that could be keyed; the rig may be of another "
+        f"version than the map '{character_map.title}'"
+        for one in lacking
     )
     if completed.root is None:
         up = find_stance(character, completed)[2]
@@ -83,7 +84,6 @@ def complete_map(
 SOLVED, PROBED, FIRST = 0.25, 0.3, 0.8
 """Shares of the job at which the motion is solved, controls are known, and keys are found and measured."""
 LIFTINGS = ((FIRST, 0.9), (0.9, 1.0))  # the same of the times that feet are lifted, where they must be
-SPARE = 0.5  # of the depth that is allowed: so much farther feet are lifted, which thinned keys may lower
 REDUCED = 0.7  # share of the latter at which the keys are found
 
 
@@ -110,12 +110,8 @@ class Retargeted:
         """The character's size: its legs' length over the performer's."""
         return self.motion.size
 
-    def write(self, scene: bpy.types.Scene, action: bpy.types.Action | str) -> bpy.types.Action:
-        """Write the motion into a new Action of a name, or one that was retargeted before, and assign it.
-
-        Raises:
-            InputError: The character has been deleted meanwhile.
-        """
+    def write(self, scene: Scene, action: Action | str) -> Action:
+        """Write the motion into a new Action of a name, or one retargeted before, and assign it."""
         made = next((one for one in bpy.data.objects if one.session_uid == self.session_uid), None)
         if made is None:
             name = self.character.name
@@ -130,50 +126,35 @@ class Retargeted:
 
 
 def retarget(
-    armature_object: bpy.types.Object,
+    armature_object: Object,
     source: SegmentMotion,
     scene_frames: Array,
     character_map: CharacterMap,
     options: RetargetOptions,
 ) -> Job[Retargeted]:
-    """Retarget a motion of F frames to a character, at rising scene frames (F,).
-
-    Nothing in Blender stays changed.
-
-    Raises:
-        InputError: The armature cannot be retargeted, the map does not fit it, or the motion has one
-            frame.
-    """
+    """Retarget a motion of F > 1 frames to a character at rising scene frames (F,); nothing stays changed."""
     yield Progress("Reading the character", 0.0)
     if len(scene_frames) < 2:
         raise InputError("the motion has a single frame; choose one of two frames or more")
     character = read_character(armature_object)
     check_map(character_map, character)
-    here = object_space(armature_object)
-    placed = options.place is Placement.PERFORMER
-    if placed:
+    there = object_space(armature_object)
+    if options.place is Placement.PERFORMER:
         require_placeable(armature_object)
     character_map, lacking = complete_map(armature_object, character, character_map)
     unknown = [role for role in FINGER_ROLES if role in character_map.roles and role not in source.fingers]
     alone = tuple(dict.fromkeys((*character_map.left_alone, *unknown)))
     character_map = replace(character_map, left_alone=alone)
-    motion = yield from stretch(solve_motion(character, character_map, source, options, here), 0.0, SOLVED)
+    motion = yield from stretch(solve_motion(character, character_map, source, options, there), 0.0, SOLVED)
     yield Progress("Finding how the controls act", SOLVED)
-    probed = probe_controls(
-        armature_object,
-        character_map,
-        tuple(
-            plan
-            for plan in planned_controls(character_map, options, character)
-            if plan.kind is not ControlKind.ROOT or motion.root is not None
-        ),
-    )
-    probed = replace(probed, notes=(*lacking, *probed.notes))
+    planned = planned_controls(character_map, options, character)
+    planned = tuple(plan for plan in planned if plan.kind is not ControlKind.ROOT or motion.root is not None)
+    probed = probe_controls(armature_object, character_map, planned)
     above = carriers(armature_object, scene_frames)
     performance = _Performance(
-        armature_object, character, character_map, source, scene_frames, options, above
+        armature_object, character, character_map, source, scene_frames, options, above, probed
     )
-    keys, controls, found = yield from stretch(performance.keyed(motion, probed), PROBED, FIRST)
+    keys, controls, found = yield from stretch(performance.keyed(motion), PROBED, FIRST)
     lifts: dict[str, Array] = {}
     for start, end in LIFTINGS:
         more = performance.lifts(motion, found.depth_m)
@@ -181,66 +162,67 @@ def retarget(
             break
         lifts = {limb: own + lifts.get(limb, 0.0) for limb, own in more.items()}
         yield Progress("Lifting the feet out of the floor", start)
-        motion = run(solve_motion(character, character_map, source, options, here, lifts))
-        keys, controls, found = yield from stretch(performance.keyed(motion, probed), start, end)
+        motion = run(solve_motion(character, character_map, source, options, there, lifts))
+        keys, controls, found = yield from stretch(performance.keyed(motion), start, end)
     warnings = warnings_of(found.quality.to_dict(), motion.size)
     require_released(armature_object, probed.releases, warnings)
+    notes = (*motion.notes, *lacking, *probed.notes)
+    notes += channel_notes(armature_object, keys.controls, controls, keys.scaled, probed.releases)
+    if len(above) > 1:
+        how = "its place is keyed against it on every frame" if keys.placement else "the motion rides on it"
+        carrier = armature_object.parent.name
+        notes += (f"'{armature_object.name}' hangs on '{carrier}', which moves: {how}",)
     sides = {limb[-1]: depth for limb, depth in found.depth_m.items()}
-    return Retargeted(
-        armature_object.session_uid,
-        character,
-        character_map,
-        options,
-        motion,
-        keys,
-        replace(found.quality, keys=keys.key_count, dense_keys=keys.dense_count),
-        (
-            *motion.notes,
-            *probed.notes,
-            *channel_notes(armature_object, keys.controls, controls, keys.scaled, probed.releases),
-            *_carried_note(armature_object, above, placed),
-            *floor_notes(sides, scene_frames, f" of '{character.name}'", motion.size),
-        ),
-    )
+    notes += floor_notes(sides, scene_frames, f" of '{character.name}'", motion.size)
+    keyed = [values for one in keys.controls for values in one.values]
+    count, dense = sum(one.size for one in keyed), sum(one.shape[1] for one in keyed) * len(scene_frames)
+    quality = replace(found.quality, keys=count, dense_keys=dense)
+    uid = armature_object.session_uid
+    return Retargeted(uid, character, character_map, options, motion, keys, quality, notes)
 
 
 @dataclass(frozen=True, eq=False)
 class _Performance:
     """What stays the same while a motion is brought onto a character, once or again with lifted feet."""
 
-    armature_object: bpy.types.Object
+    armature_object: Object
     character: Character
     character_map: CharacterMap
     source: SegmentMotion
     scene_frames: Array
     options: RetargetOptions
     above: Array  # (F, 4, 4) what carries the armature, (1, 4, 4) if it is still
+    probed: ProbedControls
 
-    def keyed(
-        self, motion: CharacterMotion, probed: ProbedControls
-    ) -> Job[tuple[RetargetedKeys, ControlMotion, Measured]]:
+    def keyed(self, motion: CharacterMotion) -> Job[tuple[RetargetedKeys, ControlMotion, Measured]]:
         """A solved motion as keys, and what is measured of them as Blender shows them."""
-        armature_object, options = self.armature_object, self.options
+        armature_object, options, probed = self.armature_object, self.options, self.probed
+        character, character_map, frames = self.character, self.character_map, self.scene_frames
         yield Progress("Bringing the motion onto the controls", 0.0)
-        controls = on_controls(
-            self.character,
-            self.character_map,
-            motion,
-            probed.controls,
-            probed.offsets,
-            probed.poles,
-            probed.size,
-        )
+        how = (probed.controls, probed.offsets, probed.poles, probed.size)
+        controls = on_controls(character, character_map, motion, *how)
         require_placed_hips(armature_object, controls)
         yield Progress("Finding the keys", 0.0)
-        keyed = yield from _keyed(controls, motion, self.source, self.scene_frames, options)
+        if options.tolerance_m is None:
+            keyed = dense_controls(controls, rotation_values)
+        else:
+            rules = ToleranceRules(motion, self.source.time_s, motion.stance[2], options.tolerance_m)
+            reducing = reduce_controls(controls, frames, rules, rotation_values)
+            keyed = yield from within("Finding the keys", reducing, 0.0, REDUCED)
+
+        def shown(limb: str, switch: Switch) -> Value:
+            """A switch's value as the options want its limb to be shown."""
+            return switch.fk if limb_keys(character_map, options, limb) is LimbKeys.FK else switch.ik
+
+        def in_fk(limb: str, switch: Switch) -> Value | None:
+            """The value with which a limb that is keyed in both ways shows FK; None for others."""
+            return switch.fk if limb_keys(character_map, options, limb) is LimbKeys.BOTH else None
+
         placed = options.place is Placement.PERFORMER
         keys = RetargetedKeys(
-            self.scene_frames,
+            frames,
             keyed,
-            setting_values(self.character_map)
-            | switch_values(self.character_map, self._shown)
-            | dict(probed.releases.switches),
+            keyed_values(character_map, shown) | dict(probed.releases.switches),
             placement_keys(armature_object, self.above, motion.to_world) if placed else (),
             scaled_bones(armature_object, (one.control.name for one in keyed)),
             probed.releases.constraints,
@@ -252,13 +234,13 @@ class _Performance:
             measuring = measure(
                 armature_object,
                 action,
-                self.scene_frames,
+                frames,
                 self.source,
                 motion,
-                self.character,
-                self.character_map,
+                character,
+                character_map,
                 list(keys.properties),
-                switch_values(self.character_map, self._in_fk),
+                switch_values(character_map, in_fk),
                 rides=not placed and len(self.above) > 1,
             )
             measured = yield from within("Measuring the character", measuring, REDUCED, 1.0)
@@ -266,50 +248,14 @@ class _Performance:
             bpy.data.actions.remove(action)
         return keys, controls, measured
 
-    def _shown(self, limb: str, switch: Switch) -> Value:
-        """A switch's value as the options want its limb to be shown."""
-        return switch.fk if self._keys(limb) is LimbKeys.FK else switch.ik
-
-    def _in_fk(self, limb: str, switch: Switch) -> Value | None:
-        """The value with which a limb that is keyed in both ways shows FK; None for others."""
-        return switch.fk if self._keys(limb) is LimbKeys.BOTH else None
-
-    def _keys(self, limb: str) -> LimbKeys:
-        return limb_keys(self.character_map, self.options, limb)
-
     def lifts(self, motion: CharacterMotion, depth_m: Mapping[str, Array]) -> dict[str, Array]:
         """(F,) by leg how much higher a foot in the floor must be [m]; none where all feet are out of it."""
         most_m = motion.size * IN_FLOOR_M
         if not self.options.plant_feet or not any((depth > most_m).any() for depth in depth_m.values()):
             return {}
+        rests = [(rest.leg, (rest.first, rest.last)) for rest in motion.rests]
+        time_s, spare_m = self.source.time_s, 0.5 * most_m  # which thinned keys may lower a foot again
         return {
-            limb: floor_lifts(
-                depth,
-                [(rest.first, rest.last) for rest in motion.rests if rest.leg == limb],
-                self.source.time_s,
-                SPARE * most_m,
-            )
-            for limb, depth in depth_m.items()
+            leg: floor_lifts(depth, [at for limb, at in rests if limb == leg], time_s, spare_m)
+            for leg, depth in depth_m.items()
         }
-
-
-def _carried_note(armature_object: bpy.types.Object, above: Array, placed: bool) -> tuple[str, ...]:
-    if len(above) == 1:
-        return ()
-    parent = armature_object.parent.name
-    how = "its place is keyed against it on every frame" if placed else "the motion rides on it"
-    return (f"'{armature_object.name}' hangs on '{parent}', which moves: {how}",)
-
-
-def _keyed(
-    controls: ControlMotion,
-    motion: CharacterMotion,
-    source: SegmentMotion,
-    scene_frames: Array,
-    options: RetargetOptions,
-) -> Job[tuple[KeyedControl, ...]]:
-    if options.tolerance_m is None:
-        return dense_controls(controls, rotation_values)
-    rules = ToleranceRules(motion, source.time_s, motion.stance[2], options.tolerance_m)
-    reducing = reduce_controls(controls, scene_frames, rules, rotation_values)
-    return (yield from within("Finding the keys", reducing, 0.0, REDUCED))

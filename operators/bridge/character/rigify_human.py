@@ -6,6 +6,7 @@ from importlib.util import find_spec
 
 import bpy
 import numpy as np
+from bpy.types import Object
 from mathutils import Matrix
 
 from ....core.arrays import Array
@@ -13,7 +14,6 @@ from ....core.body.human_mesh import HumanMesh, part_ends
 from ....core.body.skeleton import SIDES
 
 ADDON = "rigify"
-SKIN = (0.46, 0.39, 0.34, 1.0)
 SPINE = {
     "hips": "spine",
     "waist": "spine.001",
@@ -23,8 +23,7 @@ SPINE = {
 }
 """Rigify's bone of each part of the trunk and of the head; the neck has two."""
 NECK = ("spine.004", "spine.005")
-TWISTING = ("upper_arm", "forearm", "thigh", "shin")
-"""Parts that two bones move, the second with `.001` at its end; the limb's twist is shared between them."""
+TWISTING = ("upper_arm", "forearm", "thigh", "shin")  # parts whose twist a second bone, `.001`, shares
 MIDDLE = 0.2  # share of such a part over which the one bone takes over from the other
 
 
@@ -44,14 +43,11 @@ def enable_rigify() -> None:
     bpy.ops.preferences.addon_enable(module=ADDON)
 
 
-def add_rigify_human(stature_m: float | None = None) -> bpy.types.Object:
+def add_rigify_human(stature_m: float | None = None) -> Object:
     """Add the basic human at the world's origin and generate its rig, which becomes the active object.
 
-    The meta-rig is removed again. Blender must be in Object Mode, with Rigify enabled; the stature is
-    Rigify's own by default.
-
-    Raises:
-        RuntimeError: Rigify could not; what it had made is gone again.
+    Blender must be in Object Mode, with Rigify enabled; the stature is Rigify's own by default. RuntimeError
+    where Rigify could not: what it had made is gone again.
     """
     before = set(bpy.data.objects)
     try:
@@ -73,7 +69,7 @@ def add_rigify_human(stature_m: float | None = None) -> bpy.types.Object:
     return rig
 
 
-def _add_body(rig: bpy.types.Object) -> None:
+def _add_body(rig: Object) -> None:
     """Give the rig the shipped human skin, which its deforming bones move smoothly."""
     human = HumanMesh.read()
     joints = _joints(rig)
@@ -95,20 +91,19 @@ def _add_body(rig: bpy.types.Object) -> None:
             add(pair[1], second * own)
         else:
             add(SPINE.get(part, part), own)
-    mesh = bpy.data.meshes.new("Human Body")
-    mesh.from_pydata(vertices.tolist(), [], human.triangles.tolist())
-    mesh.polygons.foreach_set("use_smooth", np.ones(len(human.triangles), bool))
     material = bpy.data.materials.new("Human Skin")
-    material.diffuse_color = SKIN
-    mesh.materials.append(material)
-    skinned(rig, mesh, weights)
+    material.diffuse_color = (0.46, 0.39, 0.34, 1.0)
+    skinned(rig, "Human Body", vertices, human, weights).data.materials.append(material)
 
 
 def skinned(
-    armature_object: bpy.types.Object, mesh: bpy.types.Mesh, weights: Mapping[str, Array]
-) -> bpy.types.Object:
-    """A mesh on an armature, whose bones move its vertices by weights (N,)."""
-    body_object = bpy.data.objects.new(mesh.name, mesh)
+    armature_object: Object, name: str, vertices: Array, human: HumanMesh, weights: Mapping[str, Array]
+) -> Object:
+    """The human skin at vertices (N, 3) on an armature, whose bones move them by weights (N,)."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(vertices.tolist(), [], human.triangles.tolist())
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(human.triangles), bool))
+    body_object = bpy.data.objects.new(name, mesh)
     for collection in armature_object.users_collection:
         collection.objects.link(body_object)
     body_object.parent = armature_object
@@ -122,19 +117,16 @@ def skinned(
     return body_object
 
 
-def _joints(rig: bpy.types.Object) -> dict[str, Array]:
+def _joints(rig: Object) -> dict[str, Array]:
     """(3,) joints of the rig at rest, by the names of `HumanMesh.joints`, in its own space."""
-    bones = rig.data.bones
 
-    def head(name: str) -> Array:
-        return np.array(bones[f"DEF-{name}"].head_local, dtype=np.float64)
+    def end(name: str, which: str = "head_local") -> Array:
+        return np.array(getattr(rig.data.bones[f"DEF-{name}"], which), dtype=np.float64)
 
-    def tail(name: str) -> Array:
-        return np.array(bones[f"DEF-{name}"].tail_local, dtype=np.float64)
-
-    found = {"neck": head("spine.004"), "head": head("spine.006"), "crown": tail("spine.006")}
+    found = {"neck": end("spine.004"), "head": end("spine.006"), "crown": end("spine.006", "tail_local")}
     for side in SIDES:
         for part in ("upper_arm", "forearm", "hand", "thigh", "shin", "foot", "toe"):
-            found[f"{part}.{side}"] = head(f"{part}.{side}")
-        found[f"hand_end.{side}"], found[f"toe_end.{side}"] = tail(f"hand.{side}"), tail(f"toe.{side}")
+            found[f"{part}.{side}"] = end(f"{part}.{side}")
+        for part in ("hand", "toe"):
+            found[f"{part}_end.{side}"] = end(f"{part}.{side}", "tail_local")
     return found

@@ -10,16 +10,11 @@ from ..asset_catalogs import write_asset_blend
 from ..blend_files import check_blend, load_blocks
 from .pose_assets import add_assets, catalog_of, library_from_assets
 
-LARGEST_BYTES = 256 * 2**20
-"""Enough for a library of a thousand postures with pictures; refuses a film's scene named by mistake."""
+LARGEST_BYTES = 256 * 2**20  # enough for a thousand postures with pictures; a film's scene is refused
 
 
 def write_library_blend(path: Path, library: Library, root: Path | None = None) -> None:
-    """Write a library's pose assets and nothing else into a .blend, and its catalogs into their file.
-
-    The open file is not touched. Both files appear whole, or neither. The catalogs are kept in `root`, the
-    folder of the asset library that `path` lies in; by default beside it.
-    """
+    """Write a library's pose assets alone into a .blend, and its catalogs into `root` or else beside it."""
     catalogs = [catalog_of(library, posture) for posture in library.postures]
     with bpy.data.temp_data() as data:
         assets = zip(add_assets(library, data), catalogs, strict=True)
@@ -30,10 +25,7 @@ def read_library_blend(path: Path) -> tuple[Library, ...]:
     """The libraries whose pose assets a .blend holds; nothing of it stays in the open file.
 
     Only Actions marked as assets are loaded, and of these only curves and texts are read: scripts, drivers
-    and other data are neither loaded nor run.
-
-    Raises:
-        InputError: The file is not a .blend, damaged or too large, or has no library.
+    and other data are neither loaded nor run. InputError where the file has no library, or is unusable.
     """
     check_blend(path, "a library", LARGEST_BYTES)
     before, names = set(bpy.data.user_map()), []
@@ -59,11 +51,7 @@ def read_library_blend(path: Path) -> tuple[Library, ...]:
 
 
 def read_libraries(path: Path) -> tuple[Library, ...]:
-    """The libraries of a file: one in a .json, one or more in a .blend.
-
-    Raises:
-        InputError: The file is of another kind, or unusable.
-    """
+    """The libraries of a file: one in a .json, one or more in a .blend; InputError for another."""
     suffix = path.suffix.lower()
     if suffix == ".blend":
         return read_library_blend(path)

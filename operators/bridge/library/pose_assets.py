@@ -13,12 +13,13 @@ from functools import lru_cache
 from typing import Any
 
 import bpy
+from bpy.types import Action, BlendData
 
 from ....core.body.actor import Actor
 from ....core.body.kinematics import Body
 from ....core.errors import InputError
 from ....core.files.json_file import parse_json
-from ....core.prior.library import Library, LibraryPosture
+from ....core.prior.library import Library, LibraryMotion, LibraryPosture, MotionStep
 from ....core.prior.texts import LONGEST_NAME, LONGEST_TAG, text_fault, unique_name
 from ....core.report.mannequin import posture_picture
 from ..asset_catalogs import catalog_identifier
@@ -40,7 +41,7 @@ def catalog_of(library: Library, posture: LibraryPosture) -> str:
     return "/".join([CATALOGS, *("".join("-" if a in ":/\\" else a for a in name) for name in names)])
 
 
-def add_assets(library: Library, data: bpy.types.BlendData | None = None) -> list[bpy.types.Action]:
+def add_assets(library: Library, data: BlendData | None = None) -> list[Action]:
     """Add an Action for each posture, in order, marked as asset, to a file; to the open one by default."""
     made, body = [], _body(tuple(library.actor.segments_m.items()))
     header = _text(replace(library, postures=()).to_json())
@@ -63,7 +64,7 @@ def add_assets(library: Library, data: bpy.types.BlendData | None = None) -> lis
     return made
 
 
-def is_posture(action: bpy.types.Action) -> bool:
+def is_posture(action: Action) -> bool:
     """Whether an Action is marked as a library's posture."""
     return isinstance(action.get(HEADER), str) and isinstance(action.get(POSTURE), str)
 
@@ -72,17 +73,13 @@ def is_posture(action: bpy.types.Action) -> bool:
 class PoseAsset:
     """An Action of a library's posture with the texts that it stores."""
 
-    action: bpy.types.Action
+    action: Action
     header: dict[str, Any]  # the library's, not to be mutated
     own: dict[str, Any]
 
     @classmethod
-    def of(cls, action: bpy.types.Action) -> "PoseAsset":
-        """Parse the texts of an Action.
-
-        Raises:
-            InputError: They are not what Keymark writes.
-        """
+    def of(cls, action: Action) -> "PoseAsset":
+        """Parse the texts of an Action; InputError where they are not what Keymark writes."""
         return cls(action, _fields(action, HEADER), _fields(action, POSTURE))
 
     @property
@@ -91,24 +88,13 @@ class PoseAsset:
         order = self.own.get("order")
         return float(order) if isinstance(order, int) else float("inf")
 
-    @property
-    def stored_name(self) -> str:
-        """The name of its posture in the motions of its header."""
-        alone = self.own.get("postures")
-        first = alone[0] if isinstance(alone, list) and alone else {}
-        return str(first.get("name", "")) if isinstance(first, Mapping) else ""
-
     def library(self) -> Library:
         """The library of this posture alone, as stored, without motions."""
         fields = {**self.header, "motions": [], "postures": self.own.get("postures")}
         return Library.from_json(fields, _where(self.action))
 
     def posture(self) -> LibraryPosture:
-        """The posture, the animator's changes included.
-
-        Raises:
-            InputError: Its texts are not what Keymark writes, or it has no curves of a posture.
-        """
+        """The posture, the animator's changes included; InputError where it has none, or other texts."""
         library, where = self.library(), _where(self.action)
         if len(library.postures) != 1:
             raise InputError(f"{where}: holds {len(library.postures)} postures; a pose asset holds one")
@@ -127,16 +113,12 @@ class PoseAsset:
         return LibraryPosture(name, shown, tags)
 
 
-def library_from_assets(actions: Iterable[bpy.types.Action]) -> tuple[Library, ...]:
-    """The libraries that Actions belong to, in order of their first Actions; other Actions are ignored.
-
-    Where headers of one library differ, that of its newest version counts. Motions keep the steps whose
-    postures are there.
-    """
+def library_from_assets(actions: Iterable[Action]) -> tuple[Library, ...]:
+    """The libraries that Actions belong to, by the headers of their newest versions; others are ignored."""
     return tuple(_merged(members) for members in assets_by_library(actions).values())
 
 
-def assets_by_library(actions: Iterable[bpy.types.Action]) -> dict[str, list[PoseAsset]]:
+def assets_by_library(actions: Iterable[Action]) -> dict[str, list[PoseAsset]]:
     """The pose assets of each library, in its order, by its identifier; other Actions are ignored."""
     found: dict[str, list[PoseAsset]] = {}
     for asset in (PoseAsset.of(action) for action in actions if is_posture(action)):
@@ -145,49 +127,29 @@ def assets_by_library(actions: Iterable[bpy.types.Action]) -> dict[str, list[Pos
 
 
 def _merged(assets: Sequence[PoseAsset]) -> Library:
+    """The library of pose assets; its motions keep the steps whose postures are there."""
     versions = [asset.header.get("version") for asset in assets]
     known = [version if isinstance(version, int) else 0 for version in versions]
-    header = assets[known.index(max(known))].header
+    newest = replace(assets[0], header=assets[known.index(max(known))].header)
     postures: list[LibraryPosture] = []
     now: dict[str, str] = {}  # names of postures by those in the motions
     for asset in assets:
         posture = asset.posture()
         name = unique_name(posture.name, [other.name for other in postures])
-        now.setdefault(asset.stored_name, name)
+        now.setdefault(str(asset.own["postures"][0]["name"]), name)
         postures.append(replace(posture, name=name))
-    one = replace(assets[0], header=header).library()
-    document = replace(one, postures=tuple(postures)).to_json()
-    motions = _present_motions(header.get("motions", []), now)
-    return Library.from_json({**document, "motions": motions}, f"library {one.identifier!r}")
+    header, motions = newest.library(), newest.header.get("motions") or []
+    where, kept = f"library {header.identifier!r}", []
+    for index, value in enumerate(motions if isinstance(motions, list) else [motions]):
+        motion = LibraryMotion.from_json(value, f"{where}: motions[{index}]")
+        there = [step for step in motion.steps if step.posture in now]
+        steps = [MotionStep(now[step.posture], step.time_s - there[0].time_s) for step in there]
+        kept += [replace(motion, steps=tuple(steps))] if steps else []
+    merged = replace(header, postures=tuple(postures), motions=tuple(kept))
+    return Library.from_json(merged.to_json(), where)
 
 
-def _present_motions(motions: Any, now: Mapping[str, str]) -> Any:
-    """Motions in JSON, reduced to the postures that are there; `now` has their present names by former ones.
-
-    What is not a motion stays, for the reader to refuse.
-    """
-    if not isinstance(motions, list):
-        return motions
-    kept = []
-    for motion in motions:
-        steps = motion.get("steps") if isinstance(motion, Mapping) else None
-        if not isinstance(steps, list) or not all(
-            isinstance(step, Mapping)
-            and isinstance(step.get("posture"), str)
-            and isinstance(step.get("time_s"), int | float)
-            for step in steps
-        ):
-            kept.append(motion)
-            continue
-        left = [{**step, "posture": now[step["posture"]]} for step in steps if step["posture"] in now]
-        if left:
-            begin = left[0]["time_s"]
-            steps = [{**step, "time_s": step["time_s"] - begin} for step in left]
-            kept.append({**motion, "steps": steps})
-    return kept
-
-
-def _fields(action: bpy.types.Action, name: str) -> dict[str, Any]:
+def _fields(action: Action, name: str) -> dict[str, Any]:
     """The parsed JSON of one of an Action's two properties."""
     text, where = action.get(name), f"{_where(action)}: its property {name}"
     if not isinstance(text, str) or len(text) > LONGEST_TEXT:
@@ -210,7 +172,7 @@ def _body(lengths: tuple[tuple[str, float], ...]) -> Body:
     return Body(Actor(dict(lengths)))
 
 
-def _is_named(action: bpy.types.Action, name: Any) -> bool:
+def _is_named(action: Action, name: Any) -> bool:
     """Whether an Action still has a name, but for a number that Blender may have added."""
     stem, _, number = action.name.rpartition(".")
     if not isinstance(name, str) or action.name == name:
@@ -219,11 +181,11 @@ def _is_named(action: bpy.types.Action, name: Any) -> bool:
     return numbered and (stem == name or (len(stem.encode()) >= CUT_FROM and name.startswith(stem)))
 
 
-def _where(action: bpy.types.Action) -> str:
+def _where(action: Action) -> str:
     return f"pose asset {action.name!r}"
 
 
-def _asset_tags(action: bpy.types.Action) -> list[str]:
+def _asset_tags(action: Action) -> list[str]:
     return [tag.name for tag in action.asset_data.tags] if action.asset_data is not None else []
 
 

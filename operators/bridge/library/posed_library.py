@@ -1,15 +1,13 @@
 """Keyframe libraries of keyframes, of pose assets, and learned from a motion."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
 
-import bpy
 import numpy as np
+from bpy.types import Action, Object, Scene
 
 from ....core.arrays import Array
-from ....core.body.actor import Actor
 from ....core.body.body_volume import lower_sole_m
-from ....core.body.human import HUMAN
 from ....core.body.kinematics import Body
 from ....core.body.posture import Posture, headings_rad, turned_and_shifted
 from ....core.errors import InputError
@@ -25,19 +23,11 @@ from .pose_assets import is_posture, library_from_assets
 
 
 def library_of_keyframes(
-    scene: bpy.types.Scene,
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    about: LibraryMetadata,
+    scene: Scene, armature_object: Object, action: Action, about: LibraryMetadata
 ) -> Library:
-    """The keyframes of an Action, a posture each, and a motion through them at their times.
-
-    Raises:
-        InputError: There are fewer than two keyframes, the armature is not an actor's, or title, author or
-            license is invalid.
-    """
-    body = read_body(armature_object, HUMAN)
-    frames = np.array(keyed_frames(armature_object, action, HUMAN))
+    """The keyframes of an Action, of which there must be two, as postures and a motion through them."""
+    body = read_body(armature_object)
+    frames = np.array(keyed_frames(armature_object, action))
     if len(frames) < 2:
         raise InputError(f"the take has {len(frames)} keyframes; a library needs two or more")
     posed = read_keyframes(scene, armature_object, action, body, frames).keyframes
@@ -51,47 +41,37 @@ def library_of_keyframes(
 
 
 def library_of_assets(
-    actions: Iterable[bpy.types.Action],
-    armature_object: bpy.types.Object | None,
-    about: LibraryMetadata,
-    identifier: str,
+    actions: Iterable[Action], armature_object: Object | None, about: LibraryMetadata, identifier: str
 ) -> Library:
-    """The library that pose assets belong to, with an actor's pose assets that belong to none, if given.
+    """The library that pose assets belong to, with an actor's pose assets of one frame that belong to none.
 
     Linked Actions are ignored. Of several libraries that with the identifier is taken; a new one has the
-    details `about`.
-
-    Raises:
-        InputError: There are no pose assets, or those of several other libraries, or one is unusable.
+    details `about`. InputError where there are no pose assets, or of several other libraries.
     """
     local = [action for action in actions if action.library is None]
     found = {library.identifier: library for library in library_from_assets(local)}
     if len(found) > 1 and identifier not in found:
-        raise InputError(
-            f"this file has the pose assets of {', '.join(found)}; choose one of these in the list"
-        )
+        there = ", ".join(found)
+        raise InputError(f"this file has the pose assets of {there}; choose one of these in the list")
     library = found.get(identifier) or next(iter(found.values()), None)
-    body = None if armature_object is None else read_body(armature_object, HUMAN)
-    loose = [] if body is None else list(_loose(local, body))
+    loose: list[tuple[str, Body, Posture]] = []
+    if armature_object is not None:
+        body = read_body(armature_object)
+        for action in local:
+            first, last = action.curve_frame_range
+            if action.asset_data is not None and not is_posture(action) and first == last:
+                posture = read_posture_curves(action, body)
+                if posture is not None:
+                    loose.append((action.name, body, _leveled(body, Posture.stack([posture]))[0]))
     if library is None:
-        if body is None or not loose:
+        if not loose:
             raise InputError("this file has no pose assets of a library, and none of the take's actor")
-        library = _empty(body, about)
+        library = _empty(loose[0][1], about)
     entries = list(library.postures)
-    for name, actor, posture in loose:
-        fitted = transferred(posture, actor, Body(library.actor))
+    for name, body, posture in loose:
+        fitted = transferred(posture, body.actor, Body(library.actor))
         entries.append(LibraryPosture(unique_name(name, [entry.name for entry in entries]), fitted))
     return _checked(replace(library, postures=tuple(entries)))
-
-
-def _loose(actions: Iterable[bpy.types.Action], body: Body) -> Iterator[tuple[str, Actor, Posture]]:
-    """Names, proportions and leveled postures of pose assets of a body that belong to no library."""
-    for action in actions:
-        first, last = action.curve_frame_range
-        if action.asset_data is not None and not is_posture(action) and first == last:
-            posture = read_posture_curves(action, body)
-            if posture is not None:
-                yield action.name, body.actor, _leveled(body, Posture.stack([posture]))[0]
 
 
 def _leveled(body: Body, postures: Posture) -> Posture:
@@ -114,15 +94,8 @@ def _checked(library: Library) -> Library:
 
 
 def library_from_action(
-    scene: bpy.types.Scene,
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    about: LibraryMetadata,
-    count: int | None,
+    scene: Scene, armature_object: Object, action: Action, about: LibraryMetadata, count: int | None
 ) -> Library:
-    """Learn a library from the motion that an Action holds for an actor.
-
-    It has `count` postures; by default 10 to 40, as many as differ.
-    """
+    """Learn a library of `count` postures, or as many as differ, from the motion that an Action holds."""
     motion = shown_motion(scene, armature_object, action)
     return _checked(learn_library(motion.body, motion.posture, motion.time_s, about, count))

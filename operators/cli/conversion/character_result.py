@@ -67,10 +67,10 @@ def export_formats(text: str) -> tuple[str, ...]:
 
 def check_exporters(formats: tuple[str, ...]) -> None:
     """Refuse, before the work, formats that this Blender cannot write."""
-    from ...bridge.character.import_character import missing_exporter
+    from ...bridge.export_formats import FORMATS
 
     for word in formats:
-        why = missing_exporter(EXPORTS[word][0])
+        why = FORMATS[EXPORTS[word][0]].missing()
         if why:
             raise ConversionError(f"--format {word} cannot be written: {why[:1].lower()}{why[1:]}")
 

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from _results import posture_of
 from keymark.core.body.body_volume import hip_height_m, standing_height_m
-from keymark.core.body.human import HUMAN
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.actor_lengths import read_body
@@ -29,7 +28,7 @@ def test_one_click_stands_the_actor_at_the_performer(
 def test_without_footage_the_actor_stands_at_the_origin() -> None:
     bpy.ops.keymark.build_actor(stature=1.6)
     scene = bpy.context.scene
-    body = read_body(active_take(scene).armature, HUMAN)
+    body = read_body(active_take(scene).armature)
     np.testing.assert_allclose(posture_of(scene).translation, [0.0, 0.0, hip_height_m(body)], atol=1e-5)
     assert active_take(scene).lengths.trunk == pytest.approx(0.285 * 1.6)
 
@@ -38,12 +37,12 @@ def test_building_again_changes_the_actor_and_keeps_its_keyframes(opened: bpy.ty
     take = active_take(opened)
     armature_object, action = take.armature, take.keyframe_action
     opened.frame_set(7)
-    before, keys = posture_of(opened), keyed_frames(armature_object, action, HUMAN)
+    before, keys = posture_of(opened), keyed_frames(armature_object, action)
     objects = len(bpy.data.objects)
     bpy.ops.keymark.build_actor(stature=1.9)
     assert (take.armature, take.keyframe_action, len(bpy.data.objects)) == (armature_object, action, objects)
-    assert keyed_frames(armature_object, action, HUMAN) == keys
-    assert read_body(armature_object, HUMAN).actor.stature_m == pytest.approx(1.9, rel=1e-4)
+    assert keyed_frames(armature_object, action) == keys
+    assert read_body(armature_object).actor.stature_m == pytest.approx(1.9, rel=1e-4)
     opened.frame_set(7)
     np.testing.assert_allclose(posture_of(opened).minus(before), 0.0, atol=1e-4)
 
@@ -57,7 +56,7 @@ def test_lengths_of_the_panel_reach_the_bones(opened: bpy.types.Scene) -> None:
     take.lengths.shin_R = 0.5
     assert take.lengths.shin_L != pytest.approx(0.5)
     bpy.ops.keymark.apply_lengths()
-    segments = read_body(take.armature, HUMAN).actor.segments_m
+    segments = read_body(take.armature).actor.segments_m
     assert (segments["forearm.R"], segments["shin.R"]) == pytest.approx((0.31, 0.5), rel=1e-4)
 
 
@@ -71,7 +70,7 @@ def test_lengths_shown_are_those_of_the_armature_that_is_chosen(opened: bpy.type
     take.armature = other
     assert take.lengths.trunk == pytest.approx(0.285 * 1.2, rel=1e-4)
     bpy.ops.keymark.apply_lengths()
-    assert read_body(other, HUMAN).actor.stature_m == pytest.approx(1.2, rel=1e-4)
+    assert read_body(other).actor.stature_m == pytest.approx(1.2, rel=1e-4)
 
 
 def test_a_standing_performer_is_measured_from_two_pixels(
@@ -87,6 +86,6 @@ def test_a_standing_performer_is_measured_from_two_pixels(
     assert result == {"FINISHED"}
     found = posture_of(unposed_scene).translation
     assert np.linalg.norm(found - hips) < 0.12
-    assert standing_height_m(read_body(active_take(unposed_scene).armature, HUMAN)) == pytest.approx(height)
+    assert standing_height_m(read_body(active_take(unposed_scene).armature)) == pytest.approx(height)
     with pytest.raises(RuntimeError, match="below the ground"):
         bpy.ops.keymark.measure_actor(stature=height, head_pixel=floor, floor_pixel=head)

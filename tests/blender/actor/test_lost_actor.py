@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from _results import posture_of
 from keymark.core.body.actor import Actor
-from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
@@ -29,8 +28,8 @@ def test_a_deleted_actor_comes_back_with_its_keyframes(opened: bpy.types.Scene, 
     bpy.ops.keymark.apply_lengths()
     opened.frame_set(FRAME)
     before, frames, action = posture_of(opened), TakeState(take).keyed.all, take.keyframe_action
-    lengths = read_body(take.armature, HUMAN).actor.segments_m
-    stature = read_body(take.armature, HUMAN).actor.stature_m
+    lengths = read_body(take.armature).actor.segments_m
+    stature = read_body(take.armature).actor.stature_m
     if how == "in the viewport":
         delete(take.armature)
     else:
@@ -42,7 +41,7 @@ def test_a_deleted_actor_comes_back_with_its_keyframes(opened: bpy.types.Scene, 
 
     if again == "apply_lengths":
         assert bpy.ops.keymark.apply_lengths() == {"FINISHED"}
-        assert read_body(take.armature, HUMAN).actor.segments_m == pytest.approx(lengths, rel=1e-4)
+        assert read_body(take.armature).actor.segments_m == pytest.approx(lengths, rel=1e-4)
     else:
         assert bpy.ops.keymark.build_actor(stature=stature) == {"FINISHED"}
     assert TakeState(take).actor is take.armature is not None and not TakeState(take).has_lost_actor

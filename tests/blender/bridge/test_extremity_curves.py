@@ -39,7 +39,7 @@ def actor(body: Body) -> bpy.types.Object:
 
 def swaying(armature_object: bpy.types.Object) -> Motion:
     """A motion that stands, bends its knees and sways a little, the ankles in their places but for noise."""
-    body = read_body(armature_object, HUMAN)
+    body = read_body(armature_object)
     time = np.arange(FRAMES) / FPS
     bend = 0.35 - 0.3 * np.cos(3.0 * time)
     vector = np.zeros((FRAMES, HUMAN.dof_count))
@@ -114,7 +114,7 @@ def test_written_again_only_what_is_keymarks_is_replaced(actor: bpy.types.Object
 def test_hands_and_feet_keyed_at_rest_are_not_posed(actor: bpy.types.Object) -> None:
     keyframes = bpy.data.actions.new("Keyframes")
     actor.pose.bones["foot.L"].rotation_euler = (0.2, 0.0, 0.0)
-    store_pose(actor, keyframes, HUMAN, 1.0)
+    store_pose(actor, keyframes, 1.0)
     assert posed_extremities(actor, keyframes) == {"foot.L"}
     action = write_motion(actor, swaying(actor), keyframe_action=keyframes)
     assert set(turned_extremities(actor, action, keyframes)) == {"foot.R", "hand.L", "hand.R"}
@@ -129,7 +129,7 @@ def test_a_shown_motions_hands_and_feet_are_not_stored(actor: bpy.types.Object) 
     assert tuple(actor.pose.bones["hand.L"].rotation_quaternion) == (1.0, 0.0, 0.0, 0.0)
     assert tuple(actor.pose.bones["foot.L"].rotation_euler) == (0.0, 0.0, 0.0)
     keyframes = bpy.data.actions.new("Keyframes")
-    store_pose(actor, keyframes, HUMAN, 20.0)
+    store_pose(actor, keyframes, 20.0)
     assert posed_extremities(actor, keyframes) == {"hand.R"}
 
 
@@ -166,7 +166,7 @@ def test_a_motion_of_rigid_feet_is_finished_as_it_is(actor: bpy.types.Object) ->
 def test_a_copied_hand_is_finished_as_it_was_keyed(actor: bpy.types.Object) -> None:
     keyframes = bpy.data.actions.new("Keyframes")
     actor.pose.bones["hand.L"].rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
-    store_pose(actor, keyframes, HUMAN, 7.0)
+    store_pose(actor, keyframes, 7.0)
     action = write_motion(actor, swaying(actor), keyframe_action=keyframes)
     _, final = final_action(actor, action, FinishOptions(0.01, False, 0.03), keyframes)
     points = curve(actor, final, "hand.L").keyframe_points

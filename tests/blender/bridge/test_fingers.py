@@ -99,4 +99,4 @@ def test_fingers_go_with_the_hand_when_lengths_are_set(
     set_lengths(actor, scaled)
     after = [np.array(actor.data.bones[name].head_local) for name in ("index.1.R", "hand.R")]
     np.testing.assert_allclose(after[0] - after[1], 2.0 * (places[0] - places[1]), atol=1e-5)
-    assert read_body(actor, body.skeleton).actor.segments_m["hand.R"] == pytest.approx(lengths["hand.R"])
+    assert read_body(actor).actor.segments_m["hand.R"] == pytest.approx(lengths["hand.R"])

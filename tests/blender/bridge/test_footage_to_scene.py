@@ -1,6 +1,7 @@
 """Footage behind a camera, and the camera read back."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -63,24 +64,15 @@ def test_the_camera_is_read_back(tiny_take: Take, turned: Camera) -> None:
 @pytest.mark.parametrize(
     ("fit", "size"), [("AUTO", (160, 120)), ("AUTO", (120, 160)), ("VERTICAL", (160, 120))]
 )
-def test_any_sensor_fit_is_read(
-    tiny_take: Take, turned: Camera, monkeypatch: pytest.MonkeyPatch, fit: str, size: tuple[int, int]
-) -> None:
+def test_any_sensor_fit_is_read(tiny_take: Take, turned: Camera, fit: str, size: tuple[int, int]) -> None:
     camera_object = show(tiny_take, turned)
     camera_object.data.sensor_fit = fit
     camera_object.data.sensor_height = 20.0
     render = bpy.context.scene.render
     render.resolution_x, render.resolution_y = size
-    from keymark.operators.bridge import camera_placement as camera_from_scene
-
-    sensor = camera_from_scene._horizontal_sensor(camera_object.data, *size)
-    read = replace(
-        read_camera(shown_footage(), FRAMES),
-        resolution=size,
-        sensor_width_mm=sensor[0],
-        shift_x=camera_object.data.shift_x * sensor[1] / size[0],
-        shift_y=camera_object.data.shift_y * sensor[1] / size[0],
-    )
+    footage = shown_footage()
+    clip = SimpleNamespace(size=size, tracking=footage.clip.tracking)
+    read = read_camera(replace(footage, movie_clip=clip), FRAMES)
     assert read.project(POINTS)[0] == pytest.approx(shown_pixels(camera_object), abs=0.01)
 
 

@@ -5,7 +5,6 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 import pytest
-from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.prior.keyframes import Keyframe
@@ -44,9 +43,9 @@ def test_stored_poses_are_keyframes_and_storing_again_replaces(
     actor: bpy.types.Object, body: Body, action: bpy.types.Action, random_posture: Callable[[int], Posture]
 ) -> None:
     write_posture(actor, random_posture(60))
-    store_pose(actor, action, HUMAN, 5.0)
+    store_pose(actor, action, 5.0)
     write_posture(actor, random_posture(61))
-    store_pose(actor, action, HUMAN, 5.0)
+    store_pose(actor, action, 5.0)
     (keyframe,) = read_keyframes(bpy.context.scene, actor, action, body, CLIP).keyframes
     assert keyframe.index == 4
     assert keyframe.posture.minus(random_posture(61)) == pytest.approx(0.0, abs=1e-5)
@@ -57,16 +56,16 @@ def test_keys_that_were_generated_or_are_of_hands_alone_are_no_keyframes(
 ) -> None:
     action = write_motion(actor, wave_motion)
     actor.pose.bones["hand.L"].keyframe_insert("rotation_quaternion", frame=9)
-    assert keyed_frames(actor, action, HUMAN) == ()
-    store_pose(actor, action, HUMAN, 4.0)
-    assert keyed_frames(actor, action, HUMAN) == (4.0,)
+    assert keyed_frames(actor, action) == ()
+    store_pose(actor, action, 4.0)
+    assert keyed_frames(actor, action) == (4.0,)
 
 
 def test_keys_outside_the_footage_are_left_out_and_named(
     actor: bpy.types.Object, body: Body, action: bpy.types.Action, postures: tuple[Keyframe, ...]
 ) -> None:
     write_keyframes(actor, action, postures, CLIP)
-    store_pose(actor, action, HUMAN, -10.0)
+    store_pose(actor, action, -10.0)
     found = read_keyframes(bpy.context.scene, actor, action, body, CLIP)
     assert len(found.keyframes) == 3
     assert found.notes == ("Keys at -10 lie outside the footage and are not used",)
@@ -75,7 +74,7 @@ def test_keys_outside_the_footage_are_left_out_and_named(
 def test_a_key_goes_to_the_frame_of_an_uneven_clip_that_lies_nearest(
     actor: bpy.types.Object, body: Body, action: bpy.types.Action
 ) -> None:
-    store_pose(actor, action, HUMAN, 4.0)
+    store_pose(actor, action, 4.0)
     uneven = np.array([1.0, 2.1, 3.8, 5.2])
     (keyframe,) = read_keyframes(bpy.context.scene, actor, action, body, uneven).keyframes
     assert keyframe.index == 2
@@ -85,7 +84,7 @@ def test_a_pose_beyond_the_freedoms_is_noted(
     actor: bpy.types.Object, body: Body, action: bpy.types.Action
 ) -> None:
     actor.pose.bones["forearm.L"].rotation_euler = (0.4, 0.0, 0.5)
-    store_pose(actor, action, HUMAN, 3.0)
+    store_pose(actor, action, 3.0)
     found = read_keyframes(bpy.context.scene, actor, action, body, CLIP)
     assert len(found.notes) == 1
     assert "Keyframe 3: the pose goes" in found.notes[0]

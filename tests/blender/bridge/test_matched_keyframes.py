@@ -6,7 +6,6 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.prior.keyframes import Keyframe, Matched
@@ -97,7 +96,7 @@ def test_a_correction_in_the_picture_is_kept_by_files_until_someone_changes_it(
     take: bpy.types.PropertyGroup, matched_take: Take
 ) -> None:
     bpy.context.scene.frame_set(7)
-    store_pose(take.armature, take.keyframe_action, HUMAN, 7.0, depth_found=True)
+    store_pose(take.armature, take.keyframe_action, 7.0, depth_found=True)
     assert [keyframe.depth_found for keyframe in keyframes_in(take)] == [False, True, False]
     bpy.ops.keymark.save_take(directory=str(matched_take.folder / "again"))
     again = read_take(matched_take.folder / "again")
@@ -164,20 +163,20 @@ def test_other_lengths_leave_matches_as_they_are(take: bpy.types.PropertyGroup) 
 def test_matched_keyframes_are_taken_over_and_removed(take: bpy.types.PropertyGroup) -> None:
     armature_object, action = take.armature, take.keyframe_action
     before = read_at(take, 7)
-    take_over(armature_object, action, HUMAN, (7.0,))
-    assert unchanged_keyframes(armature_object, action, HUMAN, FOUND) == ()
+    take_over(armature_object, action, (7.0,))
+    assert unchanged_keyframes(armature_object, action, FOUND) == ()
     assert read_at(take, 7).minus(before) == pytest.approx(0.0, abs=1e-6)
     key = key_at(take, 'pose.bones["chest"].rotation_quaternion', 0, 7.0)
     assert key.type == "KEYFRAME" and key.amplitude != FOUND.amplitude
-    remove_keyframes(armature_object, action, HUMAN, (7.0,))
+    remove_keyframes(armature_object, action, (7.0,))
     keys_changed()
-    assert keyed_frames(armature_object, action, HUMAN) == TakeState(take).keyed.all == (1.0, 13.0)
+    assert keyed_frames(armature_object, action) == TakeState(take).keyed.all == (1.0, 13.0)
 
 
 def test_removing_all_keyframes_leaves_keys_of_the_hands(take: bpy.types.PropertyGroup) -> None:
     armature_object, action = take.armature, take.keyframe_action
-    store_pose(armature_object, action, HUMAN, 7.0)
-    remove_keyframes(armature_object, action, HUMAN, (1.0, 7.0, 13.0))
+    store_pose(armature_object, action, 7.0)
+    remove_keyframes(armature_object, action, (1.0, 7.0, 13.0))
     left = {curve.data_path for curve in existing_channelbag(action, armature_object).fcurves}
     assert left == {
         f'pose.bones["{bone}"].rotation_quaternion' for bone in ("hand.L", "hand.R", "foot.L", "foot.R")
@@ -205,7 +204,7 @@ def test_matched_postures_between_posed_ones_do_not_turn_the_long_way_round(
 
 
 def body_of(take: bpy.types.PropertyGroup) -> Body:
-    return read_body(take.armature, HUMAN)
+    return read_body(take.armature)
 
 
 def read_at(take: bpy.types.PropertyGroup, frame: int) -> Posture:
@@ -227,6 +226,6 @@ def test_a_pose_is_fitted_with_markers_as_posed_frames_show_them(
     bpy.ops.keymark.propose_keyframes()  # reads the clip
     bpy.context.scene.frame_set(4)
     assert bpy.ops.keymark.fit_pose() == {"FINISHED"}
-    take_over(take.armature, take.keyframe_action, HUMAN, (7.0,))
+    take_over(take.armature, take.keyframe_action, (7.0,))
     assert bpy.ops.keymark.fit_pose() == {"FINISHED"}
     assert asked == [2, 3]

@@ -24,7 +24,7 @@ def check(random_posture: Callable[[int], Posture], shown_points: Points) -> Rou
     """Reading a written posture restores it, and Blender's bones match core's kinematics."""
 
     def round_trip(actor: bpy.types.Object, seed: int) -> None:
-        body, posture = read_body(actor, HUMAN), random_posture(seed)
+        body, posture = read_body(actor), random_posture(seed)
         write_posture(actor, posture)
         expected = body.points(body.pose(posture))
         assert shown_points(actor) == pytest.approx(expected, abs=EXACT_M)
@@ -105,13 +105,9 @@ def test_a_pose_beyond_the_freedoms_becomes_the_nearest_posture_and_says_so(
     forearm = actor.pose.bones["forearm.L"]
     forearm.rotation_euler = (0.6, 0.2, 0.3)  # bending, pronation, and a sideways turn the elbow cannot make
     reading = read_posture(actor, body)
-    names = list(HUMAN.point_names)
-    wrist = names.index("wrist.L")
-    assert reading.furthest_m == pytest.approx(reading.distance_m[wrist])
     assert 0.2 * body.actor.segments_m["forearm.L"] < reading.furthest_m
     assert reading.furthest_m < 0.31 * body.actor.segments_m["forearm.L"]
-    others = np.delete(reading.distance_m, wrist)
-    assert others == pytest.approx(0.0, abs=EXACT_M)
+    assert reading.furthest_m == pytest.approx(13 * reading.mean_m, abs=EXACT_M)  # the wrist alone is off
 
 
 def test_a_bone_that_cannot_follow_does_not_turn_what_hangs_on_it(

@@ -6,7 +6,6 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
-from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
@@ -28,10 +27,10 @@ def test_the_bones_get_the_lengths_and_the_pose_stays(
     posture = random_posture(3)
     write_posture(actor, posture)
     set_lengths(actor, other)
-    found = read_posture(actor, read_body(actor, HUMAN))
+    found = read_posture(actor, read_body(actor))
     assert found.furthest_m < 1e-4
     np.testing.assert_allclose(found.posture.minus(posture), 0.0, atol=1e-4)
-    shown = read_body(actor, HUMAN).actor.segments_m
+    shown = read_body(actor).actor.segments_m
     assert dict(shown) == pytest.approx(dict(other.actor.segments_m), rel=1e-4)
 
 

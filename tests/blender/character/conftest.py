@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from _armatures import build_character
 from _characters import plain_character
-from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.take.motion import Motion
@@ -28,7 +27,7 @@ def take(
     scene.render.fps = 30
     scene.frame_end = FRAMES
     actor = build_armature(scene, body, "Walk Actor")
-    size = read_body(actor, HUMAN)
+    size = read_body(actor)
     posture = wave_posture(0.5 - 0.5 * np.cos(np.linspace(0.0, 2.0 * np.pi, FRAMES)))
     points = size.points(size.pose(posture))
     covariance = np.broadcast_to(1e-4 * np.eye(3), (FRAMES, 13, 3, 3))

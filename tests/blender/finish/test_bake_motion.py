@@ -43,7 +43,7 @@ def take(
     actor.pose.bones["upper_arm.L"].rotation_mode = "XYZ"
     actor.pose.bones["chest"].rotation_mode = "AXIS_ANGLE"
     bpy.context.view_layer.update()
-    size = read_body(actor, HUMAN)
+    size = read_body(actor)
     time = np.linspace(0.0, 1.0, FRAMES)
     posture = wave_posture(0.5 - 0.5 * np.cos(4.0 * np.pi * time))
     noise = np.random.default_rng(2).normal(0.0, 0.002, (FRAMES, HUMAN.dof_count))
@@ -55,7 +55,7 @@ def take(
     for frame in POSED:
         scene.frame_set(frame)
         straighten_extremities(actor, result.motion_action, None, frame)
-        store_pose(actor, result.keyframe_action, HUMAN, frame)
+        store_pose(actor, result.keyframe_action, frame)
     scene.frame_set(7)
     return result
 
@@ -143,7 +143,7 @@ def test_every_frame_keeps_everything(take: bpy.types.PropertyGroup, shown_point
 def test_planted_feet_stand_still_in_blender(
     take: bpy.types.PropertyGroup, shown_points: ShownPoints, wave_posture: Callable[[np.ndarray], Posture]
 ) -> None:
-    body = read_body(take.armature, HUMAN)
+    body = read_body(take.armature)
     time = np.arange(FRAMES) / 30.0
     sway = np.zeros((FRAMES, HUMAN.dof_count))
     sway[:, 0], sway[:, 1] = 0.012 * np.sin(4.0 * time), 0.01 * np.cos(3.0 * time)
@@ -198,9 +198,9 @@ def test_other_curves_come_along_and_what_judges_the_motion_stays_behind(
 
 def test_the_rig_shows_what_blender_shows(take: bpy.types.PropertyGroup, shown_points: ShownPoints) -> None:
     armature_object, action = take.armature, take.motion_action
-    body = read_body(armature_object, HUMAN)
+    body = read_body(armature_object)
     rig = read_rig(armature_object, body)
-    frames = motion_frames(armature_object, action, body)
+    frames = motion_frames(armature_object, action)
     assert list(frames[[0, -1]]) == [1.0, FRAMES]
     shown = rig.pose(run(read_values(armature_object, action, rig, frames))).points
     blender = places(take, action, shown_points)

@@ -49,7 +49,7 @@ def reaching(scene: bpy.types.Scene) -> Posture:
 
 def points_of(scene: bpy.types.Scene) -> np.ndarray:
     """The 13 points that the actor shows [m]."""
-    body = read_body(active_take(scene).armature, HUMAN)
+    body = read_body(active_take(scene).armature)
     return body.points(body.pose(posture_of(scene)))
 
 
@@ -57,7 +57,7 @@ def test_flipping_keeps_the_image_and_sets_no_key_in_an_unposed_frame(opened: bp
     take = active_take(opened)
     opened.frame_set(4)
     before = reaching(opened)
-    keys = keyed_frames(take.armature, take.keyframe_action, HUMAN)
+    keys = keyed_frames(take.armature, take.keyframe_action)
     seen, camera = points_of(opened), camera_now(opened, take)
     select(opened, "forearm.L")
     assert selected_limbs(take) == ["arm.L"]
@@ -66,7 +66,7 @@ def test_flipping_keeps_the_image_and_sets_no_key_in_an_unposed_frame(opened: bp
     elbow = HUMAN.point_names.index("elbow.L")
     assert np.linalg.norm(flipped[elbow] - seen[elbow]) > 0.05
     np.testing.assert_allclose(camera.project(flipped)[0], camera.project(seen)[0], atol=1.0)
-    assert keyed_frames(take.armature, take.keyframe_action, HUMAN) == keys
+    assert keyed_frames(take.armature, take.keyframe_action) == keys
     shown = [posture_of(opened)]
     for _ in range(3):
         bpy.ops.keymark.flip_depth()
@@ -200,7 +200,7 @@ def test_undo_takes_a_correction_back(opened: bpy.types.Scene) -> None:
 
 def pictured(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
     """Frames that count as put right in the picture alone."""
-    return unchanged_keyframes(take.armature, take.keyframe_action, HUMAN, PICTURED)
+    return unchanged_keyframes(take.armature, take.keyframe_action, PICTURED)
 
 
 @pytest.mark.usefixtures("still_neighbors")

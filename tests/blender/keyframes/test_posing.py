@@ -7,7 +7,6 @@ import bpy
 import numpy as np
 import pytest
 from _results import posture_of
-from keymark.core.body.human import HUMAN
 from keymark.core.errors import InputError
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
@@ -40,14 +39,14 @@ def test_fitting_brings_the_pose_to_the_markers(
     rough = wave_motion.posture[3].plus(np.where(np.arange(34) < 6, 0.0, 0.25))
     write_posture(take.armature, rough)
     before = off_m(opened, wave_motion, 4)
-    keys = keyed_frames(take.armature, take.keyframe_action, HUMAN)
+    keys = keyed_frames(take.armature, take.keyframe_action)
     assert bpy.ops.keymark.fit_pose(start=start) == {"FINISHED"}
     fitted = posture_of(opened)
     assert off_m(opened, wave_motion, 4) < (0.25 if start == "ANEW" else 0.8 * before)
     bpy.context.view_layer.update()
     bpy.context.evaluated_depsgraph_get().update()
     np.testing.assert_allclose(posture_of(opened).minus(fitted), 0.0, atol=1e-5)
-    assert keyed_frames(take.armature, take.keyframe_action, HUMAN) == keys
+    assert keyed_frames(take.armature, take.keyframe_action) == keys
     assert take.armature.animation_data.action == take.keyframe_action
 
 
@@ -90,8 +89,8 @@ def test_storing_while_the_motion_is_shown_goes_to_the_keyframes(opened: bpy.typ
     shown = posture_of(opened)
     bpy.ops.keymark.store_keyframe()
     assert take.armature.animation_data.action == take.keyframe_action
-    assert 4.0 in keyed_frames(take.armature, take.keyframe_action, HUMAN)
-    assert keyed_frames(take.armature, take.motion_action, HUMAN) == ()
+    assert 4.0 in keyed_frames(take.armature, take.keyframe_action)
+    assert keyed_frames(take.armature, take.motion_action) == ()
     np.testing.assert_allclose(posture_of(opened).minus(shown), 0.0, atol=1e-4)
 
 
@@ -173,7 +172,7 @@ def test_in_two_scenes_the_frame_of_the_one_worked_in_counts(opened: bpy.types.S
         copy,
         active_take(copy).armature,
         active_take(copy).keyframe_action,
-        read_body(active_take(copy).armature, HUMAN),
+        read_body(active_take(copy).armature),
         np.arange(1.0, 14.0),
     ).keyframes
     assert apart > 0.01

@@ -46,7 +46,7 @@ def take(registered: None, body: Body, posture: Posture) -> bpy.types.PropertyGr
     time_s = np.arange(FRAMES) / 30.0
     result = add_take(scene, "Take")
     result.armature = actor
-    size = Body(read_body(actor, body.skeleton).actor)
+    size = Body(read_body(actor).actor)
     motion = Motion(size, 30.0, 1, time_s, posture, points, covariance, (0,), "map")
     result.motion_action = write_motion(actor, motion)
     return result
@@ -58,7 +58,7 @@ def test_a_motion_becomes_a_library(take: bpy.types.PropertyGroup, posture: Post
     library = read_library(file)
     assert (library.title, library.identifier, library.license) == ("Take", "take", NOBODY)
     assert len(library.postures) == 12 and len(library.motions[0].steps) == 12
-    body = read_body(take.armature, posture.skeleton)
+    body = read_body(take.armature)
     assert library.actor.stature_m == pytest.approx(body.actor.stature_m, rel=1e-6)
     frames = [round(step.time_s * 30.0) for step in library.motions[0].steps]
     assert (frames[0], frames[-1]) == (0, FRAMES - 1)

@@ -8,7 +8,6 @@ import bpy
 import numpy as np
 import pytest
 from _performances import made_up_review
-from keymark.core.body.human import HUMAN
 from keymark.core.review.weak_frames import Reason, WeakFrame
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
@@ -97,14 +96,14 @@ def test_the_reconstructed_pose_becomes_a_keyframe(
     take: bpy.types.PropertyGroup, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
     scene = bpy.context.scene
-    before = keyed_frames(take.armature, take.keyframe_action, HUMAN)
+    before = keyed_frames(take.armature, take.keyframe_action)
     scene.frame_set(1)
     take.review.active_weak_frame = 1
     scene.frame_set(2)
     assert bpy.ops.keymark.pose_from_motion(where="WEAK") == {"FINISHED"}
     assert scene.frame_current == 4
     assert take.armature.animation_data.action == take.keyframe_action
-    assert keyed_frames(take.armature, take.keyframe_action, HUMAN) == tuple(sorted({*before, 4.0}))
+    assert keyed_frames(take.armature, take.keyframe_action) == tuple(sorted({*before, 4.0}))
     assert shown_points(take.armature) == pytest.approx(wave_motion.points[3], abs=1e-4)
     assert posed_extremities(take.armature, take.keyframe_action) == frozenset()
     assert [TakeState(take).is_posed(weak.frame) for weak in take.review.weak_frames] == [True, True]
@@ -115,7 +114,7 @@ def test_the_pose_of_the_current_frame_can_be_taken_too(take: bpy.types.Property
     take.keyframe_action = None
     bpy.context.scene.frame_set(5)
     assert bpy.ops.keymark.pose_from_motion() == {"FINISHED"}
-    assert keyed_frames(take.armature, take.keyframe_action, HUMAN) == (5.0,)
+    assert keyed_frames(take.armature, take.keyframe_action) == (5.0,)
     with pytest.raises(RuntimeError, match="No weak frame is chosen"):
         bpy.ops.keymark.pose_from_motion(where="WEAK")
     take.motion_action = None

@@ -6,6 +6,15 @@ from pathlib import Path
 import bpy
 import pytest
 from _armatures import add_rig, rigify_file
+from _performances import performance, stepping
+from keymark.core.body.kinematics import SegmentMotion
+
+
+@pytest.fixture(scope="session")
+def source() -> SegmentMotion:
+    """The demonstration's first steps, forty frames of them."""
+    body, posture = stepping()
+    return performance(body, posture[:40])
 
 
 @pytest.fixture(scope="session")

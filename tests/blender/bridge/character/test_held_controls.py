@@ -6,33 +6,18 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from _armatures import build_character
+from _armatures import build_character, retargeted
 from _characters import plain_character, plain_map
-from _performances import performance, stepping
 from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character, CharacterBone
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.take.character_settings import Placement, RetargetOptions
-from keymark.operators.bridge.character.retarget import Retargeted, retarget
+from keymark.operators.bridge.character.retarget import retarget
 
 FRAMES = 40
 Made = tuple[bpy.types.Object, CharacterMap]
-
-
-@pytest.fixture(scope="module")
-def source() -> SegmentMotion:
-    """The demonstration's first steps."""
-    body, posture = stepping()
-    return performance(body, posture[:FRAMES])
-
-
-def retargeted(made: Made, source: SegmentMotion, options: RetargetOptions = RetargetOptions()) -> Retargeted:  # noqa: B008
-    """The motion on a character, written and assigned."""
-    done = run(retarget(made[0], source, 11.0 + np.arange(FRAMES), made[1], options))
-    done.write(bpy.context.scene, "Steps")
-    return done
 
 
 def in_ik(driver: str = "") -> Made:
@@ -120,7 +105,7 @@ def test_the_performers_motion_is_seen(make: Callable[[], Made], note: str, sour
     influences = [[one.influence for one in bone.constraints] for bone in made[0].pose.bones]
     run(retarget(made[0], source, 11.0 + np.arange(FRAMES), made[1], RetargetOptions()))
     assert [[one.influence for one in bone.constraints] for bone in made[0].pose.bones] == influences
-    done = retargeted(made, source)
+    done = retargeted(*made, source)
     assert [one for one in done.notes if note in one]
     quality = done.quality
     assert quality.legs_deg is not None and quality.legs_deg < 3.0
@@ -139,11 +124,11 @@ def test_the_performers_motion_is_seen(make: Callable[[], Made], note: str, sour
 
 def test_a_constraint_that_nothing_switches_off_is_refused(source: SegmentMotion) -> None:
     with pytest.raises(InputError, match=r"bone 'shin.L' of 'Game' is held by its constraint 'IK'.*legs are"):
-        retargeted(in_ik("1.0"), source)
+        retargeted(*in_ik("1.0"), source)
 
 
 def test_a_character_that_rides_is_measured_on_what_carries_it(source: SegmentMotion) -> None:
-    done = retargeted(on_cart(), source, replace(RetargetOptions(), place=Placement.CHARACTER))
+    done = retargeted(*on_cart(), source, replace(RetargetOptions(), place=Placement.CHARACTER))
     assert done.keys.placement == () and done.quality.skate_mm is not None and done.quality.skate_mm < 0.1
     assert [note for note in done.notes if "the motion rides on it" in note]
 
@@ -155,4 +140,4 @@ def test_a_parent_that_changes_its_size_is_refused(source: SegmentMotion) -> Non
     made[0].parent.scale = (1.0,) * 3
     made[0].parent.keyframe_insert("scale", frame=11)
     with pytest.raises(InputError, match="hangs on 'Cart', whose scale changes"):
-        retargeted(made, source)
+        retargeted(*made, source)

@@ -6,15 +6,13 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from _armatures import add_rig, build_character
+from _armatures import add_rig, build_character, retargeted
 from _characters import plain_character
-from _performances import performance, stepping
+from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.errors import InputError
-from keymark.core.progress import run
 from keymark.core.retarget.recognition.recognize import recognize
 from keymark.core.take.character_settings import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.read_character import make_override, needs_override, read_character
-from keymark.operators.bridge.character.retarget import retarget
 
 
 @pytest.fixture
@@ -99,7 +97,9 @@ def test_what_cannot_be_retargeted_is_refused(make: Callable[[], bpy.types.Objec
         read_character(make())
 
 
-def test_a_linked_character_is_refused_until_it_is_overridden(rigify_blend: Path) -> None:
+def test_a_linked_character_is_refused_until_it_is_overridden(
+    rigify_blend: Path, source: SegmentMotion
+) -> None:
     linked = add_rig(rigify_blend, link=True)
     assert needs_override(linked)
     with pytest.raises(InputError, match="library override"):
@@ -109,10 +109,6 @@ def test_a_linked_character_is_refused_until_it_is_overridden(rigify_blend: Path
     character = read_character(made)
     assert len(character.bones) == len(linked.data.bones)
     known = recognize(character).character_map
-    body, posture = stepping()
-    source = performance(body, posture[:10])
-    options = RetargetOptions(arms=LimbKeys.BOTH, legs=LimbKeys.BOTH)
-    done = run(retarget(made, source, 1.0 + np.arange(10), known, options))
-    action = done.write(bpy.context.scene, "Steps")
-    assert made.animation_data.action == action
+    done = retargeted(made, known, source, RetargetOptions(arms=LimbKeys.BOTH, legs=LimbKeys.BOTH))
+    assert made.animation_data.action.name == "Steps"
     assert done.quality.ik_fk_mm is not None and done.quality.ik_fk_mm < 1.0

@@ -5,13 +5,12 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from _armatures import control_rig
-from _performances import performance, stepping
-from keymark.core.progress import run
+from _armatures import control_rig, retargeted
+from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, Setting, Switch
 from keymark.core.take.character_settings import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.read_character import read_character
-from keymark.operators.bridge.character.retarget import complete_map, retarget
+from keymark.operators.bridge.character.retarget import complete_map
 
 
 def with_controls(known: CharacterMap) -> CharacterMap:
@@ -29,13 +28,11 @@ def with_controls(known: CharacterMap) -> CharacterMap:
 
 @pytest.mark.parametrize("pole_behind", [False, True])
 @pytest.mark.parametrize("keys", [LimbKeys.BOTH, LimbKeys.FK])
-def test_a_rig_whose_map_names_its_controls_performs(pole_behind: bool, keys: LimbKeys) -> None:
+def test_a_rig_whose_map_names_its_controls_performs(
+    source: SegmentMotion, pole_behind: bool, keys: LimbKeys
+) -> None:
     character, known = control_rig(pole_behind)
-    body, posture = stepping()
-    source = performance(body, posture[:40])
-    options = RetargetOptions(arms=keys, legs=keys)
-    made = run(retarget(character, source, 1.0 + np.arange(40), with_controls(known), options))
-    made.write(bpy.context.scene, "Steps")
+    made = retargeted(character, with_controls(known), source, RetargetOptions(arms=keys, legs=keys))
     assert made.notes == ()
     off = []
     for number, frame in enumerate(made.keys.frames):
