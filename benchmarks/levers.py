@@ -38,7 +38,7 @@ from keymark.core.progress import run  # noqa: E402
 from keymark.core.take.evidence import CONTOURS, KEYPOINTS, MARKERS  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402
 from keymark.core.take.take import with_evidence  # noqa: E402
-from keymark.core.terms import region_model  # noqa: E402
+from keymark.core.terms import region_model, regions  # noqa: E402
 from keymark.core.terms.contact import StillnessTerm  # noqa: E402
 from keymark.core.terms.motion import LimitTerm  # noqa: E402
 
@@ -80,6 +80,7 @@ def unjudged(model: Any, at: Any, belief: Any) -> Any:
 
 find_shifts, read_belief = contour_evidence.find_shifts, whole_clip.read_belief
 estimate = reconstruct.estimate_whole_clip
+no_variance: Callable[..., Any] = lambda area, *_: np.zeros((*area.shape, regions.FEATURES))  # noqa: E731
 OFF: Mapping[str, tuple[Switch, ...]] = {
     ALL: (),
     "contours": ((reconstruct, "estimate_whole_clip", without_album),),
@@ -103,6 +104,10 @@ OFF: Mapping[str, tuple[Switch, ...]] = {
         ),
     ),
     "edge of the picture": ((region_model, "near_edge", lambda _, area, __: np.zeros(area.shape[:2], bool)),),
+    "variance of what is missing": (
+        (regions, "missing_variance", no_variance),
+        (keyframe_evidence, "missing_variance", no_variance),
+    ),
     "turns": ((refinement, "choose_turns", job(lambda problem, states: (problem, states))),),
     "sizes of motion": ((refinement, "adapted", job(lambda problem, _, states: (problem, states))),),
     "sizes of limbs": ((refinement, "limb_sizes", lambda problem, *_: problem.limb_size),),

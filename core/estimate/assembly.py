@@ -44,7 +44,7 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     terms: list[Term] = [
         _prior_term(clip, window, step_s),
         SmoothnessTerm(pace**1.5),
-        RegionTerm(*regions, evidence.distrust),
+        RegionTerm(*regions, evidence.distrust, evidence.area_ratio),
         DepthTerm(data.camera, prior_depth, depth_std_m),
         LimitTerm(),
     ]
@@ -136,7 +136,7 @@ def _seen_in_frame(
 ) -> list[Term]:
     repeated, width = observed[np.zeros(starts, dtype=np.intp)], np.repeat(width_px, starts, axis=0)
     return [
-        RegionTerm(evidence.model, repeated, width, evidence.distrust),
+        RegionTerm(evidence.model, repeated, width, evidence.distrust, evidence.area_ratio),
         LimitTerm(),
     ]
 

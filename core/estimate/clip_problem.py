@@ -40,6 +40,7 @@ class KeyframeEvidence:
     model: RegionModel  # with the placements and the lens found
     posing_scale: float  # size of the posing error relative to a person's usual one
     distrust: Array  # (M,) factor, at least one, of the expected standard deviation of each marker's regions
+    area_ratio: Array  # (M,) area of each marker's unhidden region, relative to the predicted one
     information: Array  # (K, D, D) inverse covariance of each keyframe's posing error
     keypoints: KeypointEvidence  # the calibrated model of keypoints, none where there are none
 
@@ -50,6 +51,7 @@ def uncalibrated(model: RegionModel) -> KeyframeEvidence:
     return KeyframeEvidence(
         model,
         1.0,
+        np.ones(markers),
         np.ones(markers),
         np.zeros((0, dofs, dofs)),
         KeypointEvidence.usual(model.body, model.camera, (), ()),

@@ -20,7 +20,7 @@ from ..camera.camera import Camera
 from ..numerics.robust import DEGREES, student_weight
 from ..terms.keypoints import ObservedKeypoints
 from ..terms.region_model import MarkerPlacement, RegionModel
-from ..terms.regions import FEATURES, NOISE, ObservedRegions, feature_rows
+from ..terms.regions import FEATURES, NOISE, ObservedRegions, feature_rows, missing_variance
 from .belief import FEWEST_POSED, POINT_STD_M, Belief, picture_information, posing_covariance
 from .clip_problem import KeyframeEvidence, uncalibrated
 from .keyframe_rows import UNUSED, EvidenceRows, KeyframeRows
@@ -174,9 +174,10 @@ def read_keyframes(
     scale = USUAL_SIZE
     for iteration in range(4):
         yield
-        parts = []
+        parts, area_ratio = [], np.ones(0)
         if markers:
-            parts.append(_region_rows(calibrated, model, known, variance))
+            regions, area_ratio = _region_rows(calibrated, model, known, variance)
+            parts.append(regions)
         if seen_points is not None:
             parts.append(keypoint_rows(placed, usual, seen_points, std_m))
         if outlines is not None:
@@ -213,7 +214,7 @@ def read_keyframes(
         every = model.body.pose(posture)
         depths = read_depths(keypoints.depths, placed, every, frame, points.depth_m, scale * POINT_STD_M)
         found_points = replace(found_points, depths=depths)
-    return KeyframeEvidence(calibrated, scale, distrust, information, found_points)
+    return KeyframeEvidence(calibrated, scale, distrust, area_ratio, information, found_points)
 
 
 def _changed(model: RegionModel, change: Array) -> RegionModel:
@@ -226,8 +227,8 @@ def _changed(model: RegionModel, change: Array) -> RegionModel:
 
 def _region_rows(
     model: RegionModel, average: RegionModel, known: KnownFrames, variance: Array
-) -> EvidenceRows:
-    """Rows of the regions."""
+) -> tuple[EvidenceRows, Array]:
+    """Rows of the regions, and the area (M,) of each unhidden one relative to the predicted one."""
     predicted = model.evaluate(known.pose, known.frame, jacobian=True)
     residual, jacobian = feature_rows(known.observed, predicted)
     assert jacobian is not None
@@ -244,8 +245,17 @@ def _region_rows(
         & (predicted.visible > LEAST_TRUSTED)
         & (known.observed.quality > LEAST_TRUSTED)
     )
+    area_ratio = _area_ratios(np.where(usable, known.observed.area / np.maximum(predicted.area, 1.0), np.nan))
+    variance = variance + missing_variance(known.observed.area, area_ratio, predicted)
     prior = np.diag(np.tile(PRIOR_STD, usable.shape[1]) ** -2)
-    return EvidenceRows.apart(usable, residual, parameter_jacobian, by_lens, jacobian, variance, prior)
+    rows = EvidenceRows.apart(usable, residual, parameter_jacobian, by_lens, jacobian, variance, prior)
+    return rows, area_ratio
+
+
+def _area_ratios(ratio: Array) -> Array:
+    """(M,) upper quartile of (J, M) observed areas relative to predicted ones; 1 for markers never seen."""
+    filled = np.where(np.isfinite(ratio).any(axis=0), ratio, 1.0)
+    return np.asarray(np.nanpercentile(filled, 75.0, axis=0))
 
 
 def _judging(

@@ -60,6 +60,7 @@ class ObservedRegions:
     second_moment: Array
     axes: Array  # (F, M, 2, 2) columns are the observed axes
     deviation: Array  # (F, M, 2) standard deviation of the region along them [px]
+    area: Array  # (F, M) [px], NaN where hidden
     quality: Array  # (F, M)
 
     @classmethod
@@ -71,7 +72,7 @@ class ObservedRegions:
         values, axes = np.linalg.eigh(moments)
         # 0.6 px: what pixels resolve
         deviation = np.sqrt(np.maximum(values, 0.6**2))
-        return cls(tracks.centroid, moments, axes, deviation, quality)
+        return cls(tracks.centroid, moments, axes, deviation, tracks.area, quality)
 
     def __getitem__(
         self, index: slice | IndexArray | tuple[slice | IndexArray, IndexArray]
@@ -120,6 +121,22 @@ def limb_widths(model: RegionModel, places: Array, frame: IndexArray) -> Array:
     return np.asarray(scale[:, None] * model.half_widths_m)
 
 
+def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction) -> Array:
+    """(F, M, 5) variance [px²] of the features for the part of a region that is missing, at an unknown end.
+
+    A table or a door that is not known to stand there may hide a part of a marker. A share f that is cut off
+    a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
+
+    `area` (F, M) is seen [px]; `area_ratio` (M,) is that of an unhidden region relative to the predicted one.
+    """
+    expected = np.maximum(predicted.area * area_ratio, 1.0)
+    # 0.25: share of an area that may be missing for other reasons than occlusion
+    missing = np.clip(np.nan_to_num(1.0 - area / expected) - 0.25, 0.0, 1.0)
+    variance = np.stack([predicted.second_moment[..., axis, axis] for axis in (0, 1)], axis=-1)
+    shape = np.broadcast_to(variance.sum(-1, keepdims=True), (*variance.shape[:-1], FEATURES - 2))
+    return np.asarray(np.concatenate([3.0 * variance, shape], axis=-1) * missing[..., None] ** 2)
+
+
 # --- The term
 
 
@@ -134,6 +151,7 @@ class RegionTerm(Term):
     observed: ObservedRegions
     width_px: Array  # (F, M) mean half-width of each marker's limb in the image [px]
     distrust: Array  # (M,) factor of the noise of each marker's regions
+    area_ratio: Array  # (M,) area of each marker's unhidden region, relative to the predicted one
     is_image: ClassVar[bool] = True
 
     def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
@@ -162,4 +180,5 @@ class RegionTerm(Term):
         trust = np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0)
         variance = NOISE.pixel_std_px**2 + NOISE.surface_std(self.width_px) ** 2
         variance = variance * self.distrust[:, None] ** 2
+        variance = variance + missing_variance(self.observed.area, self.area_ratio, predicted)
         return np.asarray(np.where(usable[..., None], trust[..., None] / variance, 0.0))

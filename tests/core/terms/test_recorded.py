@@ -16,7 +16,7 @@ from keymark.core.terms.keypoints import KeypointModel
 from keymark.core.terms.occlusion import outline_depth
 from keymark.core.terms.reference import ExpectedPoints
 from keymark.core.terms.region_model import RegionModel
-from keymark.core.terms.regions import ObservedRegions, feature_rows, limb_widths
+from keymark.core.terms.regions import ObservedRegions, feature_rows, limb_widths, missing_variance
 
 FRAMES = 12
 FRAME = np.arange(FRAMES)
@@ -37,6 +37,7 @@ def test_regions(name: str) -> None:
     assert slopes is not None
     assert_recorded(f"rows {name}", rows)
     assert_recorded(f"slopes {name}", slopes)
+    assert_recorded(f"missing {name}", missing_variance(observed.area, np.ones(len(SEGMENTS)), seen))
     assert_recorded(f"widths {name}", limb_widths(model, BODY.points(POSE)[:, 0], FRAME))
 
 

@@ -12,7 +12,7 @@ from keymark.core.camera.camera import Camera
 from keymark.core.terms import region_model
 from keymark.core.terms.occlusion import sample_silhouette, view_pieces
 from keymark.core.terms.region_model import MOMENTS, MarkerPlacement, RegionModel
-from keymark.core.terms.regions import FEATURES, ObservedRegions, feature_rows
+from keymark.core.terms.regions import FEATURES, ObservedRegions, feature_rows, missing_variance
 
 STEP = 1e-5
 FRAMES = 6
@@ -266,3 +266,12 @@ def test_a_shape_residual_is_the_difference_of_deviations_in_pixels() -> None:
     residual, _ = feature_rows(ObservedRegions.from_tracks(wider), predicted)
     long_axis = observed.deviation[0, :, 1]
     np.testing.assert_allclose(residual[0, :, 4], -0.1 * long_axis, rtol=0.06)
+
+
+def test_what_is_missing_of_a_region_widens_its_features() -> None:
+    predicted = MODEL.evaluate(BODY.pose(exercise(1)), np.arange(1))
+    variance = [missing_variance(share * predicted.area, 1.0, predicted) for share in (1.0, 0.5, 0.25)]
+    assert variance[0].max() == 0.0
+    along = np.sqrt(predicted.second_moment[..., 0, 0])
+    assert np.all(np.sqrt(variance[1][..., 0]) > 0.4 * along)
+    assert np.all(variance[2] > variance[1])

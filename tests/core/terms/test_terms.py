@@ -116,7 +116,7 @@ def every_term() -> dict[str, tuple[Term, ClipState, float]]:
     matrix.add_combination(slice(0, DOFS), (-0.9, 1.0), np.full(DOFS, 0.3**-2))
     ones = np.ones(count)
     observed, width_px = ObservedRegions.from_tracks(film(exercise(FRAMES))), np.full((FRAMES, count), 20.0)
-    regions = RegionTerm(MODEL, observed, width_px, ones)
+    regions = RegionTerm(MODEL, observed, width_px, ones, ones)
     elsewhere = ExpectedPoints(about, np.full((FRAMES, 13, 3, 3), 20.0 * np.eye(3)), 0.4)
     return {
         "ground": (GroundTerm(ankles, 0.12), at, 1e-4),
@@ -351,7 +351,7 @@ def test_a_body_behind_the_camera_is_not_compared_with_regions() -> None:
     at = replace(state(size=0.0), prior=Posture(HUMAN, away, behind.rotations, behind.angles))
     observed, count = ObservedRegions.from_tracks(tracks), len(MODEL.placements)
     widths = np.full((FRAMES, count), 20.0)
-    term = RegionTerm(MODEL, observed, widths, np.ones(count))
+    term = RegionTerm(MODEL, observed, widths, np.ones(count), np.ones(count))
     at = replace(at, bias=np.zeros((FRAMES, count * FEATURES)))
     equations = NormalEquations(FRAMES, DOFS + count * FEATURES)
     term.add_to(equations, at, 1.0)
