@@ -154,8 +154,9 @@ def unseen_notes(limbs: tuple[str, ...], ends: tuple[str, ...] = ()) -> tuple[st
     notes = []
     if limbs:
         stay = "stays" if len(limbs) == 1 else "stay"
-        what = f"{named_limbs(limbs)} never seen and {stay} at rest"
-        notes.append(f"{what}; pose keyframes where that is wrong")
+        notes.append(
+            f"{named_limbs(limbs)} never seen and {stay} at rest; pose keyframes where that is wrong"
+        )
     if ends:
         is_one = len(ends) == 1
         notes.append(

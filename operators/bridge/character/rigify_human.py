@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from functools import cache
 from importlib.util import find_spec
+from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
@@ -10,8 +11,10 @@ from bpy.types import Object
 from mathutils import Matrix
 
 from ....core.arrays import Array
-from ....core.body.human_mesh import HumanMesh, part_ends
 from ....core.body.skeleton import SIDES
+
+if TYPE_CHECKING:
+    from ....core.body.human_mesh import HumanMesh
 
 ADDON = "rigify"
 SPINE = {
@@ -71,6 +74,8 @@ def add_rigify_human(stature_m: float | None = None) -> Object:
 
 def _add_body(rig: Object) -> None:
     """Give the rig the shipped human skin, which its deforming bones move smoothly."""
+    from ....core.body.human_mesh import HumanMesh, part_ends
+
     human = HumanMesh.read()
     joints = _joints(rig)
     vertices = human.fitted(joints)
@@ -97,7 +102,7 @@ def _add_body(rig: Object) -> None:
 
 
 def skinned(
-    armature_object: Object, name: str, vertices: Array, human: HumanMesh, weights: Mapping[str, Array]
+    armature_object: Object, name: str, vertices: Array, human: "HumanMesh", weights: Mapping[str, Array]
 ) -> Object:
     """The human skin at vertices (N, 3) on an armature, whose bones move them by weights (N,)."""
     mesh = bpy.data.meshes.new(name)

@@ -84,11 +84,10 @@ def test_a_field_that_was_emptied_gets_the_actor_of_the_scene_back(opened: bpy.t
 
 
 def test_the_field_offers_actors_of_the_scene_alone(opened: bpy.types.Scene) -> None:
-    from keymark.operators.takes.properties import _is_actor
-
     take = active_take(opened)
+    is_offered = type(take).__annotations__["armature"].keywords["poll"]
     rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
     opened.collection.objects.link(rig)
-    assert _is_actor(take, take.armature) and not _is_actor(take, rig)
+    assert is_offered(take, take.armature) and not is_offered(take, rig)
     delete(take.armature)
-    assert not _is_actor(take, take.armature)
+    assert not is_offered(take, take.armature)
