@@ -138,9 +138,11 @@ class FrameCosts:
         for column, point in features.columns(self.seen):
             local = features.place[stance, column]
             at = local + places
-            cost += seen.place_cost(((at @ seen.rows[point].T) ** 2).sum(axis=-1))
+            off = at @ seen.rows[point].T
+            cost += seen.share * multivariate_cost((off * off).sum(axis=-1), DEGREES, 2)
             if seen.depth_weight[point]:
-                cost += seen.depth_cost(point, local @ seen.sight)
+                deep = (local @ seen.sight - seen.depth_m[point]) * seen.depth_weight[point]
+                cost += seen.share * multivariate_cost(deep * deep, DEGREES, 1)
             if seen.whole[point]:
                 moment = features.second_moment[stance, column]
                 entries = [moment @ each for each in image_moments(seen.image_axes[point])]
@@ -198,7 +200,12 @@ class FrameCosts:
         for column, limb in enumerate(LIMBS):
             tables[limb] = self.limb_table(limb, stance, places)
             limbs[:, column] = tables[limb].argmin(axis=1)
-            cost += soft_least(tables[limb])
+            # How many explain a frame counts, as well as how well one does: a limb that points at the camera
+            # explains whatever a nearer body shows, but few limbs do so.
+            least = tables[limb].min(axis=1)
+            # Exponents of numbers that single precision can hardly hold take three times as long.
+            chance = np.exp(np.maximum(least[:, None] - tables[limb], np.float32(-60.0)))
+            cost += least - np.log(chance.sum(axis=1))
         if paired and self.floor_m is not None:
             rows = np.arange(len(stance))
             left, right, pairs = self.leg_pairs(stance, places, tables, limbs)
@@ -287,17 +294,6 @@ class PosedCosts(FrameCosts):
     def states(self, depths_m: Array) -> FrameStates:
         """The nearest states; there is one distance."""
         return super().states(depths_m[:1])
-
-
-def soft_least(cost: SingleArray) -> SingleArray:
-    """(N,) cost of any one of several (N, L): how many explain a frame counts, as well as how well one does.
-
-    A limb that points at the camera explains whatever a nearer body shows; few limbs do so.
-    """
-    least = cost.min(axis=1)
-    # Exponents of numbers that single precision can hardly hold take three times as long.
-    chance = np.exp(np.maximum(least[:, None] - cost, np.float32(-60.0)))
-    return np.asarray(least - np.log(chance.sum(axis=1)))
 
 
 # --- Two legs on a stance: which stands on the floor, and whether the body is balanced over that

@@ -40,15 +40,6 @@ class FrameLikelihood:
         """(A, 2, 3) image axes in standard deviations of each place."""
         return self.image_axes * self.weight[:, None, None]
 
-    def place_cost(self, squared: SingleArray) -> SingleArray:
-        """Cost of squared distances of a point in the image, in standard deviations."""
-        return self.share * multivariate_cost(squared, DEGREES, 2)
-
-    def depth_cost(self, point: int, depth_m: SingleArray) -> SingleArray:
-        """Cost of a point's depths behind the hips; 0 where none was guessed."""
-        squared = ((depth_m - self.depth_m[point]) * self.depth_weight[point]) ** 2
-        return self.share * multivariate_cost(squared, DEGREES, 1)
-
     def extent_cost(self, marker: int, entries: Sequence[SingleArray], depth_m: SingleArray) -> SingleArray:
         """Cost of predicted second moments xx, xy, yy of a marker [m²] at some distances [m]."""
         depth = np.maximum(depth_m, np.float32(0.1))

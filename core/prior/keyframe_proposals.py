@@ -40,8 +40,7 @@ def frame_times(time_s: Array) -> Array:
     """Time stamps (F,) in median frame durations; a stamp that does not advance counts as one duration."""
     step = np.diff(time_s)
     advancing = np.isfinite(step) & (step > 0.0)
-    usual = float(np.median(step[advancing])) if advancing.any() else 1.0
-    return np.concatenate([[0.0], np.cumsum(np.where(advancing, step / usual, 1.0))])
+    return np.concatenate([[0.0], np.cumsum(np.where(advancing, step / usual_step(time_s), 1.0))])
 
 
 def point_speed(centroid: Array, time: Array) -> Array:
