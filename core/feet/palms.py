@@ -118,4 +118,4 @@ def _path(twist: Array, swing: Array, looks: Array, time_s: Array) -> IndexArray
 def _apart(first: Array, second: Array) -> Array:
     """Angles (...) between turns given as rotation vectors (..., 3) [rad]."""
     turn = np.swapaxes(exponential(first), -1, -2) @ exponential(second)
-    return np.arccos(np.clip(0.5 * (np.trace(turn, axis1=-2, axis2=-1) - 1.0), -1.0, 1.0))
+    return np.asarray(np.linalg.norm(logarithm(turn), axis=-1))

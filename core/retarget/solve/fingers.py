@@ -7,7 +7,7 @@ import numpy as np
 from ...arrays import Array
 from ...body.fingers import flexion_axis, flexions, palm_axes
 from ...body.rotations import hinge
-from ...body.skeleton import FINGERS
+from ...body.skeleton import FINGERS, SIDES
 from ...numerics.vectors import unit
 from .rest_body import RestBody
 
@@ -19,7 +19,7 @@ def finger_bends(body: RestBody, wanted: Mapping[str, Array]) -> dict[int, Array
     not known stay as they are.
     """
     found: dict[int, Array] = {}
-    for side in "LR":
+    for side in SIDES:
         palm = _palm(body, side)
         for finger in FINGERS:
             role = f"{finger}.{side}"
