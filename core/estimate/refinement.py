@@ -11,10 +11,12 @@ models Shumway & Stoffer 1982, *An approach to time series smoothing and forecas
 
 from collections.abc import Generator
 from dataclasses import replace
+from itertools import compress
 
 import numpy as np
 
 from ..arrays import Array
+from ..numerics.vectors import runs
 from ..prior.frame_prior import REFERENCE_STEP_S
 from ..progress import Part, scaled
 from ..terms.depths import DEPTH_STD_M
@@ -22,9 +24,10 @@ from ..terms.state import ClipState
 from ..video.album import Album
 from .assembly import stillness_term
 from .belief import found_covariance
-from .clip_problem import ClipProblem
+from .clip_problem import ClipData, ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_search import all_located, contour_schedule, points_locate
+from .sigma import GRACE_S
 from .turn_choice import choose_turns
 from .window_problem import WindowProblem
 from .windows import Window, spliced
@@ -122,12 +125,19 @@ def refine(
     if contours is not None:
         contours = contours.with_camera(camera)
     elif album is not None:
-        segments = tuple(one.segment for one in problem.evidence.model.placements)
         data = problem.data
-        schedule = contour_schedule(data.body, camera, album.factor, segments, problem.prior, data.keypoints)
+        located = compress(problem.evidence.model.placements, followed_markers(data))
+        marked = tuple(one.segment for one in located)
+        schedule = contour_schedule(data.body, camera, album.factor, marked, problem.prior, data.keypoints)
         learning = learn_contours(data.body, camera, album, posture, data.belief.frame, schedule)
         contours = yield from scaled(learning, 0.4, 0.5)
     return problem, states, contours
+
+
+def followed_markers(data: ClipData) -> list[bool]:
+    """Which of M markers tell where their limbs are all along: those that are never lost for long."""
+    time_s, lost = data.time_s, (data.observed.quality == 0.0) & data.there[:, None]
+    return [all(time_s[last - 1] - time_s[first] <= GRACE_S for first, last in runs(own)) for own in lost.T]
 
 
 # --- Rests of the feet, which keyframes that are not posed do not tear

@@ -15,6 +15,7 @@ from keymark.core.estimate.refinement import (
     LARGEST_PER_GAP_S,
     USUAL_SIZE,
     adapted,
+    followed_markers,
     limb_sizes,
 )
 from keymark.core.estimate.whole_clip import Seen, estimate_whole_clip
@@ -169,3 +170,26 @@ def test_nothing_is_learned_where_markers_do_not_show_the_whole_body() -> None:
     assert same is clip and kept is states
     other, _ = learn(problem(), posture)
     assert other is not problem()
+
+
+@pytest.mark.parametrize(
+    ("lost", "there", "followed"),
+    [
+        ({}, slice(None), [True] * 5),
+        ({1: slice(20, 28)}, slice(None), [True] * 5),
+        ({1: slice(20, 29)}, slice(None), [True, False, True, True, True]),
+        ({1: slice(20, 26), 3: slice(20, 61)}, slice(None), [True, True, True, False, True]),
+        ({4: slice(30, 61)}, slice(0, 35), [True] * 5),
+    ],
+)
+def test_a_marker_tells_where_its_limb_is_unless_it_is_lost_for_a_quarter_of_a_second(
+    lost: dict[int, slice], there: slice, followed: list[bool]
+) -> None:
+    """Frames in which the performer is not there do not count."""
+    data = problem().data
+    quality, seen = data.observed.quality.copy(), np.zeros(FRAMES, dtype=bool)
+    seen[there] = True
+    for marker, frames in lost.items():
+        quality[frames, marker] = 0.0
+    data = replace(data, observed=replace(data.observed, quality=quality), there=seen)
+    assert followed_markers(data) == followed
