@@ -68,13 +68,6 @@ def contour_notes(take: Take, followed: bool) -> tuple[str, ...]:
     )
 
 
-def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
-    """Note on found keyframes left out in favor of the posed ones around them."""
-    found = sum(keyframe.matched is not None for keyframe in take.keyframes)
-    better = "interpolation between the posed ones is more accurate there"
-    return (f"{count} of {found} found keyframes were left out: {better}",) if count else ()
-
-
 def found_notes(take: Take) -> tuple[str, ...]:
     """Notes on a result from found keyframes: what it rests on, and which frames to pose."""
     found = [(keyframe, keyframe.matched) for keyframe in take.keyframes if keyframe.matched is not None]
@@ -91,9 +84,7 @@ def found_notes(take: Take) -> tuple[str, ...]:
             )
         ]
     else:
-        from_library = any(not match.is_composed for _, match in found)
-        moved = ", changed the way the posed ones differ from them" if from_library else ""
-        notes = [f"{posed} of {len(take.keyframes)} keyframes are posed; the others are {origin}{moved}"]
+        notes = [f"{posed} of {len(take.keyframes)} keyframes are posed; the others are {origin}"]
     doubtful = [(keyframe, match) for keyframe, match in found if match.is_doubtful]
     if doubtful:
         worst = sorted(doubtful, key=lambda one: one[1].confidence)[:MOST_NAMED]
@@ -107,12 +98,9 @@ def found_notes(take: Take) -> tuple[str, ...]:
 
 
 def _origin(found: Sequence[Matched]) -> str:
-    libraries = sorted({match.library for match in found if not match.is_composed})
-    parts = ["postures of a motion from elsewhere"] if any(match.is_referred for match in found) else []
-    if any(match.is_composed and not match.is_referred for match in found):
-        parts.append("postures composed of all libraries")
-    parts += [f"postures of the library {' and '.join(libraries)}"] if libraries else []
-    return " and ".join(parts)
+    referred = {match.is_referred for match in found}
+    parts = {True: "postures of a motion from elsewhere", False: "postures composed of all libraries"}
+    return " and ".join(part for kind, part in parts.items() if kind in referred)
 
 
 def filter_notes(take: Take) -> tuple[str, ...]:

@@ -1,8 +1,4 @@
-"""Height of the lower ankle over a clip, from the soles of found postures.
-
-The lowest sole of a library's posture touches the floor except in flight. Ankles are derived from the floor
-and not from the library's own ankles, which are raised by feet that cannot bend.
-"""
+"""Where a performer stands: the ankles' height over the floor, and the place of a body before any pose."""
 
 from collections.abc import Callable
 
@@ -26,17 +22,6 @@ TOUCHING_PERCENT = 30.0  # of the lowest soles, the floor: more than half touch 
 SHOE_M = 0.012  # thickness of a shoe's sole, and of a heel that hardly ever lies wholly on the floor
 ANKLE_HEIGHT_STD_M = 0.03
 SAME_FLOOR_M = 0.12  # ankles that stand within this of a given floor stand on it
-
-
-def lower_ankle_m(body: Body, found: Posture, index: IndexArray, frames: int) -> Array:
-    """(F,) usual height of the lower ankle [m].
-
-    `found`: K postures as the library has them; `index` (K,): their indices in the clip, in order.
-    """
-    soles = sole_heights_m(body, body.pose(found)).min(axis=-1)
-    floor = np.percentile(soles, TOUCHING_PERCENT)
-    flight = np.interp(np.arange(frames), index, np.maximum(soles - floor, 0.0))
-    return np.asarray(floor + standing_ankle_m(body) + flight)
 
 
 def standing_ankle_m(body: Body) -> float:

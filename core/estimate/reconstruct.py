@@ -16,7 +16,7 @@ from ..errors import InputError
 from ..markers.reading import Reading
 from ..markers.region_tracks import RegionTracks
 from ..prior.keyframe_proposals import evidence_speed
-from ..prior.keyframes import interpolate, with_offset
+from ..prior.keyframes import found_doubt, interpolate
 from ..progress import Job, Progress, within
 from ..take.clip_check import check_frame_count, check_in_front
 from ..take.conversion_settings import METHODS
@@ -30,10 +30,9 @@ from ..terms.region_model import RegionModel
 from .belief import Belief
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
-from .keyframe_selection import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
-from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
-from .performer_placement import feet_over_floor_m, found_ankle_m, lower_ankle_m
+from .notes import contour_notes, evidence_notes, filter_notes, found_notes, marker_notes
+from .performer_placement import feet_over_floor_m, found_ankle_m
 from .reference_evidence import KEYFRAME_WIDTH, NoReference, ReferenceEvidence, with_reference
 from .sigma import LIMB_STD_RAD, place_depth_std_m, undetermined_covariance, unobserved_variance
 from .whole_clip import Seen, WholeClipResult, estimate_whole_clip
@@ -127,14 +126,9 @@ def _reconstruct(
             raise InputError(f"{reference.notes[0]}; without it at least 2 keyframes are needed")
     absent = absence_notes(take, there, within_shot(reading))
     take = _present(take, there)
-    worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps, keypoints)
-    left_out = len(take.keyframes) - len(worth)
-    notes += reading.notes + shaken + absent + left_out_notes(take, left_out)
-    take = replace(take, keyframes=worth)
-    notes += found_notes(take)
-    keyframes, doubt = with_offset(take.keyframes, take.fps)
-    prior = interpolate(keyframes, tracks.frame_count)
-    notes += keypoints.notes
+    notes += reading.notes + shaken + absent + found_notes(take) + keypoints.notes
+    doubt = found_doubt(take.keyframes, take.fps)
+    prior = interpolate(take.keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution = baseline, average_model(take), None
     if method == "map":
@@ -186,20 +180,13 @@ def _belief(
 ) -> Belief:
     """The belief in a take's keyframes; `doubt` (K,) as of `Belief`, but for wider reference motions."""
     ankle_m, frame = None, np.array(take.keyframe_indices, dtype=np.intp)
-    if _is_composed(take):
+    if doubt.any():  # keyframes all of which are posed say where the floor is, and better
         ankle_m = found_ankle_m(take.body, prior[frame], frame, prior.batch[0])
-    elif doubt.all():  # posed keyframes say where the floor is, and better
-        ankle_m = lower_ankle_m(take.body, prior[frame], frame, prior.batch[0])
     referring = [key.matched is not None and key.matched.is_referred for key in take.keyframes]
     doubt = doubt * np.where(referring, KEYFRAME_WIDTH, 1.0)
     pictured = np.array([keyframe.depth_found for keyframe in take.keyframes])
     expected = None if referred is None else referred.expected
     return Belief(prior, frame, doubt, pictured, ankle_m, feet_seen, expected)
-
-
-def _is_composed(take: Take) -> bool:
-    found = [key.matched for key in take.keyframes if key.matched is not None]
-    return all(each.is_composed for each in found) and not all(key.is_posed for key in take.keyframes)
 
 
 def _solved(
@@ -239,7 +226,7 @@ def _solved(
     motion = _motion(take, tracks, posture, result.covariance, "map", diagnostics, unseen)
     motion = replace(motion, unseen=never)
     place_std_m: Array | float = 0.0
-    if _is_composed(take):
+    if doubt.any():
         ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
         lower = motion.points[:, ankles, 2].min(axis=1) if any(shown.feet_seen) else None
         over_m = 0.0

@@ -58,7 +58,7 @@ def with_found(take: Take, found: FoundPoses) -> Take:
     """The take with the found keyframes; posed ones stay, and found ones make room for them.
 
     Beside a posed keyframe a found one tells how the performer differs from the postures it was made of
-    (`prior/performer_offset`). Keyframes that were found earlier go, except where none was sought now.
+    (`found_doubt`). Keyframes that were found earlier go, except where none was sought now.
     """
     posed = [key.index for key in take.keyframes if key.matched is None]
     kept = {key.index: key for key in take.keyframes if key.matched is None or not found.sought(key.index)}

@@ -1,6 +1,6 @@
 """Keyframes: frames with a given posture, posed by a person or found in the footage."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
@@ -11,7 +11,7 @@ from ..body.posture import Posture, headings_rad, yawed_at
 from ..body.posture_spline import cubic_spline
 from ..files.kinds import Number, Text
 from ..files.records import Record
-from .texts import COMPOSED, REFERENCE
+from .texts import REFERENCE
 
 DOUBTFUL = 0.5  # confidence below which a found keyframe is doubtful: more likely wrong than about right
 
@@ -37,11 +37,6 @@ class Matched(Record):
     def is_doubtful(self) -> bool:
         """Whether the keyframe is worth a check."""
         return self.confidence < DOUBTFUL
-
-    @property
-    def is_composed(self) -> bool:
-        """Whether it was made for this performer in this footage, of no single library."""
-        return self.library in (COMPOSED, REFERENCE)
 
     @property
     def is_referred(self) -> bool:
@@ -115,74 +110,32 @@ def interpolate(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
     return cubic_spline(posed, index, np.arange(frame_count, dtype=np.float64))
 
 
-# --- Performer offset
+# --- Doubt in found keyframes
 
 
-CONSTANT_SHARE = (
-    0.5  # share of the variance of a performer's offset from a library that is constant over a clip
-)
-BEYOND_S = (
-    0.1  # time outside the matched keyframes over which the nearest ceases to stand for the library [s]
-)
+BEYOND_S = 0.1  # time outside the found keyframes over which the nearest ceases to stand for them
 
 
-def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
-    """Move the keyframes matched with a library by the performer's offset, learned at the posed ones.
+def found_doubt(keyframes: tuple[Keyframe, ...], fps: float) -> Array:
+    """(K,) deviation of keyframes that is left of a usual one: 1 where nothing was posed, 0 at posed ones.
 
-    With (K,) the offset's remaining standard deviation relative to its prior one: 1 where nothing was posed,
-    less near posed keyframes, and 0 at these.
+    How a performer differs from what was found is a Gaussian process over time, which posed keyframes tell
+    (Rasmussen & Williams 2006, ch. 2).
     """
-    posed = [keyframe for keyframe in keyframes if keyframe.is_posed]
-    found = [keyframe for keyframe in keyframes if not keyframe.is_posed]
-    matched = [key for key in found if key.matched is not None and not key.matched.is_composed]
-    doubt = np.array([0.0 if keyframe.is_posed else 1.0 for keyframe in keyframes])
-    if not posed or not found:
-        return keyframes, doubt
-    difference, beyond_s = _differences(posed, matched or found, fps)
-    at, wanted = (np.array([k.index for k in some]) / fps for some in (posed, found))
-    known = _known(at, beyond_s)
-    across = _covariance(at, wanted)
-    share = np.linalg.solve(known, across).T  # (found, posed)
-    doubt[doubt > 0.0] = np.sqrt(np.maximum(1.0 - np.sum(share * across.T, axis=1), 0.05))  # never none
-    step = np.where([[key in matched] for key in found], share @ difference, 0.0)
-    changed = Posture.stack([key.posture for key in found]).plus(step)
-    both = [*posed, *(replace(key, posture=changed[row]) for row, key in enumerate(found))]
-    return tuple(sorted(both, key=lambda keyframe: keyframe.index)), doubt
-
-
-def leave_one_out_residuals(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[Array, Array]:
-    """Leave-one-out residuals of posed keyframes, predicted from the library and the other posed ones.
-
-    Rasmussen & Williams (2006), eq. 5.12.
-
-    (P, D), and (P,) their weights: less, the farther one lies from matched keyframes.
-    """
-    posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
-    matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]
-    difference, beyond_s = _differences(posed, matched, fps)
-    information = np.linalg.inv(_known(np.array([k.index for k in posed]) / fps, beyond_s))
-    weight = 1.0 / (1.0 + (beyond_s / BEYOND_S) ** 2)
-    return (information @ difference) / np.diag(information)[:, None], weight
-
-
-def _known(at: Array, beyond_s: Array) -> Array:
-    """(P, P) covariance of the observed offsets at posed keyframes' times [s], observation noise included."""
-    noise = 0.1 + (beyond_s / BEYOND_S) ** 2
-    return np.asarray(_covariance(at, at) + np.diag(noise))
-
-
-def _differences(posed: list[Keyframe], matched: list[Keyframe], fps: float) -> tuple[Array, Array]:
-    """Offset from the library to each posed keyframe (P, D), and its time outside the matched ones [s]."""
-    first, last = matched[0].index, matched[-1].index
-    if len(matched) > 1:
-        predicted = interpolate(tuple(matched), max(last, posed[-1].index) + 1)
-    else:
-        predicted = Posture.stack([matched[0].posture] * (max(last, posed[-1].index) + 1))
-    index = np.array([keyframe.index for keyframe in posed])
-    beyond = np.maximum(np.maximum(first - index, index - last), 0)
-    return Posture.stack([keyframe.posture for keyframe in posed]).minus(predicted[index]), beyond / fps
+    posed = np.array([keyframe.is_posed for keyframe in keyframes])
+    doubt = np.where(posed, 0.0, 1.0)
+    if posed.all() or not posed.any():
+        return doubt
+    index = np.array([keyframe.index for keyframe in keyframes])
+    at, found = index[posed], index[~posed]
+    beyond_s = np.maximum(np.maximum(found[0] - at, at - found[-1]), 0) / fps
+    across = _covariance(at / fps, found / fps)
+    known = _covariance(at / fps, at / fps) + np.diag(0.1 + (beyond_s / BEYOND_S) ** 2)
+    left = 1.0 - np.sum(np.linalg.solve(known, across) * across, axis=0)
+    doubt[~posed] = np.sqrt(np.maximum(left, 0.05))  # never none
+    return doubt
 
 
 def _covariance(one: Array, other: Array) -> Array:
-    alike = np.exp(-np.abs(one[:, None] - other) / 0.5)  # the rest is correlated over this time [s]
-    return np.asarray(CONSTANT_SHARE + (1.0 - CONSTANT_SHARE) * alike)
+    # Half of the variance is constant over a clip, the rest is correlated over half a second.
+    return np.asarray(0.5 + 0.5 * np.exp(-np.abs(one[:, None] - other) / 0.5))

@@ -12,7 +12,7 @@ from _scene import TRUTH as FILMED
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.belief import Belief, posing_covariance
 from keymark.core.estimate.clip_problem import uncalibrated
-from keymark.core.estimate.performer_placement import lower_ankle_m, place_standing
+from keymark.core.estimate.performer_placement import found_ankle_m, place_standing
 from keymark.core.estimate.reference_alignment import about_hips, align
 from keymark.core.estimate.reference_evidence import STD_M, error_factor, own_and_usual_cost
 from keymark.core.estimate.reference_placement import SeenPoints
@@ -60,7 +60,7 @@ def test_by_keypoints(found: bool) -> None:
     scale = np.full(len(POSED), 1.5) if found else None
     seen = Seen(bare, (), detect(TRUTH))
     prior, index = by_hand(2), np.array(POSED)
-    ankle_m = lower_ankle_m(BODY, prior[index], index, FRAMES) if found else None
+    ankle_m = found_ankle_m(BODY, prior[index], index, FRAMES) if found else None
     result = run(estimate_whole_clip(BODY, CAMERA, seen, Belief.of(prior, POSED, scale, None, ankle_m)))
     hold(f"estimate by keypoints, found {found}", result)
 
