@@ -83,10 +83,6 @@ class ContourEvidence:
         edges.distance[~known], edges.variance[~known] = 0.0, np.inf
         return predicted, edges
 
-    def with_camera(self, camera: Camera) -> "ContourEvidence":
-        """The same before another camera."""
-        return replace(self, model=replace(self.model, camera=camera))
-
     def measure_along(
         self, posture: Posture, frame: IndexArray, search: SearchRange, step_s: Array
     ) -> Generator[float, None, AxialTerm]:
@@ -141,7 +137,10 @@ def learn_contours(
     frame = np.flatnonzero(seen)
     model = ContourModel.average(body, camera)
     known = keyframes[evenly_spread(keyframes, 60)]
-    appearance = yield from _learn_appearance(model, album, posture[frame], frame)
+    count = min(32, len(frame))
+    looked = frame[np.unique(np.round((np.arange(count) + 0.5) * len(frame) / count - 0.5).astype(np.intp))]
+    shown = yield from _labeled(model, album, posture[looked], looked)
+    appearance = learn_appearance(*shown, len(model.parts.segments))
     if schedule.is_wide:
         labeled = yield from _labeled(model, album, posture[known], known)
         appearance = appearance.with_parts(*labeled, len(model.parts.segments)).where_steady()
@@ -152,15 +151,6 @@ def learn_contours(
     if schedule.is_wide:
         along = learn_along(model, body.pose(posture[known]), known, album.factor, *labeled)
     return ContourEvidence(album, appearance, fitted, schedule, along)
-
-
-def _learn_appearance(
-    model: ContourModel, album: Album, posture: Posture, frame: IndexArray
-) -> Generator[None, None, Appearance]:
-    count = min(32, len(frame))
-    chosen = np.unique(np.round((np.arange(count) + 0.5) * len(frame) / count - 0.5).astype(np.intp))
-    images, labels = yield from _labeled(model, album, posture[chosen], frame[chosen])
-    return learn_appearance(images, labels, len(model.parts.segments))
 
 
 def _labeled(
@@ -187,7 +177,7 @@ def _fit_shapes(
         for chunk, seen in zip(stretches, pictures, strict=True):
             yield
             known.append(evidence.near(posture[chunk], frame[chunk], pictures=seen))
-        model = model.with_shape(_fitted_shape(model, known, album.factor))
+        model = replace(model, shape=_fitted_shape(model, known, album.factor))
     return model
 
 

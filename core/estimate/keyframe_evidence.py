@@ -245,17 +245,13 @@ def _region_rows(
         & (predicted.visible > LEAST_TRUSTED)
         & (known.observed.quality > LEAST_TRUSTED)
     )
-    area_ratio = _area_ratios(np.where(usable, known.observed.area / np.maximum(predicted.area, 1.0), np.nan))
+    ratio = np.where(usable, known.observed.area / np.maximum(predicted.area, 1.0), np.nan)
+    ratio = np.where(np.isfinite(ratio).any(axis=0), ratio, 1.0)  # of markers never seen
+    area_ratio = np.asarray(np.nanpercentile(ratio, 75.0, axis=0))
     variance = variance + missing_variance(known.observed.area, area_ratio, predicted)
     prior = np.diag(np.tile(PRIOR_STD, usable.shape[1]) ** -2)
     rows = EvidenceRows.apart(usable, residual, parameter_jacobian, by_lens, jacobian, variance, prior)
     return rows, area_ratio
-
-
-def _area_ratios(ratio: Array) -> Array:
-    """(M,) upper quartile of (J, M) observed areas relative to predicted ones; 1 for markers never seen."""
-    filled = np.where(np.isfinite(ratio).any(axis=0), ratio, 1.0)
-    return np.asarray(np.nanpercentile(filled, 75.0, axis=0))
 
 
 def _judging(

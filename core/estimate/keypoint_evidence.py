@@ -148,10 +148,6 @@ class KeypointEvidence:
         error_m = self.error_m ** (1.0 - found_share[:, None]) * followed_m ** found_share[:, None]
         return error_m, self.memory_s ** (1.0 - found_share) * 0.08**found_share
 
-    def with_camera(self, camera: Camera) -> "KeypointEvidence":
-        """The same before another camera."""
-        return replace(self, model=replace(self.model, camera=camera))
-
 
 def usual_std_m(names: tuple[str, ...], sources: tuple[str, ...]) -> Array:
     """(N,) usual error of sure detections along each axis of the image [m].

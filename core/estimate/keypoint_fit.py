@@ -72,13 +72,12 @@ def observed_joints(fit: KeypointFit) -> tuple[tuple[str, ...], BoolArray]:
 
     A joint itself is carried by the one above it: a hip shows where the trunk is, and nothing of the limb.
     """
-    places = [USUAL_PLACES[name] for name in fit.keypoints.names]
-    joints = tuple(each.joint if each.placement else _above(each.joint) for each in places)
-    return joints, (fit.weight > 0.0) & ~fit.thrown_out
-
-
-def _above(joint: str) -> str:
-    return HUMAN.joints[max(HUMAN.joints[HUMAN.joint_index(joint)].parent, 0)].name
+    joints = []
+    for place in (USUAL_PLACES[name] for name in fit.keypoints.names):
+        joint = HUMAN.joint_index(place.joint)
+        carrier = joint if place.placement else max(HUMAN.joints[joint].parent, 0)
+        joints.append(HUMAN.joints[carrier].name)
+    return tuple(joints), (fit.weight > 0.0) & ~fit.thrown_out
 
 
 def keypoint_notes(fit: KeypointFit) -> tuple[str, ...]:

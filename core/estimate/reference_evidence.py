@@ -82,23 +82,21 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
     name = take.reference.name
     posed = tuple(key for key in take.keyframes if key.matched is None)
     if _is_own_guess(take.reference, keypoints):
-        return NoReference(
-            (
-                f"{name}: is set aside, since it is the guess in space that came with the keypoints, whose "
-                "errors it shares",
-            )
+        own = (
+            f"{name}: is set aside, since it is the guess in space that came with the keypoints, whose "
+            "errors it shares"
         )
+        return NoReference((own,))
     seen = SeenPoints.of(take.camera, keypoints, tracks, take.marker_segments)
     aligned = align(take.reference, take.body, seen, tracks.time_s, take.fps)
     cost, usual = own_and_usual_cost(aligned, seen)
     gain = 1.0 - cost / usual
     if gain < LEAST_GAIN:
-        return NoReference(
-            (
-                f"{name}: is set aside, since it fits the footage hardly better than the same motion at "
-                f"other times ({gain:.2f}); it must be of this clip",
-            )
+        other = (
+            f"{name}: is set aside, since it fits the footage hardly better than the same motion at "
+            f"other times ({gain:.2f}); it must be of this clip"
         )
+        return NoReference((other,))
     left_out = _left_out(aligned, usual, tracks.time_s)
     # 0.09: of the local quadratic that takes its jitter away
     points = smoothed(aligned.points, tracks.time_s, 0.09)
@@ -111,28 +109,20 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
         offset = about_hips(true) - points[index]
         known = np.isfinite(offset).all(axis=(1, 2))
         if known.any():
-            index, offset, middle = (
-                index[known],
-                offset[known],
-                (true - about_hips(true))[known, 0],
-            )
-            factor = _with_posed(factor, offset, _whitening(take, hips, STD_M)[index])
+            index, offset, middle = index[known], offset[known], (true - about_hips(true))[known, 0]
+            off = (_whitening(take, hips, STD_M)[index] @ offset[..., None])[..., 0]
+            squared = np.mean(off**2, axis=(1, 2))
+            # 3.0: posed keyframes that the error in the picture weighs as much as
+            learned = np.sqrt((3.0 * factor**2 + squared.sum()) / (3.0 + len(squared)))
+            factor = float(np.clip(learned, *FACTORS))
             share = _bias(tracks.time_s[index], tracks.time_s)
             points = points + np.einsum("fk,kpi->fpi", share, offset)
             hips = hips + share @ (middle - hips[index])
     # 0.4 s: time in which its errors fade
-    expected = ExpectedPoints(
-        np.where(aligned.known[:, None, None], points, np.nan),
-        _whitening(take, hips, factor * STD_M),
-        0.4,
-    )
-    found = _keyframes(
-        take,
-        points + hips[:, None],
-        posed,
-        tracks.time_s,
-        Matched(REFERENCE, name, False, _confidence(factor)),
-    )
+    known_points = np.where(aligned.known[:, None, None], points, np.nan)
+    expected = ExpectedPoints(known_points, _whitening(take, hips, factor * STD_M), 0.4)
+    matched = Matched(REFERENCE, name, False, _confidence(factor))
+    found = _keyframes(take, points + hips[:, None], posed, tracks.time_s, matched)
     notes = [
         f"{name}: a motion from elsewhere is followed; its points are about "
         f"{100.0 * factor * USUAL_ERROR_M:.0f} cm off by what is seen"
@@ -193,14 +183,6 @@ def _left_out(aligned: AlignedReference, usual: float, time_s: Array) -> BoolArr
         gaussian(1.0 * known, width), 1e-9
     )
     return np.asarray(near > (1.0 - LEAST_GAIN) * usual)
-
-
-def _with_posed(factor: float, offset: Array, whitening: Array) -> float:
-    """The error in usual ones, by posed keyframes too, of which `offset` (K, 13, 3) is left."""
-    squared = np.mean((whitening @ offset[..., None])[..., 0] ** 2, axis=(1, 2))
-    # 3.0: posed keyframes that the error in the picture weighs as much as
-    learned = np.sqrt((3.0 * factor**2 + squared.sum()) / (3.0 + len(squared)))
-    return float(np.clip(learned, *FACTORS))
 
 
 def _whitening(take: Take, hips: Array, std_m: Array) -> Array:

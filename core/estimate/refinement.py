@@ -123,7 +123,7 @@ def refine(
     solved = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
     posture = spliced(problem.prior, spans, solved)
     if contours is not None:
-        contours = contours.with_camera(camera)
+        contours = replace(contours, model=replace(contours.model, camera=camera))
     elif album is not None:
         data = problem.data
         located = compress(problem.evidence.model.placements, followed_markers(data))

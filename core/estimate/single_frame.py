@@ -11,7 +11,7 @@ from ..markers.region_tracks import ExpectedRegions
 from ..prior.frame_prior import FramePrior
 from ..progress import run
 from ..terms.depths import DEPTH_STD_M, depths_jacobian
-from ..terms.keypoints import ObservedKeypoints
+from ..terms.keypoints import EXCHANGED_COST, ObservedKeypoints
 from ..terms.region_model import RegionModel
 from ..terms.regions import FEATURES, ObservedRegions, limb_widths
 from ..terms.solver import descend
@@ -70,9 +70,6 @@ def frame_residuals(
     misplaced = np.flatnonzero(is_misplaced_point(point_off, scale, points.confidence[0]))
     names = tuple(dict.fromkeys(own.names[row] for row in misplaced))
     return FrameResiduals(off, point_off, tuple(map(int, markers)), names)
-
-
-EXCHANGED_COST = 3.0  # cost of taking a detector's left for right: it is wrong in one frame of twenty
 
 
 @dataclass(frozen=True, eq=False)

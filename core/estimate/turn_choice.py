@@ -30,21 +30,11 @@ GONE_ON = (
 SETTLED = (1.0,) * 4  # those of the estimate in the meantime, whose window was solved already
 
 
-@dataclass(frozen=True, eq=False)
-class Alternative:
-    """Another solution of a stretch of the clip, whose frames the state names."""
+def other_way(problem: ClipProblem, state: ClipState, other: ClipProblem) -> Generator[None, None, float]:
+    """How much less a stretch costs about another prior, in negative log probability.
 
-    problem: ClipProblem
-    state: ClipState
-    gain: float  # how much less it costs than the estimate, in negative log probability
-
-
-def alternative(
-    problem: ClipProblem, state: ClipState, other: ClipProblem
-) -> Generator[None, None, Alternative | None]:
-    """Solve a stretch of consecutive frames once more from where it is, and about another prior.
-
-    `state` is the solution in the stretch, cut from a window's. None where the other prior is hopeless.
+    It is solved once more from its `state`, the solution of consecutive frames cut from a window's, and anew
+    about the other prior; -inf where that is hopeless.
     """
     first, last = int(state.frame[0]), int(state.frame[-1]) + 1
     window = Window(first, last, first, last)
@@ -55,10 +45,10 @@ def alternative(
     # An alternative that costs more than the estimate by three tenths of it and 50 besides is given up by
     # then. The other steps save a third of an alternative's cost at most, and mostly a tenth.
     if begun.sum() > 1.3 * known.sum() + 50.0:
-        return None
+        return -np.inf
     settled = yield from here.descend(SETTLED)
     ended = yield from there.descend(GONE_ON)
-    return Alternative(other, there.state.without_cache(), float(settled.sum() - ended.sum()))
+    return float(settled.sum() - ended.sum())
 
 
 def cut(states: list[ClipState], first: int, last: int, margin: int) -> ClipState | None:
@@ -124,12 +114,19 @@ def choose_turns(problem: ClipProblem, states: list[ClipState]) -> Part[tuple[Cl
         state = cut(states, first, last + 1, margin)
         if state is None:
             continue
-        trying = _best(problem, state, doubt)
-        best = yield from scaled(trying, number / len(doubts), (number + 1) / len(doubts))
         # 3.0: another turn is taken where it costs less by so much: it is twenty times as probable
-        if best is not None and best.gain > 3.0:
-            before, problem = problem, best.problem
-            turned = (problem.prior.rotations != before.prior.rotations).any(axis=(1, 2, 3))
+        best, most = problem, 3.0
+        for way in doubt.turns:
+            turns = problem.turns.copy()
+            turns[doubt.gap] = way
+            other = problem.with_turns(turns)
+            trying = other_way(problem, state, other)
+            gain = yield from scaled(trying, number / len(doubts), (number + 1) / len(doubts))
+            if gain > most:
+                best, most = other, gain
+        if best is not problem:
+            turned = (best.prior.rotations != problem.prior.rotations).any(axis=(1, 2, 3))
+            problem = best
             for index, one in enumerate(states):
                 if turned[one.frame].any():
                     whole = Window(int(one.frame[0]), int(one.frame[-1]) + 1, 0, 0)
@@ -137,17 +134,3 @@ def choose_turns(problem: ClipProblem, states: list[ClipState]) -> Part[tuple[Cl
                     yield from scaled(part.follow_markers(), 1.0, 1.0)
                     states[index] = part.state.without_cache()
     return problem, states
-
-
-def _best(
-    problem: ClipProblem, state: ClipState, doubt: DoubtedTurn
-) -> Generator[None, None, Alternative | None]:
-    """The turn that wins most clearly, or loses least; None where all are hopeless."""
-    best: Alternative | None = None
-    for way in doubt.turns:
-        turns = problem.turns.copy()
-        turns[doubt.gap] = way
-        tried = yield from alternative(problem, state, problem.with_turns(turns))
-        if tried is not None and (best is None or tried.gain > best.gain):
-            best = tried
-    return best

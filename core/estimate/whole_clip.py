@@ -117,7 +117,10 @@ def estimate_whole_clip(
     )
     evidence = yield from scaled(read_belief(model, at, belief), 0.0, 0.0)
     if heads is not None:
-        evidence = _loosened(evidence, belief, heads.seen, body)
+        # How found keyframes turn heads that are seen is trusted less.
+        loose = of_neck(body.skeleton, 1.0 / LOOSE_NECK)
+        trust = np.where((~belief.posed & heads.seen[belief.frame])[:, None], loose, 1.0)
+        evidence = replace(evidence, information=evidence.information * trust[:, :, None] * trust[:, None])
     there = np.ones(tracks.frame_count, dtype=bool) if seen.there is None else seen.there
     data = ClipData(
         body,
@@ -135,13 +138,6 @@ def estimate_whole_clip(
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or belief.doubt.any()) else None
     return (yield from _solve(ClipProblem.begun(data, evidence), hold_rests, album, kept))
-
-
-def _loosened(evidence: KeyframeEvidence, belief: Belief, seen: BoolArray, body: Body) -> KeyframeEvidence:
-    """The evidence with less trust in how found keyframes turn heads that are seen (F,)."""
-    loose = of_neck(body.skeleton, 1.0 / LOOSE_NECK)
-    believed = np.where((~belief.posed & seen[belief.frame])[:, None], loose, 1.0)
-    return replace(evidence, information=evidence.information * believed[:, :, None] * believed[:, None])
 
 
 def _swaps(

@@ -108,9 +108,10 @@ class Factor:
     lower: Array  # (2 size + 1, frames * size) the lower factor by diagonals, as LAPACK keeps it
 
     def solve(self, vector: Array) -> Array:
-        """The solution (F, size) for a right-hand side (F, size)."""
-        solution = cho_solve_banded((self.lower, True), vector.ravel(), check_finite=False)
-        return np.asarray(solution.reshape(-1, self.size))
+        """The solution (F, size, ...) for a right-hand side (F, size, ...)."""
+        flat = vector.reshape(self.frames * self.size, *vector.shape[2:])
+        solution = cho_solve_banded((self.lower, True), flat, check_finite=False)
+        return np.asarray(solution.reshape(vector.shape))
 
     def covariance_blocks(self) -> Array:
         """The diagonal blocks (F, size, size) of the inverse."""

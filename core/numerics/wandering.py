@@ -10,9 +10,9 @@ Rasmussen & Williams (2006), *Gaussian Processes for Machine Learning*, ch. 5; t
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_solve_banded, cholesky_banded
 
 from ..arrays import Array, BoolArray, IndexArray
+from .block_banded import BlockBanded
 from .robust import DEGREES, student_weight
 
 CONSTANT_SHARE = 0.3  # of the wander's variance that never changes, which only exact values can tell
@@ -21,6 +21,7 @@ BENDS = tuple(10.0 ** (0.25 * step) for step in range(-6, 4))
 USUAL_RATE = 30.0
 MOST_LEARNED = 2000  # frames that the sizes are learned from
 EXACT = 1e-3  # standard deviation of an exact value, in sizes of the wander
+NO_FRAMES, NO_VALUES = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class Sizes:
 
 
 class _System:
-    """The banded equations of path and wander of F frames, interleaved, and their factor."""
+    """The equations of path and wander of F frames, and their factor."""
 
     def __init__(self, sizes: Sizes, weight: Array, exact: IndexArray) -> None:
         frames = len(weight)
@@ -41,28 +42,22 @@ class _System:
         keep = np.exp(-1.0 / (sizes.rate * 0.4))
         fresh = 1.0 - keep**2
         self.precision = weight / sizes.grain**2  # (F,) of what was seen
-        band = np.zeros((5, 2 * frames))
-        own = np.full(frames, (1.0 + keep**2) / fresh)
-        own[[0, -1]] = 1.0 / fresh
-        band[0, 1::2] = own + self.precision
-        band[2, 1:-2:2] = -keep / fresh
-        for offset, coefficients in enumerate(((1.0, -2.0, 1.0), (-2.0, -2.0), (1.0,))):
-            for first in range(3 - offset):
-                product = coefficients[first] * ((1.0, -2.0, 1.0)[first] if offset == 0 else 1.0)
-                band[2 * offset, 2 * first : 2 * (first + frames - 2) : 2] += product / sizes.bend**2
-        band[0, 0::2] += self.precision
-        band[1, 0::2] = self.precision
-        band[0, 2 * exact] += EXACT**-2
-        self.factor = cholesky_banded(band, lower=True, check_finite=False)
+        matrix = BlockBanded(frames, 2)
+        matrix.add_combination(slice(0, 1), (1.0, -2.0, 1.0), np.array(sizes.bend**-2))
+        matrix.add_combination(slice(1, 2), (-keep, 1.0), np.array(1.0 / fresh))
+        matrix.diagonal += self.precision[:, None, None]
+        matrix.diagonal[0, 1, 1] += 1.0
+        matrix.diagonal[exact, 0, 0] += EXACT**-2
+        self.factor = matrix.factorize()
         # Logarithm of the determinant of what is believed beforehand of path and wander.
         self.prior = -(frames - 1) * np.log(fresh) - 2.0 * (frames - 2) * np.log(sizes.bend)
 
     def solve(self, values: Array, exact: IndexArray, known: Array) -> tuple[Array, Array]:
         """Path and wander (F, C) of values (F, C) and exact ones (K, C)."""
-        right = np.repeat(self.precision[:, None] * values, 2, axis=0)
-        right[2 * exact] += EXACT**-2 * known
-        found = cho_solve_banded((self.factor, True), right, check_finite=False)
-        return found[0::2], found[1::2]
+        right = np.repeat((self.precision[:, None] * values)[:, None], 2, axis=1)
+        right[exact, 0] += EXACT**-2 * known
+        found = self.factor.solve(right)
+        return found[:, 0], found[:, 1]
 
 
 def learn_sizes(values: Array, rate: float) -> Sizes:
@@ -80,27 +75,26 @@ def learn_sizes(values: Array, rate: float) -> Sizes:
 
 def _misfit(sizes: Sizes, values: Array, seen: BoolArray) -> float:
     """Negative logarithm of the marginal likelihood of values (F, 3 N), up to a constant."""
-    none = np.zeros(0, dtype=np.intp)
-    system = _System(sizes, seen.astype(np.float64), none)
-    path, wander = system.solve(values, none, np.zeros((0, values.shape[1])))
+    system = _System(sizes, seen.astype(np.float64), NO_FRAMES)
+    path, wander = system.solve(values, NO_FRAMES, np.zeros((0, values.shape[1])))
     squared = values * system.precision[:, None] * (values - path - wander)
     count = 3 * (int(seen.sum()) - 2)
     sizes_squared = squared.reshape(len(values), -1, 3).sum(axis=(0, 2)) / max(count, 1)
     points = values.shape[1] // 3
-    determinant = 2.0 * np.log(system.factor[0]).sum() - system.prior - np.log(system.precision[seen]).sum()
+    determinant = (
+        2.0 * np.log(system.factor.lower[0]).sum() - system.prior - np.log(system.precision[seen]).sum()
+    )
     return float(0.5 * count * np.log(np.maximum(sizes_squared, 1e-18)).sum() + 1.5 * points * determinant)
 
 
 def smooth_path(
-    values: Array, sizes: Sizes, exact: IndexArray | None = None, known: Array | None = None
+    values: Array, sizes: Sizes, frames: IndexArray = NO_FRAMES, known: Array = NO_VALUES
 ) -> Array:
     """The path (F, 3) of one point's values (F, 3), where NaN is not seen.
 
-    At the `exact` frames the path is `known` (K, 3), and values there do not count; the error beside them is
+    At exact `frames` the path is `known` (K, 3), and values there do not count; the error beside them is
     then known too and wanders away from what it is there.
     """
-    frames = np.zeros(0, dtype=np.intp) if exact is None else exact
-    there = np.zeros((0, values.shape[1])) if known is None else known
     seen = np.isfinite(values).all(axis=1)
     seen[frames] = False
     filled = np.where(seen[:, None], values, 0.0)
@@ -108,7 +102,7 @@ def smooth_path(
     path = filled
     for _ in range(4):
         system = _System(sizes, weight, frames)
-        path, wander = system.solve(filled, frames, there)
+        path, wander = system.solve(filled, frames, known)
         residual = filled - path - wander
         if len(frames):
             ones = np.ones((len(values), 1))

@@ -13,9 +13,9 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray, SingleArray, single
 from ..body.human import HUMAN, LIMBS, mass_weights
-from ..estimate.single_frame import EXCHANGED_COST
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..terms.contact import STEP_M
+from ..terms.keypoints import EXCHANGED_COST
 from .frame_likelihood import FrameLikelihood, image_moments, lowest, spread, squared_distances
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
 from .part_pools import ARM

@@ -1,8 +1,5 @@
 """Flipping depth: what leans toward the camera leans away from it instead, and the picture stays the same."""
 
-from collections.abc import Iterator
-from enum import Enum
-
 import numpy as np
 
 from ..arrays import Array
@@ -15,24 +12,12 @@ from .dragged import planted
 from .inverse_kinematics import Pull, SightLine, pulled
 from .limb_chain import DISTINCT_M, LimbChain, swing
 
-
-class FlippedPart(Enum):
-    """The parts of a limb or of the trunk that lean to the other side."""
-
-    UPPER = (True, False)  # upper arm or thigh, forearm or shin leaning as before; of the trunk, the chest
-    LOWER = (False, True)  # forearm or shin alone; of the trunk, the pelvis
-    BOTH = (True, True)  # the whole limb, or the whole trunk
-
-
-FLIPPABLE = (TRUNK, *LIMBS)  # parts of the body whose depth can be flipped, as `body/limbs` names them
 FLAT_M = 0.5 * DISTINCT_M  # a part whose ends differ less in depth has no other side [m]
-_ORDER_OF_TRUNK = (FlippedPart.BOTH, FlippedPart.UPPER, FlippedPart.LOWER)
-"""A trunk that leans the wrong way mostly does so from the hips up."""
+LEANS = ((True, True), (True, False), (False, True))
+"""Whether chest and pelvis lean to the other side: a trunk that leans wrongly mostly does so as a whole."""
 
 
-def flipped(
-    body: Body, posture: Posture, camera: Camera, part_of_body: str, part: FlippedPart | None = None
-) -> tuple[Posture, ...]:
+def flipped(body: Body, posture: Posture, camera: Camera, part: str) -> tuple[Posture, ...]:
     """Postures in which a limb or the trunk lies on the other side in depth, the most plausible first.
 
     Its joints keep their image, lengths are exact, and joint limits are kept: where they forbid the flipped
@@ -43,40 +28,30 @@ def flipped(
         body: The actor's body.
         posture: A single posture.
         camera: The camera in this frame, as one that stands still.
-        part_of_body: One of `FLIPPABLE`; KeyError for another.
-        part: What of it is flipped; by default everything that looks different.
+        part: The trunk or a limb, as `body/human` names them; KeyError for another.
 
     Returns:
         Up to three postures, none where the part lies flat in the picture, so that it has no depth to flip.
     """
-    if part_of_body == TRUNK:
-        return tuple(_flipped_trunks(body, posture, camera, part))
-    limb = LimbChain.of(body, part_of_body)
+    found: list[Posture] = []
+    if part == TRUNK:
+        joints = [body.skeleton.joint_index(joint) for joint in ("waist", "neck")]
+        for upper, lower in LEANS:
+            leaning = _with_trunk(body, posture, camera, upper, lower)
+            shown = [body.pose(each).origin[joints] for each in (posture, *found, leaning)]
+            if min(np.linalg.norm(shown[-1] - other, axis=-1).max() for other in shown[:-1]) > DISTINCT_M:
+                found.append(leaning)
+        return tuple(found)
+    limb = LimbChain.of(body, part)
     lines = limb.sight_lines(posture, camera)
     before = limb.depths_m(posture, lines)
-    found = []
     for way in limb.ways_in_sight(posture, lines):
         changed = (way.leans != (before > 0.0)) & (np.abs(before) > FLAT_M)
         # Joint limits may hold a part back on the side where it was.
         turned = (before > 0.0) != (limb.depths_m(way.posture, lines) > 0.0)
-        wanted = changed.any() if part is None else tuple(changed) == part.value
-        if wanted and turned[changed].all():
+        if changed.any() and turned[changed].all():
             found.append(way.posture)
     return tuple(found)
-
-
-def _flipped_trunks(
-    body: Body, posture: Posture, camera: Camera, part: FlippedPart | None
-) -> Iterator[Posture]:
-    trunk = [body.skeleton.joint_index(joint) for joint in ("waist", "neck")]
-    shown = [posture]
-    for each in _ORDER_OF_TRUNK if part is None else (part,):
-        leaning = _with_trunk(body, posture, camera, *each.value)
-        places = body.pose(leaning).origin[trunk]
-        apart = [np.linalg.norm(places - body.pose(other).origin[trunk], axis=-1).max() for other in shown]
-        if min(apart) > DISTINCT_M:
-            shown.append(leaning)
-            yield leaning
 
 
 def _with_trunk(body: Body, posture: Posture, camera: Camera, upper: bool, lower: bool) -> Posture:

@@ -15,11 +15,11 @@ from ..detect.keypoints import Keypoints
 from ..estimate.assembly import free_frame_terms
 from ..estimate.clip_problem import KeyframeEvidence
 from ..estimate.performer_placement import place_standing
-from ..estimate.single_frame import EXCHANGED_COST, exchanged
+from ..estimate.single_frame import exchanged
 from ..markers.region_tracks import RegionTracks
 from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
 from ..prior.library import Library
-from ..terms.keypoints import ObservedKeypoints
+from ..terms.keypoints import EXCHANGED_COST, ObservedKeypoints
 from ..terms.regions import FEATURES, ObservedRegions, limb_widths
 from ..terms.solver import descend
 from ..terms.state import ClipState

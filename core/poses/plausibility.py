@@ -120,16 +120,10 @@ def part_shapes(body: Body, pose: Pose) -> dict[str, Array]:
     upper: Array = points[:, trunk] - pose.posture.translation[:, None]
     shapes[TRUNK] = _flat(np.einsum("nki,nij->nkj", upper, yaw_rotation(headings_rad(pose.posture))))
     for limb in LIMBS:
-        shapes[limb] = _flat(_limb_places(body, pose, limb))
+        joint = body.skeleton.joint_index(CARRIERS[limb.partition(".")[0]])
+        own = [index for index, name in enumerate(body.skeleton.point_names) if limb_of(name) == limb]
+        shapes[limb] = _flat((points[:, own] - pose.origin[:, None, joint]) @ pose.rotation[:, joint])
     return shapes
-
-
-def _limb_places(body: Body, pose: Pose, limb: str) -> Array:
-    """(N, 2, 3) places of a limb's two farther points in the frame of the joint that carries it [m]."""
-    joint = body.skeleton.joint_index(CARRIERS[limb.partition(".")[0]])
-    own = [index for index, name in enumerate(body.skeleton.point_names) if limb_of(name) == limb]
-    away = body.points(pose)[:, own] - pose.origin[:, None, joint]
-    return np.asarray(away @ pose.rotation[:, joint])
 
 
 def _flat(points: Array) -> Array:

@@ -6,7 +6,7 @@ unobservable (Harris & Stennett 1990, *RAPID, a video rate object tracker*).
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
@@ -52,10 +52,6 @@ class ContourModel:
     def average(cls, body: Body, camera: Camera) -> "ContourModel":
         """The contours of the average body."""
         return cls(body, camera, np.zeros((len(body_pieces(body)), SHAPE)))
-
-    def with_shape(self, shape: Array) -> "ContourModel":
-        """This model with other corrections."""
-        return replace(self, shape=shape)
 
     @cached_property
     def parts(self) -> PieceStack:

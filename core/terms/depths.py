@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
@@ -118,23 +117,19 @@ class DepthHintTerm(Term):
 DEPTH_STD_M = 0.1**0.5
 
 
-def point_depths(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = None) -> Array:
+def point_depths(body: Body, camera: Camera, pose: Pose, frame: IndexArray | int) -> Array:
     """Depths of the principal points along the viewing axis (paper, eq. 9).
 
     (..., P) [m], positive in front of the camera, of poses of any batch shape; `frame` of the batch shape.
     """
-    return camera.depth(body.points(pose), _per_point(frame))
+    return camera.depth(body.points(pose), np.asarray(frame)[..., None])
 
 
-def depths_jacobian(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = None) -> Array:
+def depths_jacobian(body: Body, camera: Camera, pose: Pose, frame: IndexArray | int) -> Array:
     """Derivative of the depths by the posture's tangent step, (..., P, D); arguments as `point_depths`."""
     points = body.points(pose)
-    axis = camera.depth_jacobian(points, _per_point(frame))  # (..., P, 3)
+    axis = camera.depth_jacobian(points, np.asarray(frame)[..., None])  # (..., P, 3)
     return pose.along_jacobian([point.joint for point in body.skeleton.points], points, axis)
-
-
-def _per_point(frame: ArrayLike | None) -> IndexArray | None:
-    return None if frame is None else np.asarray(frame, dtype=np.intp)[..., None]
 
 
 @dataclass(frozen=True, eq=False)

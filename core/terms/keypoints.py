@@ -173,6 +173,7 @@ class KeypointModel:
 
 
 PIXEL_STD = 0.35  # standard deviation of a perfect detection, as of a region's centroid [px]
+EXCHANGED_COST = 3.0  # cost of taking a detector's left for right: it is wrong in one frame of twenty
 LEAST_CONFIDENCE = 0.1  # a doubtful detection errs by up to ten times as much as a sure one
 
 

@@ -238,7 +238,7 @@ def test_a_lost_limb_is_called_back(line_ends: LineEnds, see: See) -> None:
 def test_the_a_priori_depths_are_those_of_the_prior(line_ends: LineEnds) -> None:
     prior, _ = drifting(line_ends, 5)
     estimator = FuzzyKalmanFilter(line_ends, prior, [0, 4])
-    expected = point_depths(line_ends.body, line_ends.camera, line_ends.body.pose(prior[2]))
+    expected = point_depths(line_ends.body, line_ends.camera, line_ends.body.pose(prior[2]), 2)
     np.testing.assert_allclose(estimator.prior_depths[2], expected, rtol=1e-12)
 
 

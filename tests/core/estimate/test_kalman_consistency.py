@@ -54,7 +54,7 @@ def simulate(
         pose = body.pose(truth)
         exact = line_ends.evaluate(pose)
         noise = nature.noise_std(exact, exact, quality, line_ends.width_px(pose))
-        shown = point_depths(body, camera, pose) + OPTIONS.depth_std_m * rng.normal(size=13)
+        shown = point_depths(body, camera, pose, frame) + OPTIONS.depth_std_m * rng.normal(size=13)
         estimator.prior_depths[frame] = shown
         done = estimator.correct(state, frame, exact + noise * rng.normal(size=noise.shape), quality)
         state = done.state

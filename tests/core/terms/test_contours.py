@@ -1,5 +1,7 @@
 """Contours and axes of limbs in the image."""
 
+from dataclasses import replace
+
 import numpy as np
 from _scene import BODY, CAMERA, exercise
 from keymark.core.body.human import HUMAN
@@ -19,7 +21,7 @@ def test_correcting_a_shape_moves_its_contours_as_predicted() -> None:
     for column in range(SHAPE):
         shape = np.zeros_like(MODEL.shape)
         shape[:, column] = 1e-3
-        after = MODEL.with_shape(shape).evaluate(pose, FRAME)
+        after = replace(MODEL, shape=shape).evaluate(pose, FRAME)
         moved = np.sum(before.normal * (after.pixel - before.pixel), axis=-1)
         np.testing.assert_allclose(moved, before.shape_rate[..., column] * 1e-3, atol=0.01)
 

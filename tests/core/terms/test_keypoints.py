@@ -97,4 +97,4 @@ def camera_in_front(poses: int | None = None) -> Camera:
 
 def test_the_rest_posture_stands_at_the_cameras_distance() -> None:
     pose = BODY.pose(Posture.rest(HUMAN))
-    np.testing.assert_allclose(point_depths(BODY, camera_in_front(), pose), 4.0, atol=1e-12)
+    np.testing.assert_allclose(point_depths(BODY, camera_in_front(), pose, 0), 4.0, atol=1e-12)

@@ -44,7 +44,7 @@ def test_regions(name: str) -> None:
 @pytest.mark.parametrize("name", CAMERAS)
 def test_contours(name: str) -> None:
     model = ContourModel.average(BODY, CAMERAS[name])
-    model = model.with_shape(np.linspace(-0.01, 0.02, model.shape.size).reshape(model.shape.shape))
+    model = replace(model, shape=np.linspace(-0.01, 0.02, model.shape.size).reshape(model.shape.shape))
     seen = model.evaluate(POSE, FRAME)
     for field in ("world", "pixel", "depth", "normal", "half_width", "shape_rate"):
         assert_recorded(f"contours {name} {field}", getattr(seen, field))
