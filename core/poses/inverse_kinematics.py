@@ -5,6 +5,7 @@ A point keeps its image exactly as long as it stays on the line from the camera 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -56,19 +57,6 @@ class SightLine:
         half = float(np.sqrt(radius_m**2 - aside**2))
         return np.stack([foot - half * self.direction, foot + half * self.direction])
 
-    def within(self, place: Array, center: Array, radii_m: tuple[float, float]) -> Array:
-        """The place (3,) near the line whose distance from a center (3,) lies between two radii [m].
-
-        It is the place on the line nearest to another (3,), or else the nearest to that at such a distance.
-        """
-        on_line = self.nearest(place)
-        least, most = radii_m
-        away = float(np.linalg.norm(on_line - center))
-        if least <= away <= most:
-            return on_line
-        choices = self.at_distance(center, most if away > most else least)
-        return np.asarray(min(choices, key=lambda choice: float(np.linalg.norm(choice - on_line))))
-
 
 # --- Inverse kinematics
 
@@ -100,7 +88,7 @@ def pulled(
     posture: Posture,
     pulls: Sequence[Pull],
     free: Mapping[str, float],
-    allowed: Posture | None = None,
+    begin: Mapping[str, float] = MappingProxyType({}),
 ) -> Posture:
     """A single posture whose points come as near to their places as its joints allow; lengths are exact.
 
@@ -110,7 +98,7 @@ def pulled(
         pulls: Where points should come to.
         free: Standard deviation of each joint that may move, in the tangent space about `posture` [rad]; of
             the hips' place as `place` [m]. All others stay.
-        allowed: A posture that is allowed whatever the joint limits; by default the one to start from.
+        begin: Where the search begins, off `posture` [rad, m].
     """
     skeleton = body.skeleton
     names = [name.rpartition(".") for name in skeleton.dof_names]
@@ -119,7 +107,7 @@ def pulled(
     scale = np.array([free[owners[dof]] for dof in dofs])
     columns = [skeleton.point_names.index(pull.point) for pull in pulls]
     places, weights = (np.array(each) for each in zip(*((p.place, p.weights) for p in pulls), strict=True))
-    values = (posture if allowed is None else allowed).to_vector()
+    values = posture.to_vector()  # what is beyond joint limits already may stay there
     lower, upper = np.minimum(skeleton.limits[:, 0], values), np.maximum(skeleton.limits[:, 1], values)
 
     def full(step: Array) -> Array:
@@ -127,15 +115,18 @@ def pulled(
         every[dofs] = step * scale
         return every
 
+    off_start = np.array([begin.get(owners[dof], 0.0) for dof in dofs]) / scale
+    begun = posture.plus(full(off_start))
+
     def rows(step: Array) -> Array:
-        moved = posture.plus(full(step))
+        moved = begun.plus(full(step))
         off = body.points(body.pose(moved))[columns] - places
         values = moved.to_vector()
         beyond = (values - np.clip(values, lower, upper)) / LIMIT_STD_RAD
-        return np.concatenate([(weights @ off[..., None]).ravel(), beyond, step])
+        return np.concatenate([(weights @ off[..., None]).ravel(), beyond, step + off_start])
 
     def slopes(step: Array) -> Array:
-        moved, about = posture.plus(full(step)), posture.plus_jacobian(full(step))
+        moved, about = begun.plus(full(step)), begun.plus_jacobian(full(step))
         values = moved.to_vector()
         # d posture vector / d tangent: 1 but for balls, whose components are of rotation vectors.
         vector, balls = np.eye(len(values)), skeleton.ball_dofs
@@ -147,4 +138,4 @@ def pulled(
 
     # Of 40 steps each lowers the cost by this share, or is the last.
     fitted = least_squares(rows, np.zeros(len(dofs)), slopes, method="lm", ftol=1e-7, max_nfev=40)
-    return posture.plus(full(fitted.x))
+    return begun.plus(full(fitted.x))
