@@ -12,9 +12,10 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera
 from keymark.core.detect.keypoints import Keypoints, mirrored_point
+from keymark.core.estimate.belief import Belief
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.terms.contours import ContourModel, part_map
-from keymark.core.terms.keypoints import KeypointModel
+from keymark.core.terms.keypoints import KeypointModel, ObservedKeypoints
 from keymark.core.terms.region_model import MarkerPlacement, RegionModel
 from keymark.core.video.album import Album
 from numpy.typing import ArrayLike
@@ -64,6 +65,24 @@ def film(posture: Posture, noise_px: float = 0.0, seed: int = 0, model: RegionMo
         time_s=np.arange(frames) / 30.0,
         size=CAMERA.resolution,
     )
+
+
+def no_points(frames: int = 1) -> ObservedKeypoints:
+    """No keypoint in so many frames."""
+    return ObservedKeypoints.of(Keypoints.none(frames))
+
+
+def belief_in(
+    prior: Posture,
+    frames: tuple[int, ...],
+    doubt: np.ndarray | None = None,
+    pictured: np.ndarray | None = None,
+    ankle_m: np.ndarray | None = None,
+) -> Belief:
+    """The belief in keyframes that are all posed in space, but for what is told otherwise."""
+    doubt = np.zeros(len(frames)) if doubt is None else doubt
+    pictured = np.zeros(len(frames), dtype=bool) if pictured is None else pictured
+    return Belief(prior, np.array(frames, dtype=np.intp), doubt, pictured, ankle_m)
 
 
 def point_error_m(estimate: Posture, truth: Posture) -> np.ndarray:

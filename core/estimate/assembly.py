@@ -91,7 +91,7 @@ def frame_terms(
     observed: ObservedRegions,
     belief: FramePrior,
     width_px: Array,
-    points: ObservedKeypoints | None = None,
+    points: ObservedKeypoints,
 ) -> list[Term]:
     """The terms of one frame, for as many states of it as the belief has starts, S.
 
@@ -111,7 +111,7 @@ def free_frame_terms(
     starts: int,
     floor_m: float | None,
     width_px: Array,
-    points: ObservedKeypoints | None = None,
+    points: ObservedKeypoints,
 ) -> tuple[Term, list[Term]]:
     """The terms of one frame of which nothing is believed but that a person stands before the camera.
 
@@ -141,11 +141,9 @@ def _seen_in_frame(
     ]
 
 
-def _frame_point_terms(
-    evidence: KeypointEvidence, points: ObservedKeypoints | None, starts: int
-) -> list[Term]:
+def _frame_point_terms(evidence: KeypointEvidence, points: ObservedKeypoints, starts: int) -> list[Term]:
     """The keypoints of one frame, and the depths guessed with them, in as many states."""
-    if points is None or not evidence.model.names:
+    if not evidence.model.names:
         return []
     std_m = np.where(evidence.trust > 0.0, evidence.std_m, np.inf)
     repeated = points[np.zeros(starts, dtype=np.intp)]

@@ -36,24 +36,6 @@ class Belief:
     feet_seen: tuple[bool, bool] = (True, True)  # left and right; one that never is says nothing of the place
     reference: ExpectedPoints | None = None  # where a motion from elsewhere has the points; None without one
 
-    @classmethod
-    def of(
-        cls,
-        prior: Posture,
-        frames: tuple[int, ...],
-        doubt: Array | None = None,
-        pictured: BoolArray | None = None,
-        ankle_m: Array | None = None,
-    ) -> "Belief":
-        """The belief in keyframes that are all posed in space, but for what is told otherwise."""
-        return cls(
-            prior,
-            np.array(frames, dtype=np.intp),
-            np.zeros(len(frames)) if doubt is None else doubt,
-            np.zeros(len(frames), dtype=bool) if pictured is None else pictured,
-            ankle_m,
-        )
-
     @property
     def postures(self) -> Posture:
         """The K keyframes' postures."""

@@ -45,7 +45,7 @@ class KeyframeEvidence:
     keypoints: KeypointEvidence  # the calibrated model of keypoints, none where there are none
 
 
-def uncalibrated(model: RegionModel) -> KeyframeEvidence:
+def uncalibrated(model: RegionModel, keypoints: KeypointEvidence | None = None) -> KeyframeEvidence:
     """Evidence before any keyframe is posed: average placements, full trust in all markers."""
     markers, dofs = len(model.placements), model.body.skeleton.dof_count
     return KeyframeEvidence(
@@ -54,7 +54,7 @@ def uncalibrated(model: RegionModel) -> KeyframeEvidence:
         np.ones(markers),
         np.ones(markers),
         np.zeros((0, dofs, dofs)),
-        KeypointEvidence.usual(model.body, model.camera, (), ()),
+        keypoints or KeypointEvidence.usual(model.body, model.camera, (), ()),
     )
 
 

@@ -95,8 +95,8 @@ class SeenAtKeyframes:
     posture: Posture  # the K postures
     observed: ObservedRegions  # the markers' regions
     width_px: Array  # (K, M) half-width of each marker's limb [px]
-    keypoints: KeypointEvidence | None = None  # usual evidence of the N keypoints; None for none
-    points: ObservedKeypoints | None = None  # those seen
+    keypoints: KeypointEvidence  # usual evidence of the N keypoints
+    points: ObservedKeypoints  # those seen
     contours: ContourReader | None = None  # reads rows at some keyframes; None where contours judge none
 
     def __getitem__(self, index: IndexArray) -> "SeenAtKeyframes":
@@ -107,7 +107,7 @@ class SeenAtKeyframes:
             posture=self.posture[index],
             observed=self.observed[index],
             width_px=self.width_px[index],
-            points=None if self.points is None else self.points[index],
+            points=self.points[index],
         )
 
 
@@ -119,14 +119,12 @@ def read_belief(
     covariance = belief.covariance(body, model.camera)
     information, known = np.linalg.inv(covariance), np.flatnonzero(belief.calibrating)
     if len(known) < FEWEST_POSED:
-        evidence = replace(uncalibrated(model), information=information)
-        return evidence if at.keypoints is None else replace(evidence, keypoints=at.keypoints)
+        return replace(uncalibrated(model, at.keypoints), information=information)
     if pictured.any():
         more = picture_information(body, model.camera, belief.postures[pictured], belief.frame[pictured])
         covariance[pictured] = np.linalg.inv(information[pictured] + more)
-        if at.points is not None:  # a found depth says nothing of a detector's guess
-            depth_m = np.where(pictured[:, None], np.nan, at.points.depth_m)
-            at = replace(at, points=replace(at.points, depth_m=depth_m))
+        depth_m = np.where(pictured[:, None], np.nan, at.points.depth_m)
+        at = replace(at, points=replace(at.points, depth_m=depth_m))  # found depths tell nothing of guesses
     evidence = yield from read_keyframes(model, at[known], covariance[known])
     information[belief.posed] /= evidence.posing_scale**2
     return replace(evidence, information=information)
@@ -139,18 +137,12 @@ def read_keyframes(
 
     `posing` (K, D, D): their usual errors; None for those of keyframes posed in space.
     """
-    posture, frame, points, contours = at.posture, at.frame, at.points, at.contours
+    posture, frame, keypoints, contours = at.posture, at.frame, at.keypoints, at.contours
     posing = posing_covariance(model.body, model.body.pose(posture)) if posing is None else posing
-    keypoints = at.keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
-    believed = points is not None and points.only(keypoints.trust > 0.0).seen.any()
-    if not model.placements and not believed and contours is None:
+    believed = at.points.only(keypoints.trust > 0.0)
+    if not model.placements and not believed.seen.any() and contours is None:
         information = np.linalg.inv(posing) / USUAL_SIZE**2
-        return replace(
-            uncalibrated(model),
-            posing_scale=USUAL_SIZE,
-            information=information,
-            keypoints=keypoints,
-        )
+        return replace(uncalibrated(model, keypoints), posing_scale=USUAL_SIZE, information=information)
     # 60: Largest number of keyframes that are judged, evenly spread in time: enough for a few parameters.
     judged = evenly_spread(frame, 60)
     pose = model.body.pose(posture[judged])
@@ -159,9 +151,8 @@ def read_keyframes(
     variance = NOISE.pixel_std_px**2 + NOISE.surface_std(at.width_px[judged]) ** 2
     calibrated, groups = model, [FEATURES] * len(model.placements)
     seen_points = None
-    if points is not None and believed:
-        seen_points = KnownKeypoints(pose, frame[judged], points[judged])
-        seen_points = replace(seen_points, observed=seen_points.observed.only(keypoints.trust > 0.0))
+    if believed.seen.any():
+        seen_points = KnownKeypoints(pose, frame[judged], believed[judged])
         groups += [2] * len(keypoints.model.names)
     outlines = None if contours is None else contours(posture[judged], frame[judged])
     if outlines is not None:
@@ -210,9 +201,9 @@ def read_keyframes(
     information = np.linalg.inv(posing) / scale**2
     placed = replace(placed, camera=calibrated.camera)
     found_points = replace(keypoints, model=placed, std_m=std_m)
-    if points is not None and believed and np.isfinite(points.depth_m).any():
+    if seen_points is not None and np.isfinite(at.points.depth_m).any():
         every = model.body.pose(posture)
-        depths = read_depths(keypoints.depths, placed, every, frame, points.depth_m, scale * POINT_STD_M)
+        depths = read_depths(keypoints.depths, placed, every, frame, at.points.depth_m, scale * POINT_STD_M)
         found_points = replace(found_points, depths=depths)
     return KeyframeEvidence(calibrated, scale, distrust, area_ratio, information, found_points)
 

@@ -1,6 +1,6 @@
 """One frame's posture from its regions and keypoints, and what of them the posture does not explain."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -48,7 +48,7 @@ class FrameResiduals:
 def frame_residuals(
     evidence: KeyframeEvidence,
     observed: ObservedRegions,
-    points: ObservedKeypoints | None,
+    points: ObservedKeypoints,
     posture: Posture,
     frame: int,
 ) -> FrameResiduals:
@@ -61,8 +61,6 @@ def frame_residuals(
     off = np.linalg.norm(model.evaluate(pose, index).centroid - observed.centroid, axis=-1)[0]
     width = limb_widths(model, posture.translation[None], index)[0]
     markers = np.flatnonzero(is_misplaced_marker(off, width))
-    if points is None:
-        return FrameResiduals(off, np.zeros(0), tuple(map(int, markers)), ())
     own = evidence.keypoints.model
     depth = own.camera.depth(own.world(pose), index[:, None])[0]
     point_off = np.linalg.norm(own.pixels(pose, index) - points.pixel, axis=-1)[0]
@@ -88,14 +86,14 @@ def fit_frame(
     observed: ObservedRegions,
     belief: FramePrior,
     frame: int,
-    points: ObservedKeypoints | None = None,
+    points: ObservedKeypoints,
 ) -> FrameFit:
     """The most probable posture of one frame.
 
     Regions (1, M), NaN where hidden, and keypoints (1, N) are those of this one frame.
     """
     fit = _fitted(evidence, observed, belief, frame, points)
-    if points is None or not points.seen.any():
+    if not points.seen.any():
         return fit
     mirrored = exchanged(points, evidence.keypoints.model.names, evidence.keypoints.sources)
     other = _fitted(evidence, observed, belief, frame, mirrored)
@@ -117,16 +115,15 @@ def calibrated(
     observed: ObservedRegions,
     keyframes: Posture,
     frame: IndexArray,
-    keypoints: KeypointEvidence | None = None,
-    points: ObservedKeypoints | None = None,
+    keypoints: KeypointEvidence,
+    points: ObservedKeypoints,
 ) -> KeyframeEvidence:
     """Evidence calibrated on keyframes, or uncalibrated where there are too few of them.
 
     Regions and keypoints are those seen at the K keyframes.
     """
     if len(frame) < 5:
-        found = uncalibrated(model)
-        return found if keypoints is None else replace(found, keypoints=keypoints)
+        return uncalibrated(model, keypoints)
     width_px = limb_widths(model, keyframes.translation, frame)
     at = SeenAtKeyframes(frame, keyframes, observed, width_px, keypoints, points)
     return run(read_keyframes(model, at))
@@ -145,7 +142,7 @@ def _fitted(
     observed: ObservedRegions,
     belief: FramePrior,
     frame: int,
-    points: ObservedKeypoints | None,
+    points: ObservedKeypoints,
 ) -> FrameFit:
     model, count = evidence.model, belief.starts.batch[0]
     believed = Posture.stack([belief.posture] * count)

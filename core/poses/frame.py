@@ -64,8 +64,7 @@ def unworn_marker(search: FrameSearch, found: Hypotheses) -> int | None:
 
 def unexplained(known: Knowledge, shown: FrameShown, posture: Posture) -> tuple[str, ...]:
     """Names of what a posture does not explain, and of what is seen on limbs that it contorts."""
-    points = shown.points_of(False)
-    off = frame_residuals(shown.evidence, shown.regions, points, posture, shown.frame)
+    off = frame_residuals(shown.evidence, shown.regions, shown.points, posture, shown.frame)
     names = [shown.tracks.names[marker] for marker in off.markers]
     # Hands and feet turn about wrists and ankles, of which a posture knows nothing.
     names += [name for name in off.points if USUAL_PLACES[name].error_std_m <= JOINT_ERROR_STD_M]
@@ -133,7 +132,7 @@ def near_pose(shown: FrameShown, belief: FramePrior) -> FramePoses:
 
     `belief` is about that pose, which is not doubted as a whole: no library is asked.
     """
-    fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, points=shown.points_of(False))
+    fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, shown.points)
     names = [shown.tracks.names[marker] for marker in fit.misplaced]
     only = Candidate(fit.posture, "", False, 1.0)
     return FramePoses((only,), (*names, *fit.misplaced_points), fit.cost)
@@ -144,9 +143,8 @@ def _hypotheses(search: FrameSearch, belief: FramePrior | None) -> Hypotheses:
     found, shown = search.hypotheses(), search.shown
     if belief is None:
         return found
-    points = shown.points_of(False)
-    fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, points=points)
-    sides = np.array([False] if points is None else [False, True])
+    fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, shown.points)
+    sides = np.array([False, True] if shown.evidence.keypoints.model.names else [False])
     own = Hypotheses(Posture.stack([fit.posture] * len(sides)), np.zeros(len(sides)), sides)
     least = search.descended(own).cost.min(keepdims=True)
     first = replace(own.chosen(np.zeros(1, dtype=np.intp)), cost=least)

@@ -76,11 +76,9 @@ class FrameShown:
         """The regions (1, M) with their axes."""
         return ObservedRegions.from_tracks(self.tracks)
 
-    def points_of(self, is_exchanged: bool) -> ObservedKeypoints | None:
-        """The keypoints, with left and right exchanged if so; None without any."""
+    def points_of(self, is_exchanged: bool) -> ObservedKeypoints:
+        """The keypoints, with left and right exchanged if so."""
         known = self.evidence.keypoints
-        if not known.model.names:
-            return None
         return exchanged(self.points, known.model.names, known.sources) if is_exchanged else self.points
 
     def without(self, marker: int) -> "FrameShown":

@@ -109,6 +109,6 @@ def _shown(body: Body, camera: Camera, frame: int, pixels: Array, std_m: Array) 
     sources = (EVIDENT,) * count
     points = Keypoints(names, sources, pixels[None], np.ones((1, count)), np.full((1, count, 3), np.nan))
     seen = replace(KeypointEvidence.usual(body, camera, names, sources), std_m=std_m)
-    evidence = replace(uncalibrated(RegionModel(body, camera, ())), keypoints=seen)
+    evidence = uncalibrated(RegionModel(body, camera, ()), seen)
     tracks = RegionTracks.unmarked(np.zeros(1), camera.resolution)
     return FrameShown(evidence, frame, tracks, points, ObservedKeypoints.of(points))

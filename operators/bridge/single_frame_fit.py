@@ -1,7 +1,7 @@
 """Fit an actor to one frame of the footage: from a scene to core's single-frame fit."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from bpy.types import Action, Object
@@ -168,7 +168,7 @@ def fit_to_frame(
             why = "neither markers nor keypoints are followed, which a pose is fitted to"
         raise InputError(f"{why}; pose the actor by hand")
     usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
-    evidence = replace(uncalibrated(model), keypoints=usual)
+    evidence = uncalibrated(model, usual)
     if posed and (frame.reading is not None or not frame.styles):
         seen, frames = ObservedRegions.from_tracks(frame.tracks)[indices], np.arange(len(posed))
         postures = Posture.stack([keyframe.posture for keyframe in posed])

@@ -5,11 +5,23 @@ from functools import cache
 
 import numpy as np
 import pytest
-from _scene import BODY, CAMERA, FRAME, FRAMES, POSED, SEGMENTS, TRUTH, album, film, photograph, point_error_m
+from _scene import (
+    BODY,
+    CAMERA,
+    FRAME,
+    FRAMES,
+    POSED,
+    SEGMENTS,
+    TRUTH,
+    album,
+    belief_in,
+    film,
+    photograph,
+    point_error_m,
+)
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.detect.keypoints import Keypoints
-from keymark.core.estimate.belief import Belief
 from keymark.core.estimate.contour_evidence import ROWS, ContourEvidence, contour_rows, learn_contours
 from keymark.core.estimate.contour_search import BY_MARKERS, NARROW, all_located, contour_schedule
 from keymark.core.estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
@@ -56,7 +68,7 @@ def solve(pictures: Album | None, posed: Posture = TRUTH) -> WholeClipResult:
     tracks = RegionTracks.unmarked(FRAME / 30.0, CAMERA.resolution)
     prior = interpolate(keyframes, FRAMES)
     index = tuple(int(i) for i in POSED)
-    return run(estimate_whole_clip(BODY, CAMERA, Seen(tracks, (), album=pictures), Belief.of(prior, index)))
+    return run(estimate_whole_clip(BODY, CAMERA, Seen(tracks, (), album=pictures), belief_in(prior, index)))
 
 
 @cache
@@ -199,7 +211,7 @@ def test_where_markers_locate_every_limb_nothing_but_they_judge() -> None:
         BODY,
         CAMERA,
         Seen(film(TRUTH, 0.3), SEGMENTS, album=album()),
-        Belief.of(prior, tuple(int(i) for i in POSED)),
+        belief_in(prior, tuple(int(i) for i in POSED)),
     )
     found = run(job)
     assert found.contours is not None and found.contours.along is None and found.outlined is None

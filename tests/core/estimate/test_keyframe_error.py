@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film, point_error_m
+from _scene import BODY, CAMERA, MODEL, SEGMENTS, belief_in, exercise, film, no_points, point_error_m
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.belief import (
@@ -14,6 +14,7 @@ from keymark.core.estimate.belief import (
     found_covariance,
     joint_std_rad,
 )
+from keymark.core.estimate.clip_problem import uncalibrated
 from keymark.core.estimate.keyframe_evidence import (
     SeenAtKeyframes,
     placement_values,
@@ -57,7 +58,7 @@ def off(seed: int = 2) -> Posture:
 def belief(postures: Posture, doubt: np.ndarray | None = None) -> Belief:
     """The belief in keyframes that were found, or posed where there is no doubt."""
     keyframes = tuple(Keyframe(int(i), postures[row]) for row, i in enumerate(INDEX))
-    return Belief.of(interpolate(keyframes, FRAMES), tuple(INDEX.tolist()), doubt)
+    return belief_in(interpolate(keyframes, FRAMES), tuple(INDEX.tolist()), doubt)
 
 
 def estimate(postures: Posture, doubt: np.ndarray | None) -> WholeClipResult:
@@ -90,7 +91,8 @@ def test_posed_keyframes_calibrate_and_found_ones_beside_them_do_not() -> None:
     doubt = np.where(np.arange(len(INDEX)) % 2, 0.7, 0.0)
     postures, observed = off(), ObservedRegions.from_tracks(TRACKS)[INDEX]
     width = limb_widths(MODEL, postures.translation, INDEX)
-    every, posed = SeenAtKeyframes(INDEX, postures, observed, width), np.flatnonzero(doubt == 0.0)
+    usual, posed = uncalibrated(MODEL).keypoints, np.flatnonzero(doubt == 0.0)
+    every = SeenAtKeyframes(INDEX, postures, observed, width, usual, no_points(len(INDEX)))
     mixed = run(read_belief(MODEL, every, belief(postures, doubt)))
     alone = run(read_keyframes(MODEL, every[posed]))
     ours, theirs = (placement_values(one.model.placements) for one in (mixed, alone))
@@ -107,7 +109,7 @@ def test_the_place_is_less_known_along_the_line_of_sight() -> None:
 
 
 def test_depths_count_near_posed_keyframes_only() -> None:
-    noise = Belief.of(TRUTH[:12], (0, 10), np.array([0.0, 1.0])).depth_std_m
+    noise = belief_in(TRUTH[:12], (0, 10), np.array([0.0, 1.0])).depth_std_m
     assert noise[0] == pytest.approx(DEPTH_STD_M)
     assert (np.diff(noise[:11]) > 0.0).all() and noise[11] == noise[10] > 4.0 * noise[0]
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from _scene import BODY, CAMERA, MODEL, exercise, film
+from _scene import BODY, CAMERA, MODEL, exercise, film, no_points
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.belief import posing_covariance
-from keymark.core.estimate.clip_problem import KeyframeEvidence
+from keymark.core.estimate.clip_problem import KeyframeEvidence, uncalibrated
 from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes, read_keyframes
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.progress import run
@@ -32,7 +32,9 @@ TRUE = tuple(
 def read(posed: Posture, tracks: RegionTracks, model: RegionModel = MODEL) -> KeyframeEvidence:
     observed = ObservedRegions.from_tracks(tracks)[POSED]
     width = limb_widths(model, posed.translation, POSED)
-    return run(read_keyframes(model, SeenAtKeyframes(POSED, posed, observed, width)))
+    usual = uncalibrated(model).keypoints
+    at = SeenAtKeyframes(POSED, posed, observed, width, usual, no_points(len(POSED)))
+    return run(read_keyframes(model, at))
 
 
 def posed_by_hand(seed: int) -> Posture:

@@ -11,6 +11,7 @@ from _scene import (
     LAYOUT,
     SEGMENTS,
     SOURCE,
+    belief_in,
     changed,
     detect,
     exercise,
@@ -25,7 +26,6 @@ from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera
 from keymark.core.detect.keypoints import Keypoints, People, mirror_images
 from keymark.core.detect.performer import person_size
-from keymark.core.estimate.belief import Belief
 from keymark.core.estimate.keypoint_fit import keypoint_notes, observed_joints
 from keymark.core.estimate.keypoint_trust import (
     HINTS_SHARE,
@@ -59,7 +59,7 @@ def estimate(
 ) -> WholeClipResult:
     worn = SEGMENTS if tracks.names else ()
     seen = Seen(tracks, worn, keypoints)
-    believed = Belief.of(prior, POSED, doubt)
+    believed = belief_in(prior, POSED, doubt)
     job = estimate_whole_clip(BODY, camera, seen, believed)
     return run(job)
 

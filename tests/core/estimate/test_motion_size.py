@@ -6,9 +6,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
+from _scene import BODY, CAMERA, SEGMENTS, belief_in, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.belief import Belief
 from keymark.core.estimate.clip_problem import ClipProblem
 from keymark.core.estimate.refinement import (
     LARGEST_OF_ALL,
@@ -51,7 +50,7 @@ def problem(segments: tuple[str, ...] = SEGMENTS) -> ClipProblem:
     keys = tuple(Keyframe(index, truth[index]) for index in range(0, FRAMES, EVERY))
     index = tuple(key.index for key in keys)
     job = estimate_whole_clip(
-        BODY, CAMERA, Seen(tracks, segments), Belief.of(interpolate(keys, FRAMES), index)
+        BODY, CAMERA, Seen(tracks, segments), belief_in(interpolate(keys, FRAMES), index)
     )
     found = run(job).problem
     return replace(

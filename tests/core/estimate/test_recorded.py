@@ -5,12 +5,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _recorded import assert_recorded
-from _scene import BODY, CAMERA, MODEL, SEGMENTS, album, detect, exercise, film, lasting, sides_exchanged
+from _scene import (
+    BODY,
+    CAMERA,
+    MODEL,
+    SEGMENTS,
+    album,
+    belief_in,
+    detect,
+    exercise,
+    film,
+    lasting,
+    no_points,
+    sides_exchanged,
+)
 from _scene import FRAMES as FILMED_FRAMES
 from _scene import POSED as FILMED_POSED
 from _scene import TRUTH as FILMED
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.belief import Belief, posing_covariance
+from keymark.core.estimate.belief import posing_covariance
 from keymark.core.estimate.clip_problem import uncalibrated
 from keymark.core.estimate.performer_placement import found_ankle_m, place_standing
 from keymark.core.estimate.reference_alignment import about_hips, align
@@ -51,7 +64,7 @@ def test_by_markers() -> None:
     centroid = tracks.centroid.copy()
     centroid[14, 1] += 40.0
     seen = Seen(replace(tracks, centroid=centroid), SEGMENTS)
-    hold("estimate by markers", run(estimate_whole_clip(BODY, CAMERA, seen, Belief.of(by_hand(1), POSED))))
+    hold("estimate by markers", run(estimate_whole_clip(BODY, CAMERA, seen, belief_in(by_hand(1), POSED))))
 
 
 @pytest.mark.parametrize("found", [False, True])
@@ -61,14 +74,14 @@ def test_by_keypoints(found: bool) -> None:
     seen = Seen(bare, (), detect(TRUTH))
     prior, index = by_hand(2), np.array(POSED)
     ankle_m = found_ankle_m(BODY, prior[index], index, FRAMES) if found else None
-    result = run(estimate_whole_clip(BODY, CAMERA, seen, Belief.of(prior, POSED, scale, None, ankle_m)))
+    result = run(estimate_whole_clip(BODY, CAMERA, seen, belief_in(prior, POSED, scale, None, ankle_m)))
     hold(f"estimate by keypoints, found {found}", result)
 
 
 def test_by_contours() -> None:
     keyframes = tuple(Keyframe(int(index), FILMED[index : index + 1][0]) for index in FILMED_POSED)
     bare = RegionTracks.unmarked(np.arange(FILMED_FRAMES) / 30.0, CAMERA.resolution)
-    believed = Belief.of(interpolate(keyframes, FILMED_FRAMES), tuple(int(index) for index in FILMED_POSED))
+    believed = belief_in(interpolate(keyframes, FILMED_FRAMES), tuple(int(index) for index in FILMED_POSED))
     seen = Seen(bare, (), album=album())
     result = run(estimate_whole_clip(BODY, CAMERA, seen, believed))
     hold("estimate by contours", result, 2e-3)  # OpenCV's releases draw a border's pixels differently
@@ -80,8 +93,8 @@ def test_single_frames() -> None:
     for frame in (15, 27, 40):
         belief = prior_from_keyframes([Keyframe(frame - 12, TRUTH[frame - 12])], frame, 30.0)
         own = observed[np.array([frame])]
-        before = frame_residuals(uncalibrated(MODEL), own, None, belief.posture, frame)
-        fit = fit_frame(uncalibrated(MODEL), own, belief, frame)
+        before = frame_residuals(uncalibrated(MODEL), own, no_points(), belief.posture, frame)
+        fit = fit_frame(uncalibrated(MODEL), own, belief, frame, no_points())
         assert_recorded(f"frame {frame}", before.marker_px, fit.posture.to_vector(), share=1e-4)
     standing = place_standing(BODY, CAMERA, 20, tracks, SEGMENTS)
     assert_recorded("standing", standing.to_vector(), share=1e-4)
@@ -109,5 +122,5 @@ def test_by_a_detector_that_exchanges_sides() -> None:
     bare = RegionTracks.unmarked(np.arange(FRAMES) / 30.0, CAMERA.resolution)
     seen = Seen(bare, (), sides_exchanged(detect(TRUTH), sides))
     hold(
-        "estimate by wrong sides", run(estimate_whole_clip(BODY, CAMERA, seen, Belief.of(by_hand(3), POSED)))
+        "estimate by wrong sides", run(estimate_whole_clip(BODY, CAMERA, seen, belief_in(by_hand(3), POSED)))
     )

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from _scene import BODY, CAMERA, MODEL, exercise, film, point_error_m
+from _scene import BODY, CAMERA, MODEL, exercise, film, no_points, point_error_m
 from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.posture import Posture
 from keymark.core.detect.keypoints import Keypoints, mirrored_point
@@ -24,13 +24,13 @@ TRUTH = exercise(45)
 
 def fit(belief: FramePrior, tracks: RegionTracks, frame: int) -> FrameFit:
     observed = ObservedRegions.from_tracks(tracks)
-    return fit_frame(uncalibrated(MODEL), observed[np.array([frame])], belief, frame)
+    return fit_frame(uncalibrated(MODEL), observed[np.array([frame])], belief, frame, no_points())
 
 
 def before_px(belief: FramePrior, tracks: RegionTracks, frame: int) -> np.ndarray:
     """(M,) distances of the markers from where they are believed."""
     observed = ObservedRegions.from_tracks(tracks)[np.array([frame])]
-    return frame_residuals(uncalibrated(MODEL), observed, None, belief.posture, frame).marker_px
+    return frame_residuals(uncalibrated(MODEL), observed, no_points(), belief.posture, frame).marker_px
 
 
 def keyframes(*frames: int) -> tuple[Keyframe, ...]:
@@ -101,7 +101,7 @@ def test_the_ground_tells_how_far_away_someone_stands() -> None:
         observed = ObservedRegions.from_tracks(film(true, noise_px=0.3, seed=6, model=model))
         belief = prior_from_keyframes((Keyframe(0, believed),), 60, 30.0)
         fits = [
-            fit_frame(uncalibrated(model), observed, known, 0)
+            fit_frame(uncalibrated(model), observed, known, 0, no_points())
             for known in (belief, replace(belief, grounded=None))
         ]
         errors.append([float(np.linalg.norm(f.posture.translation - true.translation[0])) for f in fits])
@@ -154,7 +154,7 @@ def detected(noise_px: float, hint_std_m: float | None = None, seed: int = 3) ->
 def unmarked_evidence() -> KeyframeEvidence:
     """Evidence of keypoints alone, before any keyframe is posed."""
     usual = KeypointEvidence.usual(BODY, CAMERA, NAMES, ("test",) * len(NAMES))
-    return replace(uncalibrated(UNMARKED), keypoints=usual)
+    return uncalibrated(UNMARKED, usual)
 
 
 def fit_points(belief: FramePrior, keypoints: Keypoints, frame: int) -> FrameFit:

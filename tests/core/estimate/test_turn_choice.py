@@ -5,9 +5,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
+from _scene import BODY, CAMERA, SEGMENTS, belief_in, exercise, film, point_error_m
 from keymark.core.body.posture import Posture, yawed_at
-from keymark.core.estimate.belief import Belief
 from keymark.core.estimate.turn_choice import doubted_turns
 from keymark.core.estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.markers.region_tracks import RegionTracks
@@ -28,7 +27,7 @@ def turning(degrees: float) -> Posture:
 def estimate(truth: Posture, tracks: RegionTracks) -> WholeClipResult:
     """The estimate from a keyframe every half second."""
     keys = tuple(Keyframe(index, truth[index]) for index in range(0, FRAMES, EVERY))
-    belief = Belief.of(interpolate(keys, FRAMES), tuple(key.index for key in keys))
+    belief = belief_in(interpolate(keys, FRAMES), tuple(key.index for key in keys))
     return run(estimate_whole_clip(BODY, CAMERA, Seen(tracks, SEGMENTS), belief))
 
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
+from _scene import BODY, CAMERA, SEGMENTS, belief_in, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.belief import Belief, posing_covariance
+from keymark.core.estimate.belief import posing_covariance
 from keymark.core.estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
@@ -19,7 +19,7 @@ TURNS = np.where(np.arange(BODY.skeleton.dof_count) < 3, 0.0, 1.0)
 
 
 def solve(prior: Posture, tracks: RegionTracks) -> WholeClipResult:
-    job = estimate_whole_clip(BODY, CAMERA, Seen(tracks, SEGMENTS), Belief.of(prior, POSED))
+    job = estimate_whole_clip(BODY, CAMERA, Seen(tracks, SEGMENTS), belief_in(prior, POSED))
     fractions = []
     while True:
         try:
@@ -117,8 +117,8 @@ def test_a_correction_in_the_picture_holds_there_and_leaves_the_depth_to_the_res
     motions = [
         run(estimate_whole_clip(BODY, CAMERA, Seen(film(TRUTH, 0.3), SEGMENTS), believed)).posture
         for believed in (
-            Belief.of(prior, POSED, np.where(middle, 0.0, scale)),
-            Belief.of(prior, POSED, scale, pictured=middle),
+            belief_in(prior, POSED, np.where(middle, 0.0, scale)),
+            belief_in(prior, POSED, scale, pictured=middle),
         )
     ]
     off = [BODY.points(BODY.pose(motion[POSED[3]])) - BODY.points(BODY.pose(nearer)) for motion in motions]
