@@ -29,7 +29,7 @@ from ..footage.load_footage import load_into_take
 from ..footage.take_footage import lens_is_guess
 from ..keyframes.pose_all import keep_poses
 from ..keyframes.scene_session import SceneSession, clip_session
-from ..reconstruct.reconstruct import judge, keep_motion
+from ..reconstruct.reconstruct import PreviewedJob, judge, keep_motion
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of, take_by_identifier
 from . import FILE, NOTHING, RIGIFY
@@ -47,7 +47,7 @@ VIEWED = 0.96
 
 
 def animate(
-    operator: bpy.types.Operator,
+    operator: PreviewedJob,
     scene: bpy.types.Scene,
     stature_m: float,
     character: str,
@@ -64,6 +64,7 @@ def animate(
     from ...core.session.stages import reach
     from ...core.session.upright import PictureTurnedError, require_upright
     from ...core.video.turned import can_turn
+    from ..reconstruct.live_preview import LivePreview
 
     take = active_take(scene)
     take.stature = stature_m
@@ -80,6 +81,10 @@ def animate(
             return _keep_motion(operator, scene, made, said)
         if stage in KEPT and session.made[stage] is not None:
             said.append(KEPT[stage](operator, scene, made))
+        if stage == "pose":
+            found = active_take(scene)
+            if found.live_preview:
+                operator.preview = LivePreview(scene, found.armature, made.frames)
         return None
 
     try:
@@ -198,9 +203,10 @@ def _keep_poses(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: Sce
 
 
 def _keep_motion(
-    operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession, said: list[str]
+    operator: PreviewedJob, scene: bpy.types.Scene, made: SceneSession, said: list[str]
 ) -> "Job[None]":
     judged = yield from judge(made)
+    operator.unwatch()  # the motion takes the place of its preview
     said.append(keep_motion(operator, scene, made, judged))
 
 

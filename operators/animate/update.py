@@ -7,8 +7,7 @@ import bpy
 from ...core.progress import Progress, stretch
 from ..character.retarget import keep_retargeted, retarget_take
 from ..finish.bake_motion import bake, keep_baked
-from ..reconstruct.reconstruct import keep_motion, reconstruct_take
-from ..shell.job_operator import JobOperator
+from ..reconstruct.reconstruct import PreviewedJob, keep_motion, reconstruct_take
 from ..shell.requirements import actor, all_colors, anything_to_follow, footage, idle, of_take, two_keyframes
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 outdated = of_take(lambda state: state.is_outdated, "Everything is up to date")
 
 
-def update_take(operator: bpy.types.Operator, scene: bpy.types.Scene) -> "Job[list[str]]":
+def update_take(operator: PreviewedJob, scene: bpy.types.Scene) -> "Job[list[str]]":
     """Make anew what is outdated of the active take, each part in the scene once it is complete.
 
     Returns:
@@ -27,7 +26,8 @@ def update_take(operator: bpy.types.Operator, scene: bpy.types.Scene) -> "Job[li
     """
     said = []
     if TakeState(active_take(scene)).motion_is_outdated:
-        made, judged = yield from stretch(reconstruct_take(scene, lambda _preview: None), 0.0, 0.6)
+        made, judged = yield from stretch(reconstruct_take(operator, scene), 0.0, 0.6)
+        operator.unwatch()  # the motion takes the place of its preview
         said.append(keep_motion(operator, scene, made, judged))
     if TakeState(active_take(scene)).final_is_outdated:
         said.append(keep_baked(operator, scene, (yield from stretch(bake(scene), 0.6, 0.7))))
@@ -45,7 +45,7 @@ def update_take(operator: bpy.types.Operator, scene: bpy.types.Scene) -> "Job[li
     return said
 
 
-class StagedOperator(JobOperator):
+class StagedOperator(PreviewedJob):
     """Mixin of a job that writes what is complete into the scene on its way, and returns lines on it."""
 
     def finish(self, scene: bpy.types.Scene, result: list[str]) -> None:

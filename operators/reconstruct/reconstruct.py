@@ -17,25 +17,17 @@ from ..shell.requirements import actor, all_colors, anything_to_follow, footage,
 from ..shell.takes import active_take
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from ...core.progress import Job, Progress
     from ...core.review.review import Review
     from ..keyframes.scene_session import SceneSession
-    from .live_preview import LivePreview
 
 
 SOLVED = 0.97
 """Share of the job at which the motion is found."""
 
 
-def reconstruct_take(
-    scene: bpy.types.Scene, show: "Callable[[LivePreview], None]"
-) -> "Job[tuple[SceneSession, Review]]":
-    """Go on with the active take until its motion is reconstructed and judged; the scene stays as it is.
-
-    `show` gets the preview, where the take wants one.
-    """
+def reconstruct_take(operator: "PreviewedJob", scene: bpy.types.Scene) -> "Job[tuple[SceneSession, Review]]":
+    """Go on with the active take until its motion is reconstructed and judged; the scene stays as it is."""
     from ...core.estimate.reconstruct import check_reconstructible
     from .live_preview import LivePreview
 
@@ -55,7 +47,7 @@ def reconstruct_take(
 
     def keep(stage: str, now: "SceneSession") -> None:
         if stage == "read" and watched:
-            show(LivePreview(scene, armature, now.frames))
+            operator.preview = LivePreview(scene, armature, now.frames)
 
     made = yield from stretch(go_on(made, "reconstruct", keep), 0.0, SOLVED)
     return made, (yield from stretch(judge(made), SOLVED, 1.0))
@@ -70,10 +62,8 @@ def judge(made: "SceneSession") -> "Job[Review]":
     return review(made.session[Posed].seen.take, made.session[Reconstruction], made.frames)
 
 
-def keep_motion(
-    operator: bpy.types.Operator, scene: bpy.types.Scene, made: "SceneSession", judged: "Review"
-) -> str:
-    """Write the motion; the keyframes stay in their own Action. Returns a sentence on it."""
+def keep_motion(operator: JobOperator, scene: bpy.types.Scene, made: "SceneSession", judged: "Review") -> str:
+    """Write the motion; the keyframes stay in their own Action. Returns a line."""
     from ...core.estimate.reconstruct import Reconstruction
     from ...core.take.presence import unseen_line
     from .live_preview import write_result
@@ -88,19 +78,11 @@ def keep_motion(
     return f"Reconstructed {len(made.frames)} frames from {len(result.motion.keyframe_indices)} keyframes"
 
 
-class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
-    """Reconstruct every frame from the footage and the keyframes; the motion becomes an Action of its own"""
+class PreviewedJob(JobOperator):
+    """Mixin of a job that shows the motion on the actor while later frames are computed."""
 
-    bl_label = "Reconstruct"
-    requirements = (footage, actor, anything_to_follow, all_colors, two_keyframes, idle)
     preview: Any = None
     """The running `LivePreview`; not named as type, since Blender evaluates annotations of its classes."""
-
-    def start(self, scene: bpy.types.Scene) -> "Job[tuple[SceneSession, Review]]":
-        def keep(preview: "LivePreview") -> None:
-            self.preview = preview
-
-        return (yield from reconstruct_take(scene, keep))
 
     def watch(self, progress: "Progress") -> None:
         if self.preview is not None and progress.preview is not None:
@@ -110,6 +92,16 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         if self.preview is not None:
             self.preview.end()
             self.preview = None
+
+
+class KEYMARK_OT_reconstruct(PreviewedJob, bpy.types.Operator):
+    """Reconstruct every frame from the footage and the keyframes; the motion becomes an Action of its own"""
+
+    bl_label = "Reconstruct"
+    requirements = (footage, actor, anything_to_follow, all_colors, two_keyframes, idle)
+
+    def start(self, scene: bpy.types.Scene) -> "Job[tuple[SceneSession, Review]]":
+        return (yield from reconstruct_take(self, scene))
 
     def finish(self, scene: bpy.types.Scene, result: "tuple[SceneSession, Review]") -> None:
         self.report({"INFO"}, keep_motion(self, scene, *result))

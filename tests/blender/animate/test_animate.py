@@ -18,6 +18,7 @@ from keymark.operators.bridge.camera_placement import read_placement
 from keymark.operators.follow.evidence import keypoint_path
 from keymark.operators.footage.load_footage import load_into_take
 from keymark.operators.library import registry_files
+from keymark.operators.reconstruct.reconstruct import PreviewedJob
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 
@@ -87,12 +88,32 @@ def test_all_steps_are_there_and_the_character_of_a_file_performs(clip: Path, tm
     assert abs(hips.x) < 0.6 and 0.7 < hips.z < 1.2
 
 
+class Watching(PreviewedJob):
+    """An operator as `modal` drives it, without a window."""
+
+    report = start = finish = lambda self, *_: None
+
+
+def test_the_actor_shows_the_motion_while_it_is_estimated(clip: Path) -> None:
+    take = load_into_take(bpy.context, clip, False)
+    follow_found_file(take, clip)
+    operator, shown = Watching(), []
+    for progress in animate(operator, bpy.context.scene, 1.75, NOTHING, ""):
+        if progress.preview is not None and operator.preview is not None:
+            operator.watch(progress)
+            actor, scene = only_take().armature, bpy.context.scene
+            shown.append((progress.stage, actor.animation_data.action, scene.frame_current))
+    assert len(shown) >= 3 and {stage for stage, *_ in shown} == {"Estimating the motion"}
+    assert {action for _, action, _ in shown} == {None} and len({frame for *_, frame in shown}) >= 3
+    take = only_take()
+    assert operator.preview is None and take.armature.animation_data.action == take.finish.action
+
+
 def test_an_early_end_leaves_the_stages_that_are_complete(clip: Path) -> None:
     context = bpy.context
     take = load_into_take(context, clip, False)
     follow_found_file(take, clip)
-    operator = type("Quiet", (), {"report": lambda self, kind, text: None})()
-    job = animate(operator, context.scene, 1.75, NOTHING, "")
+    job = animate(Watching(), context.scene, 1.75, NOTHING, "")
     stages = []
     for progress in job:
         stages.append((progress.stage, progress.fraction))
