@@ -5,12 +5,10 @@ from bpy.types import Context, Event
 
 from ...core.body.actor import Actor
 from ..follow.evidence import scene_evidence
-from ..shell.base_operator import BaseOperator, warn
+from ..shell.base_operator import BaseOperator, any_actor, bones_editable, camera, footage, idle, warn
 from ..shell.fields import SKIP_SAVE, Switch, Vector
-from ..shell.footage_clicks import ClickSequence
-from ..shell.footage_view import FootageRequest
-from ..shell.notices import give_notices
-from ..shell.requirements import any_actor, bones_editable, camera, footage, idle
+from ..shell.footage_view import ClickSequence, FootageRequest
+from ..shell.notes import give_notices
 from ..shell.results import reading_of
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, ensure_take, find_take, footage_of
@@ -131,7 +129,7 @@ class KEYMARK_OT_measure_actor(ClickSequence, Stature, BaseOperator, bpy.types.O
     def run(self, context: Context) -> None:
         """Measure the performer, resize the actor, and stand it there unless it has keyframes."""
         from ..bridge.pose import write_posture
-        from ..bridge.single_frame_fit import frame_in_footage, measured_in_frame
+        from ..bridge.take_from_scene import frame_in_footage, measured_in_frame
         from .take_actor import has_keyframes, size_actor
 
         take = active_take(context.scene)

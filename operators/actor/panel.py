@@ -4,7 +4,7 @@ import bpy
 from bpy.types import Context, UILayout
 
 from ..bridge.actor_bones import is_actor
-from ..follow.network import draw_network
+from ..follow.load_keypoints import draw_network
 from ..follow.panel import draw_evidence, followed
 from ..shell.panel import Popover, StepPanel, draw_sentence
 from ..shell.take_state import TakeState

@@ -15,7 +15,7 @@ from ..bridge.actor_bones import hips_at_rest, is_actor
 from ..bridge.actor_lengths import set_lengths
 from ..bridge.armature import build_armature
 from ..follow.evidence import scene_evidence
-from ..shell.notices import give_notices
+from ..shell.notes import give_notices
 from ..shell.results import reading_of
 from ..shell.take_state import TakeState
 from ..shell.takes import footage_of
@@ -107,7 +107,7 @@ def show_lengths(take: PropertyGroup, body: Body) -> None:
 
 def performers_stance(scene: Scene, take: PropertyGroup, body: Body) -> "tuple[Posture, bool] | None":
     """Posture of a performer who stands in the footage's current frame, and if evidence located them."""
-    from ..bridge.single_frame_fit import frame_in_footage, posed_standing
+    from ..bridge.take_from_scene import frame_in_footage, posed_standing
 
     if take.clip is None or take.camera is None:
         return None

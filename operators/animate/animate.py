@@ -1,4 +1,4 @@
-"""*Animate*: asks for a clip, the performer's height and a character, and goes all the way as one job."""
+"""The one button, from a clip to a moving character, and the same again from corrected poses."""
 
 from contextlib import suppress
 from pathlib import Path
@@ -7,22 +7,98 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import InputError
+from ...core.progress import Progress, stretch
 from ..actor.properties import Stature
+from ..animate import FILE, NOTHING, RIGIFY
 from ..character.characters import candidates
-from ..follow.network import draw_network
+from ..character.retarget import keep_retargeted, retarget_take
+from ..finish.bake_motion import bake, keep_baked
+from ..follow.load_keypoints import draw_network
 from ..footage.load_footage import PATTERNS, load_into_take
 from ..footage.properties import Part, draw_part
-from ..shell.base_operator import call, chosen_file, reported
+from ..reconstruct.reconstruct import PreviewedJob, keep_motion, reconstruct_take
+from ..shell.base_operator import (
+    actor,
+    all_colors,
+    anything_to_follow,
+    bones_editable,
+    call,
+    chosen_file,
+    footage,
+    idle,
+    of_take,
+    reported,
+    two_keyframes,
+)
 from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
 from ..shell.panel import draw_sentence
-from ..shell.requirements import bones_editable, idle
 from ..shell.results import EXTENSION
-from ..shell.takes import find_take
-from . import FILE, NOTHING, RIGIFY
-from .update import StagedOperator
+from ..shell.take_state import TakeState
+from ..shell.takes import active_take, find_take
 
 if TYPE_CHECKING:
     from ...core.progress import Job
+
+
+outdated = of_take(lambda state: state.is_outdated, "Everything is up to date")
+
+
+def update_take(operator: PreviewedJob, scene: bpy.types.Scene) -> "Job[list[str]]":
+    """Make anew what is outdated of the active take, each part in the scene once it is complete.
+
+    Returns:
+        A line on each part.
+    """
+    said = []
+    if TakeState(active_take(scene)).motion_is_outdated:
+        made, judged = yield from stretch(reconstruct_take(operator, scene), 0.0, 0.6)
+        operator.unwatch()  # the motion takes the place of its preview
+        said.append(keep_motion(operator, scene, made, judged))
+    if TakeState(active_take(scene)).final_is_outdated:
+        said.append(keep_baked(operator, scene, (yield from stretch(bake(scene), 0.6, 0.7))))
+    chosen, count = active_take(scene).active_character, len(active_take(scene).characters)
+    for index in range(count):
+        take = active_take(scene)
+        if any(map(TakeState(take).of_earlier, take.characters[index].results)):
+            take.active_character = index
+            start, end = (0.7 + 0.3 * at / count for at in (index, index + 1))
+            said.append(
+                keep_retargeted(operator, scene, (yield from stretch(retarget_take(scene), start, end)))
+            )
+    active_take(scene).active_character = chosen
+    yield Progress("Updated", 1.0)
+    return said
+
+
+class StagedOperator(PreviewedJob):
+    """Mixin of a job that writes what is complete into the scene on its way, and returns lines on it."""
+
+    def finish(self, scene: bpy.types.Scene, result: list[str]) -> None:
+        """Report the lines."""
+        for line in result:
+            self.report({"INFO"}, line)
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """An early end is a step that can be undone as well: complete stages stay."""
+        done = super().modal(context, event)
+        if done != {"CANCELLED"}:
+            return done
+        self.report({"INFO"}, "The stages that were complete are kept")
+        return {"FINISHED"}
+
+
+class KEYMARK_OT_update(StagedOperator, bpy.types.Operator):
+    """Make the motion of your corrections, and bake and retarget it again where that was done before"""
+
+    bl_label = "Update"
+    requirements = (outdated, footage, actor, anything_to_follow, all_colors, two_keyframes, idle)
+
+    def start(self, scene: bpy.types.Scene) -> "Job[list[str]]":
+        return (yield from update_take(self, scene))
+
+
+# --- *Animate*: asks for a clip, the performer's height and a character, and goes all the way as one job
+
 
 TURNS = [("AUTO", "Upright", "So that people are upright; MP4 and QuickTime alone")]
 TURNS += [

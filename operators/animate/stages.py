@@ -14,19 +14,17 @@ from ...core.files.fields import listed
 from ...core.progress import Job, Progress, stretch
 from ...core.take.character_settings import CharacterFile
 from ..actor.take_actor import size_actor
+from ..bridge.actor_bones import moved_by
 from ..bridge.camera_placement import still_camera
 from ..bridge.footage_camera import set_still_pose
-from ..bridge.object_space import moved_by
 from ..character.add_character import add_rigify_character
 from ..character.characters import add_character
 from ..character.retarget import keep_retargeted, retarget_take
 from ..finish.bake_motion import bake, keep_baked
 from ..follow.evidence import keypoint_path
-from ..follow.load_keypoints import Detected, follow_file, keep_detected, keypoint_output
-from ..follow.network import chosen_network
+from ..follow.load_keypoints import Detected, chosen_network, follow_file, keep_detected, keypoint_output
 from ..footage.found_camera import is_found, write_fit
-from ..footage.load_footage import load_into_take
-from ..footage.take_footage import lens_is_guess
+from ..footage.load_footage import lens_is_guess, load_into_take
 from ..keyframes.pose_all import keep_poses
 from ..keyframes.scene_session import SceneSession, clip_session
 from ..reconstruct.reconstruct import PreviewedJob, judge, keep_motion
@@ -192,7 +190,7 @@ def _keep_poses(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: Sce
     """Key the poses; a camera that was seen to turn turns from now on, and the floor is where they stand."""
     from ...core.session.made import Posed
     from ...core.take.steady_camera import followed_camera
-    from ..bridge.footage_to_scene import set_pose
+    from ..bridge.result_files import set_pose
 
     said, _ = keep_poses(scene, made)
     take, posed = take_by_identifier(scene, made.take), made.session[Posed]

@@ -16,9 +16,8 @@ from ...core.body.kinematics import Body
 from ...core.body.rotations import hinge
 from ...core.body.skeleton import Placement
 from ...core.errors import InputError
-from .actor_bones import color_bones, missing_bones
+from .actor_bones import color_bones, missing_bones, object_space
 from .armature import MODES, ActorBones, BoneModel, bone_models, editing, finger_models
-from .object_space import object_space
 
 ANY_BODY = Body(Actor.from_stature(1.7))  # bone axes are taken from it, and depend on no length
 

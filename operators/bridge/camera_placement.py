@@ -10,9 +10,9 @@ from ...core.arrays import Array
 from ...core.camera.camera import Camera
 from ...core.camera.camera_fields import CameraPlacement
 from ...core.errors import InputError
+from .actor_bones import evaluated
 from .footage import Footage
 from .footage_camera import may_move
-from .object_space import evaluated
 from .scene_frames import at_scene_frame
 
 

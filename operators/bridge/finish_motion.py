@@ -23,8 +23,7 @@ from ...core.keys.tolerances import NEAR_FLOOR_M, foot_rows, point_tolerances
 from ...core.progress import Job, Progress, within
 from .actions import channelbag_for, curves_of
 from .actor_lengths import read_body, read_bones
-from .extremity_curves import turned_extremities
-from .fcurves import moved_paths, posture_columns
+from .fcurves import moved_paths, posture_columns, turned_extremities
 from .keyframes import keyed_frames, unchanged_keyframes
 from .keys import FOUND, copy_keys, ensure_fcurve, write_column
 from .rig import (

@@ -1,17 +1,23 @@
 """Read a posture from an armature's evaluated pose, and pose an armature."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
-from bpy.types import Object
+from bpy.types import Action, FCurve, Object
 
 from ...core.arrays import Array
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
+from ...core.keys.rig import channel_count
+from .actions import channelbag_for, curves_of
+from .actor_bones import evaluated, object_space
 from .actor_lengths import read_bones, skeleton_bones
+from .armature import BoneModel, bones_at_rest
 from .fcurves import posture_columns
-from .object_space import evaluated, object_space
-from .rotation_modes import posture_from_frames
+from .keys import POSED, write_keys
+from .rig import rig_of, shown_postures
+from .rotation_modes import bone_path, posture_from_frames, rotation_path
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,3 +63,83 @@ def write_posture(armature_object: Object, posture: Posture) -> None:
     for path, index, _, column in posture_columns(bones, Posture.stack([posture])):
         armature_object.path_resolve(path)[index] = column[0]
     evaluated(armature_object)
+
+
+# --- F-curves of a single posture, written and read without any armature
+
+
+SAME = 2e-6  # largest relative error of channels by single precision
+
+
+def write_posture_curves(action: Action, body: Body, posture: Posture) -> None:
+    """Give an empty Action the curves of a single posture, the floor at z = 0: one key a channel."""
+    columns = posture_columns(bones_at_rest(body), Posture.stack([posture]))
+    write_keys(channelbag_for(action), columns, np.ones(1), POSED)
+
+
+def read_posture_curves(action: Action, body: Body, stored: Posture | None = None) -> Posture | None:
+    """The posture that a pose asset's curves show; None where it has no curve of a bone of the skeleton.
+
+    `stored` is the posture that the curves were once written from: joints whose curves are unchanged are
+    taken from it, to the last digit. Bones without curves are as there, or at rest.
+    """
+    curves = {channel: curve for channel, curve in curves_of(action).items() if not curve.is_empty}
+    bones = bones_at_rest(body)
+    before: dict[str, list[float]] = {}  # a rotation's values, for the root then the location's
+    known = Posture.rest(body.skeleton) if stored is None else stored
+    for _, _, bone, column in posture_columns(bones, Posture.stack([known])):
+        before.setdefault(bone, []).append(float(column[0]))
+    values: dict[str, Array] = {}
+    modes = dict(bones.modes)
+    changed: list[BoneModel] = []
+    found = False
+    for model in bones.models:
+        if model.chain:
+            was = np.array(before[model.name])
+            modes[model.name], there, now = _read_bone(curves, model, bones.modes[model.name], was)
+            values[model.name] = now
+            found |= there
+            if len(now) != len(was) or (np.abs(now - was) > SAME * np.maximum(1.0, np.abs(was))).any():
+                changed.append(model)
+    if not found or (stored is not None and not changed):
+        return stored if found else None
+    rig = rig_of(replace(bones, modes=modes), body)
+    shown = shown_postures(rig, rig.pose([values[bone.name][None] for bone in rig.bones]), body)[0]
+    if stored is None:
+        return shown
+    skeleton, joints = body.skeleton, [joint for model in changed for joint in model.chain]
+    turned = np.isin(skeleton.ball_joints, joints)[:, None, None]
+    return Posture(
+        skeleton,
+        (shown if any(model.parent is None for model in changed) else stored).translation,
+        np.where(turned, shown.rotations, stored.rotations),
+        np.where(np.isin(skeleton.hinge_joints, joints), shown.angles, stored.angles),
+    )
+
+
+def _read_bone(
+    curves: Mapping[tuple[str, int], FCurve], model: BoneModel, mode: str, known: Array
+) -> tuple[str, bool, Array]:
+    """A bone's rotation mode, whether it has any curves, and its values."""
+    euler = mode if len(mode) == 3 else "XYZ"
+    modes = [mode, *(other for other in ("QUATERNION", "AXIS_ANGLE", euler) if other != mode)]
+    paths = {each: bone_path(model.name, rotation_path(each)) for each in modes}
+    keyed = [each for each in modes if any((paths[each], index) in curves for index in range(4))]
+    chosen = keyed[0] if keyed else mode
+    count, place = channel_count(chosen), bone_path(model.name, "location")
+    usual = known[:count] if chosen == mode else np.eye(4)[0][:count] * (chosen == "QUATERNION")
+    values = otherwise = np.concatenate([usual, known[channel_count(mode) :]])
+    channels = [*((paths[chosen], index) for index in range(count)), *((place, index) for index in range(3))]
+    there = False
+    for row, channel in enumerate(channels[: len(otherwise)]):
+        if channel in curves:
+            there, values = True, values.copy()
+            keys = curves[channel].keyframe_points
+            value = float(keys[0].co[1]) if len(keys) else np.inf
+            values[row] = value if abs(value) < 1000.0 else otherwise[row]  # a file may hold any number
+    length = float(np.linalg.norm(values[:4]))
+    if chosen == "QUATERNION" and length < 1e-6:
+        return chosen, there, otherwise
+    if chosen == "QUATERNION" and abs(length - 1.0) > SAME:
+        values = np.concatenate([values[:4] / length, values[4:]])
+    return chosen, there, values

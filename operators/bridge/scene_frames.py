@@ -15,7 +15,7 @@ from ...core.arrays import Array, IndexArray
 from ...core.markers.region_tracks import is_variable_frame_rate
 from ...core.progress import Part
 from .actions import assign_action
-from .object_space import evaluated
+from .actor_bones import evaluated
 
 Pose = dict[str, list[tuple[float, ...]]]  # values of all channels, by bone
 CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")

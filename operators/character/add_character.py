@@ -5,9 +5,8 @@ import bpy
 from ...core.errors import InputError
 from ..bridge.character.read_character import make_override, needs_override
 from ..bridge.character.rigify_human import add_rigify_human, enable_rigify, has_rigify, is_rigify_enabled
-from ..shell.base_operator import BaseOperator, remove_active
+from ..shell.base_operator import BaseOperator, bones_editable, idle, of_take, remove_active
 from ..shell.fields import SKIP_SAVE, Text
-from ..shell.requirements import bones_editable, idle, of_take
 from ..shell.takes import active_take
 from .characters import (
     active_character,

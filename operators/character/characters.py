@@ -11,8 +11,7 @@ from ...core.files.fields import listed
 from ...core.retarget.character import REQUIRED
 from ..bridge.actor_bones import is_actor
 from ..bridge.character.read_character import needs_override
-from ..shell.base_operator import capitalized
-from ..shell.requirements import of_take
+from ..shell.base_operator import capitalized, of_take
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, find_take
 from .map_properties import map_of, role_title

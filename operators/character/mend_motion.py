@@ -7,10 +7,9 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import run as run_job
-from ..shell.base_operator import BaseOperator, browse, chosen_file, warn
+from ..shell.base_operator import BaseOperator, bones_editable, browse, chosen_file, idle, warn
 from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
 from ..shell.job_operator import JobOperator
-from ..shell.requirements import bones_editable, idle
 from .characters import with_map
 from .map_properties import map_of
 from .recognition import map_folders

@@ -8,9 +8,8 @@ import bpy
 from ...core.errors import InputError, KeymarkError
 from ...core.retarget.character import ROLES
 from ..library import registry
-from ..shell.base_operator import BaseOperator, browse, capitalized, chosen_file, reported, warn
+from ..shell.base_operator import BaseOperator, browse, capitalized, chosen_file, idle, reported, warn
 from ..shell.fields import HIDDEN, SKIP_SAVE, Integer, Switch, Text
-from ..shell.requirements import idle
 from .characters import (
     active_character,
     add_lines,

@@ -10,11 +10,10 @@ from ...core.progress import stretch
 from ...core.take.character_settings import RetargetOptions
 from ..bridge.actions import assign_action
 from ..finish.bake_motion import mark_motion_asset
-from ..shell.base_operator import BaseOperator, warn
+from ..shell.base_operator import BaseOperator, idle, warn
 from ..shell.declared_properties import read_declared
 from ..shell.fields import Integer
 from ..shell.job_operator import JobOperator
-from ..shell.requirements import idle
 from ..shell.take_state import TakeState, digest_of
 from ..shell.takes import active_take, take_by_identifier
 from .characters import (

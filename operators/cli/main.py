@@ -21,9 +21,8 @@ from typing import Any, NoReturn
 
 from ...core.errors import InputError, KeymarkError, describe_unexpected
 from .blender_silence import codec_silence
-from .command import Command, UsageError, argument, print_error, program_name, version
 from .commands import SUMMARIES
-from .console import Console
+from .console import Command, Console, UsageError, argument, print_error, program_name, version
 
 DONE, FAILED, UNUSABLE, OUT_OF_BOUNDS, INTERRUPTED = 0, 1, 2, 3, 130
 

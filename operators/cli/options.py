@@ -13,7 +13,7 @@ from ...core.prior.texts import EVERY_LIBRARY
 from ...core.take.character_settings import CharacterFile, CharacterSettings, LimbKeys, RetargetOptions
 from ...core.take.conversion_settings import SHOT, ConversionSettings, EvidenceKinds
 from ...core.take.evidence import EVIDENCE
-from .command import Argument, UsageError, argument
+from .console import Argument, UsageError, argument
 
 WHERE = "the command line"
 HEIGHT = "--height"

@@ -10,14 +10,13 @@ from ...core.errors import InputError
 from ...core.files.fields import listed
 from ...core.progress import run as run_job
 from ..bridge.actions import assign_action
+from ..bridge.actor_bones import moved_by
 from ..bridge.asset_catalogs import catalog_file, ensure_catalog
 from ..bridge.export_formats import FORMATS, ExportFormat, export_motion
-from ..bridge.object_space import moved_by
-from ..shell.base_operator import BaseOperator, warn, warn_if_outdated
+from ..shell.base_operator import BaseOperator, actor, idle, motion, of_take, warn, warn_if_outdated
 from ..shell.fields import HIDDEN, Choice, Switch, Text
 from ..shell.job_operator import JobOperator
-from ..shell.notices import give_notices
-from ..shell.requirements import actor, idle, motion, of_take
+from ..shell.notes import give_notices
 from ..shell.take_state import TakeState, digest_of
 from ..shell.takes import active_take, actor_of, refresh_asset_browsers, take_by_identifier
 

@@ -14,7 +14,7 @@ from ...core.camera.camera_evidence import Uprights
 from ...core.errors import InputError, KeymarkError
 from ...core.markers.region_tracks import RegionTracks
 from ..bridge.scene_frames import scene_frames
-from ..footage.drawn_lines import (
+from ..footage.found_camera import (
     CLICKED_PX,
     HEIGHT,
     NEAR_PX,
@@ -22,17 +22,24 @@ from ..footage.drawn_lines import (
     DrawnLine,
     Pixel,
     evidence_of,
+    fit_take,
     read_lines,
     show,
     store_lines,
+    values,
+    write_fit,
 )
-from ..footage.found_camera import fit_take, values, write_fit
 from ..footage.properties import KINDS, still_camera
-from ..shell.base_operator import BaseOperator, warn
+from ..shell.base_operator import BaseOperator, camera, footage, idle, warn
 from ..shell.fields import SKIP_SAVE, Choice
-from ..shell.footage_clicks import ClickSequence
-from ..shell.footage_view import FootageRequest, FootageView, follow_mouse, ui_scale, view_of_footage_under
-from ..shell.requirements import camera, footage, idle
+from ..shell.footage_view import (
+    ClickSequence,
+    FootageRequest,
+    FootageView,
+    follow_mouse,
+    ui_scale,
+    view_of_footage_under,
+)
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of, redraw_sidebars_soon
 from .evidence import scene_evidence

@@ -93,7 +93,7 @@ def add_keypoint_file(take: PropertyGroup, path: Path, replace: bool = False) ->
 
     With `replace` it takes the place of the chosen one.
     """
-    from ..bridge.footage_to_scene import stored_path
+    from ..bridge.result_files import stored_path
 
     follow = take.follow
     known = [keypoint_path(entry) for entry in follow.files]

@@ -1,4 +1,4 @@
-"""Files of keypoints of a take: loaded, removed, and made by Keymark's own network."""
+"""A network of somebody's own that looks beside Keymark's; the add-on's preferences remember its file."""
 
 from dataclasses import dataclass
 from os import W_OK, X_OK, access
@@ -6,24 +6,75 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
-from bpy.types import Context, Event, PropertyGroup, Scene
+from bpy.types import AddonPreferences, Context, Event, PropertyGroup, Scene, UILayout
 
 from ...core.detect.detector_formats import is_one_frame
 from ...core.errors import InputError
 from ...core.files.json_file import read_json_value
 from ...core.progress import Job, run
 from ..bridge.scene_evidence import read_keypoint_file
-from ..shell.base_operator import BaseOperator, browse, chosen_path, remove_active, warn
+from ..shell.base_operator import (
+    BaseOperator,
+    browse,
+    chosen_path,
+    footage,
+    idle,
+    keypoint_files,
+    remove_active,
+    warn,
+)
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.job_operator import JobOperator
-from ..shell.requirements import footage, idle, keypoint_files
-from ..shell.results import reading_of
+from ..shell.results import EXTENSION, reading_of
 from ..shell.takes import active_take, footage_of, redraw_footage, take_by_identifier
 from .evidence import add_keypoint_file, clear_readings, keypoint_path, scene_evidence
-from .network import chosen_network
 
 if TYPE_CHECKING:
+    from ...core.detect.families.network import Network
     from ...core.detect.keypoints import People
+
+
+class KEYMARK_AP_preferences(bpy.types.AddonPreferences):
+    """What holds for every file."""
+
+    bl_idname = EXTENSION
+
+    network: Text(
+        "Network",
+        "A network's file (.onnx) that looks for points of the body beside Keymark's own, as InstantHMR's "
+        "or RTMPose's; empty for Keymark's own alone",
+        subtype="FILE_PATH",
+    )
+
+    def draw(self, context: Context) -> None:
+        self.layout.use_property_split = True
+        draw_network(self.layout)
+
+
+def _preferences() -> AddonPreferences | None:
+    """Keymark's; None where it is not installed as an add-on."""
+    addon = bpy.context.preferences.addons.get(EXTENSION)
+    return None if addon is None else addon.preferences
+
+
+def draw_network(layout: UILayout) -> None:
+    """Draw whose network looks, where that can be remembered."""
+    preferences = _preferences()
+    if preferences is not None:
+        layout.prop(preferences, "network", placeholder="Keymark's Own")
+
+
+def chosen_network() -> "Network | None":
+    """The network that is chosen in the preferences; None for Keymark's own alone."""
+    from ...core.detect.families.table import open_network
+
+    preferences = _preferences()
+    if preferences is None or not preferences.network:
+        return None
+    return open_network(Path(bpy.path.abspath(preferences.network)))
+
+
+# --- Files of keypoints of a take: loaded, removed, and made by Keymark's own network
 
 
 class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):

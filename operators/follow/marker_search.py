@@ -12,11 +12,22 @@ from ...core.markers.ignored_regions import IgnoredRegion
 from ...core.markers.region_tracks import MarkerStyle
 from ...core.progress import Job, within
 from ..bridge.footage import Footage
-from ..footage.take_footage import update_clip_digest
-from ..shell.base_operator import BaseOperator, Unchanged, call, capitalized, remove_active, warn
+from ..footage.load_footage import update_clip_digest
+from ..shell.base_operator import (
+    BaseOperator,
+    Unchanged,
+    call,
+    capitalized,
+    footage,
+    idle,
+    markers,
+    of_take,
+    picked_color,
+    remove_active,
+    warn,
+)
 from ..shell.footage_view import clip_index
 from ..shell.job_operator import JobOperator
-from ..shell.requirements import footage, idle, markers, of_take, picked_color
 from ..shell.results import reading_of
 from ..shell.takes import (
     active_take,

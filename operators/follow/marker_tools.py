@@ -13,12 +13,10 @@ from ...core.errors import InputError
 from ...core.markers import ignored_regions as regions_of_picture
 from ...core.markers.ignored_regions import IgnoredRegion
 from ...core.progress import Job
-from ..shell.base_operator import reported, warn
+from ..shell.base_operator import footage, idle, markers, reported, warn
 from ..shell.fields import SKIP_SAVE, Entries, Integer, Number, Vector
-from ..shell.footage_clicks import ClickSequence
-from ..shell.footage_view import FootageRequest, pixel_under, side_of, stop_asking
+from ..shell.footage_view import ClickSequence, FootageRequest, pixel_under, side_of, stop_asking
 from ..shell.job_operator import SHORTEST_SLICE_S, TIMER_S, JobOperator
-from ..shell.requirements import footage, idle, markers
 from ..shell.takes import active_take, footage_of, redraw_footage, take_by_identifier
 from .marker_search import (
     USUAL_SEGMENTS,

@@ -11,6 +11,7 @@ from ..bridge.footage_camera import may_move
 from ..shell.base_operator import capitalized
 from ..shell.footage_view import clip_index
 from ..shell.panel import (
+    KINDS,
     RowList,
     draw_progress,
     draw_readout,
@@ -20,7 +21,6 @@ from ..shell.panel import (
     right_end,
     side_by_side,
 )
-from ..shell.steps import KINDS
 from ..shell.takes import active_take, assigned_tracks, find_take, point_of
 from .evidence import (
     clicked_here,

@@ -12,11 +12,9 @@ from ...core.detect.keypoints import BODY_POINTS
 from ...core.detect.layouts import named_point
 from ...core.errors import InputError
 from ..bridge.scene_evidence import clip_tracks
-from ..shell.base_operator import BaseOperator, Unchanged
+from ..shell.base_operator import BaseOperator, Unchanged, footage, idle, keypoint_files
 from ..shell.fields import SKIP_SAVE, Choice, Text, Vector
-from ..shell.footage_clicks import ClickSequence
-from ..shell.footage_view import FootageRequest, side_of
-from ..shell.requirements import footage, idle, keypoint_files
+from ..shell.footage_view import ClickSequence, FootageRequest, side_of
 from ..shell.takes import active_take, redraw_footage, redraw_sidebars_soon
 from .evidence import clicked_here, clicked_points, clip_frame, keypoints_at
 from .properties import NO_POINT, body_point_items, segment_title

@@ -1,18 +1,201 @@
-"""A camera that was found: given to the take's camera, and said in words."""
+"""Lines drawn over the footage to find its camera: the state of the running tool, as a mouse changes it."""
 
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import bpy
+import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ..bridge.camera_placement import still_camera, write_found_camera
 from ..shell.takes import footage_of
+from .load_footage import lens_is_guess
 from .properties import confirm_placement
-from .take_footage import lens_is_guess
 
 if TYPE_CHECKING:
+    import bpy
+
+    from ...core.camera.camera import Camera
     from ...core.camera.camera_evidence import CameraEvidence
     from ...core.camera.camera_fit import CameraFit
+
+
+VERTICAL, LEVEL, ACROSS, HEIGHT = KINDS = ("VERTICAL", "LEVEL", "ACROSS", "HEIGHT")
+NEAR_PX = 12.0  # Distance in the region within which an end is taken [px at a UI scale of 1]
+CLICKED_PX = 6.0  # Length below which a line is not drawn yet: its other end follows at the next click
+
+Pixel = tuple[float, float]
+
+
+@dataclass
+class DrawnLine:
+    """A line over the footage."""
+
+    kind: str
+    ends: list[Pixel]  # Both ends [px of the footage]
+    frame: int  # Scene frame in which it was drawn
+    length: float = 0.0  # Known length [m]; 0 for the performer's height
+
+
+@dataclass
+class Drawing:
+    """The lines of a running tool."""
+
+    kind: str  # Kind of the next line
+    stays: bool  # Whether the kind stays the same after each line
+    lines: list[DrawnLine] = field(default_factory=list)
+    held: tuple[int, int] | None = None  # Index of the line whose end follows the mouse, and of that end
+    last: int | None = None  # Index of the line that was drawn or moved last
+    typed: str = ""  # Digits of a length that is being typed
+    fit: "CameraFit | None" = None  # What the lines say of the camera; None before there is any
+    stature_m: float = 0.0  # The performer's height [m]
+    of_performer: bool = False  # Whether a length that is typed is the performer's height
+
+    def press(self, pixel: Pixel, frame: int, near: Callable[[Pixel], float]) -> None:
+        """Take the end of a line that is near, or begin a new line.
+
+        `near` tells the distance in the region from the mouse to a pixel, as a share of `NEAR_PX`.
+        """
+        if self.held is not None:  # the second click of a line that is drawn by two
+            self.move(pixel)
+            return
+        self.typed = ""
+        ends = [
+            (near(end), (number, which))
+            for number, line in enumerate(self.lines)
+            for which, end in enumerate(line.ends)
+        ]
+        nearest = min(ends, default=(np.inf, (0, 0)))
+        if nearest[0] <= 1.0:
+            self.held = nearest[1]
+        else:
+            self.lines.append(DrawnLine(self.kind, [pixel, pixel], frame))
+            self.held = len(self.lines) - 1, 1
+        self.last = self.held[0]
+
+    def move(self, pixel: Pixel) -> None:
+        if self.held is not None:
+            number, which = self.held
+            self.lines[number].ends[which] = pixel
+
+    def release(self, far: Callable[[Pixel, Pixel], float]) -> bool:
+        """Let go of the held end, unless its line is too short to be one; return whether it was let go.
+
+        `far` tells the distance in the region between two pixels, as a share of `CLICKED_PX`.
+        """
+        if self.held is None:
+            return False
+        line = self.lines[self.held[0]]
+        if far(line.ends[0], line.ends[1]) < 1.0:
+            return False
+        is_new = self.held == (len(self.lines) - 1, 1) and line.kind == self.kind
+        self.held = None
+        drawn = sum(other.kind == self.kind for other in self.lines)
+        if is_new and not self.stays and drawn >= 2 and self.kind in (VERTICAL, LEVEL):
+            self.kind = LEVEL if self.kind == VERTICAL else HEIGHT
+        return True
+
+    def next_kind(self) -> None:
+        self.kind, self.stays = KINDS[(KINDS.index(self.kind) + 1) % len(KINDS)], True
+
+    def remove(self, near: Callable[[DrawnLine], float]) -> None:
+        """Remove the line under the mouse, else the last one; a line that is being drawn first.
+
+        `near` tells the distance in the region from the mouse to a line, as a share of `NEAR_PX`.
+        """
+        if not self.lines:
+            return
+        number = len(self.lines) - 1
+        if self.held is None:
+            shares = [near(line) for line in self.lines]
+            if min(shares) <= 1.0:
+                number = int(np.argmin(shares))
+        self.lines.pop(number)
+        self.held = self.last = None
+        self.typed = ""
+
+    def type(self, letter: str) -> bool:
+        """Type a digit of the length of the line drawn last; return whether it is one with a length."""
+        if self.last is None or self.lines[self.last].kind != HEIGHT:
+            return False
+        self.typed = self.typed[:-1] if letter == "\b" else self.typed + letter
+        try:
+            length = float(self.typed)
+        except ValueError:  # nothing yet, or a point alone
+            length = 0.0
+        if not self.of_performer:
+            self.lines[self.last].length = length
+        elif 0.5 <= length <= 3.0:  # limits of a performer's height [m]
+            self.stature_m = length
+        return True
+
+    def length_of(self, line: DrawnLine) -> float:
+        """Known length of a line of that kind [m]."""
+        return line.length or self.stature_m
+
+    @property
+    def complete(self) -> list[DrawnLine]:
+        return [line for line in self.lines if line.ends[0] != line.ends[1]]
+
+
+def read_lines(take: "bpy.types.PropertyGroup") -> list[DrawnLine]:
+    """The lines that a take keeps."""
+    return [
+        DrawnLine(line.kind, [tuple(line.start), tuple(line.end)], line.frame, line.length)
+        for line in take.camera_lines
+    ]
+
+
+def store_lines(take: "bpy.types.PropertyGroup", lines: list[DrawnLine]) -> None:
+    """Keep lines with a take, so that they can be drawn on later."""
+    take.camera_lines.clear()
+    for line in lines:
+        stored = take.camera_lines.add()
+        stored.kind, stored.frame, stored.length = line.kind, line.frame, line.length
+        stored.start, stored.end = line.ends
+
+
+def evidence_of(lines: list[DrawnLine], stature_m: float) -> "CameraEvidence":
+    """What lines tell of the camera; the upper end of a known height is the higher one in the picture."""
+    from ...core.camera.camera_evidence import CameraEvidence, Uprights
+
+    def ends(kind: str) -> Array:
+        return np.array([line.ends for line in lines if line.kind == kind]).reshape(-1, 2, 2)
+
+    def upright(known: bool) -> tuple[Array, Array]:
+        chosen = [line for line in lines if line.kind == HEIGHT and (line.length > 0.0) == known]
+        pairs = [sorted(line.ends, key=lambda pixel: -pixel[1]) for line in chosen]
+        lower_and_upper = np.array(pairs).reshape(-1, 2, 2)
+        return lower_and_upper[:, 0], lower_and_upper[:, 1]
+
+    lengths = np.array([line.length for line in lines if line.kind == HEIGHT and line.length > 0.0])
+    uprights = Uprights.persons(*upright(False), stature_m) + Uprights.things(*upright(True), lengths)
+    return CameraEvidence(ends(VERTICAL), ends(LEVEL), ends(ACROSS), uprights)
+
+
+_running: Drawing | None = None
+
+
+def running() -> Drawing | None:
+    """The running tool's drawing, for the overlays; None without one."""
+    return _running
+
+
+def show(drawing: Drawing | None) -> None:
+    """Let the overlays draw these lines from now on; None ends the drawing."""
+    global _running
+    _running = drawing
+
+
+def current_camera(drawing: Drawing | None) -> "Camera | None":
+    """The camera that the lines show; None where there is nothing yet."""
+    return None if drawing is None or drawing.fit is None else drawing.fit.camera
+
+
+# --- A camera that was found: given to the take's camera, and said in words
+
 
 HINTS = {
     "height": "Height is kept: draw something of known height, or the performer nearer and farther away",

@@ -7,9 +7,9 @@ from ..bridge.footage_camera import may_move, solver_constraint
 from ..shell.panel import Popover, StepPanel, draw_sentence
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, find_take
-from .drawn_lines import HEIGHT, VERTICAL
+from .found_camera import HEIGHT, VERTICAL
+from .load_footage import lens_is_guess
 from .properties import draw_part
-from .take_footage import lens_is_guess
 
 
 def _draw_camera(column: bpy.types.UILayout, context: bpy.types.Context, state: TakeState) -> None:

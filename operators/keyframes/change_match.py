@@ -9,16 +9,15 @@ from bpy.types import Context, OperatorProperties, PropertyGroup
 from ...core.errors import InputError
 from ...core.prior.texts import COMPOSED
 from ..bridge.scene_frames import show_frame
-from ..overlays.candidates import look_at
-from ..shell.base_operator import BaseOperator, Unchanged
-from ..shell.contradictions import note_contradictions
+from ..overlays.tools import look_at
+from ..shell.base_operator import BaseOperator, Unchanged, actor, idle, matches, of_take
 from ..shell.fields import Integer, Switch
 from ..shell.keyed_frames import show_keyframes
-from ..shell.requirements import actor, idle, matches, of_take
+from ..shell.notes import note_contradictions
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take
 from .corrections import LIMBS
-from .found_keyframes import directions, known_matches, match_here, neighbor
+from .found_properties import directions, known_matches, match_here, neighbor
 from .posing import improve_neighbors
 
 

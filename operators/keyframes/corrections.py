@@ -15,15 +15,14 @@ from ...core.errors import InputError
 from ..bridge.camera_placement import read_camera
 from ..bridge.scene_frames import at_scene_frame, pose_of, restore_pose, showing_action
 from ..follow.evidence import scene_evidence
-from ..shell.base_operator import BaseOperator, Unchanged
+from ..shell.base_operator import BaseOperator, Unchanged, actor, camera, footage, idle, keyframes
 from ..shell.fields import SKIP_SAVE, Choice, Switch
 from ..shell.job_progress import job_is_running
 from ..shell.keyed_frames import SAME_FRAME, has_frame, show_keyframes
-from ..shell.requirements import actor, camera, footage, idle, keyframes
 from ..shell.results import reading_of
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of, redraw_footage
-from .found_keyframes import known_matches, neighbor
+from .found_properties import known_matches, neighbor
 from .posing import SAME_POSE, key_pose, note_corrected
 
 if TYPE_CHECKING:
@@ -191,7 +190,7 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
 def _fitted(context: Context, take: PropertyGroup, ways: "list[Turned]") -> "list[Posture]":
     """Turned postures fitted to the frame, the likeliest first; none if it shows nothing to fit to."""
     from ..bridge.pose import write_posture
-    from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
+    from ..bridge.take_from_scene import fit_to_frame, frame_in_footage
 
     found: list[tuple[float, Posture]] = []
     matches, before = known_matches(take), pose_of(take.armature)

@@ -10,17 +10,15 @@ from bpy.types import Context, Event, PropertyGroup
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN, limb_of
-from ..bridge.object_space import evaluated, joint_places
+from ..bridge.actor_bones import evaluated, joint_places
 from ..bridge.scene_frames import Pose, pose_of, restore_pose
 from ..follow.properties import segment_title
 from ..overlays.motion import window
 from ..overlays.tools import Handles, show_keys
-from ..shell.base_operator import BaseOperator, call, reported
+from ..shell.base_operator import BaseOperator, actor, all_met, call, idle, reported
 from ..shell.fields import Choice, Switch, Vector
-from ..shell.footage_clicks import NAVIGATION, WorldInRegion, view_under
-from ..shell.footage_view import ui_scale
+from ..shell.footage_view import NAVIGATION, WorldInRegion, ui_scale, view_under
 from ..shell.job_progress import job_is_running
-from ..shell.requirements import actor, all_met, idle
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, find_take, redraw_editors, redraw_sidebars_soon
 from .corrections import DRAGGING, camera_now, put_right, set_corrected, shown_pose

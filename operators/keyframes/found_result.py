@@ -21,13 +21,12 @@ from ..bridge.actions import assign_action
 from ..bridge.footage_camera import set_still_pose
 from ..bridge.keyframes import candidate_posture, remove_keyframes, take_over, write_matched
 from ..shell.base_operator import capitalized
-from ..shell.contradictions import note_contradictions
 from ..shell.keyed_frames import has_frame, new_keyframe_action, straighten_unposed
+from ..shell.notes import note_contradictions
 from ..shell.results import keep_reading
 from ..shell.take_state import TakeState
 from ..shell.takes import actor_of, take_by_identifier
-from .found_keyframes import known_matches
-from .found_properties import PLACE_VALUES
+from .found_properties import PLACE_VALUES, known_matches
 from .scene_session import SceneSession
 
 ANYBODY = Body(Actor.from_stature(1.7))  # The body on which candidates are compared; its size hardly matters

@@ -11,16 +11,25 @@ from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.progress import Job, stretch, within
 from ..bridge.scene_frames import shown_index
-from ..shell.base_operator import BaseOperator, Unchanged, warn
+from ..shell.base_operator import (
+    BaseOperator,
+    Unchanged,
+    actor,
+    all_colors,
+    camera,
+    footage,
+    idle,
+    of_take,
+    points_to_follow,
+    warn,
+)
 from ..shell.fields import Switch, Text
 from ..shell.job_operator import JobOperator
-from ..shell.notices import give_notices
-from ..shell.requirements import actor, all_colors, camera, footage, idle, of_take, points_to_follow
+from ..shell.notes import give_notices
 from ..shell.results import keep_reading, keep_speed
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, find_take, take_by_identifier
-from .found_keyframes import directions, known_matches, neighbor
-from .found_properties import FloorSettings
+from .found_properties import FloorSettings, directions, known_matches, neighbor
 from .scene_session import READ, SceneSession, clip_session, go_on, read_session
 
 if TYPE_CHECKING:

@@ -16,8 +16,7 @@ from ..bridge.scene_frames import at_scene_frame, scene_frames, showing_action
 from ..follow.evidence import scene_evidence
 from ..follow.marker_search import marker_styles
 from ..follow.properties import ignored_regions
-from ..shell.base_operator import BaseOperator, warn
-from ..shell.contradictions import note_contradictions
+from ..shell.base_operator import BaseOperator, actor, camera, footage, idle, points_to_follow, warn
 from ..shell.fields import Choice
 from ..shell.keyed_frames import (
     SAME_FRAME,
@@ -26,12 +25,11 @@ from ..shell.keyed_frames import (
     show_keyframes,
     straighten_unposed,
 )
-from ..shell.notices import give_notices
-from ..shell.requirements import actor, camera, footage, idle, points_to_follow
+from ..shell.notes import give_notices, note_contradictions
 from ..shell.results import MADE, reading_of
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of
-from .found_keyframes import known_matches
+from .found_properties import known_matches
 from .scene_session import read_session
 
 if TYPE_CHECKING:
@@ -220,7 +218,7 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
 
     def run(self, context: Context) -> None:
         from ..bridge.pose import write_posture
-        from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
+        from ..bridge.take_from_scene import fit_to_frame, frame_in_footage
         from ..library.registry_files import all_libraries
         from .found_result import add_candidate
 

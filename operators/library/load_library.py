@@ -4,9 +4,8 @@ import bpy
 from bpy.types import Context, Event, Menu
 
 from ...core.errors import InputError
-from ..shell.base_operator import BaseOperator, browse, chosen_file
+from ..shell.base_operator import BaseOperator, browse, chosen_file, idle, registered_library
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
-from ..shell.requirements import idle, registered_library
 from ..shell.takes import refresh_asset_browsers
 from .registry import chosen_identifier, folders, refresh
 
@@ -37,7 +36,7 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
         """Read the whole file first, then write its libraries into the user's folder."""
         from ...core.prior.library import library_digest
         from ...core.prior.registry import registered_libraries
-        from ..bridge.library.library_file import read_libraries
+        from ..bridge.library import read_libraries
         from .registry_files import write_to_registry
 
         libraries = read_libraries(chosen_file(self, "a keyframe library, .json or .blend"))
@@ -91,7 +90,7 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
     def run(self, context: Context) -> None:
         """Add an Action for each posture; a saved file's catalogs are named beside it."""
         from ..bridge.asset_catalogs import catalog_file, ensure_catalog
-        from ..bridge.library.pose_assets import add_assets, assets_by_library, catalog_of
+        from ..bridge.library import add_assets, assets_by_library, catalog_of
         from .registry_files import load_registered
 
         library = load_registered(self.library or chosen_identifier(context))

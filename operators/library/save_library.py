@@ -8,9 +8,8 @@ from bpy.types import AnyType, Context, Event
 
 from ...core.errors import InputError
 from ...core.prior.texts import identifier_from
-from ..shell.base_operator import BaseOperator, warn_if_outdated
+from ..shell.base_operator import BaseOperator, actor, idle, motion, warn_if_outdated
 from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Integer, Switch, Text
-from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take, find_take
 from .registry import chosen_identifier, folders, refresh
 
@@ -106,7 +105,7 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
     def run(self, context: Context) -> None:
         from ...core.prior.library import write_library
         from ..bridge.asset_catalogs import asset_root
-        from ..bridge.library.library_file import write_library_blend
+        from ..bridge.library import write_library_blend
 
         if not self.filepath:
             raise InputError("no file is named to save to; give filepath")
@@ -126,7 +125,7 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
 
     def _library(self, context: Context) -> "Library":
         from ...core.prior.learning import LibraryMetadata
-        from ..bridge.library.posed_library import library_of_assets, library_of_keyframes
+        from ..bridge.library import library_of_assets, library_of_keyframes
         from .registry_files import load_registered
 
         wanted = self.library or chosen_identifier(context)
@@ -178,7 +177,7 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
         """Learn the library, and write it into the user's folder."""
         from ...core.prior.learning import LibraryMetadata
         from ...core.prior.registry import identifier_of, registered_libraries
-        from ..bridge.library.posed_library import library_from_action
+        from ..bridge.library import library_from_action
         from .registry_files import write_to_registry
 
         take = active_take(context.scene)

@@ -14,7 +14,7 @@ from bpy.types import Context, PropertyGroup, Scene
 
 from ...core.arrays import Array, BoolArray, IndexArray
 from ...core.detect.keypoints import mirrored_point
-from ..bridge.object_space import joint_places
+from ..bridge.actor_bones import joint_places
 from ..follow.evidence import FrameKeypoints, keypoints_at
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.results import review_of

@@ -11,7 +11,7 @@ from bpy.types import Context
 
 from ...core.errors import KeymarkError
 from ..shell.job_progress import job_is_running
-from . import candidates, mask, motion, timeline, tools
+from . import mask, motion, timeline, tools
 from .drawing import Item, merged
 
 DrawFunction = Callable[[Context], Iterable[Item]]
@@ -43,7 +43,7 @@ OVERLAYS = (
     *_in_both("Masks", mask.draw),
     *_in_both("Ignored Regions", mask.draw_ignored),
     *_in_both("Keypoints", motion.draw_keypoints, correcting=False, of_performer=True),
-    *_in_both("Candidates", candidates.draw, correcting=False, of_performer=True),
+    *_in_both("Candidates", tools.draw_candidate, correcting=False, of_performer=True),
     *_in_both("Motion", motion.draw, of_performer=True),
     *_in_both("Floor Grid", tools.draw_floor_grid),
     *_in_both("Camera's Lines", tools.draw_camera_lines),

@@ -7,13 +7,22 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import stretch
 from ..bridge.actions import assign_action
-from ..keyframes.found_keyframes import known_matches
+from ..keyframes.found_properties import known_matches
 from ..keyframes.scene_session import READ, go_on, read_session
-from ..shell.base_operator import BaseOperator, capitalized, warn
+from ..shell.base_operator import (
+    BaseOperator,
+    actor,
+    all_colors,
+    anything_to_follow,
+    capitalized,
+    footage,
+    idle,
+    two_keyframes,
+    warn,
+)
 from ..shell.fields import Choice
 from ..shell.job_operator import JobOperator
 from ..shell.keyed_frames import straighten_unposed
-from ..shell.requirements import actor, all_colors, anything_to_follow, footage, idle, two_keyframes
 from ..shell.takes import active_take
 
 if TYPE_CHECKING:

@@ -7,14 +7,24 @@ from mathutils import Matrix, Vector
 
 from ...core.errors import InputError
 from ..bridge.actions import assign_action
-from ..bridge.object_space import evaluated
+from ..bridge.actor_bones import evaluated
 from ..bridge.scene_frames import at_scene_frame, show_frame, showing_action
 from ..footage.camera_view import look_through, viewports
-from ..shell.base_operator import BaseOperator, Unchanged, call, capitalized, reported
+from ..shell.base_operator import (
+    BaseOperator,
+    Unchanged,
+    actor,
+    call,
+    camera,
+    capitalized,
+    idle,
+    motion,
+    reported,
+    weak_frames,
+)
 from ..shell.fields import Choice
 from ..shell.keyed_frames import new_keyframe_action, straighten_unposed
 from ..shell.panel import RowList, draw_sentence
-from ..shell.requirements import actor, camera, idle, motion, weak_frames
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take
 

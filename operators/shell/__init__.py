@@ -1,4 +1,4 @@
 """How operators run: requirements, error reports, jobs and Esc; the base of panels; the takes of a scene."""
 
-PROPERTIES = ("job_progress", "contradictions", "notices", "steps")
+PROPERTIES = ("job_progress", "notes", "panel")
 MODULES = ("results", "keyed_frames")

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from ...core.arrays import BoolArray
 from ..bridge.actions import assign_action
+from ..bridge.actor_bones import evaluated
 from ..bridge.keys import keys_changed
-from ..bridge.object_space import evaluated
 
 
 def show_keyframes(take: bpy.types.PropertyGroup) -> bool:
@@ -36,7 +36,7 @@ def straighten_unposed(take: bpy.types.PropertyGroup) -> None:
 
     To be called before keyframes are stored or shown: nobody has posed these.
     """
-    from ..bridge.extremity_curves import straighten_extremities
+    from ..bridge.fcurves import straighten_extremities
 
     data = take.armature.animation_data
     shown = None if data is None else data.action

@@ -1,7 +1,4 @@
-"""Bases of Keymark's panels, a step's among them, and their rows: a job's progress, a wrapped sentence.
-
-Each step of the work has its panels in its own folder's `panel.py`.
-"""
+"""The sidebar: which of its steps is open, bases of its panels, and their rows."""
 
 from abc import abstractmethod
 from textwrap import wrap
@@ -10,10 +7,66 @@ from typing import ClassVar
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
+from .fields import Group, Switch
 from .job_progress import job_is_running, steady_frame
-from .steps import is_open
-from .take_state import TakeState
-from .takes import active_take, find_take
+from .take_state import STEPS, TakeState
+from .takes import active_take, find_take, redraw_sidebars_soon
+
+_chosen: dict[str, tuple[str, str]] = {}
+"""By a take's identifier: the step that the work had come to when a person chose, and the one they opened."""
+_kinds: dict[str, str] = {}
+"""By a take's identifier, the kind of evidence whose settings are open."""
+
+
+KINDS = ("markers", "keypoints", "tracks", "contours")
+"""Kinds of evidence, whose settings fold in the same way."""
+
+
+def is_open(take: bpy.types.PropertyGroup, name: str) -> bool:
+    """Whether a step, or a kind of evidence, is open in the sidebar."""
+    if name in KINDS:
+        return name == _kinds.get(take.identifier, "markers" if len(take.markers) else "keypoints")
+    reached = TakeState(take).next[0]
+    chosen_at, chosen = _chosen.get(take.identifier, (reached, reached))
+    return name == (chosen if chosen_at == reached else reached)
+
+
+def open_step(take: bpy.types.PropertyGroup, name: str, opened: bool) -> None:
+    """Open a step, or a kind of evidence, in the sidebar, which folds the others; or fold it."""
+    if opened == is_open(take, name):
+        return
+    if name in KINDS:
+        _kinds[take.identifier] = name if opened else ""
+    else:
+        _chosen[take.identifier] = TakeState(take).next[0], name if opened else ""
+
+
+def _switch(name: str) -> "bpy.types.AnyType":
+    def get(_steps: bpy.types.PropertyGroup) -> bool:
+        take = find_take(bpy.context.scene)
+        return take is not None and is_open(take, name)
+
+    def set_(_steps: bpy.types.PropertyGroup, opened: bool) -> None:
+        take = find_take(bpy.context.scene)
+        if take is not None:
+            open_step(take, name, opened)
+            redraw_sidebars_soon()
+
+    return Switch("Open", "Show this and fold the others", get=get, set=set_)
+
+
+class KEYMARK_PG_steps(bpy.types.PropertyGroup):
+    """Which steps of the active take are open; in the window manager, so that no file keeps it."""
+
+
+KEYMARK_PG_steps.__annotations__ = {name: _switch(name) for name in (*STEPS, *KINDS)}
+
+
+ATTACHED = {"WindowManager.keymark_steps": Group(type=KEYMARK_PG_steps)}
+
+
+# --- Bases of Keymark's panels, a step's among them, and their rows: a job's progress, a wrapped sentence
+
 
 ROOMY_PX = 270.0
 """Width of a sidebar, at a UI scale of 1, in which names and values, or two buttons, fit side by side."""

@@ -16,8 +16,8 @@ from ..bridge.actions import action_digest, action_of
 from ..bridge.camera_placement import read_placement
 from ..bridge.footage_camera import may_move
 from ..bridge.keys import FOUND, PICTURED, revision
-from .contradictions import SAME_FRAME, SEPARATOR
 from .keyed_frames import has_frame
+from .notes import SAME_FRAME, SEPARATOR
 from .results import LruCache
 from .takes import NO_GUESS, as_numbers, assigned_tracks
 

@@ -6,10 +6,17 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.files.json_file import read_json_value
-from ..footage.take_footage import IMAGES, VIDEOS
-from ..shell.base_operator import BaseOperator, browse, call, chosen_path, reported
+from ..footage.load_footage import IMAGES, VIDEOS
+from ..shell.base_operator import (
+    BaseOperator,
+    browse,
+    call,
+    chosen_path,
+    idle,
+    object_mode_possible,
+    reported,
+)
 from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
-from ..shell.requirements import idle, object_mode_possible
 
 
 class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):

@@ -11,19 +11,18 @@ from ..bridge.actor_bones import is_actor
 from ..character.properties import KEYMARK_PG_character
 from ..finish.properties import KEYMARK_PG_finish
 from ..follow.properties import KEYMARK_PG_follow, KEYMARK_PG_ignored_region, KEYMARK_PG_marker
+from ..footage.load_footage import camera_chosen, clip_chosen, is_missing
 from ..footage.properties import (
     KEYMARK_PG_camera_line,
     KEYMARK_PG_clip_state,
     KEYMARK_PG_part,
     placement_accessors,
 )
-from ..footage.take_footage import camera_chosen, clip_chosen, is_missing
 from ..keyframes.found_properties import KEYMARK_PG_match, KEYMARK_PG_matching
 from ..overlays.properties import KEYMARK_PG_overlays
 from ..review.properties import KEYMARK_PG_review
-from ..shell.contradictions import KEYMARK_PG_contradiction
 from ..shell.fields import HIDDEN, Choice, Entries, Group, Integer, Number, Switch, Text, Vector
-from ..shell.notices import KEYMARK_PG_notice
+from ..shell.notes import KEYMARK_PG_contradiction, KEYMARK_PG_notice
 from ..shell.takes import find_take, show_active_take, unique_name
 
 METHODS = (

@@ -8,10 +8,9 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import run
 from ..follow.evidence import add_keypoint_file, keypoint_path, scene_evidence
-from ..keyframes.found_keyframes import known_matches
-from ..shell.base_operator import BaseOperator, warn
+from ..keyframes.found_properties import known_matches
+from ..shell.base_operator import BaseOperator, actor, footage, idle, of_take, warn
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
-from ..shell.requirements import actor, footage, idle, of_take
 from ..shell.takes import active_take, add_take, footage_of
 
 

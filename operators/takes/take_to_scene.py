@@ -15,18 +15,17 @@ from ...core.take.take import Take
 from ...core.take.take_file import read_described
 from ..actor.take_actor import new_actor
 from ..bridge.actions import assign_action
-from ..bridge.footage_to_scene import show_footage, stored_path
 from ..bridge.keyframes import write_keyframes
 from ..bridge.motions.import_motion import armature_reference
+from ..bridge.result_files import show_footage, stored_path
 from ..follow.evidence import add_keypoint_file
 from ..follow.marker_search import set_marker_color
 from ..follow.properties import add_ignored_regions
-from ..footage.load_footage import hide_startup_cube
-from ..footage.take_footage import look_through_camera, show_range
+from ..footage.load_footage import hide_startup_cube, look_through_camera, show_range
 from ..keyframes.found_result import add_candidate, add_match
 from ..shell.base_operator import warn
 from ..shell.keyed_frames import new_keyframe_action
-from ..shell.notices import give_notices
+from ..shell.notes import give_notices
 from ..shell.takes import add_take
 
 

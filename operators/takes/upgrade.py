@@ -8,7 +8,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..bridge.actor_bones import hips_at_rest, is_actor, recolor_earlier
-from ..footage.take_footage import is_missing, update_clip_digest
+from ..footage.load_footage import is_missing, update_clip_digest
 from ..shell.take_state import TakeState, digest_of
 from ..shell.takes import VERSION
 

@@ -37,7 +37,7 @@ def listed(source: str) -> list[str]:
 
 
 def topic_of(name: str) -> str:
-    """`operators.bridge.library.pose_assets` belongs to `operators.bridge`."""
+    """`operators.bridge.library` belongs to `operators.bridge`."""
     return ".".join(name.split(".")[:2])
 
 

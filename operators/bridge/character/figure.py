@@ -12,9 +12,9 @@ from ....core.report.mannequin import SKIN, CharacterFigure, character_sheet
 from ....core.report.pictures import evenly_spaced_frames, footage_frames
 from ....core.retarget.character import LIMBS, MIDDLE
 from ....core.retarget.maps.character_map import CharacterMap
+from ..actor_bones import evaluated
 from ..camera_placement import read_camera
 from ..footage import Footage
-from ..object_space import evaluated
 from ..scene_frames import at_scene_frame
 from .import_character import skins
 

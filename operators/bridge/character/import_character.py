@@ -17,7 +17,7 @@ from ....core.take.character_settings import CharacterFile
 from ..actions import curve_digest
 from ..blend_files import check_blend, one_line, showing_scene, write_blend
 from ..export_formats import FORMATS, export_motion
-from .controls import constraint_targets
+from .held_controls import constraint_targets
 
 MOST_NAMED = 5  # armatures named in a sentence
 BLEND, VRM = ".blend", ".vrm"

@@ -24,16 +24,18 @@ from ....core.retarget.controls.control_spaces import (
 )
 from ....core.retarget.controls.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
 from ....core.retarget.maps.character_map import CharacterMap
-from .controls import (
+from .held_controls import (
     BONE_PATH,
+    Releases,
     active_constraints,
     drivers,
+    find_releases,
     keyed_values,
     posing,
     read_poses,
+    release,
     set_properties,
 )
-from .held_controls import Releases, find_releases, release
 from .write_retargeted import ONE, scaled_bones
 
 STILL, MOVED = 3, 4  # poses at random, without and with locations

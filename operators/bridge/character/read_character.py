@@ -6,7 +6,7 @@ from bpy.types import Context, Object
 
 from ....core.errors import InputError
 from ....core.retarget.character import Character, CharacterBone
-from ..object_space import object_space
+from ..actor_bones import object_space
 
 
 def read_character(armature_object: Object | None) -> Character:

@@ -26,20 +26,19 @@ from ....core.retarget.solve.feet import floor_lifts
 from ....core.retarget.solve.solve_motion import solve_motion
 from ....core.take.character_settings import LimbKeys, Placement, RetargetOptions
 from ..actions import assign_action
-from ..object_space import object_space
+from ..actor_bones import object_space
 from ..rotation_modes import rotation_values
-from .channel_notes import channel_notes, require_placed_hips
-from .controls import Value, keyed_values, switch_values
-from .held_controls import require_released
-from .measure import measure
-from .mesh_soles import mesh_soles
+from .held_controls import Value, keyed_values, require_released, switch_values
+from .measure import measure, mesh_soles
 from .probe_controls import ProbedControls, probe_controls
 from .read_character import read_character
 from .write_retargeted import (
     RetargetedKeys,
     carriers,
+    channel_notes,
     placement_keys,
     require_placeable,
+    require_placed_hips,
     scaled_bones,
     write_keys,
 )

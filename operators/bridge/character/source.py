@@ -17,7 +17,7 @@ from ....core.take.motion import Motion
 from ..actions import curves_of
 from ..actor_lengths import read_body
 from ..blend_files import check_blend, load_blocks
-from ..extremity_curves import EXTREMITIES
+from ..fcurves import EXTREMITIES
 from ..footage import set_scene_range
 from ..result_files import set_look
 from ..rig import present_frames, read_rig, read_values, shown_postures

@@ -24,7 +24,7 @@ from ....core.take.named_points import chosen_subject
 from ....core.take.reference import ARMATURE_ENDINGS, ReferenceMotion
 from ..actions import assign_action, curves_of, existing_channelbag
 from ..blend_files import own_scene, showing_scene
-from ..character.controls import BONE_PATH
+from ..character.held_controls import BONE_PATH
 from ..character.import_character import ImportedCharacter, import_character
 from ..character.read_character import read_character
 from ..keys import mark_generated

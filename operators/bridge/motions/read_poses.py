@@ -22,10 +22,9 @@ from ....core.retarget.retarget_record import RECOGNIZED
 from ....core.retarget.solve.rest_body import RestBody
 from ....core.take.character_settings import AUTO
 from ..actions import action_of, curves_of
-from ..actor_bones import is_actor
+from ..actor_bones import evaluated, is_actor, joint_places, object_space
 from ..character.read_character import read_character
 from ..keys import MOTION, animator_frames, unchanged_frames
-from ..object_space import evaluated, joint_places, object_space
 from ..rotation_modes import ALL_PATHS, bone_path
 from ..scene_frames import each_frame, showing_action
 

@@ -13,8 +13,7 @@ from ....core.progress import Progress
 from ....core.shoot.outcomes import CONVERSION, CRASH, INPUT
 from ....core.take.description import effective_settings
 from ..blender_silence import blender_silence
-from ..command import UsageError
-from ..console import JOB_SHARE, Console
+from ..console import JOB_SHARE, Console, UsageError
 from ..conversion.convert_take import UpToDate, convert_take
 from .machine_resources import resident_bytes
 from .worker_process import BUSY, CONVERTED, FAILED, UNCHANGED, Done, Job, Message, Step, message_line

@@ -15,7 +15,7 @@ from queue import SimpleQueue
 
 from ....core.shoot.discovery import ShootTake
 from ....core.take.conversion_settings import ConversionSettings
-from ..command import program_name
+from ..console import program_name
 
 CONVERTED, UNCHANGED, FAILED, BUSY = "converted", "unchanged", "failed", "busy"
 

@@ -13,8 +13,7 @@ from ....core.session.upright import PictureTurnedError, require_upright
 from ....core.take.description import ASSUMED, describe
 from ....core.take.take_file import USUAL_HEIGHT_M, check_height
 from ....core.video.turned import TURNS, can_turn, write_turned
-from ..command import UsageError, argument, command
-from ..console import Console
+from ..console import Console, UsageError, argument, command
 from ..conversion.character_result import FORMAT, check_exporters, export_formats
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
 from ..options import (

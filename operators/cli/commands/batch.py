@@ -20,8 +20,7 @@ from ..batch.machine_resources import usual_workers
 from ..batch.outcomes import BatchOutcomes
 from ..batch.worker_pool import WorkerPool
 from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, Job, worker_command_line
-from ..command import UsageError, argument, command, require_blender
-from ..console import Console
+from ..console import Console, UsageError, argument, command, require_blender
 from ..options import HANDS, PICTURES, SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option, output
 
 MOST_JOBS = 1000
@@ -113,7 +112,9 @@ def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], Conver
         raise UsageError(f"--part is {arguments.part}; K/N is valid with K from 1 to N, as in 2/5")
     defaults = given_settings(arguments)
     if defaults.library is not None:
-        from ..library_search_path import requested_libraries  # a batch that asks for none needs no SciPy
+        from ..conversion.blender_files import (
+            requested_libraries,  # a batch that asks for none needs no SciPy
+        )
 
         requested_libraries(defaults.library)
     shoot = open_shoot(arguments.shoot, excluded=arguments.output)

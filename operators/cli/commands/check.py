@@ -16,10 +16,9 @@ from ....core.shoot.check.take_check import FAILS, LOOK, READY, TakeCheck, check
 from ....core.shoot.discovery import Shoot, ShootTake, open_shoot
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.evidence import KEYPOINTS
-from ..command import argument, command
-from ..console import Console, terminal_columns, wrapped
+from ..console import Console, argument, command, terminal_columns, wrapped
+from ..conversion.blender_files import requested_libraries
 from ..conversion.character_result import CharacterChecks
-from ..library_search_path import requested_libraries
 from ..options import SHOOT_HELP, SHOOT_OPTIONS, given_settings, jobs_option
 
 MOST_JOBS = 64

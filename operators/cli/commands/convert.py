@@ -8,8 +8,7 @@ from ....core.shoot.discovery import take_path
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence import KEYPOINTS
-from ..command import UsageError, argument, command
-from ..console import Console
+from ..console import Console, UsageError, argument, command
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
 from ..options import HANDS, PICTURES, SETTINGS, given_settings, output, setting_options
 

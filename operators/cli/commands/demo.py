@@ -22,8 +22,7 @@ from ....core.take.evidence import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
 from ....core.take.examples import AEROBIC, GREETING, POSED_BY_HAND, example_folder
 from ....core.take.motion import Motion
 from ....core.take.take import Take
-from ..command import argument, command, require_blender
-from ..console import Console
+from ..console import Console, argument, command, require_blender
 from ..conversion.convert_take import conversion_summary, convert_take
 from ..options import HEIGHT
 

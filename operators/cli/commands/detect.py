@@ -22,8 +22,7 @@ from ....core.take.clip_check import open_footage
 from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, find_shoot_files, sidecar_file
 from ....core.take.take_file import FRAME_RATE, FRAME_START
 from ....core.video.image_sequence import find_images
-from ..command import UsageError, argument, command, refuse_existing
-from ..console import Console
+from ..console import Console, UsageError, argument, command, refuse_existing
 from ..options import HANDS, output, setting_options
 
 MOST_NAMED = 5

@@ -11,9 +11,8 @@ from ....core.prior.library import Library, read_library, write_library
 from ....core.prior.registry import find_library, identifier_of, registered_libraries
 from ....core.prior.texts import checked_identifier
 from ..blender_silence import blender_silence
-from ..command import CommandGroup, argument, command, refuse_existing, require_blender
-from ..console import Console
-from ..library_search_path import library_folders
+from ..console import CommandGroup, Console, argument, command, refuse_existing, require_blender
+from ..conversion.blender_files import library_folders
 from ..options import REPLACE_HELP, output
 
 LIBRARY_NAME = argument("library LIBRARY", "name or file of a library")
@@ -140,7 +139,7 @@ def blend_command(arguments: argparse.Namespace, console: Console) -> None:
     console.stage("Writing Blender's files")
     with blender_silence(arguments.debug):
         from ...bridge.asset_catalogs import NAME
-        from ...bridge.library.library_file import write_library_blend
+        from ...bridge.library import write_library_blend
 
         write_library_blend(file, library)
     files = [str(file), str(arguments.output / NAME)]
@@ -163,7 +162,7 @@ def read_command(arguments: argparse.Namespace, console: Console) -> None:
     refuse_existing(arguments.output, arguments.replace)
     console.stage("Reading the pose assets")
     with blender_silence(arguments.debug):
-        from ...bridge.library.library_file import read_library_blend
+        from ...bridge.library import read_library_blend
 
         found = read_library_blend(arguments.file)
     chosen = [one for one in found if arguments.identifier in (None, one.identifier)]

@@ -18,9 +18,8 @@ from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion import write_motion
 from ....core.take.reference import ARMATURE_ENDINGS, REFERENCE_ENDINGS, read_reference
 from ..blender_silence import blender_silence
-from ..command import UsageError, argument, command, require_blender
-from ..console import Console
-from ..conversion.blender_files import refuse_unsupported_output
+from ..console import Console, UsageError, argument, command, require_blender
+from ..conversion.blender_files import library_folders, refuse_unsupported_output
 from ..conversion.character_result import (
     EXPORTS,
     FORMAT,
@@ -30,7 +29,6 @@ from ..conversion.character_result import (
     write_character,
     write_character_result,
 )
-from ..library_search_path import library_folders
 from ..options import character_options, character_settings, checked, output
 
 FILES = (MOTION, BVH, CHARACTER_BLEND, RETARGET, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))

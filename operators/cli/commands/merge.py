@@ -18,8 +18,7 @@ from ....core.shoot.outcomes import Result, find_results, read_failures
 from ....core.take.conversion_record import CHARACTER_BLEND, MOTION
 from ....core.take.motion import read_motion
 from ..blender_silence import blender_silence
-from ..command import argument, command, require_blender
-from ..console import Console, terminal_columns, wrapped
+from ..console import Console, argument, command, require_blender, terminal_columns, wrapped
 from ..options import output
 
 if TYPE_CHECKING:

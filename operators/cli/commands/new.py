@@ -10,8 +10,7 @@ from ....core.progress import run, within
 from ....core.shoot.discovery import find_takes
 from ....core.shoot.template import clip_lines, evidence_lines, shoot_template, survey_clips
 from ....core.take.description import SHOOT_FILE, find_shoot_files
-from ..command import argument, command, program_name
-from ..console import Console
+from ..console import Console, argument, command, program_name
 from ..options import output
 
 

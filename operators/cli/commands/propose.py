@@ -12,8 +12,7 @@ from ....core.take.performer_keypoints import performer_keypoints
 from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
 from ....core.take.take_file import read_described
-from ..command import argument, command
-from ..console import Console
+from ..console import Console, argument, command
 from ..options import given_settings, setting_options
 
 UNPOSED = "no keyframe is posed yet; pose these frames, or let convert find them with --keyframes auto"

@@ -14,8 +14,7 @@ from ....core.session.result import AS_MADE, changed_files, kept_note, write_mad
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, CHARACTER_PICTURE, MOTION
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion import read_motion
-from ..command import argument, command, require_blender
-from ..console import Console
+from ..console import Console, argument, command, require_blender
 from ..conversion.blender_files import refuse_unsupported_output
 from ..conversion.character_result import (
     EXPORTS,

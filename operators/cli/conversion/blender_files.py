@@ -1,17 +1,42 @@
-"""Files that Blender writes: paths it can work with, hidden names meanwhile, motion.blend and motion.bvh."""
+"""What a conversion needs beside its take: libraries, paths Blender can work with, and files it writes."""
 
 import os
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
 from ....core.errors import InputError
 from ....core.files.paths import real_path
+from ....core.prior.library import Library
+from ....core.prior.registry import SHIPPED, find_libraries
 from ....core.take.conversion_record import BLEND, BVH
 from ....core.take.description import Description
 from ....core.take.motion import Motion
 from ....core.take.take import Take
 from ..blender_silence import blender_silence
+
+VARIABLE = "KEYMARK_LIBRARIES"
+"""Environment variable with further folders of libraries and character maps, separated as in PATH."""
+
+
+def library_folders() -> list[Path]:
+    """The folders that are searched, in order; the first library with an identifier counts."""
+    folders = [Path(folder) for folder in os.environ.get(VARIABLE, "").split(os.pathsep) if folder]
+    blender = sys.modules.get("bpy")
+    if blender is not None and blender.app.binary_path:  # where users keep libraries of their own
+        from ...library.registry import own_folder
+
+        folders.append(own_folder())
+    return [*folders, SHIPPED]
+
+
+def requested_libraries(wanted: str) -> tuple[Library, ...]:
+    """The libraries that a setting means: one by name or file, or every usable one."""
+    return find_libraries(wanted, library_folders())
+
+
+# --- Files that Blender writes: paths it can work with, hidden names meanwhile, motion.blend and motion.bvh
 
 
 @contextmanager

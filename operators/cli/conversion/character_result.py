@@ -30,9 +30,8 @@ from ....core.take.conversion_record import CHARACTER_BLEND, CHARACTER_PICTURE
 from ....core.take.motion import Motion
 from ....core.take.presence import named_limbs
 from ..blender_silence import blender_silence
-from ..command import UsageError, argument, version
-from ..library_search_path import library_folders
-from .blender_files import hidden_files
+from ..console import UsageError, argument, version
+from .blender_files import hidden_files, library_folders
 
 if TYPE_CHECKING:
     import bpy

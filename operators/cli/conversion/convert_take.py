@@ -33,10 +33,8 @@ from ....core.take.reference import ReferenceMotion
 from ....core.take.steady_camera import followed_camera
 from ....core.take.take import Take
 from ..blender_silence import blender_silence
-from ..command import require_blender, version
-from ..console import Console
-from ..library_search_path import library_folders, requested_libraries
-from .blender_files import refuse_unsupported_paths, write_blender_files
+from ..console import Console, require_blender, version
+from .blender_files import library_folders, refuse_unsupported_paths, requested_libraries, write_blender_files
 from .character_result import opened_character, write_character_result
 
 

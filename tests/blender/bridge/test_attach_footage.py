@@ -10,7 +10,7 @@ from keymark.core.take.take import Take
 from keymark.operators.bridge.camera_placement import read_camera
 from keymark.operators.bridge.footage import Footage, attach_footage
 from keymark.operators.bridge.footage_camera import clip_lens, is_startup_camera, set_clip_lens, solved_camera
-from keymark.operators.bridge.footage_to_scene import load_footage
+from keymark.operators.bridge.result_files import load_footage
 
 
 @pytest.fixture

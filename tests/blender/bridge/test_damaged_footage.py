@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from _footage import FRAMES, H264, encode, ffmpeg, number_of, overwritten, write_numbered_take
 from keymark.core.video.clip import Clip
-from keymark.operators.bridge.footage_to_scene import load_footage
+from keymark.operators.bridge.result_files import load_footage
 
 LOOKED_AT = (1, 5, 12, 20, 24)
 SHORT_GROUPS = (*H264, "-g", "8", "-bf", "2", "-movflags", "+faststart")

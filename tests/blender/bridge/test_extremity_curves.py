@@ -12,12 +12,12 @@ from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import assign_action, existing_channelbag
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.extremity_curves import (
+from keymark.operators.bridge.fcurves import (
     posed_extremities,
     straighten_extremities,
     turned_extremities,
+    write_motion,
 )
-from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.bridge.finish_motion import Finished, FinishOptions, finish_motion
 from keymark.operators.bridge.keyframes import store_pose
 from mathutils import Euler, Matrix, Vector

@@ -12,7 +12,7 @@ from keymark.core.errors import InputError
 from keymark.core.take.take import Take
 from keymark.operators.bridge.camera_placement import read_camera
 from keymark.operators.bridge.footage import Footage, footage_color
-from keymark.operators.bridge.footage_to_scene import load_footage, show_footage
+from keymark.operators.bridge.result_files import load_footage, show_footage
 from mathutils import Vector
 
 FRAMES = np.arange(1.0, 14.0)

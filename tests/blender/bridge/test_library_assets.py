@@ -24,13 +24,14 @@ from keymark.core.prior.library import (
     write_library,
 )
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.library.library_file import read_library_blend, write_library_blend
-from keymark.operators.bridge.library.pose_assets import (
+from keymark.operators.bridge.library import (
     HEADER,
     POSTURE,
     PoseAsset,
     add_assets,
     library_from_assets,
+    read_library_blend,
+    write_library_blend,
 )
 from keymark.operators.bridge.pose import read_posture
 

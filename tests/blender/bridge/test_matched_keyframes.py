@@ -12,7 +12,7 @@ from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.progress import run
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take, write_take
-from keymark.operators.bridge import single_frame_fit
+from keymark.operators.bridge import take_from_scene
 from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.keyframes import (
@@ -28,7 +28,7 @@ from keymark.operators.bridge.keys import FOUND, keys_changed
 from keymark.operators.bridge.pose import read_posture
 from keymark.operators.bridge.take_from_scene import read_scene_take
 from keymark.operators.follow.evidence import scene_evidence
-from keymark.operators.keyframes.found_keyframes import known_matches
+from keymark.operators.keyframes.found_properties import known_matches
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take, footage_of
 
@@ -216,13 +216,13 @@ def test_a_pose_is_fitted_with_markers_as_posed_frames_show_them(
     take: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked: list[int] = []
-    original = single_frame_fit.calibrated
+    original = take_from_scene.calibrated
 
     def calibrated(model, seen, posture, frames, *keypoints):  # noqa: ANN001, ANN002, ANN202
         asked.append(len(frames))
         return original(model, seen, posture, frames, *keypoints)
 
-    monkeypatch.setattr(single_frame_fit, "calibrated", calibrated)
+    monkeypatch.setattr(take_from_scene, "calibrated", calibrated)
     bpy.ops.keymark.propose_keyframes()  # reads the clip
     bpy.context.scene.frame_set(4)
     assert bpy.ops.keymark.fit_pose() == {"FINISHED"}

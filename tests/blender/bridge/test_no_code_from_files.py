@@ -8,8 +8,7 @@ import pytest
 from keymark.core.body.actor import Actor
 from keymark.core.body.posture import Posture
 from keymark.core.prior.library import Library, LibraryPosture
-from keymark.operators.bridge.library.library_file import read_library_blend
-from keymark.operators.bridge.library.pose_assets import add_assets
+from keymark.operators.bridge.library import add_assets, read_library_blend
 
 RandomPosture = Callable[[int], Posture]
 

@@ -18,7 +18,7 @@ from keymark.core.files.json_file import read_json
 from keymark.core.prior.library import write_library
 from keymark.core.take.conversion_record import read_record
 from keymark.operators.cli.commands import batch as command
-from keymark.operators.cli.library_search_path import VARIABLE
+from keymark.operators.cli.conversion.blender_files import VARIABLE
 from keymark.operators.cli.main import main
 
 TESTS = Path(__file__).resolve().parents[2]

@@ -13,8 +13,7 @@ from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import assign_action, curves_of, existing_channelbag
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.extremity_curves import straighten_extremities
-from keymark.operators.bridge.fcurves import write_motion
+from keymark.operators.bridge.fcurves import straighten_extremities, write_motion
 from keymark.operators.bridge.keyframes import store_pose
 from keymark.operators.bridge.rig import motion_frames, read_rig, read_values
 from keymark.operators.shell.takes import add_take

@@ -24,8 +24,7 @@ from keymark.operators.follow.evidence import (
     keypoints_at,
     keypoints_label,
 )
-from keymark.operators.follow.load_keypoints import KEYMARK_OT_detect_keypoints
-from keymark.operators.follow.network import chosen_network
+from keymark.operators.follow.load_keypoints import KEYMARK_OT_detect_keypoints, chosen_network
 from keymark.operators.shell.results import EXTENSION
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take

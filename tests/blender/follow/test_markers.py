@@ -13,7 +13,7 @@ from keymark.core.progress import run
 from keymark.core.take.take import Take
 from keymark.operators.follow.marker_search import KEYMARK_OT_check_markers
 from keymark.operators.follow.mask_previews import clear_previews, is_of_frame, preview_of, update_masks
-from keymark.operators.footage.take_footage import update_clip_state
+from keymark.operators.footage.load_footage import update_clip_state
 from keymark.operators.overlays.mask import free_height, tinted
 from keymark.operators.shell.takes import active_take, add_take, take_by_identifier
 

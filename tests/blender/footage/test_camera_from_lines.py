@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from keymark.core.camera.camera import Camera
 from keymark.core.camera.camera_fields import CameraPlacement
-from keymark.operators.footage.drawn_lines import (
+from keymark.operators.footage.found_camera import (
     ACROSS,
     HEIGHT,
     LEVEL,
@@ -18,7 +18,7 @@ from keymark.operators.footage.drawn_lines import (
     read_lines,
     store_lines,
 )
-from keymark.operators.footage.take_footage import lens_is_guess
+from keymark.operators.footage.load_footage import lens_is_guess
 from keymark.operators.shell.take_state import TakeState
 
 pytestmark = pytest.mark.usefixtures("registered")

@@ -9,8 +9,7 @@ import cv2
 import numpy as np
 import pytest
 from keymark.core.take.take import Take
-from keymark.operators.footage.load_footage import KEYMARK_OT_load_footage
-from keymark.operators.footage.take_footage import lens_is_guess
+from keymark.operators.footage.load_footage import KEYMARK_OT_load_footage, lens_is_guess
 from keymark.operators.shell.takes import active_take
 from keymark.operators.takes.open_take import KEYMARK_FH_footage, KEYMARK_FH_take, KEYMARK_OT_open_take
 

@@ -10,9 +10,9 @@ from _results import posture_of, shown
 from _scene_state import differences, scene_state
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
+from keymark.operators.bridge.actor_bones import joint_places
 from keymark.operators.bridge.keyframes import unchanged_keyframes
 from keymark.operators.bridge.keys import PICTURED
-from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.keyframes import drag_joints
 from keymark.operators.overlays.tools import Handles
 from keymark.operators.shell.take_state import TakeState

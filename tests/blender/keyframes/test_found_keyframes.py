@@ -10,7 +10,7 @@ from _results import shown
 from _scene_state import differences, scene_state
 from keymark.core.take.motion import Motion
 from keymark.operators.keyframes.change_match import candidate_title
-from keymark.operators.keyframes.found_keyframes import known_matches
+from keymark.operators.keyframes.found_properties import known_matches
 from keymark.operators.overlays.drawing import Fill, Stroke
 from keymark.operators.overlays.timeline import ROOMY, Timeline, picture
 from keymark.operators.shell.take_state import TakeState

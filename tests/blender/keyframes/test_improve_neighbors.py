@@ -10,7 +10,7 @@ from _scene_state import differences, scene_state
 from keymark.core.body.human import HUMAN
 from keymark.core.errors import InputError
 from keymark.core.markers.ignored_regions import IgnoredRegion
-from keymark.operators.bridge.object_space import joint_places
+from keymark.operators.bridge.actor_bones import joint_places
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.follow.properties import add_ignored_regions
 from keymark.operators.keyframes.corrections import camera_now

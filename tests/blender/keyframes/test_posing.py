@@ -13,9 +13,9 @@ from keymark.core.take.take import Take
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
 from keymark.operators.bridge.pose import write_posture
-from keymark.operators.bridge.single_frame_fit import fit_to_frame, frame_in_footage
+from keymark.operators.bridge.take_from_scene import fit_to_frame, frame_in_footage
 from keymark.operators.follow.evidence import scene_evidence
-from keymark.operators.shell.contradictions import note_contradictions
+from keymark.operators.shell.notes import note_contradictions
 from keymark.operators.shell.results import reading_of
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take, footage_of

@@ -17,9 +17,8 @@ from keymark.core.prior.registry import identifier_of, registered_libraries
 from keymark.operators.bridge.actions import channelbag_for
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.keyframes import write_keyframes
-from keymark.operators.bridge.library.library_file import read_library_blend
-from keymark.operators.bridge.library.pose_assets import add_assets
-from keymark.operators.bridge.posture_curves import write_posture_curves
+from keymark.operators.bridge.library import add_assets, read_library_blend
+from keymark.operators.bridge.pose import write_posture_curves
 from keymark.operators.library import registry, registry_files
 from keymark.operators.library.registry_files import load_registered
 from keymark.operators.shell.takes import add_take

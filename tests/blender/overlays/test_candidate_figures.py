@@ -11,7 +11,7 @@ from keymark.core.take.motion import Motion
 from keymark.operators.bridge.camera_placement import read_camera
 from keymark.operators.keyframes.change_match import KEYMARK_OT_replace_match
 from keymark.operators.keyframes.found_result import add_candidate, add_match, key_matches
-from keymark.operators.overlays import candidates, views
+from keymark.operators.overlays import tools, views
 from keymark.operators.overlays.drawing import Label, Stroke, candidate_icon
 from keymark.operators.shell.footage_view import FootageView
 from keymark.operators.shell.takes import active_take, footage_of
@@ -50,7 +50,7 @@ def test_figures_stand_where_the_candidates_would(
     match: Group, opened: bpy.types.Scene, wave_motion: Motion
 ) -> None:
     take = active_take(opened)
-    points = candidates.candidate_points(take.armature, match)
+    points = tools.candidate_points(take.armature, match)
     assert points == pytest.approx(wave_motion.points[[3, 9]], abs=1e-4)
     seen = read_camera(footage_of(opened, take), np.array([4.0])).project(points)[0]
     view = view_of(opened)
@@ -60,20 +60,20 @@ def test_figures_stand_where_the_candidates_would(
 
 def test_they_are_found_anew_only_where_something_changed(match: Group, opened: bpy.types.Scene) -> None:
     armature = active_take(opened).armature
-    first = candidates.candidate_points(armature, match)
-    assert candidates.candidate_points(armature, match) is first
+    first = tools.candidate_points(armature, match)
+    assert tools.candidate_points(armature, match) is first
     armature.scale = (1.2, 1.2, 1.2)
     bpy.context.view_layer.update()
-    again = candidates.candidate_points(armature, match)
+    again = tools.candidate_points(armature, match)
     assert np.ptp(again[0, :, 2]) == pytest.approx(1.2 * np.ptp(first[0, :, 2]), rel=0.05)
 
 
 def test_each_has_the_color_and_the_number_of_its_button(match: Group, opened: bpy.types.Scene) -> None:
-    points = candidates.candidate_points(active_take(opened).armature, match)
+    points = tools.candidate_points(active_take(opened).armature, match)
     positions = view_of(opened).project(points)
     settings = SimpleNamespace(opacity=0.5)
     for chosen, other in ((0, 1), (1, 0)):
-        lines, cores, number = candidates.picture(positions, other, chosen, settings)
+        lines, cores, number = tools.candidate_figure(positions, other, chosen, settings)
         assert isinstance(lines, Stroke) and len(lines.segments) == 12 and len(cores.segments) == 4
         theme = bpy.context.preferences.themes[0].collection_color[other].color
         assert tuple(lines.color)[:3] == pytest.approx(tuple(theme)) and lines.color[3] < 0.5
@@ -89,7 +89,7 @@ def test_each_has_the_color_and_the_number_of_its_button(match: Group, opened: b
 def test_points_that_are_not_seen_are_left_out() -> None:
     positions = np.full((2, 13, 2), np.nan)
     positions[0] = np.arange(26.0).reshape(13, 2)
-    lines, cores = candidates.picture(positions, 1, 0, SimpleNamespace(opacity=1.0))
+    lines, cores = tools.candidate_figure(positions, 1, 0, SimpleNamespace(opacity=1.0))
     assert len(lines.segments) == len(cores.segments) == 0
 
 
@@ -117,7 +117,7 @@ def test_the_one_under_the_mouse_is_drawn_at_an_undecided_frame_alone(
     if reason == "one candidate":
         match.candidates.remove(1)
     if reason == "fewer since":
-        candidates.look_at(bpy.context, len(match.candidates))
+        tools.look_at(bpy.context, len(match.candidates))
     if reason == "the motion is shown":
         active_take(opened).armature.animation_data.action = bpy.data.actions.new("Motion")
-    assert bool(candidates.draw(context_of(opened, reason == "playing"))) == (reason == "nothing")
+    assert bool(tools.draw_candidate(context_of(opened, reason == "playing"))) == (reason == "nothing")

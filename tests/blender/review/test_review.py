@@ -11,8 +11,7 @@ from _performances import made_up_review
 from keymark.core.review.weak_frames import Reason, WeakFrame
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
-from keymark.operators.bridge.extremity_curves import posed_extremities
-from keymark.operators.bridge.fcurves import write_motion
+from keymark.operators.bridge.fcurves import posed_extremities, write_motion
 from keymark.operators.bridge.keyframes import keyed_frames
 from keymark.operators.reconstruct.live_preview import show_review
 from keymark.operators.review.weak_frames import look_from_side, reason_words

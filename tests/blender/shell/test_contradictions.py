@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from keymark.operators.shell.contradictions import note_contradictions
+from keymark.operators.shell.notes import note_contradictions
 from keymark.operators.shell.panel import draw_contradictions
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take

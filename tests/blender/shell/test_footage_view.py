@@ -6,9 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from keymark.core.camera.camera import Camera
-from keymark.operators.shell import footage_clicks
-from keymark.operators.shell.footage_clicks import ClickSequence
-from keymark.operators.shell.footage_view import FootageView, footage_view
+from keymark.operators.shell import footage_view as shown
+from keymark.operators.shell.footage_view import ClickSequence, FootageView, footage_view
 
 PIXELS = np.array([[0.0, 0.0], [160.0, 0.0], [80.5, 31.25]])
 
@@ -83,10 +82,8 @@ RUNS, PASSES, ENDS = {"RUNNING_MODAL"}, {"PASS_THROUGH"}, {"CANCELLED"}
 def test_clicks_are_taken_until_enter_or_one_beside_the_footage(
     monkeypatch: pytest.MonkeyPatch, kind: str, place: tuple[int, int], noted: list[object], result: set[str]
 ) -> None:
-    monkeypatch.setattr(footage_clicks, "active_take", lambda _scene: None)
-    monkeypatch.setattr(
-        footage_clicks, "pixel_under", lambda _context, _take, x, y: (x, y) if x < 200 else None
-    )
+    monkeypatch.setattr(shown, "active_take", lambda _scene: None)
+    monkeypatch.setattr(shown, "pixel_under", lambda _context, _take, x, y: (x, y) if x < 200 else None)
     editor = SimpleNamespace(type="DOPESHEET_EDITOR", x=200, y=0, width=200, height=100)
     context = SimpleNamespace(scene=None, screen=SimpleNamespace(areas=[editor]))
     tool = Clicks()

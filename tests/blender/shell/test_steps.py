@@ -3,8 +3,8 @@
 import bpy
 import pytest
 from keymark.core.take.take import Take
-from keymark.operators.shell.notices import give_notices
-from keymark.operators.shell.steps import is_open
+from keymark.operators.shell.notes import give_notices
+from keymark.operators.shell.panel import is_open
 from keymark.operators.shell.take_state import STEPS, TakeState, digest_of
 from keymark.operators.shell.takes import active_take
 

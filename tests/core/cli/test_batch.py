@@ -11,8 +11,8 @@ import pytest
 from keymark.core.shoot.outcomes import read_failure
 from keymark.operators.cli.batch import worker_pool
 from keymark.operators.cli.batch.outcomes import share_done
-from keymark.operators.cli.command import program_name
 from keymark.operators.cli.commands import batch as command
+from keymark.operators.cli.console import program_name
 from keymark.operators.cli.main import main
 
 STAND_IN = Path(__file__).resolve().parents[2] / "_stand_in_worker.py"

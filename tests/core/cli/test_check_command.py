@@ -11,9 +11,9 @@ import pytest
 from _synthetic_take import MATRIX_WORLD, drawn_frames, edit_json, true_postures, write_frames, write_shoot
 from keymark.core.shoot.check.take_check import TakeCheck
 from keymark.core.shoot.discovery import Shoot, ShootTake
-from keymark.operators.cli.command import program_name
 from keymark.operators.cli.commands import check as command
 from keymark.operators.cli.commands.check import check_text
+from keymark.operators.cli.console import program_name
 from keymark.operators.cli.main import main
 
 FRAMES = 10

@@ -19,7 +19,7 @@ from keymark.core.errors import ConversionError
 from keymark.core.session.result import RESULT_FILES
 from keymark.core.take.conversion_record import EARLIER_PICTURES
 from keymark.core.take.motion import read_motion
-from keymark.operators.cli import command as usage
+from keymark.operators.cli import console as usage
 from keymark.operators.cli.commands import SUMMARIES
 from keymark.operators.cli.conversion import convert_take
 from keymark.operators.cli.main import main

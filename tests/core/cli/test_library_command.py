@@ -11,7 +11,7 @@ from _libraries import small_library
 from _synthetic_take import BODY, true_postures
 from keymark.core.prior.library import read_library, write_library
 from keymark.core.take.motion import Motion, write_motion
-from keymark.operators.cli import library_search_path
+from keymark.operators.cli.conversion import blender_files
 from keymark.operators.cli.main import main
 
 FRAMES = 40
@@ -24,8 +24,8 @@ def shelf(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder.mkdir()
     write_library(folder / "any name.json", small_library())
     (folder / "broken.json").write_text("{", encoding="utf-8")
-    monkeypatch.setenv(library_search_path.VARIABLE, str(folder))
-    monkeypatch.setattr(library_search_path, "SHIPPED", tmp_path / "nothing")
+    monkeypatch.setenv(blender_files.VARIABLE, str(folder))
+    monkeypatch.setattr(blender_files, "SHIPPED", tmp_path / "nothing")
     return folder
 
 

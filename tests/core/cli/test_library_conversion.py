@@ -16,7 +16,7 @@ from keymark.core.prior.library import library_digest, read_library, write_libra
 from keymark.core.session import pose as pose_stage
 from keymark.core.take.conversion_record import read_record
 from keymark.core.take.motion import read_motion
-from keymark.operators.cli import library_search_path
+from keymark.operators.cli.conversion import blender_files
 from keymark.operators.cli.main import main
 
 FRAMES = 24
@@ -81,7 +81,7 @@ def test_matched_keyframes_can_be_given_back(
 @pytest.fixture
 def few_libraries(library: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The one library as if it came with Keymark, and no other."""
-    monkeypatch.setattr(library_search_path, "SHIPPED", library.parent)
+    monkeypatch.setattr(blender_files, "SHIPPED", library.parent)
     return library
 
 
@@ -157,7 +157,7 @@ def test_without_a_library_nothing_can_be_found(
     take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "none").mkdir()
-    monkeypatch.setattr(library_search_path, "SHIPPED", tmp_path / "none")
+    monkeypatch.setattr(blender_files, "SHIPPED", tmp_path / "none")
     assert convert(take, tmp_path / "out", "--keyframes", "auto", "--quiet") == 2
     said = capsys.readouterr().err
     assert "there is no keyframe library" in said and len(said.splitlines()) == 1
@@ -184,7 +184,7 @@ def test_what_cannot_be_matched_with_is_one_line(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setenv(library_search_path.VARIABLE, str(library.parent))
+    monkeypatch.setenv(blender_files.VARIABLE, str(library.parent))
     assert convert(take, tmp_path / "out", *more, "--quiet") == 2
     said = capsys.readouterr().err
     assert len(said.splitlines()) == 1

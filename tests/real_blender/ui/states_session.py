@@ -51,7 +51,7 @@ def correcting(person: Person) -> Steps[None]:
     person.scene.frame_set(round(doubtful.frame))
     place = yield from person.hands.find_button("keymark.replace_match", "candidate=1")
     yield from person.hands.move(*place)
-    overlay = keymark("operators.overlays.candidates")
+    overlay = keymark("operators.overlays.tools")
     yield from until(lambda: overlay._looked_at[1] == 1, "the figure of the candidate under the mouse")
     yield from person.look("candidate")
     yield from person.hands.move_over("VIEW_3D")

@@ -75,7 +75,7 @@ def go_to_keyframe(person: Person) -> Steps[None]:
 
 def place(person: Person, joint: str) -> np.ndarray:
     """Where a joint is in the world [m]."""
-    places = keymark("operators.bridge.object_space").joint_places(person.take.armature)
+    places = keymark("operators.bridge.actor_bones").joint_places(person.take.armature)
     return np.array(places[keymark("core.body.human").HUMAN.point_names.index(joint)])
 
 
@@ -87,7 +87,7 @@ def seen(person: Person, joint: str) -> tuple[float, float]:
 def seen_at(person: Person, there: np.ndarray) -> tuple[float, float]:
     """Where the viewport shows a place (3,), in the window [px]."""
     region = person.hands.region("VIEW_3D", "WINDOW")
-    view = keymark("operators.shell.footage_clicks").WorldInRegion(region, region.data)
+    view = keymark("operators.shell.footage_view").WorldInRegion(region, region.data)
     x, y = view.position(there)
     return region.x + x, region.y + y
 

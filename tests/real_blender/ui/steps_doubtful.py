@@ -114,7 +114,7 @@ def performer(person: Person) -> Points:
 
 
 def _shown(person: Person) -> Points:
-    return np.array(keymark("operators.bridge.object_space").joint_places(person.take.armature))
+    return np.array(keymark("operators.bridge.actor_bones").joint_places(person.take.armature))
 
 
 def _points(person: Person, candidate: Any) -> Points:

@@ -6,7 +6,7 @@ import pytest
 from _armatures import build_character
 from _characters import plain_character, plain_map
 from keymark.core.retarget.character import Character
-from keymark.operators.bridge.character.mesh_soles import mesh_soles
+from keymark.operators.bridge.character.measure import mesh_soles
 from keymark.operators.bridge.character.read_character import read_character
 
 

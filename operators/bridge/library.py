@@ -1,30 +1,178 @@
-"""Keyframe libraries as pose assets: an Action of one frame for each posture, and back without loss.
-
-Each Action stores what its curves cannot, as text in two custom properties: the library's header, and its own
-posture to the last digit. So a library can be restored from its Actions alone, in any file. An animator's
-changes of an asset's curves, name and tags take precedence over the text.
-"""
+"""Keyframe libraries in Blender: files, poses on an armature, and pose assets."""
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import bpy
-from bpy.types import Action, BlendData
+import numpy as np
+from bpy.types import Action, BlendData, Object, Scene
 
-from ....core.body.actor import Actor
-from ....core.body.kinematics import Body
-from ....core.errors import InputError
-from ....core.files.json_file import parse_json
-from ....core.prior.library import Library, LibraryMotion, LibraryPosture, MotionStep
-from ....core.prior.texts import LONGEST_NAME, LONGEST_TAG, text_fault, unique_name
-from ....core.report.mannequin import posture_picture
-from ..asset_catalogs import catalog_identifier
-from ..assets import AssetDetails, mark_asset
-from ..posture_curves import read_posture_curves, write_posture_curves
+from ...core.arrays import Array
+from ...core.body.actor import Actor
+from ...core.body.body_volume import lower_sole_m
+from ...core.body.kinematics import Body
+from ...core.body.posture import Posture, headings_rad, turned_and_shifted
+from ...core.errors import InputError
+from ...core.files.json_file import parse_json
+from ...core.prior.learning import LibraryMetadata, learn_library, numbered_names
+from ...core.prior.library import (
+    MOST_POSTURES,
+    Library,
+    LibraryMotion,
+    LibraryPosture,
+    MotionStep,
+    read_library,
+)
+from ...core.prior.texts import LONGEST_NAME, LONGEST_TAG, identifier_from, text_fault, unique_name
+from ...core.prior.transfer import transferred
+from ...core.report.mannequin import posture_picture
+from .actor_lengths import read_body
+from .asset_catalogs import catalog_identifier, write_asset_blend
+from .assets import AssetDetails, mark_asset
+from .blend_files import check_blend, load_blocks
+from .keyframes import keyed_frames, read_keyframes
+from .pose import read_posture_curves, write_posture_curves
+from .rig import shown_motion
+
+LARGEST_BYTES = 256 * 2**20  # enough for a thousand postures with pictures; a film's scene is refused
+
+
+def write_library_blend(path: Path, library: Library, root: Path | None = None) -> None:
+    """Write a library's pose assets alone into a .blend, and its catalogs into `root` or else beside it."""
+    catalogs = [catalog_of(library, posture) for posture in library.postures]
+    with bpy.data.temp_data() as data:
+        assets = zip(add_assets(library, data), catalogs, strict=True)
+        write_asset_blend(path, root or path.parent, data, assets)
+
+
+def read_library_blend(path: Path) -> tuple[Library, ...]:
+    """The libraries whose pose assets a .blend holds; nothing of it stays in the open file.
+
+    Only Actions marked as assets are loaded, and of these only curves and texts are read: scripts, drivers
+    and other data are neither loaded nor run. InputError where the file has no library, or is unusable.
+    """
+    check_blend(path, "a library", LARGEST_BYTES)
+    before, names = set(bpy.data.user_map()), []
+
+    def few(there: list[str]) -> list[str]:
+        names.extend(there)
+        return there if len(there) <= MOST_POSTURES else []
+
+    try:
+        actions = load_blocks(path, "actions", "it may be damaged or cut off", few, assets_only=True)
+        if len(names) > MOST_POSTURES:
+            raise InputError(
+                f"{path}: holds {len(names)} Actions marked as assets; at most {MOST_POSTURES} are read"
+            )
+        libraries = library_from_assets(actions)
+    finally:
+        bpy.data.batch_remove(set(bpy.data.user_map()) - before)
+    if not libraries:
+        raise InputError(
+            f"{path}: holds no pose assets of a keyframe library; export one with Keymark, as .blend or .json"
+        )
+    return libraries
+
+
+def read_libraries(path: Path) -> tuple[Library, ...]:
+    """The libraries of a file: one in a .json, one or more in a .blend; InputError for another."""
+    suffix = path.suffix.lower()
+    if suffix == ".blend":
+        return read_library_blend(path)
+    if suffix == ".json":
+        return (read_library(path),)
+    raise InputError(f"{path}: is neither a .json nor a .blend; libraries are kept in these")
+
+
+# --- Keyframe libraries of keyframes, of pose assets, and learned from a motion
+
+
+def library_of_keyframes(
+    scene: Scene, armature_object: Object, action: Action, about: LibraryMetadata
+) -> Library:
+    """The keyframes of an Action, of which there must be two, as postures and a motion through them."""
+    body = read_body(armature_object)
+    frames = np.array(keyed_frames(armature_object, action))
+    if len(frames) < 2:
+        raise InputError(f"the take has {len(frames)} keyframes; a library needs two or more")
+    posed = read_keyframes(scene, armature_object, action, body, frames).keyframes
+    postures = _leveled(body, Posture.stack([keyframe.posture for keyframe in posed]))
+    names = numbered_names(about.title, len(posed))
+    time_s: Array = (frames - frames[0]) * scene.render.fps_base / scene.render.fps
+    steps = tuple(MotionStep(name, round(float(at), 4)) for name, at in zip(names, time_s, strict=True))
+    entries = tuple(LibraryPosture(name, postures[row]) for row, name in enumerate(names))
+    motion = LibraryMotion(about.title, steps, steps[-1].time_s)
+    return _checked(replace(_empty(body, about), postures=entries, motions=(motion,)))
+
+
+def library_of_assets(
+    actions: Iterable[Action], armature_object: Object | None, about: LibraryMetadata, identifier: str
+) -> Library:
+    """The library that pose assets belong to, with an actor's pose assets of one frame that belong to none.
+
+    Linked Actions are ignored. Of several libraries that with the identifier is taken; a new one has the
+    details `about`. InputError where there are no pose assets, or of several other libraries.
+    """
+    local = [action for action in actions if action.library is None]
+    found = {library.identifier: library for library in library_from_assets(local)}
+    if len(found) > 1 and identifier not in found:
+        there = ", ".join(found)
+        raise InputError(f"this file has the pose assets of {there}; choose one of these in the list")
+    library = found.get(identifier) or next(iter(found.values()), None)
+    loose: list[tuple[str, Body, Posture]] = []
+    if armature_object is not None:
+        body = read_body(armature_object)
+        for action in local:
+            first, last = action.curve_frame_range
+            if action.asset_data is not None and not is_posture(action) and first == last:
+                posture = read_posture_curves(action, body)
+                if posture is not None:
+                    loose.append((action.name, body, _leveled(body, Posture.stack([posture]))[0]))
+    if library is None:
+        if not loose:
+            raise InputError("this file has no pose assets of a library, and none of the take's actor")
+        library = _empty(loose[0][1], about)
+    entries = list(library.postures)
+    for name, body, posture in loose:
+        fitted = transferred(posture, body.actor, Body(library.actor))
+        entries.append(LibraryPosture(unique_name(name, [entry.name for entry in entries]), fitted))
+    return _checked(replace(library, postures=tuple(entries)))
+
+
+def _leveled(body: Body, postures: Posture) -> Posture:
+    """Postures (F,) of one performance, the first above the origin facing -Y, the lowest sole at z = 0."""
+    turned = turned_and_shifted(postures, -headings_rad(postures[:1])[0], np.zeros(3))
+    offset = turned.translation[0] * [-1.0, -1.0, 0.0]
+    offset[2] = -lower_sole_m(body, turned).min()
+    return turned_and_shifted(turned, np.zeros(1), offset)
+
+
+def _empty(body: Body, about: LibraryMetadata) -> Library:
+    identifier = about.identifier or identifier_from(about.title)
+    return Library(identifier, about.title, 1, about.author, about.license, body.actor, ())
+
+
+def _checked(library: Library) -> Library:
+    """The library, which is what a file may hold: names are typed by people."""
+    Library.from_json(library.to_json(), f"library '{library.title}'")
+    return library
+
+
+def library_from_action(
+    scene: Scene, armature_object: Object, action: Action, about: LibraryMetadata, count: int | None
+) -> Library:
+    """Learn a library of `count` postures, or as many as differ, from the motion that an Action holds."""
+    motion = shown_motion(scene, armature_object, action)
+    return _checked(learn_library(motion.body, motion.posture, motion.time_s, about, count))
+
+
+# --- Keyframe libraries as pose assets: an Action of one frame for each posture, and back without loss
+
 
 HEADER, POSTURE = "keymark_library", "keymark_posture"
 """Custom properties of an Action: header of the library, and the posture."""

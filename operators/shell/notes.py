@@ -1,14 +1,35 @@
-"""Notices: what a person must know of a step for as long as it is true, in the panel of that step.
+"""What a person must know of a take while it is true: contradictions of a frame, notices of a step."""
 
-The status bar shows a sentence for some seconds; a notice stays until whoever gave it, or another operator
-that makes it untrue, gives the step's notices anew, or until the keyframe that it is about is gone.
-"""
-
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import bpy
 
 from .fields import HIDDEN, Number, Switch, Text
+
+SAME_FRAME = 0.5  # a note nearer to a frame than this [frames] is of that frame
+SEPARATOR = "\n"  # between names, which are of one line each
+
+
+class KEYMARK_PG_contradiction(bpy.types.PropertyGroup):
+    """What no plausible posture explains at a frame."""
+
+    frame: Number("Frame", "The scene frame")
+    names: Text("Names", "Names of the markers and keypoints, a line each", options=HIDDEN)
+    reading: Text("Reading", "Key of the reading of the clip that it was found in", options=HIDDEN)
+
+
+def note_contradictions(take: bpy.types.PropertyGroup, frame: float, names: Sequence[str]) -> None:
+    """Note which markers and keypoints no plausible posture explains at a scene frame; none: all are."""
+    noted = take.contradictions
+    for index in reversed(range(len(noted))):
+        if abs(noted[index].frame - frame) < SAME_FRAME:
+            noted.remove(index)
+    if names:
+        entry = noted.add()
+        entry.frame, entry.names, entry.reading = frame, SEPARATOR.join(names), take.reading_key
+
+
+# --- Notices: what a person must know of a step for as long as it is true, in the panel of that step
 
 
 class KEYMARK_PG_notice(bpy.types.PropertyGroup):

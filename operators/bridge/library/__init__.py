@@ -1,1 +1,0 @@
-"""Keyframe libraries in Blender: pose assets, files, transfer to an actor, learning from an Action."""
