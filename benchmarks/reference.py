@@ -20,7 +20,8 @@ load_project()
 
 from keymark.core.api import reconstruct  # noqa: E402
 from keymark.core.arrays import Array  # noqa: E402
-from keymark.core.estimate.reference_alignment import MIRRORED, align  # noqa: E402
+from keymark.core.body.mirror import OPPOSITE  # noqa: E402
+from keymark.core.estimate.reference_alignment import align  # noqa: E402
 from keymark.core.estimate.reference_evidence import own_and_usual_cost  # noqa: E402
 from keymark.core.estimate.reference_placement import SeenPoints  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
@@ -112,7 +113,7 @@ def faults(points: Array) -> dict[str, Array]:
     late, lacking, exchanged = points.copy(), points.copy(), points.copy()
     late[3:], late[:3] = points[:-3], np.nan
     lacking[rng.random(len(points)) < 0.1] = np.nan
-    exchanged[third : third + 20] = points[third : third + 20][:, MIRRORED]
+    exchanged[third : third + 20] = points[third : third + 20][:, OPPOSITE]
     turn = Rotation.from_euler("zx", [130.0, 15.0], degrees=True).as_matrix()
     return {
         "as it is": points,

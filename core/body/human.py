@@ -214,3 +214,13 @@ _JOINTS = _joints()
 _INDEX = {joint.name: index for index, joint in enumerate(_JOINTS)}
 HUMAN = Skeleton(_JOINTS, _segments(_INDEX), _points(_INDEX))
 """The default skeleton of 34 degrees of freedom (paper, section 2; our reading of its Figure 2)."""
+HIPS, SHOULDERS, ANKLES = (
+    tuple(HUMAN.point_names.index(f"{joint}.{side}") for side in SIDES)
+    for joint in ("hip", "shoulder", "ankle")
+)
+"""Indices of the left and the right one among the principal points."""
+LIMB_SEGMENTS = (
+    *(("upper_arm", "shoulder", "elbow"), ("forearm", "elbow", "wrist")),
+    *(("thigh", "hip", "knee"), ("shin", "knee", "ankle")),
+)
+"""Segments of limbs, from the body outward, and the principal points at their ends, without sides."""

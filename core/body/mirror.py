@@ -5,6 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..arrays import Array
+from .human import HUMAN
 from .posture import Posture
 from .skeleton import Skeleton
 
@@ -15,6 +16,10 @@ OTHER_SIDE = {".L": ".R", ".R": ".L"}
 def other_side(name: str) -> str:
     """The name on the opposite side: `knee.L` for `knee.R`; a name without a side stays."""
     return name[:-2] + OTHER_SIDE.get(name[-2:], name[-2:])
+
+
+OPPOSITE = np.array([HUMAN.point_names.index(other_side(name)) for name in HUMAN.point_names])
+"""(P,) the principal point on the other side of each."""
 
 
 def mirrored(posture: Posture) -> Posture:

@@ -10,6 +10,7 @@ from itertools import compress
 import numpy as np
 
 from ..arrays import Array
+from ..body.human import ANKLES
 from ..body.kinematics import Body
 from ..numerics.block_banded import BlockBanded
 from ..prior.frame_prior import REFERENCE_STEP_S, FramePrior
@@ -28,7 +29,6 @@ from .keypoint_evidence import KeypointEvidence
 from .performer_placement import ANKLE_HEIGHT_STD_M, SHOE_M, standing_ankle_m
 from .windows import Window
 
-ANKLES = ("ankle.L", "ankle.R")
 LOOSE_FEET = {"release_speed_m_s": 0.4, "release_height_m": 0.06}
 """Of feet that stand, where a reference motion, whose feet slide and jump, is followed from the start."""
 
@@ -83,7 +83,7 @@ def _kept(step_s: Array, memory_s: Array | float) -> Array:
 
 
 def _seen_ankles(data: ClipData) -> tuple[int, ...]:
-    return tuple(compress(_ankles(data.body), data.belief.feet_seen))
+    return tuple(compress(ANKLES, data.belief.feet_seen))
 
 
 def frame_terms(
@@ -101,7 +101,7 @@ def frame_terms(
     terms = [_own_belief(body, width_px, starts), *_seen_in_frame(evidence, observed, width_px, starts)]
     if belief.grounded is not None:
         standing = body.points(body.pose(belief.grounded))
-        terms.append(GroundTerm(_ankles(body), float(standing[:, list(_ankles(body)), 2].min())))
+        terms.append(GroundTerm(ANKLES, float(standing[:, list(ANKLES), 2].min())))
     return terms + _frame_point_terms(evidence.keypoints, points, starts)
 
 
@@ -122,7 +122,7 @@ def free_frame_terms(
     terms = [*_seen_in_frame(evidence, observed, width_px, starts), BalanceTerm(body)]
     if floor_m is not None:
         standing_m = floor_m + standing_ankle_m(body)
-        terms += [GroundTerm(_ankles(body), standing_m), FloorTerm(_ankles(body), standing_m - SHOE_M)]
+        terms += [GroundTerm(ANKLES, standing_m), FloorTerm(ANKLES, standing_m - SHOE_M)]
     terms += _frame_point_terms(evidence.keypoints, points, starts)
     return _own_belief(body, width_px, starts), terms
 
@@ -151,10 +151,6 @@ def _frame_point_terms(evidence: KeypointEvidence, points: ObservedKeypoints, st
     if np.isfinite(points.depth_m).any():
         terms.append(_hint_term(evidence, repeated, evidence.depths.std_m, None))
     return terms
-
-
-def _ankles(body: Body) -> tuple[int, ...]:
-    return tuple(body.skeleton.point_names.index(name) for name in ANKLES)
 
 
 def _picture_term(data: ClipData, window: Window) -> KeypointTerm:

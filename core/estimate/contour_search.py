@@ -205,8 +205,14 @@ def contour_schedule(
 
 
 def all_located(body: Body, marked: tuple[str, ...]) -> bool:
-    """Whether markers locate the trunk, both arms and both legs."""
-    return bool(_limbs_located(body, marked).all())
+    """Whether a marker is worn on the trunk, the head's too, and on each arm and leg."""
+    skeleton = body.skeleton
+    first = {one.name: int(skeleton.dof_starts[one.joint]) for one in skeleton.segments}
+    trunk, *limbs = (set(limb.tolist()) for limb in skeleton.limbs)
+    worn = {first[name] for name in marked if name != TRUNK}
+    if TRUNK not in marked and not worn & trunk:
+        return False
+    return all(worn & limb for limb in limbs if first[HEAD] not in limb)
 
 
 def points_locate(keypoints: Keypoints) -> bool:
@@ -216,17 +222,3 @@ def points_locate(keypoints: Keypoints) -> bool:
     for name, share in zip(keypoints.names, seen.tolist(), strict=True):
         best[name] = max(best.get(name, 0.0), share)
     return all(max(best[name] for name in group) > 0.5 for group in ENDS)
-
-
-def _limbs_located(body: Body, marked: tuple[str, ...]) -> BoolArray:
-    """Whether a marker is worn on each limb, trunk first; the head, which needs none, goes with the trunk."""
-    skeleton = body.skeleton
-    first = {one.name: int(skeleton.dof_starts[one.joint]) for one in skeleton.segments}
-    trunk, *limbs = skeleton.limbs
-    worn = {first[name] for name in marked if name != TRUNK}
-    return np.array(
-        [
-            TRUNK in marked or not worn.isdisjoint(trunk.tolist()),
-            *(not worn.isdisjoint(limb.tolist()) for limb in limbs if first[HEAD] not in limb),
-        ]
-    )

@@ -127,7 +127,12 @@ class KeypointEvidence:
         """Keypoints before any keyframe is posed: usual places and errors."""
         model = KeypointModel.usual(body, camera, names)
         depths = DepthEvidence.usual(DepthLinks.between(names, sources), model)
-        return cls(model, sources, usual_std_m(names, sources), np.ones(len(names)), {}, depths)
+        # Points of one source on one segment, wrist and knuckles, err together: they weigh as much as one.
+        places = [USUAL_PLACES[name] for name in names]
+        together = [(place.joint, source) for place, source in zip(places, sources, strict=True)]
+        count = [together.count(one) for one in together]
+        std_m = np.array([place.error_std_m for place in places]) * np.sqrt(count)
+        return cls(model, sources, std_m, np.ones(len(names)), {}, depths)
 
     @property
     def error_m(self) -> Array:
@@ -147,21 +152,6 @@ class KeypointEvidence:
         followed_m = np.where(self.trust > 0.0, _followed_std_m(self.model.names, self.sources), np.inf)
         error_m = self.error_m ** (1.0 - found_share[:, None]) * followed_m ** found_share[:, None]
         return error_m, self.memory_s ** (1.0 - found_share) * 0.08**found_share
-
-
-def usual_std_m(names: tuple[str, ...], sources: tuple[str, ...]) -> Array:
-    """(N,) usual error of sure detections along each axis of the image [m].
-
-    Points of one source on one segment, a wrist and the knuckles, err together: all weigh as much as one.
-    """
-    joints = [USUAL_PLACES[name].joint for name in names]
-    together = list(zip(joints, sources, strict=True))
-    return np.array(
-        [
-            USUAL_PLACES[name].error_std_m * together.count(one) ** 0.5
-            for name, one in zip(names, together, strict=True)
-        ]
-    )
 
 
 def _followed_std_m(names: tuple[str, ...], sources: tuple[str, ...]) -> Array:

@@ -1,11 +1,8 @@
 """Notes on a take and its result for people, one sentence each."""
 
-from collections.abc import Sequence
-
 from ..arrays import BoolArray
 from ..errors import frames_in_words
 from ..markers.region_tracks import RegionTracks, is_variable_frame_rate
-from ..prior.keyframes import Matched
 from ..take.clip_check import VARIABLE_RATE
 from ..take.take import Take
 from .clip_problem import KeyframeEvidence
@@ -73,8 +70,11 @@ def found_notes(take: Take) -> tuple[str, ...]:
     found = [(keyframe, keyframe.matched) for keyframe in take.keyframes if keyframe.matched is not None]
     if not found:
         return ()
-    posed, origin = len(take.keyframes) - len(found), _origin([match for _, match in found])
-    if posed == 0 and all(match.is_referred for _, match in found):
+    referred = {match.is_referred for _, match in found}
+    origins = {True: "postures of a motion from elsewhere", False: "postures composed of all libraries"}
+    origin = " and ".join(words for kind, words in origins.items() if kind in referred)
+    posed = len(take.keyframes) - len(found)
+    if posed == 0 and referred == {True}:
         notes = [f"no keyframe was posed: the motion rests on {len(found)} {origin}"]
     elif posed == 0:
         notes = [
@@ -95,12 +95,6 @@ def found_notes(take: Take) -> tuple[str, ...]:
             f"{named} to set {'it' if single else 'them'} right"
         )
     return tuple(notes)
-
-
-def _origin(found: Sequence[Matched]) -> str:
-    referred = {match.is_referred for match in found}
-    parts = {True: "postures of a motion from elsewhere", False: "postures composed of all libraries"}
-    return " and ".join(part for kind, part in parts.items() if kind in referred)
 
 
 def filter_notes(take: Take) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.body_volume import hip_height_m, sole_heights_m, standing_posture
-from ..body.human import HUMAN
+from ..body.human import ANKLES, HUMAN
 from ..body.kinematics import Body
 from ..body.posture import Posture, facing_rad
 from ..body.skeleton import SIDES
@@ -27,15 +27,14 @@ SAME_FLOOR_M = 0.12  # ankles that stand within this of a given floor stand on i
 def standing_ankle_m(body: Body) -> float:
     """Height of the ankles of someone who stands in shoes [m]."""
     pose = body.pose(Posture.rest(body.skeleton))
-    ankle = body.points(pose)[body.skeleton.point_names.index("ankle.L"), 2]
+    ankle = body.points(pose)[ANKLES[0], 2]
     return float(ankle - sole_heights_m(body, pose).min()) + SHOE_M
 
 
 def feet_over_floor_m(body: Body, points: Array, floor_m: float) -> float:
     """How high the lower foot is over a floor at its lowest, of points (F, P, 3) [m]; steps lead up."""
-    ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
     # 5.0: of the feet's heights, their lowest but for outliers
-    lowest = np.nanpercentile(points[:, ankles, 2].min(axis=1), 5.0)
+    lowest = np.nanpercentile(points[:, ANKLES, 2].min(axis=1), 5.0)
     return float(lowest - floor_m - standing_ankle_m(body))
 
 
@@ -50,8 +49,7 @@ def found_ankle_m(
     `floor_m`: by the ankles themselves where None.
     """
     points = body.points(body.pose(found))
-    ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
-    lower = points[:, ankles, 2].min(axis=-1)
+    lower = points[:, ANKLES, 2].min(axis=-1)
     standing = float(np.percentile(lower, TOUCHING_PERCENT))
     if floor_m is not None and abs(standing - floor_m - standing_ankle_m(body)) < SAME_FLOOR_M:
         standing = floor_m + standing_ankle_m(body)

@@ -8,9 +8,9 @@ from threadpoolctl import threadpool_limits
 
 from ..arrays import Array, BoolArray, chunks
 from ..body.body_volume import limb_dofs, rested
+from ..body.human import ANKLES
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.skeleton import SIDES
 from ..detect.keypoints import Keypoints
 from ..errors import InputError
 from ..markers.reading import Reading
@@ -227,8 +227,7 @@ def _solved(
     motion = replace(motion, unseen=never)
     place_std_m: Array | float = 0.0
     if doubt.any():
-        ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
-        lower = motion.points[:, ankles, 2].min(axis=1) if any(shown.feet_seen) else None
+        lower = motion.points[:, ANKLES, 2].min(axis=1) if any(shown.feet_seen) else None
         over_m = 0.0
         if lower is not None and floor_m is not None:
             over_m = feet_over_floor_m(take.body, motion.points, floor_m)

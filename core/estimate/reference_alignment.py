@@ -9,14 +9,14 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..arrays import Array, BoolArray
+from ..body.human import HIPS, LIMB_SEGMENTS, SHOULDERS
 from ..body.kinematics import Body
-from ..detect.keypoints import mirrored_point
+from ..body.mirror import OPPOSITE
 from ..numerics.markov_chain import exchanged_path
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..take.reference import ReferenceMotion
-from .reference_placement import CHAINS, HIPS, POINTS, SHOULDERS, Placed, SeenPoints, place
+from .reference_placement import POINTS, Placed, SeenPoints, place
 
-MIRRORED = np.array([POINTS.index(mirrored_point(name)) for name in POINTS])
 HEAD = POINTS.index("head")
 
 
@@ -52,7 +52,7 @@ def of_performer(body: Body, points: Array) -> Array:
     result[:, SHOULDERS] = above[:, None] + across * _ratio(0.5 * length["shoulder_width"], across)
     head = points[:, HEAD] - shoulders
     result[:, HEAD] = above + head * _ratio(length["neck_head"], head)
-    for near, far, segment in CHAINS:
+    for segment, near, far in LIMB_SEGMENTS:
         ends = [[POINTS.index(f"{end}.{side}") for side in "LR"] for end in (near, far)]
         limb = points[:, ends[1]] - points[:, ends[0]]
         wanted = 0.5 * (length[f"{segment}.L"] + length[f"{segment}.R"])
@@ -69,7 +69,7 @@ def _ratio(wanted_m: float, vectors: Array) -> float:
 
 def _sides(points: Array, seen: SeenPoints) -> BoolArray:
     """(F,) whether a motion in camera axes has left for right, by its own steps and by the picture."""
-    both = np.stack([points, points[:, MIRRORED]])
+    both = np.stack([points, points[:, OPPOSITE]])
     # 0.02: What the picture says of sides errs for seconds where a detector has them wrong, so it counts
     # little; a network that exchanges them jumps. A frame is thought exchanged at this cost.
     own = np.nan_to_num(place(both, seen).cost) * (seen.confidence > 0.0).sum(axis=1) * 0.02
@@ -136,7 +136,7 @@ def align(
             lag, cost = step, found
     own = _sampled(points, at + lag)
     exchanged = _sides(_in_camera(own, turn, seen, fixed), seen)
-    own = np.where(exchanged[:, None, None], own[:, MIRRORED], own)
+    own = np.where(exchanged[:, None, None], own[:, OPPOSITE], own)
     _, turn = _refined(own, seen, fixed, turn)
     stated = Rotation.identity() if fixed else UPRIGHT
     # 8: A network that has its motion in the camera's axes knows the vertical better than the picture does.

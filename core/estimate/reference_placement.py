@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
-from ..body.human import HUMAN
+from ..body.human import HIPS, HUMAN, LIMB_SEGMENTS, SHOULDERS
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
 from ..detect.performer import principal_keypoints
@@ -19,12 +19,6 @@ from ..numerics.robust import DEGREES, multivariate_cost
 from ..numerics.vectors import gaussian
 
 POINTS = HUMAN.point_names
-HIPS, SHOULDERS = (tuple(POINTS.index(f"{part}.{side}") for side in "LR") for part in ("hip", "shoulder"))
-CHAINS = (("shoulder", "elbow", "upper_arm"), ("elbow", "wrist", "forearm")) + (
-    ("hip", "knee", "thigh"),
-    ("knee", "ankle", "shin"),
-)
-"""Near and far end of each limb's segments, from the body outwards."""
 
 
 ROUNDS = 6  # of reweighting; the last two with the distances smoothed
@@ -94,7 +88,8 @@ def _rotations(camera: Camera, frames: int) -> Array:
 def _middle_of(segment: str) -> Array:
     weights = np.zeros(len(POINTS))
     stem, _, side = segment.partition(".")
-    ends = next(([f"{near}.{side}", f"{far}.{side}"] for near, far, name in CHAINS if name == stem), None)
+    limbs = {name: [f"{near}.{side}", f"{far}.{side}"] for name, near, far in LIMB_SEGMENTS}
+    ends = limbs.get(stem)
     if ends is None:
         joint = {"hand": "wrist", "foot": "ankle"}.get(stem)
         ends = [f"{joint}.{side}"] if joint else ["head"] if stem == "head" else None

@@ -12,7 +12,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from ..arrays import Array, BoolArray, IndexArray
+from ..arrays import Array, BoolArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..camera.camera import Camera
@@ -22,7 +22,7 @@ from ..numerics.vectors import runs
 from ..prior.frame_prior import REFERENCE_STEP_S
 from ..progress import Part, scaled
 from ..terms.head import ObservedHeads
-from ..terms.keypoints import KeypointModel, ObservedKeypoints
+from ..terms.keypoints import ObservedKeypoints
 from ..terms.region_model import MarkerPlacement, RegionModel
 from ..terms.regions import ObservedRegions, limb_widths
 from ..video.album import Album
@@ -88,7 +88,10 @@ def estimate_whole_clip(
     width_px = limb_widths(model, prior.translation, np.arange(tracks.frame_count))
     keypoints = Keypoints.none(tracks.frame_count) if seen.keypoints is None else seen.keypoints
     usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
-    swapped = _swaps(usual.model, keypoints, prior, belief.frame, tracks.time_s)
+    every = np.arange(tracks.frame_count)
+    scale = camera.pixels_per_meter(camera.depth(prior.translation, every))
+    predicted = usual.model.pixels(body.pose(prior), every)
+    swapped = find_swaps(keypoints, predicted, scale, belief.frame, tracks.time_s)
     keypoints = doubted_at_changes(keypoints.exchanged(swapped), swapped, tracks.time_s)
     known = belief.frame[belief.calibrating]
     if keypoints.names and not belief.posed.any():  # keyframes posed in space tell how hints err
@@ -138,18 +141,6 @@ def estimate_whole_clip(
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or belief.doubt.any()) else None
     return (yield from _solve(ClipProblem.begun(data, evidence), hold_rests, album, kept))
-
-
-def _swaps(
-    model: KeypointModel, keypoints: Keypoints, prior: Posture, keyframes: IndexArray, time_s: Array
-) -> BoolArray:
-    """(F, N) keypoints whose sides are exchanged, by the interpolated keyframes."""
-    if not keypoints.names:
-        return np.zeros(keypoints.seen.shape, dtype=bool)
-    frame = np.arange(len(time_s))
-    scale = model.camera.pixels_per_meter(model.camera.depth(prior.translation, frame))
-    predicted = model.pixels(model.body.pose(prior), frame)
-    return find_swaps(keypoints, predicted, scale, keyframes, time_s)
 
 
 def _solve(

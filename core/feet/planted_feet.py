@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.human import ANKLES
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
@@ -35,9 +36,8 @@ def plant_feet(
 
     Postures far from any rest and above the ground are unchanged.
     """
-    ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
     pose = body.pose(posture)
-    places = body.points(pose)[:, ankles]
+    places = body.points(pose)[:, ANKLES]
     contacts = find_contacts(places, time_s, stray_m)
     yield 0.1
     if not contacts:
@@ -61,7 +61,7 @@ def plant_feet(
     delta = np.zeros((len(time_s), len(dofs)))
     planted = posture
     for number in range(8):
-        step = _gauss_newton_step(body, planted, ankles, target, touched, dofs, std, delta, time_s)
+        step = _gauss_newton_step(body, planted, target, touched, dofs, std, delta, time_s)
         delta += step
         full = np.zeros((len(time_s), body.skeleton.dof_count))
         full[:, dofs] = delta
@@ -75,7 +75,6 @@ def plant_feet(
 def _gauss_newton_step(
     body: Body,
     posture: Posture,
-    ankles: list[int],
     target: Array,
     touched: BoolArray,
     dofs: IndexArray,
@@ -86,8 +85,8 @@ def _gauss_newton_step(
     """A Gauss-Newton step (F, n) of the changes `delta`."""
     frames, size = delta.shape
     pose = body.pose(posture)
-    residual = (body.points(pose)[:, ankles] - target).reshape(frames, -1) / ANKLE_STD_M
-    jacobian = body.points_jacobian(pose)[:, ankles][..., dofs].reshape(frames, -1, size) / ANKLE_STD_M
+    residual = (body.points(pose)[:, ANKLES] - target).reshape(frames, -1) / ANKLE_STD_M
+    jacobian = body.points_jacobian(pose)[:, ANKLES][..., dofs].reshape(frames, -1, size) / ANKLE_STD_M
     equations = BlockBanded(frames, size)
     equations.add_rows((jacobian,))
     gradient = (residual[:, None] @ jacobian)[:, 0]

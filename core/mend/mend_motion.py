@@ -10,9 +10,9 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray, chunks
 from ..body.actor import LONGEST_M, REQUIRED, SHORTEST_M, Actor
-from ..body.human import HUMAN
+from ..body.human import ANKLES, HIPS, HUMAN, LIMB_SEGMENTS
 from ..body.kinematics import Body
-from ..body.mirror import other_side
+from ..body.mirror import OPPOSITE
 from ..body.posture import Posture
 from ..body.posture_fit import fit_posture, guess_posture, nearest_rotation
 from ..body.skeleton import SIDES
@@ -31,15 +31,6 @@ METHOD = "mend"
 MOST_FRAMES = 36_000  # twenty minutes at 30 frames a second
 LEAST_SEEN = 0.5  # share of the frames that must show the whole body
 PLACE_M = 0.1  # usual error of the place that a network gives, after its jitter
-LIMBS = (
-    *(("upper_arm", "shoulder", "elbow"), ("forearm", "elbow", "wrist")),
-    *(("thigh", "hip", "knee"), ("shin", "knee", "ankle")),
-)
-"""Segments of limbs and the points at their ends."""
-HIPS, ANKLES = (
-    tuple(HUMAN.point_names.index(f"{name}.{side}") for side in SIDES) for name in ("hip", "ankle")
-)
-OPPOSITE = np.array([HUMAN.point_names.index(other_side(name)) for name in HUMAN.point_names])
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +150,7 @@ def measured_actor(points: Array) -> Actor:
     at |= {part: 0.5 * (at[f"{part}.L"] + at[f"{part}.R"]) for part in ("hip", "shoulder")}
     ends = {
         f"{segment}.{side}": (f"{upper}.{side}", f"{lower}.{side}")
-        for segment, upper, lower in LIMBS
+        for segment, upper, lower in LIMB_SEGMENTS
         for side in SIDES
     } | {
         "shoulder_width": ("shoulder.L", "shoulder.R"),

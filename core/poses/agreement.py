@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..arrays import Array
-from ..body.human import HUMAN
+from ..body.human import HUMAN, LIMB_SEGMENTS
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..estimate.performer_placement import feet_over_floor_m
@@ -27,11 +27,6 @@ WRONG_SHARE = 0.1  # of all takes whose height, camera or floor are wrong: a rou
 USABLE = 0.5  # least confidence
 AGREES = 0.8  # least probability of what a check finds
 SEEN_SHARE = 0.9  # of the frames; where somebody is seen in less, that is said
-BONES = tuple(
-    (f"{root}.{side}", f"{end}.{side}")
-    for side in SIDES
-    for root, end in (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
-)
 
 
 def agreement(
@@ -90,7 +85,7 @@ def _relative_size(given: PosingInput, points: Array) -> float | None:
     hints = np.where(keypoints.seen[..., None], keypoints.hint_m, np.nan)[given.sampled]
     names = keypoints.names
     ratios = []
-    for pair in BONES:
+    for pair in [(f"{root}.{side}", f"{end}.{side}") for side in SIDES for _, root, end in LIMB_SEGMENTS]:
         if set(pair) <= set(names):
             root, end = (hints[:, names.index(name)] for name in pair)
             known = np.isfinite(end - root).all(axis=-1)

@@ -12,10 +12,9 @@ import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
 from ..body.body_volume import rested
-from ..body.human import HUMAN, LIMBS
+from ..body.human import ANKLES, LIMBS
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.skeleton import SIDES
 from ..camera.camera import Camera
 from ..estimate.performer_placement import SAME_FLOOR_M, place_standing, standing_ankle_m
 from ..estimate.sigma import SIZE_STD, place_depth_std_m
@@ -180,7 +179,7 @@ def _on_floor(given: PosingInput, posture: Posture, floor_m: float) -> Posture:
     """
     sampled, time_s = given.sampled, given.time_s
     points = given.body.points(given.body.pose(posture))
-    feet = points[:, [HUMAN.point_names.index(f"ankle.{side}") for side in SIDES]]
+    feet = points[:, ANKLES]
     foot = feet[np.arange(len(feet)), feet[..., 2].argmin(axis=1)]
     _, eye = given.camera.pose(sampled)
     eye = np.broadcast_to(eye, foot.shape)

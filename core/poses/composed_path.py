@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray, single
-from ..body.human import HUMAN, LIMBS
+from ..body.human import HIPS, LIMBS, SHOULDERS
 from ..numerics.markov_chain import Step, cheapest_pairs, cheapest_path, path_posteriors
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..progress import Part
@@ -18,7 +18,7 @@ from .composed_states import LEGS, FrameCosts, FrameStates
 from .frame_likelihood import squared_distances
 from .part_features import HEADINGS, StanceFeatures
 
-SQUARE = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]
+SQUARE = [*SHOULDERS, *HIPS]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray
+from ..body.human import ANKLES
 from ..body.kinematics import Body
 from ..body.posture import Posture, headings_rad, turned_and_shifted, yaw_rotation
 from ..body.skeleton import SIDES
@@ -55,7 +56,9 @@ def learn_library(
     posture = turned_and_shifted(posture, turn, shift)
     chosen = spread_frames(shape_vectors(body, posture), time_s, duration_s, count)
     names = numbered_names(about.title, len(chosen))
-    tags = _tags(body, posture[chosen])
+    left, right = np.moveaxis(ankle_heights(body, posture[chosen]), -1, 0)
+    higher = [left - right > 0.08, right - left > 0.08]  # [m], of a foot that is lifted
+    tags = np.select(higher, ["left foot up", "right foot up"], "").tolist()
     motion = LibraryMotion(
         name=about.title,
         steps=tuple(
@@ -72,7 +75,7 @@ def learn_library(
         license=about.license,
         actor=body.actor,
         postures=tuple(
-            LibraryPosture(name, posture[int(frame)], tag)
+            LibraryPosture(name, posture[int(frame)], (tag,) if tag else ())
             for name, frame, tag in zip(names, chosen, tags, strict=True)
         ),
         motions=(motion,),
@@ -126,14 +129,6 @@ def numbered_names(title: str, count: int) -> list[str]:
     return [f"{stem} {number:0{digits}}" for number in range(1, count + 1)]
 
 
-def _tags(body: Body, posture: Posture) -> list[tuple[str, ...]]:
-    """Tags of each posture: the lifted foot, if any."""
-    left, right = np.moveaxis(ankle_heights(body, posture), -1, 0)
-    higher = [left - right > 0.08, right - left > 0.08]  # [m], of a foot that is lifted
-    words = np.select(higher, ["left foot up", "right foot up"], "")
-    return [(str(word),) if word else () for word in words]
-
-
 def shape_vectors(body: Body, posture: Posture) -> Array:
     """Shape vectors (F, 3 P); their distance is the root mean square distance of the points [m].
 
@@ -153,6 +148,5 @@ def ankle_heights(body: Body, posture: Posture) -> Array:
     floor at the end of a step.
     """
     points = body.points(body.pose(posture))
-    ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
     below = [0.36 * body.actor.segments_m[f"foot.{side}"] for side in SIDES]
-    return np.asarray(points[..., ankles, 2] - below)
+    return np.asarray(points[..., ANKLES, 2] - below)

@@ -12,7 +12,7 @@ from typing import Annotated
 import numpy as np
 
 from ..arrays import Array
-from ..body.human import HUMAN
+from ..body.human import ANKLES, HIPS, HUMAN
 from ..body.posture import FARTHEST_M
 from ..camera.camera import Camera
 from ..errors import InputError, shown
@@ -69,8 +69,7 @@ def score_points(
     sight = camera.sight(truth, np.arange(len(truth))[:, None])
     along = np.sum(error * sight, axis=-1)
     across = np.linalg.norm(error - along[..., None] * sight, axis=-1)
-    hips = [HUMAN.point_names.index(name) for name in ("hip.L", "hip.R")]
-    rooted = np.linalg.norm(error - error[:, hips].mean(axis=1, keepdims=True), axis=-1)
+    rooted = np.linalg.norm(error - error[:, HIPS].mean(axis=1, keepdims=True), axis=-1)
     bend = np.linalg.norm(np.diff(error, n=2, axis=0), axis=-1)
     bend = bend[np.isfinite(bend).all(axis=1)]
     # Half-width of a normal distribution's 95 % interval, in standard deviations.
@@ -126,9 +125,8 @@ def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
 
 
 def _skate(points: Array, truth: Array) -> float | None:
-    ankles = [HUMAN.point_names.index(name) for name in ("ankle.L", "ankle.R")]
     # An ankle whose true position moves less than this in a frame stands.
-    stands = np.linalg.norm(np.diff(truth[:, ankles], axis=0), axis=-1) < 0.004
-    travel = np.linalg.norm(np.diff(points[:, ankles, :2], axis=0), axis=-1)
+    stands = np.linalg.norm(np.diff(truth[:, ANKLES], axis=0), axis=-1) < 0.004
+    travel = np.linalg.norm(np.diff(points[:, ANKLES, :2], axis=0), axis=-1)
     stands &= np.isfinite(travel)
     return 1e3 * float(travel[stands].mean()) if stands.any() else None

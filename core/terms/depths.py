@@ -7,6 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..arrays import Array, IndexArray
+from ..body.human import LIMB_SEGMENTS
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
@@ -22,7 +23,6 @@ Ends = tuple[str, ...]  # body points whose middle is the end of a link
 HIPS: Ends = ("hip.L", "hip.R")
 SHOULDERS: Ends = ("shoulder.L", "shoulder.R")
 HEADS: tuple[Ends, ...] = (("head",), ("nose",), ("ear.L", "ear.R"))  # what may stand for it, by preference
-LIMBS = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ def _links(index: dict[str, int]) -> list[tuple[str, Ends, Ends]]:
         ("trunk", SHOULDERS, HIPS),
         ("head", head, SHOULDERS),
     ]
-    for near, far in LIMBS:
+    for _, near, far in LIMB_SEGMENTS:
         wanted += [(far, (f"{far}.{side}",), (f"{near}.{side}",)) for side in SIDES]
     return [
         (name, far, near)

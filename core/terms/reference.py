@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, BoolArray
-from ..body.skeleton import SIDES
+from ..body.human import HIPS
 from .state import ClipState
 from .term import Rows, Term
 
@@ -38,12 +38,11 @@ class ReferenceTerm(Term):
 
     def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
         """Three rows for each point; annealing does not touch them, since they are no image's."""
-        hips = [state.body.skeleton.point_names.index(f"hip.{side}") for side in SIDES]
         points = state.body.points(state.pose)
-        apart = points - points[:, hips].mean(axis=1, keepdims=True) - self.expected.points
+        apart = points - points[:, HIPS].mean(axis=1, keepdims=True) - self.expected.points
         used = np.isfinite(apart).all(axis=-1)
         by = None
         if slopes:
             by = state.body.points_jacobian(state.pose)
-            by = self.expected.whitening @ (by - by[:, hips].mean(axis=1, keepdims=True))
+            by = self.expected.whitening @ (by - by[:, HIPS].mean(axis=1, keepdims=True))
         yield Rows((self.expected.whitening @ apart[..., None])[..., 0], by, used)

@@ -10,9 +10,10 @@ from bpy.types import Action, Object, Scene
 from mathutils import Matrix
 
 from ....core.arrays import Array
+from ....core.body.human import HIPS
 from ....core.body.skeleton import SIDES
 from ....core.errors import InputError
-from ....core.mend.mend_motion import HIPS, PLACE_M, Mended, MendOptions, mend_motion
+from ....core.mend.mend_motion import PLACE_M, Mended, MendOptions, mend_motion
 from ....core.progress import Job, Progress, run, stretch, within
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.mended_armature import ArmaturePoints, Poses, mended_poses

@@ -11,10 +11,11 @@ from _scene import BODY, CAMERA, detect, exercise, lasting, sides_exchanged
 from keymark.core.api import reconstruct
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
+from keymark.core.body.mirror import OPPOSITE
 from keymark.core.detect.keypoints import Keypoints, People, SeenPeople
 from keymark.core.errors import InputError
 from keymark.core.estimate.reconstruct import check_reconstructible
-from keymark.core.estimate.reference_alignment import MIRRORED, AlignedReference, about_hips, align
+from keymark.core.estimate.reference_alignment import AlignedReference, about_hips, align
 from keymark.core.estimate.reference_evidence import (
     STD_M,
     NoReference,
@@ -97,7 +98,7 @@ def test_a_lag_is_taken_back() -> None:
 def test_exchanged_sides_are_told_by_their_jump_whatever_the_detector_says() -> None:
     points, frames = network(), np.zeros(FRAMES, dtype=bool)
     frames[30:50] = True
-    points[frames] = points[frames][:, MIRRORED]
+    points[frames] = points[frames][:, OPPOSITE]
     found = aligned(points)
     np.testing.assert_array_equal(found.exchanged, frames)
     assert error_mm(found) < 1.03 * faultless_mm()

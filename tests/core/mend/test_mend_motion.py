@@ -5,10 +5,10 @@ import pytest
 from _performances import ANKLES, HIPS, RATE, about_hips, error_mm, jitter_mm, seen_by_network, stepping
 from keymark.core.arrays import Array
 from keymark.core.body.body_volume import sole_offsets
+from keymark.core.body.mirror import OPPOSITE
 from keymark.core.errors import InputError
 from keymark.core.feet.place_by_feet import place_by_feet
 from keymark.core.mend.mend_motion import (
-    OPPOSITE,
     Mended,
     MendOptions,
     exchanged_frames,

@@ -3,6 +3,7 @@
 import numpy as np
 from _performances import RATE, performance, seen_by_network, stepping
 from _recorded import assert_recorded
+from keymark.core.body.mirror import OPPOSITE
 from keymark.core.body.posture import turned_and_shifted
 from keymark.core.feet.contacts import find_contacts
 from keymark.core.feet.fading import smooth_above
@@ -11,7 +12,7 @@ from keymark.core.feet.place_by_feet import place_by_feet
 from keymark.core.feet.planted_feet import plant_feet
 from keymark.core.feet.soles import Shins, Soles, ground_of
 from keymark.core.keys.hermite import fit_keys, refit
-from keymark.core.mend.mend_motion import OPPOSITE, MendOptions, exchanged_frames, mend_motion
+from keymark.core.mend.mend_motion import MendOptions, exchanged_frames, mend_motion
 from keymark.core.progress import run
 
 FRAMES = 80
