@@ -33,7 +33,7 @@ from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.progress import Job, Progress  # noqa: E402
 from keymark.core.review.score import read_truth  # noqa: E402
 from keymark.core.session.described import findings  # noqa: E402
-from keymark.core.session.made import Sight  # noqa: E402
+from keymark.core.session.session import Sight  # noqa: E402
 from keymark.core.take.conversion_settings import ConversionSettings  # noqa: E402
 from keymark.core.take.description import describe  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402

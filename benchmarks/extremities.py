@@ -28,10 +28,10 @@ from keymark.core.feet.natural_extremities import natural_extremities  # noqa: E
 from keymark.core.prior.registry import find_libraries  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
-from keymark.core.take.clip_check import open_footage  # noqa: E402
 from keymark.core.take.conversion_settings import ConversionSettings  # noqa: E402
 from keymark.core.take.description import describe  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
+from keymark.core.take.read_footage import open_footage  # noqa: E402
 
 GIVEN = ROOT.parent / "shared" / "heads"
 LARGE_PX = 45.0  # length of a hand from which it is expected to be seen

@@ -20,7 +20,7 @@ from keymark.core.body.skeleton import SIDES  # noqa: E402
 from keymark.core.mend.mend_motion import Mended, MendOptions, mend_motion  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import read_truth  # noqa: E402
-from keymark.core.take.character_settings import CharacterFile  # noqa: E402
+from keymark.core.take.conversion_settings import CharacterFile  # noqa: E402
 from keymark.core.take.reference import read_reference  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402
 

@@ -34,7 +34,7 @@ from keymark.core.feet.natural_extremities import natural_extremities  # noqa: E
 from keymark.core.progress import Progress, run  # noqa: E402
 from keymark.core.retarget.quality import Quality  # noqa: E402
 from keymark.core.retarget.recognition.recognize import recognize  # noqa: E402
-from keymark.core.take.character_settings import RetargetOptions  # noqa: E402
+from keymark.core.take.conversion_settings import RetargetOptions  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
 from keymark.operators.bridge.armature import build_armature  # noqa: E402
 from keymark.operators.bridge.character.measure import measure  # noqa: E402

@@ -12,7 +12,7 @@ from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character, CharacterBone
 from keymark.core.retarget.maps.character_map import CharacterMap
-from keymark.core.take.character_settings import RetargetOptions
+from keymark.core.take.conversion_settings import RetargetOptions
 from keymark.operators.bridge.actions import curves_of
 from keymark.operators.bridge.character.retarget import Retargeted, retarget
 from keymark.operators.bridge.keys import keys_changed

@@ -12,7 +12,7 @@ from keymark.core.arrays import Array
 from keymark.core.retarget.character import Character, CharacterBone
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
 from keymark.core.retarget.retarget_record import RECOGNIZED, RetargetRecord, UsedCharacter, UsedMap
-from keymark.core.take.character_settings import RetargetOptions
+from keymark.core.take.conversion_settings import RetargetOptions
 
 SHARED = Path(__file__).resolve().parents[2] / "shared" / "characters"
 

@@ -6,13 +6,11 @@ import numpy as np
 from keymark.core.body.rotations import continuous_quaternions, to_quaternions
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.character_motion import CharacterMotion
-from keymark.core.retarget.controls.control_channels import Control, ordered_controls
-from keymark.core.retarget.controls.control_motion import ControlMotion
+from keymark.core.retarget.controls.control_channels import NOTHING, Control, ControlSpace, ordered_controls
+from keymark.core.retarget.controls.control_motion import ControlMotion, PoleSetting, on_controls
 from keymark.core.retarget.controls.control_plan import ControlKind, PlannedControl, planned_controls
-from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
-from keymark.core.retarget.controls.control_targets import PoleSetting, on_controls
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls
-from keymark.core.take.character_settings import RetargetOptions
+from keymark.core.take.conversion_settings import RetargetOptions
 
 SIZE = 1.6
 POLE = PoleSetting(0.5, 0.0)

@@ -20,10 +20,10 @@ from keymark.core.retarget.maps.character_map import read_character_map
 from keymark.core.retarget.retarget_record import read_retarget_record
 from keymark.core.review.score import read_truth
 from keymark.core.shoot.discovery import read_take_list
-from keymark.core.take.clip_check import check_in_front
 from keymark.core.take.conversion_record import read_record
 from keymark.core.take.keyframe_file import read_keyframes
 from keymark.core.take.motion import Motion, read_motion, write_motion
+from keymark.core.take.read_footage import check_in_front
 from keymark.core.take.take_file import read_described, read_take
 
 FRAMES = 8

@@ -25,7 +25,7 @@ from keymark.core.retarget.quality import Quality, measured
 from keymark.core.retarget.solve.solve_motion import solve_motion
 from keymark.core.review.compared_keypoints import ComparedKeypoints
 from keymark.core.review.review import Reason, Review, WeakFrame
-from keymark.core.take.character_settings import RetargetOptions
+from keymark.core.take.conversion_settings import RetargetOptions
 
 DEMO = Path(__file__).resolve().parents[1] / "presets" / "demo" / "aerobic"
 FPS = 30.0

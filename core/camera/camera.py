@@ -216,16 +216,21 @@ EYE_HEIGHT_M = 1.4
 
 
 @dataclass(frozen=True)
-class LensGuess:
-    """A guessed lens."""
+class Lens:
+    """A lens before anything is found."""
 
     lens_mm: float
-    sensor_width_mm: float
-    """Width of the sensor, which spans the picture's width; its long side is that of full frame [mm]."""
-    reason: str  # kind of camera that was assumed, to follow "as of"
+    sensor_width_mm: float  # it spans the picture's width; of a guess its long side is that of full frame
+    source: str  # who says so, in brackets after its number
+    is_known: bool
+
+    def put(self, size: tuple[int, int]) -> Camera:
+        """A camera with this lens where cameras usually stand, for a picture of this size [px]."""
+        pose = default_camera_pose(self.lens_mm, self.sensor_width_mm, size)
+        return Camera(self.lens_mm, self.sensor_width_mm, size, pose)
 
 
-def guess_lens(size: tuple[int, int]) -> LensGuess:
+def guess_lens(size: tuple[int, int]) -> Lens:
     """Guess a lens from the size of the picture (width, height) [px] as shown, after any rotation.
 
     An upright picture is a phone's; its focal length is stated for photographs of 4 to 3, whose long side a
@@ -240,7 +245,8 @@ def guess_lens(size: tuple[int, int]) -> LensGuess:
         lens_mm, reason = float(focal_in_heights * height / width * FULL_FRAME_MM), "a webcam"
     else:
         lens_mm, reason = 35.0, "a camera's usual zoom"  # between the wide end of a zoom and its middle
-    return LensGuess(round(lens_mm, 1), FULL_FRAME_MM * width / max(width, height), reason)
+    sensor_mm = FULL_FRAME_MM * width / max(width, height)
+    return Lens(round(lens_mm, 1), sensor_mm, f"a guess, as of {reason}", False)
 
 
 def lens_of_equivalent(equivalent_mm: float, size: tuple[int, int]) -> tuple[float, float]:

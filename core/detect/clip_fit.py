@@ -14,11 +14,11 @@ import numpy as np
 from .. import MOST_FRAMES
 from ..arrays import Array, BoolArray
 from ..errors import InputError, pluralize
-from .continuity import repeated_results
 from .detected_frames import DetectedFrames
 from .face import no_faces
 from .hands import no_hands
 from .keypoints import People, SeenPeople, confidences
+from .performer import repeated_results
 
 
 def held_against_clip(

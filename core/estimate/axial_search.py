@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from ..arrays import Array, BoolArray, Image, IndexArray
 from ..body.kinematics import Pose
-from ..markers.appearance import Appearance
-from ..markers.surface_colors import BAND_LEVELS as LEVELS
-from ..markers.surface_colors import BANDS, BandColors, band_cells, learn_band_colors
+from ..markers.appearance import BAND_LEVELS as LEVELS
+from ..markers.appearance import BANDS, Appearance, BandColors, band_cells, learn_band_colors
 from ..terms.contours import FREE, UNKNOWN, ContourModel, LimbAxes, part_map
 from ..terms.occlusion import PartOutlines
 from .contour_search import LARGEST_LOG_RATIO, SearchRange

@@ -14,8 +14,7 @@ from ..arrays import Array, BoolArray, Image, IndexArray, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..camera.camera import Camera
-from ..markers.appearance import Appearance, learn_appearance
-from ..markers.surface_colors import BandColors
+from ..markers.appearance import Appearance, BandColors, learn_appearance
 from ..numerics.robust import DEGREES, student_weight
 from ..terms.contours import (
     PIXEL_STD,

@@ -3,7 +3,7 @@
 from ..arrays import BoolArray
 from ..errors import frames_in_words
 from ..markers.region_tracks import RegionTracks, is_variable_frame_rate
-from ..take.clip_check import VARIABLE_RATE
+from ..take.read_footage import VARIABLE_RATE
 from ..take.take import Take
 from .clip_problem import KeyframeEvidence
 

@@ -18,13 +18,10 @@ from ..markers.region_tracks import RegionTracks
 from ..prior.keyframe_proposals import evidence_speed
 from ..prior.keyframes import found_doubt, interpolate
 from ..progress import Job, Progress, within
-from ..take.clip_check import check_frame_count, check_in_front
 from ..take.conversion_settings import METHODS
 from ..take.motion import Motion
-from ..take.presence import absence_notes, unseen_notes
-from ..take.read_footage import average_model
-from ..take.seen_take import SeenTake
-from ..take.shots import within_shot
+from ..take.presence import SeenTake, absence_notes, unseen_notes, within_shot
+from ..take.read_footage import average_model, check_frame_count, check_in_front
 from ..take.take import Take
 from ..terms.region_model import RegionModel
 from .belief import Belief

@@ -21,8 +21,8 @@ from ..numerics.robust import DEGREES
 from ..numerics.vectors import gaussian, usual_step
 from ..prior.keyframes import Keyframe, Matched
 from ..prior.texts import REFERENCE
+from ..take.presence import SeenTake
 from ..take.reference import ReferenceMotion
-from ..take.seen_take import SeenTake
 from ..take.take import Take
 from ..terms.reference import ExpectedPoints
 from .reference_alignment import AlignedReference, about_hips, align

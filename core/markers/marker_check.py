@@ -10,10 +10,10 @@ import numpy as np
 from ..arrays import Array, BoolArray, Image, IntArray
 from ..video.clip import ClipSamples
 from ..video.working_image import halvings, smooth
-from .association import HIGHEST_FRAGMENT_COST, STILL_STEP_PX, Candidates, assign_regions, gather_candidates
 from .color_learning import ColorLearner
 from .color_model import BACKGROUND, ColorModel, color_confusion
 from .ignored_regions import IgnoredPixels, IgnoredRegion, PixelBox, is_ignored
+from .markers import HIGHEST_FRAGMENT_COST, STILL_STEP_PX, Candidates, assign_regions, gather_candidates
 from .region_tracks import ExpectedRegions, MarkerStyle
 from .regions import find_regions
 

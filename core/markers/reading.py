@@ -34,7 +34,7 @@ class Reading:
     frame_findings: FrameFindings = NO_FINDINGS  # blank and repeated frames, cuts and interlacing
     glimpses: Glimpses | None = None  # a few larger pictures; None where it was not read from a clip
     shot: tuple[int, int] | None = None
-    """First frame of the only shot that it shows and the one after its last, see `shots`; None for all."""
+    """First frame of the only shot that it shows and the one after its last, see `shot_of`; None for all."""
     steady: Array | None = None  # (F, 3, 3) from what it shows to the clip's pixels, see `steady_camera`
 
 

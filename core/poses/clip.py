@@ -22,7 +22,7 @@ from ..prior.keyframes import Keyframe, interpolate
 from ..prior.library import Library
 from ..prior.texts import COMPOSED
 from ..progress import Job, Part, Progress, stretch, within
-from ..take.seen_take import SeenTake
+from ..take.presence import SeenTake
 from ..take.take import Take
 from .agreement import agreement
 from .candidates import MatchedFrame, composed_candidates

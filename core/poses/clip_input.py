@@ -18,8 +18,7 @@ from ..numerics.vectors import runs
 from ..prior.keyframe_proposals import evidence_speed, propose_keyframes
 from ..prior.keyframes import Keyframe
 from ..progress import run
-from ..take.seen_take import SeenTake
-from ..take.shots import within_shot
+from ..take.presence import SeenTake, within_shot
 from ..take.take import Take
 from .match_evidence import MatchEvidence
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..errors import InputError
 from ..files.json_file import ENDING, is_path
-from ..files.registry import Registered, find_registered, registered_files
+from ..files.records import Registered, find_registered, registered_files
 from .library import LARGEST_BYTES, Library, read_library
 from .texts import EVERY_LIBRARY, checked_identifier, name_key
 

@@ -15,9 +15,21 @@ from ..camera.camera import Camera
 from ..feet.natural_extremities import feet_on_floor
 from ..feet.soles import Shins, Soles
 from ..numerics.vectors import unit
-from .canvas import GRID_M, PAPER, Canvas, Color, View, draw_grid, side_axes, truncated, view_axes
+from .canvas import (
+    GRID_M,
+    PAPER,
+    Canvas,
+    Color,
+    Projection,
+    View,
+    draw_grid,
+    side_axes,
+    square_of,
+    squares_around,
+    truncated,
+    view_axes,
+)
 from .pictures import sheet
-from .stick_figure import Projection, square_of, squares_around
 
 SKIN: Color = (196, 190, 186)
 

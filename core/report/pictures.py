@@ -32,12 +32,14 @@ from .canvas import (
     Canvas,
     Color,
     View,
+    draw_figure,
     draw_grid,
+    legend,
     side_axes,
+    stick_figure,
     truncated,
     write_png,
 )
-from .stick_figure import draw_figure, legend, stick_figure
 
 OUTLINE: Color = (150, 70, 150)
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from ..files.json_file import read_json
 from ..files.kinds import ByName, Choice, Number, Text
 from ..files.records import Record
-from ..take.character_settings import RetargetOptions
+from ..take.conversion_settings import RetargetOptions
 from ..take.evidence import FileDigests, Frame, FrameCount, FrameRate, Line, Notes, Sha256
 from .character import LIMBS
 from .maps.character_map import Roles, roles_mistake

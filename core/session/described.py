@@ -4,25 +4,27 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
+from ..camera.camera import Camera, Lens, guess_lens, lens_of_equivalent
 from ..camera.camera_fields import MATRICES
 from ..detect.families.table import open_network
 from ..detect.pose_tracking import refuse_picture
 from ..errors import pluralize
 from ..files.fields import PLACED, Fields, InheritedFields, listed
 from ..prior.library import Library
-from ..take.clip_check import open_footage
 from ..take.conversion_settings import METHODS, ConversionSettings
 from ..take.description import ASSUMED, Description, keypoint_files
 from ..take.evidence import KEYPOINTS
 from ..take.keyframe_file import FEWEST_KEYFRAMES
+from ..take.read_footage import open_footage
 from ..take.reference import ReadArmature
 from ..take.take import with_evidence
 from ..take.take_file import read_described
-from .lens import lens_of
-from .made import Placed, Posed, Sight
+from ..video.header import stated_lens_mm
 from .place import camera_in_words
 from .see import people_in_words
-from .session import Inputs, Session
+from .session import Inputs, Placed, Posed, Session, Sight
 
 
 def is_unplaced(description: Description, settings: ConversionSettings) -> bool:
@@ -97,6 +99,18 @@ def _unplaced(description: Description, settings: ConversionSettings) -> Inputs:
     detects, evidence = not files, settings.evidence
     network = open_network(settings.network) if detects and settings.network is not None else None
     return Inputs(take, evidence=evidence, detects=detects, network=network, open_lens=lens, floor_open=True)
+
+
+def lens_of(path: Path, size: tuple[int, int], said: object = None, where: str = "") -> Lens:
+    """The lens that a description says, else the one that the clip states, else a guess by its size [px]."""
+    if isinstance(said, Mapping) and said.get("lens_mm") is not None:
+        pose = np.eye(4).tolist()
+        given = Camera.from_dict({**said, "resolution": list(size), "matrix_world": pose}, f"{where}: camera")
+        return Lens(given.lens_mm, given.sensor_width_mm, "as described", True)
+    stated_mm = stated_lens_mm(path)
+    if stated_mm is not None:
+        return Lens(*lens_of_equivalent(stated_mm, size), f"the clip states {stated_mm:g} mm", True)
+    return guess_lens(size)
 
 
 def findings(session: Session, description: Description) -> tuple[str, ...]:

@@ -19,11 +19,9 @@ from ..errors import pluralize
 from ..markers.reading import Reading
 from ..progress import Job, Progress, stretch
 from ..take.performer_keypoints import performer_keypoints
-from ..take.seen_take import seen_take
-from ..take.shots import of_one_shot
+from ..take.presence import of_one_shot, seen_take
 from ..take.steady_camera import steadied
-from .made import FoundCamera, Placed, Sight
-from .session import Inputs, Session, Stage
+from .session import FoundCamera, Inputs, Placed, Session, Sight, Stage
 
 FEWEST_MOMENTS = 2
 """Upright moments that tell a camera by themselves; one is the same from high above and from low."""
@@ -54,7 +52,7 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
     return inputs.shot, take.camera, take.body.actor.segments_m, take.fps, inputs.open_lens, posed
 
 
-STAGE = Stage("place", place, _uses, lambda _inputs: 0.2)
+PLACE = Stage("place", place, _uses, lambda _inputs: 0.2)
 
 
 def find_camera(

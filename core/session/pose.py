@@ -1,20 +1,24 @@
-"""Pose: the keyframes that a motion is made from: posed ones, those of a reference motion, and found ones."""
+"""Pose and reconstruct: keyframes, posed, of a reference motion or found, and the motion between them."""
 
 from dataclasses import replace
 from functools import lru_cache
 
+import numpy as np
+
+from ..body.fingers import SURE, Hands
+from ..estimate.reconstruct import Reconstruction, reconstruct
 from ..estimate.reference_evidence import (
     ReferenceEvidence,
     reference_evidence,
     with_reference,
 )
+from ..feet.palms import seen_hands
 from ..poses.clip import pose_clip
 from ..poses.found_poses import referred_poses, with_found
 from ..prior.library import library_digest
 from ..progress import Job
 from ..take.take import Take
-from .made import Posed, placed_take
-from .session import Inputs, Session, Stage
+from .session import Inputs, Posed, Session, Stage, placed_take
 
 
 def pose(session: Session) -> Job[Posed]:
@@ -65,4 +69,28 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
     return libraries, asked, take.keyframes, take.reference, inputs.method == "map"
 
 
-STAGE = Stage("pose", pose, _uses, lambda inputs: 0.0 if inputs.libraries is None else 2.3)
+POSE = Stage("pose", pose, _uses, lambda inputs: 0.0 if inputs.libraries is None else 2.3)
+
+
+def make_motion(session: Session) -> Job[Reconstruction]:
+    """Reconstruct the motion from all that is seen and posed."""
+    inputs, posed = session.inputs, session[Posed]
+    made = yield from reconstruct(posed.seen, inputs.method, posed.referred, floor_m=posed.floor_m)
+    if not inputs.hands:
+        return made
+    motion, take = made.motion, posed.seen.take
+    own = [key.index for key in take.keyframes if key.is_posed]
+    posture, hands = seen_hands(motion.body, motion.posture, motion.time_s, made.keypoints, take.camera, own)
+    notes = made.notes if hands is None else (*made.notes, hands_in_words(hands))
+    return replace(made, motion=replace(motion, posture=posture, hands=hands), notes=notes)
+
+
+def hands_in_words(hands: Hands) -> str:
+    """In how many frames hands are surely seen."""
+    left, right = np.round(100.0 * (hands.sure > SURE).mean(axis=0))
+    return f"The left hand is surely seen in {left:.0f} % of the frames, the right in {right:.0f} %"
+
+
+RECONSTRUCT = Stage(
+    "reconstruct", make_motion, lambda inputs: (inputs.method, inputs.hands), lambda _inputs: 2.0
+)

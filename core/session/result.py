@@ -41,8 +41,7 @@ from ..take.motion import write_motion
 from ..take.take import Take
 from ..take.take_file import write_take
 from .described import findings
-from .made import Posed, Sight
-from .session import Session
+from .session import Posed, Session, Sight
 
 AS_MADE = ".as_made.json"
 """SHA-256 of files as they were made: of those whose bytes differ from run to run though their content does

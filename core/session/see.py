@@ -1,4 +1,4 @@
-"""See: the keypoints of everybody in the clip, of files or of the pose network, held against the pictures."""
+"""Read and see: one pass over the clip, and the keypoints of everybody in it, held against the pictures."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -7,16 +7,43 @@ from ..detect.closer_look import CloserLook
 from ..detect.keypoints import People, SeenPeople
 from ..detect.picture_check import applied, check_by_pictures
 from ..detect.pose_network import NAME, PoseNetwork
-from ..detect.pose_tracking import find_people
+from ..detect.pose_tracking import DETECTING, PeopleFinder, find_people
+from ..detect.standing_moments import picture_turn, turned_note
 from ..errors import InputError, pluralize
-from ..markers.reading import Reading
+from ..estimate.reconstruct import check_method
+from ..markers.reading import Reading, reading_key
 from ..progress import Job, stretch, within
-from ..take.clip_check import open_footage
-from ..take.performer_keypoints import FEWEST_KEYFRAMES, people_of
+from ..take.performer_keypoints import FEWEST_KEYFRAMES, people_of, performer_keypoints
+from ..take.read_footage import open_footage, read_footage
 from ..take.take import Take, with_evidence
 from ..video.frame_checks import FrameFindings
-from .made import Sight, WatchedReading
-from .session import Inputs, Session, Stage
+from .session import Inputs, Session, Sight, Stage, WatchedReading
+
+
+def read(session: Session) -> Job[Reading]:
+    """Read the clip, or what is still known of it; the method is checked before this takes its time."""
+    inputs = session.inputs
+    take, kept = inputs.take, inputs.kept
+    check_method(take, inputs.method)
+    if not inputs.detects:
+        return (yield from read_footage(take, kept))
+    clip = open_footage(take.clip, take.fps, take.camera.resolution)
+    with PeopleFinder(clip, lambda: (PoseNetwork(), CloserLook(inputs.network, inputs.hands))) as finder:
+        reading = yield from read_footage(take, kept, finder.add, DETECTING)
+        if not finder.count:  # it is known already, and was not decoded
+            return reading
+        return WatchedReading(**vars(reading), people=finder.people())
+
+
+def _reads(inputs: Inputs) -> tuple[object, ...]:
+    take = inputs.take
+    expected = (take.keyframes, take.body.actor.segments_m, take.camera) if take.markers else ()
+    key = reading_key(take.clip, take.fps, take.markers, None, take.ignored_regions)
+    clip = take.fps, take.frame_start, take.frame_count, take.camera.resolution, take.camera.is_moving
+    return key, clip, take.contours, expected, *inputs.closer
+
+
+READ = Stage("read", read, _reads, lambda inputs: 5.5 if inputs.detects and inputs.kept is None else 1.5)
 
 SEEN = 0.95
 """Share of the stage after which everybody is detected."""
@@ -40,13 +67,13 @@ def see(session: Session) -> Job[Sight]:
     return Sight(take.keypoints, checked)
 
 
-def _uses(inputs: Inputs) -> tuple[object, ...]:
+def _sees(inputs: Inputs) -> tuple[object, ...]:
     posed = sum(key.is_posed for key in inputs.take.keyframes) >= FEWEST_KEYFRAMES
     sees = inputs.performer, inputs.detects, *inputs.closer
     return (*sees, inputs.evidence, inputs.take.keypoints, posed)
 
 
-STAGE = Stage("see", see, _uses, lambda inputs: 4.5 if inputs.detects and inputs.kept is not None else 0.1)
+SEE = Stage("see", see, _sees, lambda inputs: 4.5 if inputs.detects and inputs.kept is not None else 0.1)
 
 
 def people_in_words(people: People) -> str:
@@ -100,3 +127,35 @@ def _each_once(people: People, findings: FrameFindings) -> People:
     nobody = SeenPeople.nobody(len(people.names))
     frames = tuple(nobody if index in again else frame for index, frame in enumerate(people.frames))
     return replace(people, frames=frames)
+
+
+# --- A picture on its side or upside down, noticed once people are detected, so that the clip can be turned
+
+
+SELDOM = 0.7  # share of the frames below which so few show somebody that the picture may be turned
+
+
+class PictureTurnedError(Exception):
+    """People are upright in a clip only once it is turned."""
+
+    def __init__(self, turn_deg: int) -> None:
+        super().__init__(turn_deg)
+        self.turn_deg = turn_deg  # clockwise
+
+
+def require_upright(stage: str, session: Session) -> None:
+    """Stop the way of a take whose picture is turned: a `Keep` for stages.
+
+    Raises:
+        PictureTurnedError: It is.
+    """
+    take = session.inputs.take
+    if stage != "see" or not session.inputs.detects or not session[Sight].people:
+        return
+    people = session[Sight].people[0]
+    own = performer_keypoints(replace(take, keyframes=(), keypoints=(people,)))
+    if people.seen_frames >= SELDOM * len(people.frames) and turned_note(own) is None:
+        return
+    turn_deg = picture_turn(open_footage(take.clip, take.fps, take.camera.resolution), PoseNetwork())
+    if turn_deg:
+        raise PictureTurnedError(turn_deg)

@@ -4,11 +4,12 @@ from collections.abc import MutableMapping
 
 from ..markers.reading import Reading
 from ..progress import Job, run
-from ..take.seen_take import SeenTake
+from ..take.presence import SeenTake
 from ..take.take import Take
-from . import place, pose, read, reconstruct, see
-from .made import placed_take
-from .session import Inputs, Keep, Session, Stage, advance, keep_nothing
+from .place import PLACE
+from .pose import POSE, RECONSTRUCT
+from .see import READ, SEE
+from .session import Inputs, Keep, Session, Stage, advance, keep_nothing, placed_take
 
 
 def _by_bridge(name: str, work: float) -> Stage:
@@ -21,11 +22,11 @@ def _by_bridge(name: str, work: float) -> Stage:
 
 
 STAGES = (
-    read.STAGE,
-    see.STAGE,
-    place.STAGE,
-    pose.STAGE,
-    reconstruct.STAGE,
+    READ,
+    SEE,
+    PLACE,
+    POSE,
+    RECONSTRUCT,
     _by_bridge("finish", 0.8),
     _by_bridge("retarget", 2.5),
 )

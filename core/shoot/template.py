@@ -202,7 +202,7 @@ def _camera(survey: ClipSurvey) -> dict[str, Any]:
     lens = guess_lens(size)
     distance = -default_camera_pose(lens.lens_mm, lens.sensor_width_mm, size)[1, 3]
     camera: dict[str, Any] = {
-        "//lens_mm": f"a guess, as of {lens.reason}; state the one you filmed with, and its sensor's width",
+        "//lens_mm": f"{lens.source}; state the one you filmed with, and its sensor's width",
         "lens_mm": lens.lens_mm,
         "sensor_width_mm": lens.sensor_width_mm,
     }

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import InputError, shown
-from ..files.paths import regular_file_size
-from ..files.saved_text import read_saved_text, with_decimal_point
+from ..files.paths import read_saved_text, regular_file_size, with_decimal_point
 from .named_points import chosen_subject
 
 LARGEST_BYTES = 2**29

@@ -11,11 +11,10 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..body.mirror import other_side
 from ..body.posture import Posture
-from ..detect.continuity import same_person
 from ..detect.face import no_faces
 from ..detect.hands import no_hands
 from ..detect.keypoints import FACE, Keypoints, People, SeenPeople
-from ..detect.performer import Expected, Sightings, choose_performer, person_size
+from ..detect.performer import Expected, Sightings, choose_performer, person_size, same_person
 from ..errors import InputError, pluralize
 from ..markers.region_tracks import RegionTracks
 from ..numerics.markov_chain import NOBODY

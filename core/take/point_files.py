@@ -18,8 +18,7 @@ from ..arrays import Array
 from ..body.human import HUMAN
 from ..errors import InputError, describe_unexpected, shown
 from ..files.json_file import write_atomically
-from ..files.paths import regular_file_size
-from ..files.saved_text import read_saved_text, with_decimal_point
+from ..files.paths import read_saved_text, regular_file_size, with_decimal_point
 from .named_points import MHR_UP, PointTable, one_subject, principal_points
 
 LARGEST_BYTES = 2**30

@@ -1,8 +1,11 @@
-"""Presence: in which frames of a clip the performer is there, so that nothing is invented in the others.
+"""A take as its footage shows it: the shot that is animated, when the performer is there, limbs never seen.
 
 He is there where a marker or a keypoint of him is seen. Short gaps are bridged. Where a person has posed on
 both sides of a gap, or inside it, the pictures decide: a detector may have failed there.
 """
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -10,15 +13,84 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import LIMBS, limb_of
 from ..body.skeleton import SIDES
-from ..detect.keypoints import Keypoints
-from ..errors import frames_in_words
+from ..detect.keypoints import Keypoints, SeenPeople
+from ..errors import InputError, frames_in_words
 from ..files.fields import listed
-from ..markers.reading import Reading
+from ..markers.reading import Reading, without_tracks
 from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import runs, usual_step
 from ..video.album import Album, changed_pixels
-from .shots import within_shot
+from .performer_keypoints import performer_keypoints
+from .reference import seen_reference
 from .take import Take
+
+
+def shot_of(take: Take, reading: Reading, named: tuple[int, int] | None = None) -> tuple[int, int] | None:
+    """First frame of the shot that is animated and the one after its last; None where the clip is not cut.
+
+    It is the one that is `named` by its first and last frame, or that is posed, else the one in which
+    somebody is seen longest. Who has posed several says that they are one: None, too.
+
+    Raises:
+        InputError: The named frames are not those of the clip.
+    """
+    count, cuts, start = reading.tracks.frame_count, reading.frame_findings.cuts, take.frame_start
+    if named is not None:
+        first, last = named[0] - start, named[1] - start
+        if not 0 <= first < last < count:
+            raise InputError(
+                f"frames {named[0]} to {named[1]} are not all in {take.clip.name}, whose frames are {start} "
+                f"to {start + count - 1}"
+            )
+        return first, last + 1
+    if not cuts:
+        return None
+    shots = [*pairwise([0, *cuts, count])]
+    posed = [key.index for key in take.keyframes if key.matched is None]
+    if posed:
+        holding = [shot for shot in shots if any(shot[0] <= index < shot[1] for index in posed)]
+        return holding[0] if len(holding) == 1 else None
+    seen = reading.tracks.visible.any(axis=1)
+    for people in take.keypoints:
+        there = [len(frame.pixel) > 0 for frame in people.frames[:count]]
+        seen[: len(there)] |= there
+    return max(shots, key=lambda shot: (int(seen[slice(*shot)].sum()), shot[1] - shot[0]))
+
+
+def of_one_shot(take: Take, reading: Reading, named: tuple[int, int] | None = None) -> tuple[Take, Reading]:
+    """The take and its reading with nothing seen but in the shot that is animated, and a sentence on it."""
+    shot, findings = shot_of(take, reading, named), reading.frame_findings
+    if shot is None:
+        return take, reading
+    first, last = shot
+    others = [*range(first), *range(last, reading.tracks.frame_count)]
+    keypoints = []
+    for people in take.keypoints:
+        nobody = SeenPeople.nobody(len(people.names))
+        frames = tuple(seen if first <= index < last else nobody for index, seen in enumerate(people.frames))
+        keypoints.append(replace(people, frames=frames))
+    start = take.frame_start
+    cut = findings.cut_note(start) if findings.cuts else ""
+    whose = f"the motion is that of frames {first + start} to {last - 1 + start} and empty elsewhere"
+    animated = f"{cut}; {whose}: --frames names another shot" if named is None else whose
+    own = replace(
+        reading,
+        tracks=without_tracks(reading.tracks, others),
+        album=None if reading.album is None else reading.album.excluding(others),
+        glimpses=None if reading.glimpses is None else reading.glimpses.excluding(others),
+        notes=(animated, *(note for note in reading.notes if note != cut)),
+        shot=shot,
+    )
+    posed = tuple(key for key in take.keyframes if first <= key.index < last)
+    return replace(take, keypoints=tuple(keypoints), keyframes=posed), own
+
+
+def within_shot(reading: Reading) -> BoolArray:
+    """(F,) whether each frame is one of the shot that is animated."""
+    within = np.zeros(reading.tracks.frame_count, dtype=np.bool_)
+    within[slice(*(reading.shot or (0, None)))] = True
+    return within
+
 
 BRIDGED_S = 0.5
 """Longest gap in which the motion goes on: about a step, after which nothing tells any more where he went."""
@@ -188,3 +260,42 @@ def named_limbs(limbs: tuple[str, ...]) -> str:
     ]
     are = "is" if len(limbs) == 1 else "are"
     return f"{' and '.join(words)} {are}"
+
+
+@dataclass(frozen=True, eq=False)
+class SeenTake:
+    """A take, the reading of its clip, and the performer in it."""
+
+    take: Take
+    """With its keypoints as the pictures say they are meant, seen as by a camera that stands still."""
+    reading: Reading
+    """As that camera sees the clip."""
+    keypoints: Keypoints
+    """The performer's."""
+    there: BoolArray
+    """(F,) frames in which the performer is there."""
+    unseen: tuple[str, ...]
+    """Limbs that are never seen."""
+    unseen_ends: tuple[str, ...] = ()
+    """Hands and feet of the same, of limbs that are seen; none where markers or poses tell of them."""
+    camera_notes: tuple[str, ...] = ()
+    """A sentence on a camera that moves and is not followed."""
+
+    @property
+    def feet_seen(self) -> tuple[bool, bool]:
+        """Whether the left and the right foot are ever seen: those that are not tell no floor."""
+        unseen = {*self.unseen, *self.unseen_ends}
+        left, right = (not unseen & {f"leg.{side}", f"foot.{side}"} for side in SIDES)
+        return left, right
+
+
+def seen_take(take: Take, reading: Reading, camera_notes: tuple[str, ...] = ()) -> SeenTake:
+    """Tell the performer from everybody else, and when which of his limbs are seen."""
+    keypoints = performer_keypoints(take, reading.tracks)
+    reference, keypoints = seen_reference(keypoints, take.keypoints)
+    take = replace(take, reference=take.reference or reference)
+    there = presence(take, reading, keypoints)
+    unseen = unseen_limbs(take, reading.tracks, keypoints, there)
+    is_told = take.markers or any(key.is_posed for key in take.keyframes)
+    ends = () if is_told else unseen_ends(keypoints, there, unseen)
+    return SeenTake(take, reading, keypoints, there, unseen, ends, camera_notes)

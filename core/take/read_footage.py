@@ -1,18 +1,209 @@
-"""Reading a take's footage: one pass over its clip, with the markers expected near the keyframes."""
+"""A take's footage: its clip opened and checked against the take, and read in one pass."""
 
 from dataclasses import replace
+from itertools import islice
+from pathlib import Path
 
 import numpy as np
 
 from ..arrays import chunks
+from ..detect.clip_fit import tolerance
+from ..errors import InputError
 from ..markers.reading import Reading, read_clip
-from ..markers.region_tracks import ExpectedRegions
+from ..markers.region_tracks import ExpectedRegions, RegionTracks
 from ..prior.keyframes import interpolate
 from ..progress import Job, Progress, within
 from ..terms.region_model import MarkerPlacement, RegionModel
 from ..video.album import Watch
-from .clip_check import check_frame_count, check_in_front, clip_notes, open_clip
+from ..video.clip import Clip
+from ..video.container import read_packets
+from ..video.video_file import VideoFile
 from .take import Take
+
+LONGEST_FRAMES = 40_000
+"""Twenty minutes at 30 frames a second, for which an estimate needs about two and a half gigabytes."""
+
+
+def open_clip(take: Take) -> Clip:
+    """Open a take's clip and check `take.json` against it.
+
+    Raises:
+        InputError: The clip is missing or unreadable, or its size, its number of frames, the camera's
+            poses or a keyframe do not fit.
+    """
+    clip = open_footage(take.clip, take.fps, take.camera.resolution)
+    check_size(take, clip)
+    count = clip.frame_count
+    expected = {take.frame_count, *(len(people.frames) for people in take.keypoints)} - {None}
+    if count > LONGEST_FRAMES or expected - {count}:
+        # Containers may claim a wrong number; decoding counts.
+        count = sum(1 for _ in islice(clip.source.time_stamps(), LONGEST_FRAMES + 1))
+    check_frame_count(take, count)
+    return clip
+
+
+def open_footage(path: Path, fps: float | None, size: tuple[int, int] | None = None) -> Clip:
+    """Open a clip without its take; `fps` is the rate of an image sequence, `size` as in `Clip.open`.
+
+    Raises:
+        InputError: The clip is missing, unreadable or too long.
+    """
+    try:
+        clip = Clip.open(path, fps, size)
+    except OSError as error:
+        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
+    if clip.frame_count > LONGEST_FRAMES and _counted(clip) > LONGEST_FRAMES:  # headers may exaggerate
+        raise _too_long(path, clip.fps)
+    return clip
+
+
+def picture_count(path: Path, fps: float) -> int:
+    """Number of pictures of a clip without its take."""
+    return _counted(open_footage(path, fps))
+
+
+def _counted(clip: Clip) -> int:
+    """Number of pictures up to one too many; of a sound file quickly, by its undecoded packets."""
+    if not isinstance(clip.source, VideoFile):
+        return clip.frame_count
+    packets = None if clip.source.is_trimmed else read_packets(clip.path, LONGEST_FRAMES + 1)
+    if packets is not None:
+        return len(packets.time_s)
+    return sum(1 for _ in islice(clip.source.time_stamps(), LONGEST_FRAMES + 1))
+
+
+def _too_long(path: Path, fps: float) -> InputError:
+    longest_s = LONGEST_FRAMES / fps
+    return InputError(
+        f"{path}: has more than {LONGEST_FRAMES} frames, {longest_s / 60.0:.0f} minutes; it must be shorter: "
+        f"cut it, as with ffmpeg -ss 0 -t {int(longest_s)} -i CLIP part1.mp4"
+    )
+
+
+def check_size(take: Take, clip: Clip) -> None:
+    """Check the size of a clip's frames against the camera's resolution."""
+    stated = take.camera.resolution
+    if clip.size == stated:
+        return
+    turned = (
+        "; the camera was held the other way, or its file says that it is to be turned: swap the two, and "
+        "give sensor_width_mm and the pose of the camera as it was held"
+    )
+    raise InputError(
+        f"{take.file}: camera.resolution is {list(stated)}; the clip {take.clip.name} is {list(clip.size)}, "
+        f"and they must be equal{turned if clip.size == stated[::-1] else ''}"
+    )
+
+
+def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
+    """Check the true number of a clip's frames against the take.
+
+    Raises:
+        InputError: There are too many, `frame_count` or the number of frames with keypoints differs, or a
+            keyframe or the camera's poses lie outside the clip.
+    """
+    path = take.file
+    if count > LONGEST_FRAMES:
+        raise _too_long(take.clip, take.fps)
+    if take.frame_count not in (None, count):
+        raise InputError(
+            f"{path}: frame_count is {take.frame_count}; "
+            f"{take.clip.name} holds {count} frames that can be decoded{_damage_hint(count, claimed)}"
+        )
+    if take.camera.is_moving and len(take.camera.matrix_world) < count:
+        poses = len(take.camera.matrix_world)
+        raise InputError(
+            f"{path}: camera.matrix_world_frames has {poses} poses; {take.clip.name} has {count} frames, "
+            "and each needs one"
+        )
+    for people in take.keypoints:
+        if abs(len(people.frames) - count) > tolerance(count):
+            raise InputError(
+                f"{people.file or people.source}: has keypoints of {len(people.frames)} frames; "
+                f"{take.clip.name} has {count}{_damage_hint(count, claimed)}; they must be those of this "
+                "clip, frame by frame"
+            )
+    for keyframe in take.keyframes:
+        if keyframe.index >= count:
+            raise InputError(
+                f"{take.clip}: keyframe {keyframe.index + take.frame_start} lies outside the clip, "
+                f"whose frames are {take.frame_start} to {take.frame_start + count - 1}"
+                f"{_damage_hint(count, claimed)}"
+            )
+
+
+def _damage_hint(count: int, claimed: int) -> str:
+    if count >= claimed:
+        return ""
+    return f"; it claims {claimed}, so it may be cut off or damaged: copy it again from where it was recorded"
+
+
+def check_in_front(take: Take) -> None:
+    """Check that the camera sees the keyframes."""
+    size = np.asarray(take.camera.resolution, dtype=np.float64)
+    in_picture = not take.keyframes
+    for keyframe in take.keyframes:
+        points = take.body.points(take.body.pose(keyframe.posture))
+        depth = take.camera.depth(points, keyframe.index)
+        if depth.min() <= 0.0:
+            name = take.body.skeleton.point_names[int(depth.argmin())]
+            raise InputError(
+                f"{take.file}: keyframe {keyframe.index + take.frame_start} has the point {name} "
+                f"{-depth.min():.2f} m behind the camera; the camera's pose in take.json must look "
+                "(along its local -Z) at the performer"
+            )
+        pixels, _ = take.camera.project(points, keyframe.index)
+        in_picture = in_picture or bool(((pixels >= 0.0) & (pixels <= size)).all(axis=-1).any())
+    if not in_picture:
+        raise InputError(
+            f"{take.file}: not one point of any keyframe lies in the camera's picture; the camera's pose, "
+            "its lens and the keyframes, all in meters in one world, must fit each other"
+        )
+
+
+NOTICEABLE_RATE = 0.02
+"""Difference of two frame rates that is worth a note, as a share of the take's."""
+LONGEST_INTERVAL = 2.5
+"""Time between two frames, as a multiple of the median, from which on frames seem to be missing."""
+VARIABLE_RATE = "the clip has a variable frame rate: keys lie at the true times, between whole frames"
+
+
+def clip_notes(take: Take, clip: Clip, reading: Reading) -> tuple[str, ...]:
+    """Sentences on what may be wrong with a clip that has been read."""
+    rate = rate_note(take, clip)
+    notes = [*clip.notes] if rate is None else [*clip.notes, rate]
+    tracks = reading.tracks
+    trimmed = isinstance(clip.source, VideoFile) and clip.source.is_trimmed
+    short = tracks.frame_count < clip.frame_count and not trimmed
+    if short and tracks.time_s[-1] * clip.fps < clip.frame_count - 1.5:
+        notes.append(
+            f"{clip.path.name} claims {clip.frame_count} frames, of which {tracks.frame_count} can "
+            "be decoded; it may be cut off or damaged"
+        )
+    return (*notes, *reading.frame_findings.notes(take.frame_start, clip.fps), *_gap_notes(take, tracks))
+
+
+def rate_note(take: Take, clip: Clip) -> str | None:
+    """A sentence where the clip's own frame rate differs from the take's; None where they agree."""
+    if abs(clip.fps - take.fps) <= NOTICEABLE_RATE * take.fps:
+        return None
+    return (
+        f"{take.file.name} says {take.fps:g} frames per second, {take.clip.name} says {clip.fps:g}; "
+        "check that it is the take's own clip"
+    )
+
+
+def _gap_notes(take: Take, tracks: RegionTracks) -> tuple[str, ...]:
+    """A sentence on the longest gap in the time stamps: there, frame numbers are no longer times."""
+    intervals = np.diff(tracks.time_s)
+    if len(intervals) < 2 or intervals.max() < LONGEST_INTERVAL * np.median(intervals):
+        return ()
+    before = int(intervals.argmax())
+    return (
+        f"{intervals[before]:.2f} s are missing after frame {before + take.frame_start}; check the keyframes "
+        "after it",
+    )
+
 
 FOLLOWING, READING = "Following the markers", "Reading the clip"
 EXPECTED_RADIUS_M = 0.45

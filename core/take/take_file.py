@@ -31,10 +31,10 @@ from ..markers.ignored_regions import (
     ignored_regions,
 )
 from ..markers.region_tracks import MarkerStyle
-from .clip_check import open_footage, picture_count
 from .conversion_settings import ConversionSettings
 from .description import KEYPOINT_FILE, Description, describe, keypoint_files
 from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
+from .read_footage import open_footage, picture_count
 from .reference import ReadArmature, reference_of_take
 from .take import Take, check_evidence, with_evidence
 

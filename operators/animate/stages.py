@@ -12,7 +12,7 @@ from mathutils import Vector
 from ...core.errors import InputError
 from ...core.files.fields import listed
 from ...core.progress import Job, Progress, stretch
-from ...core.take.character_settings import CharacterFile
+from ...core.take.conversion_settings import CharacterFile
 from ..actor.take_actor import size_actor
 from ..bridge.actor_bones import moved_by
 from ..bridge.camera_placement import still_camera
@@ -59,9 +59,9 @@ def animate(
     Returns:
         A line on each stage.
     """
+    from ...core.session.see import PictureTurnedError, require_upright
     from ...core.session.stages import reach
-    from ...core.session.upright import PictureTurnedError, require_upright
-    from ...core.video.turned import can_turn
+    from ...core.video.header import can_turn
     from ..reconstruct.live_preview import LivePreview
 
     take = active_take(scene)
@@ -110,7 +110,7 @@ def turned_copy(clip: Path, turn_deg: int) -> Path:
         InputError: It is no MP4 or QuickTime file.
     """
     from ...core.files.json_file import write_atomically
-    from ...core.video.turned import write_turned
+    from ...core.video.header import write_turned
 
     copy = clip.with_name(f"{clip.stem}.turned{turn_deg}{clip.suffix}")
     write_atomically(copy, lambda beside: write_turned(clip, turn_deg, beside))
@@ -121,7 +121,8 @@ def _clip_session(
     scene: bpy.types.Scene, take: bpy.types.PropertyGroup, character: str, file: str
 ) -> "Job[SceneSession]":
     """What is known of a clip: its performer's height, its keypoints if there are any, and about its lens."""
-    from ...core.session.lens import Lens, lens_of
+    from ...core.camera.camera import Lens
+    from ...core.session.described import lens_of
     from ..library.registry_files import named_libraries
 
     footage, matching = footage_of(scene, take), take.matching
@@ -155,7 +156,7 @@ def _clip_session(
 
 
 def _keep_keypoints(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession) -> str:
-    from ...core.session.made import Sight
+    from ...core.session.session import Sight
 
     inputs, take = made.session.inputs, take_by_identifier(scene, made.take)
     if not inputs.detects:
@@ -167,8 +168,8 @@ def _keep_keypoints(_operator: bpy.types.Operator, scene: bpy.types.Scene, made:
 
 def _keep_place(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession) -> str:
     """Put camera and actor where they are; a camera that nothing tells stays as it was put."""
-    from ...core.session.made import Placed
     from ...core.session.place import camera_in_words
+    from ...core.session.session import Placed
 
     placed, take = made.session[Placed], take_by_identifier(scene, made.take)
     camera, found = placed.seen.take.camera, placed.camera
@@ -188,7 +189,7 @@ def _keep_place(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: Sce
 
 def _keep_poses(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession) -> str:
     """Key the poses; a camera that was seen to turn turns from now on, and the floor is where they stand."""
-    from ...core.session.made import Posed
+    from ...core.session.session import Posed
     from ...core.take.steady_camera import followed_camera
     from ..bridge.result_files import set_pose
 

@@ -12,7 +12,7 @@ from bpy.types import ID, Action, Object, Scene
 from ...core.arrays import Image
 from ...core.errors import InputError
 from ...core.feet.natural_extremities import natural_extremities
-from ...core.report.stick_figure import thumbnail
+from ...core.report.canvas import thumbnail
 from ...core.take.motion import Motion
 from .actions import action_digest, assign_action, channelbag_for
 from .armature import bones_at_rest, build_armature

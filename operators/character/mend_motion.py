@@ -69,7 +69,7 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         from ...core.mend.mend_motion import MendOptions, mend_motion
-        from ...core.take.character_settings import CharacterFile
+        from ...core.take.conversion_settings import CharacterFile
         from ...core.take.reference import REFERENCE_ENDINGS, read_reference
         from ..actor.take_actor import leave_mode, select_alone
         from ..bridge.motions.import_motion import load_motion

@@ -198,7 +198,7 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
     side: Choice("Direction", "Which side is copied", items=SIDES)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        from ...core.retarget.maps.mirroring import mirrored_map
+        from ...core.retarget.maps.map_registry import mirrored_map
         from ..bridge.character.read_character import read_character
 
         character = active_character(context.scene)

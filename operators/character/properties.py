@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...core.take.character_settings import RetargetOptions
+from ...core.take.conversion_settings import RetargetOptions
 from ..bridge.actor_bones import is_actor, moves_an_actor
 from ..shell.declared_properties import declared_property
 from ..shell.fields import HIDDEN, Choice, Entries, Group, Integer, Switch, Text

@@ -7,7 +7,7 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import stretch
-from ...core.take.character_settings import RetargetOptions
+from ...core.take.conversion_settings import RetargetOptions
 from ..bridge.actions import assign_action
 from ..finish.bake_motion import mark_motion_asset
 from ..shell.base_operator import BaseOperator, idle, warn

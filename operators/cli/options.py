@@ -10,8 +10,15 @@ from typing import Any
 from ...core.files.kinds import Choice, Flag, Nullable, Number, Whole, relative_path
 from ...core.files.records import Record, declared, descriptions
 from ...core.prior.texts import EVERY_LIBRARY
-from ...core.take.character_settings import CharacterFile, CharacterSettings, LimbKeys, RetargetOptions
-from ...core.take.conversion_settings import SHOT, ConversionSettings, EvidenceKinds
+from ...core.take.conversion_settings import (
+    SHOT,
+    CharacterFile,
+    CharacterSettings,
+    ConversionSettings,
+    EvidenceKinds,
+    LimbKeys,
+    RetargetOptions,
+)
 from ...core.take.evidence import EVIDENCE
 from .console import Argument, UsageError, argument
 

@@ -40,7 +40,7 @@ def mark_motion_asset(
         InputError: The catalog is unusable, or the pictured Action is not the actor's.
         ConversionError: The catalog cannot be written.
     """
-    from ...core.report.stick_figure import thumbnail
+    from ...core.report.canvas import thumbnail
     from ..bridge.assets import AssetDetails, mark_asset
     from ..bridge.rig import shown_motion
 

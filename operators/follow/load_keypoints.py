@@ -185,7 +185,7 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
         from ...core.detect.closer_look import CloserLook
         from ...core.detect.pose_network import PoseNetwork
         from ...core.detect.pose_tracking import find_people
-        from ...core.take.clip_check import open_footage
+        from ...core.take.read_footage import open_footage
 
         take = active_take(scene)
         identifier, source = take.identifier, footage_of(scene, take)

@@ -16,7 +16,7 @@ from ...core.body.posture import Posture, headings_rad, yaw_rotation
 from ...core.markers.reading import Reading
 from ...core.poses.found_poses import FoundPoses
 from ...core.prior.keyframes import Keyframe
-from ...core.session.made import Placed, Posed
+from ...core.session.session import Placed, Posed
 from ..bridge.actions import assign_action
 from ..bridge.footage_camera import set_still_pose
 from ..bridge.keyframes import candidate_posture, remove_keyframes, take_over, write_matched

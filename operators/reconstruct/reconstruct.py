@@ -66,7 +66,7 @@ def judge(made: "SceneSession") -> "Job[Review]":
     """The review of a session's motion."""
     from ...core.estimate.reconstruct import Reconstruction
     from ...core.review.review import review
-    from ...core.session.made import Posed
+    from ...core.session.session import Posed
 
     return review(made.session[Posed].seen.take, made.session[Reconstruction], made.frames)
 

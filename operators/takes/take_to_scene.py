@@ -8,9 +8,9 @@ import bpy
 from ...core.arrays import Array
 from ...core.markers.reading import clip_times
 from ...core.progress import run
-from ...core.take.clip_check import check_frame_count, open_clip, rate_note
 from ...core.take.description import KEYFRAME_FILE, describe
 from ...core.take.evidence import EVIDENCE
+from ...core.take.read_footage import check_frame_count, open_clip, rate_note
 from ...core.take.take import Take
 from ...core.take.take_file import read_described
 from ..actor.take_actor import new_actor

@@ -15,8 +15,7 @@ import bpy
 import pytest
 from keymark.core.prior.library import library_digest, read_library
 from keymark.core.shoot.discovery import take_path
-from keymark.core.take.conversion_digest import conversion_digest
-from keymark.core.take.conversion_record import is_up_to_date, read_record
+from keymark.core.take.conversion_record import conversion_digest, is_up_to_date, read_record
 from keymark.core.take.description import describe, effective_settings
 from keymark.operators.shell.take_state import TakeState
 

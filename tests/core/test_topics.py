@@ -104,11 +104,11 @@ def test_no_topic_imports_the_private_parts_of_another(repository: Path) -> None
             "operators.takes.open_take",
             "def late():\n    from ..follow.marker_panel import KEYMARK_PT_markers",
         ),
-        ("core.take.take", "from .clip_check import _turned"),
+        ("core.take.take", "from .read_footage import _turned"),
     ],
 )
 def test_a_trespass_is_found(name: str, source: str) -> None:
-    known = {"operators.follow", "operators.follow.marker_panel", "core.take.clip_check"}
+    known = {"operators.follow", "operators.follow.marker_panel", "core.take.read_footage"}
     assert len(list(trespasses(name, False, source, known, {"operators.follow.marker_panel"}))) == 1
 
 

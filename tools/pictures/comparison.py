@@ -10,8 +10,7 @@ from keymark.core.api import reconstruct
 from keymark.core.arrays import Image
 from keymark.core.camera.camera import Camera
 from keymark.core.progress import run
-from keymark.core.report.canvas import INK, Canvas
-from keymark.core.report.stick_figure import draw_figure, stick_figure
+from keymark.core.report.canvas import INK, Canvas, draw_figure, stick_figure
 from keymark.core.take.conversion_settings import METHODS
 from keymark.core.take.motion import Motion
 from keymark.core.take.take_file import read_take

@@ -10,9 +10,18 @@ import numpy as np
 from keymark.core.api import reconstruct
 from keymark.core.arrays import Array, Image
 from keymark.core.progress import run
-from keymark.core.report.canvas import INK, WHITE, Canvas, Color, View, view_axes, write_png
+from keymark.core.report.canvas import (
+    INK,
+    WHITE,
+    Canvas,
+    Color,
+    View,
+    draw_figure,
+    stick_figure,
+    view_axes,
+    write_png,
+)
 from keymark.core.report.mannequin import TILT_RAD, backdrop, draw_mannequin, mannequin
-from keymark.core.report.stick_figure import draw_figure, stick_figure
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.video.clip import Clip

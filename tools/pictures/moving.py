@@ -12,9 +12,8 @@ from keymark.core.markers.color_model import ColorModel
 from keymark.core.markers.marker_check import check_markers
 from keymark.core.markers.regions import color_masks, mask_outlines
 from keymark.core.progress import run
-from keymark.core.report.canvas import WHITE, Canvas, Color
+from keymark.core.report.canvas import WHITE, Canvas, Color, StickFigure, draw_figure, stick_figure
 from keymark.core.report.pictures import paler
-from keymark.core.report.stick_figure import StickFigure, draw_figure, stick_figure
 from keymark.core.review.review import Review, review
 from keymark.core.take.take import Take
 from keymark.core.video.clip import Clip, sample_clip

@@ -18,8 +18,12 @@ from keymark.core.files.records import Record, declared, descriptions
 from keymark.core.markers.ignored_regions import RegionFields
 from keymark.core.prior.library import LibraryMotion, TravelKind
 from keymark.core.retarget.maps.character_map import PropertyValue, Turn
-from keymark.core.take.character_settings import CharacterSettings
-from keymark.core.take.conversion_settings import ConversionSettings, EvidenceKinds, KeypointFiles
+from keymark.core.take.conversion_settings import (
+    CharacterSettings,
+    ConversionSettings,
+    EvidenceKinds,
+    KeypointFiles,
+)
 from keymark.core.take.evidence import DEPTH_HINTS, EVIDENCE, KEYPOINTS
 from keymark.core.take.keyframe_file import KeyframeRow
 from keymark.core.take.motion import Diagnostic

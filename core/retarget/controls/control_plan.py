@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from ...take.character_settings import LimbKeys, RetargetOptions, RootMotion
+from ...take.conversion_settings import LimbKeys, RetargetOptions, RootMotion
 from ..character import FINGER_ROLES, JOINTS, LIMBS, ROLES, Character
 from ..maps.character_map import CharacterMap
 

@@ -17,11 +17,9 @@ from ...arrays import Array
 from ...keys.key_reduction import reduce_keys
 from ...keys.rig import NO_TURN, Rig, RigBone
 from ...progress import Part, scaled
-from .control_channels import Control, ControlChannels, control_channels
-from .control_motion import ChannelValues, ControlMotion, KeyedControl
+from .control_channels import NOTHING, Control, ControlChannels, control_channels
+from .control_motion import ChannelValues, ControlMotion, KeyedControl, leg_on_body
 from .control_plan import ControlKind
-from .control_spaces import NOTHING
-from .control_targets import leg_on_body
 from .point_tolerances import CARRIED_SHARE, SWITCH_M, HeldPoint, PointKind, ToleranceRules
 
 AFTER_BODY = (ControlKind.GOAL, ControlKind.TOE, ControlKind.POLE, ControlKind.FINGER)

@@ -1,4 +1,4 @@
-"""Hands: where they belong on another body, by what the performer's hands are near.
+"""Hands: where they belong on another body, by what the performer's hands are near, and how fingers bend.
 
 The directions of the arms alone leave hands centimeters off, since shoulders are wider or narrower and arms
 longer or shorter. A hand near the own body, the other hand or the floor is brought to where it belongs, by
@@ -11,9 +11,11 @@ import numpy as np
 
 from ...arrays import Array
 from ...body import rotations
+from ...body.fingers import flexion_axis, flexions, palm_axes
 from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
-from ...body.skeleton import SIDES
+from ...body.rotations import hinge
+from ...body.skeleton import FINGERS, SIDES
 from ...feet.contacts import speeds
 from ...feet.fading import ease, smoothed
 from ...feet.ground import Ground
@@ -21,8 +23,7 @@ from ...numerics.vectors import unit
 from ..character import LONG_BONES
 from ..character_motion import HandGoal
 from .body_frames import distances_m, in_segment, part_shapes
-from .rest_body import RestBody
-from .stage import Stage
+from .rest_body import RestBody, Stage
 from .two_bone import LimbPose, reach_for, stretched_m
 
 NEAR_M = (0.03, 0.065)
@@ -169,3 +170,43 @@ def _reachable(arm: LimbPose, goal: Array) -> Array:
     wanted_m = np.linalg.norm(way, axis=-1)
     reached_m = stretched_m(wanted_m, arm.extension_m, sum(arm.lengths_m))
     return np.asarray(arm.start + unit(way) * reached_m[:, None])
+
+
+def finger_bends(body: RestBody, wanted: Mapping[str, Array]) -> dict[int, Array]:
+    """(F, 3, 3) by index of bone: its turn from rest in the frame of what carries it.
+
+    `wanted` are flexions (F, 3) of the joints by role. Fingers of a hand whose palm's direction at rest is
+    not known stay as they are.
+    """
+    found: dict[int, Array] = {}
+    for side in SIDES:
+        palm = _palm(body, side)
+        for finger in FINGERS:
+            role = f"{finger}.{side}"
+            if palm is None or role not in wanted or not body.is_moved(role):
+                continue
+            bones = range(body.first[role], body.last[role] + 1)
+            joints = [body.joint(f"hand.{side}"), *(body.bones[bone].head for bone in bones)]
+            tip = body.tip(role)
+            joints.append(2.0 * joints[-1] - joints[-2] if tip is None else tip)
+            ways = unit(np.diff(joints, axis=0))
+            axis = flexion_axis(finger, ways[1], palm)
+            own = wanted[role]
+            if len(bones) < own.shape[1]:  # the last one bends for those that are missing
+                last = own[:, len(bones) - 1 :].sum(axis=1, keepdims=True)
+                own = np.concatenate([own[:, : len(bones) - 1], last], axis=1)
+            bent = own - flexions(ways, axis)
+            found |= {bone: hinge(axis, bent[:, number]) for number, bone in enumerate(bones)}
+    return found
+
+
+def _palm(body: RestBody, side: str) -> Array | None:
+    """(3, 3) axes of a hand at rest, by where its fingers begin; None of fewer than two."""
+    starts = {
+        finger: body.joint(f"{finger}.{side}") for finger in FINGERS if f"{finger}.{side}" in body.first
+    }
+    others = [start for finger, start in starts.items() if finger != FINGERS[0]]
+    if not others or len(starts) < 2:
+        return None
+    first, last = (others[0], others[-1]) if len(others) > 1 else (starts[FINGERS[0]], others[0])
+    return palm_axes(np.mean(others, axis=0) - body.joint(f"hand.{side}"), first - last, side)

@@ -12,17 +12,23 @@ from ...body.posture import UP, turn_headings_rad, yaw_rotation
 from ...body.skeleton import SIDES
 from ...feet.fading import ease, smooth_above, smoothed
 from ...progress import Job, Progress
-from ...take.character_settings import Placement, RetargetOptions, RootMotion
+from ...take.conversion_settings import Placement, RetargetOptions, RootMotion
 from ..character import FINGER_ROLES, JOINTS, LIMBS, Character, Similarity
 from ..character_motion import CharacterMotion, HandGoal
 from ..maps.character_map import CharacterMap
 from .body_frames import bone_turns, joint_places, rest_alignment
-from .feet import FootPath, plan_foot, toe_bends
-from .fingers import finger_bends
-from .foot_shape import FootShape, foot_shape, performer_ground, rest_floor_m, sole_points
-from .hands import above_floor, floor_goals, hand_goals, reach
-from .rest_body import RestBody, rest_notes
-from .stage import Stage, find_stage
+from .feet import (
+    FootPath,
+    FootShape,
+    foot_shape,
+    performer_ground,
+    plan_foot,
+    rest_floor_m,
+    sole_points,
+    toe_bends,
+)
+from .hands import above_floor, finger_bends, floor_goals, hand_goals, reach
+from .rest_body import RestBody, Stage, find_stage, rest_notes
 from .two_bone import ARM_SOFT, LEG_SOFT, STRAIGHTEST, LimbPose, reach_for
 
 HINGES = {

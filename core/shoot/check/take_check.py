@@ -10,16 +10,21 @@ from ...files.fields import PLACED, Fields, child_location
 from ...markers.marker_check import MarkerReadout
 from ...poses.clip_input import check_followed
 from ...session.described import described, is_detected
-from ...take.character_settings import CharacterSettings
-from ...take.clip_check import open_footage
-from ...take.conversion_settings import METHODS, NO_SETTINGS, ConversionSettings
+from ...take.conversion_settings import METHODS, NO_SETTINGS, CharacterSettings, ConversionSettings
 from ...take.description import Description, effective_settings
 from ...take.evidence import CONTOURS, KEYPOINTS, MARKERS, in_order
+from ...take.read_footage import open_footage
 from ...take.take import Take, evidence_of
 from ...take.take_file import read_described
 from ..discovery import ShootTake
-from .evidence_check import Findings, KeypointReadout, check_keyframes, check_keypoints
-from .footage_check import check_footage, count_frames
+from .evidence_check import (
+    Findings,
+    KeypointReadout,
+    check_footage,
+    check_keyframes,
+    check_keypoints,
+    count_frames,
+)
 
 _CAMERA = {
     "lens_mm": "the focal length in millimeters",

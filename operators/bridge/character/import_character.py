@@ -13,7 +13,7 @@ from bpy.types import Action, Object, Scene, Text
 from ....core.errors import InputError, shown
 from ....core.files.fields import listed
 from ....core.files.paths import real_path, regular_file_size
-from ....core.take.character_settings import CharacterFile
+from ....core.take.conversion_settings import CharacterFile
 from ..actions import curve_digest
 from ..blend_files import check_blend, one_line, showing_scene, write_blend
 from ..export_formats import FORMATS, export_motion

@@ -10,19 +10,21 @@ from mathutils import Matrix
 
 from ....core.arrays import Array
 from ....core.body.rotations import exponential
-from ....core.retarget.controls.control_channels import ALWAYS_MOVED, Control, ordered_controls
-from ....core.retarget.controls.control_plan import IN_FK, ControlKind, PlannedControl, limb_bones
-from ....core.retarget.controls.control_spaces import (
+from ....core.retarget.controls.control_channels import (
+    ALWAYS_MOVED,
     NOTHING,
     RIGID,
+    Control,
     ControlSpace,
     PosedControls,
     chosen,
     constant_turn,
     find_spaces,
+    ordered_controls,
     rigid_offset,
 )
-from ....core.retarget.controls.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
+from ....core.retarget.controls.control_motion import SHORTEST_POLE, PoleSetting, pole_offset
+from ....core.retarget.controls.control_plan import IN_FK, ControlKind, PlannedControl, limb_bones
 from ....core.retarget.maps.character_map import CharacterMap
 from .held_controls import (
     BONE_PATH,

@@ -13,18 +13,17 @@ from ....core.feet.ground import IN_FLOOR_M, floor_notes
 from ....core.progress import Job, Progress, run, stretch, within
 from ....core.retarget.character import FINGER_ROLES, Character
 from ....core.retarget.character_motion import CharacterMotion, find_stance
-from ....core.retarget.controls.control_motion import ControlMotion, dense_controls
+from ....core.retarget.controls.control_motion import ControlMotion, dense_controls, on_controls
 from ....core.retarget.controls.control_plan import ControlKind, limb_keys, planned_controls
-from ....core.retarget.controls.control_targets import on_controls
 from ....core.retarget.controls.point_tolerances import ToleranceRules
 from ....core.retarget.controls.reduction import reduce_controls
 from ....core.retarget.maps.character_map import CharacterMap, Setting, Switch
 from ....core.retarget.maps.map_registry import check_map
 from ....core.retarget.quality import Measured, Quality, warnings_of
-from ....core.retarget.recognition.facing import find_root
+from ....core.retarget.recognition.recognize import find_root
 from ....core.retarget.solve.feet import floor_lifts
 from ....core.retarget.solve.solve_motion import solve_motion
-from ....core.take.character_settings import LimbKeys, Placement, RetargetOptions
+from ....core.take.conversion_settings import LimbKeys, Placement, RetargetOptions
 from ..actions import assign_action
 from ..actor_bones import object_space
 from ..rotation_modes import rotation_values

@@ -19,7 +19,7 @@ from ....core.retarget.maps.map_registry import ChosenMap
 from ....core.retarget.mended_armature import ArmaturePoints
 from ....core.retarget.solve.rest_body import RestBody
 from ....core.take.bvh_file import FASTEST, SLOWEST, read_bvh
-from ....core.take.character_settings import CharacterFile
+from ....core.take.conversion_settings import CharacterFile
 from ....core.take.named_points import chosen_subject
 from ....core.take.reference import ARMATURE_ENDINGS, ReferenceMotion
 from ..actions import assign_action, curves_of, existing_channelbag

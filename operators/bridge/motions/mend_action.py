@@ -17,7 +17,7 @@ from ....core.mend.mend_motion import PLACE_M, Mended, MendOptions, mend_motion
 from ....core.progress import Job, Progress, run, stretch, within
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.mended_armature import ArmaturePoints, Poses, mended_poses
-from ....core.retarget.solve.foot_shape import rest_floor_m
+from ....core.retarget.solve.feet import rest_floor_m
 from ....core.retarget.solve.rest_body import RestBody
 from ....core.take.motion import Motion
 from ..actions import assign_action, channelbag_for

@@ -14,13 +14,13 @@ from ....core.errors import InputError
 from ....core.mend.mend_motion import MOST_FRAMES
 from ....core.progress import Part, run
 from ....core.retarget.character import ARM, LEG, Similarity
-from ....core.retarget.controls.control_spaces import unscaled
+from ....core.retarget.controls.control_channels import unscaled
 from ....core.retarget.maps.character_map import CharacterMap, RoleBones
 from ....core.retarget.maps.map_registry import ChosenMap, choose_map
 from ....core.retarget.mended_armature import ArmaturePoints, Poses
 from ....core.retarget.retarget_record import RECOGNIZED
 from ....core.retarget.solve.rest_body import RestBody
-from ....core.take.character_settings import AUTO
+from ....core.take.conversion_settings import AUTO
 from ..actions import action_of, curves_of
 from ..actor_bones import evaluated, is_actor, joint_places, object_space
 from ..character.read_character import read_character

@@ -8,11 +8,11 @@ from ....core.errors import InputError
 from ....core.files.paths import absolute_path
 from ....core.prior.texts import EVERY_LIBRARY
 from ....core.session.result import Conversion
+from ....core.session.see import PictureTurnedError, require_upright
 from ....core.session.session import Keep, keep_nothing
-from ....core.session.upright import PictureTurnedError, require_upright
 from ....core.take.description import ASSUMED, describe
 from ....core.take.take_file import USUAL_HEIGHT_M, check_height
-from ....core.video.turned import TURNS, can_turn, write_turned
+from ....core.video.header import TURNS, can_turn, write_turned
 from ..console import Console, UsageError, argument, command
 from ..conversion.character_result import FORMAT, check_exporters, export_formats
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take

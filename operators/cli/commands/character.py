@@ -5,7 +5,7 @@ import argparse
 from ....core.retarget.character import FINGER_ROLES, ROLES
 from ....core.retarget.maps.character_map import CharacterMap, write_character_map
 from ....core.retarget.retarget_record import GIVEN, SAVED
-from ....core.take.character_settings import CharacterFile
+from ....core.take.conversion_settings import CharacterFile
 from ..console import Console, argument, command, refuse_existing, require_blender, terminal_columns, wrapped
 from ..conversion.character_result import opened_character
 from ..options import CHARACTER_HELP, MAP, REPLACE_HELP, output

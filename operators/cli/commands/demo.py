@@ -13,10 +13,9 @@ from ....core.estimate.reconstruct import reconstruct
 from ....core.prior.texts import EVERY_LIBRARY
 from ....core.progress import run
 from ....core.review.score import Score, read_truth, score_points
-from ....core.session.made import Posed
-from ....core.take.character_settings import CharacterSettings
+from ....core.session.session import Posed
 from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, REPORT
-from ....core.take.conversion_settings import ConversionSettings
+from ....core.take.conversion_settings import CharacterSettings, ConversionSettings
 from ....core.take.description import describe
 from ....core.take.evidence import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
 from ....core.take.examples import AEROBIC, GREETING, POSED_BY_HAND, example_folder

@@ -18,8 +18,8 @@ from ....core.files.fields import listed
 from ....core.files.kinds import read_field
 from ....core.progress import run, stretch
 from ....core.shoot.discovery import VIDEOS, ShootTake, find_takes, open_shoot
-from ....core.take.clip_check import open_footage
 from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, find_shoot_files, sidecar_file
+from ....core.take.read_footage import open_footage
 from ....core.take.take_file import FRAME_RATE, FRAME_START
 from ....core.video.image_sequence import find_images
 from ..console import Console, UsageError, argument, command, refuse_existing

@@ -12,9 +12,9 @@ from ....core.mend.mend_motion import Mended, MendOptions, mend_motion
 from ....core.progress import run
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.session.result import AS_MADE, changed_files, kept_note, write_made_digests
-from ....core.take.character_settings import CharacterFile
 from ....core.take.conversion_record import BVH, CHARACTER_BLEND, CHARACTER_PICTURE, MOTION
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
+from ....core.take.conversion_settings import CharacterFile
 from ....core.take.motion import write_motion
 from ....core.take.reference import ARMATURE_ENDINGS, REFERENCE_ENDINGS, read_reference
 from ..blender_silence import blender_silence

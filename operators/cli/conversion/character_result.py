@@ -25,8 +25,8 @@ from ....core.retarget.maps.map_registry import ChosenMap, choose_map, map_diges
 from ....core.retarget.quality import warnings_of
 from ....core.retarget.retarget_record import RECORD_FILE, RetargetRecord, UsedCharacter, UsedMap
 from ....core.shoot.discovery import Shoot
-from ....core.take.character_settings import CharacterFile, CharacterSettings
 from ....core.take.conversion_record import CHARACTER_BLEND, CHARACTER_PICTURE
+from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.motion import Motion
 from ....core.take.presence import named_limbs
 from ..blender_silence import blender_silence

@@ -14,7 +14,6 @@ from ....core.report.pictures import performer_contours, write_pictures
 from ....core.retarget.maps.map_registry import map_digests
 from ....core.retarget.retarget_record import RetargetRecord
 from ....core.review.frame_evidence import compare_keypoints
-from ....core.session.made import Posed
 from ....core.session.result import (
     Conversion,
     finish_result,
@@ -24,9 +23,15 @@ from ....core.session.result import (
     write_motion_files,
     write_take_files,
 )
-from ....core.session.session import Keep, Session, keep_nothing
-from ....core.take.conversion_digest import conversion_digest
-from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, RECORD_FILE, REPORT, is_up_to_date
+from ....core.session.session import Keep, Posed, Session, keep_nothing
+from ....core.take.conversion_record import (
+    BLEND,
+    CHARACTER_BLEND,
+    RECORD_FILE,
+    REPORT,
+    conversion_digest,
+    is_up_to_date,
+)
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description
 from ....core.take.reference import ReferenceMotion

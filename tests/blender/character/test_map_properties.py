@@ -8,7 +8,7 @@ from _characters import full_map
 from keymark.core.retarget.character import LIMBS, ROLES
 from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones, read_character_map
 from keymark.core.retarget.maps.presets import SHIPPED, read_preset
-from keymark.core.take.character_settings import RetargetOptions
+from keymark.core.take.conversion_settings import RetargetOptions
 from keymark.operators.character.map_properties import map_of, show_map
 from keymark.operators.character.retarget import options_of
 from keymark.operators.shell.takes import active_take

@@ -237,7 +237,7 @@ SIZES = [(1080, 1920), (2160, 3840), (640, 480), (320, 240), (1920, 1080), (1440
 
 def test_a_phone_held_upright_sees_as_much_as_its_photographs_less_what_steadies() -> None:
     guess = guess_lens((1080, 1920))
-    assert "phone" in guess.reason
+    assert "phone" in guess.source
     long_side_view = np.degrees(2.0 * np.arctan(18.0 / guess.lens_mm))
     photograph_view = np.degrees(2.0 * np.arctan(0.8 * 43.267 / 2.0 / 26.0))
     assert 60.0 < long_side_view < photograph_view
@@ -246,7 +246,7 @@ def test_a_phone_held_upright_sees_as_much_as_its_photographs_less_what_steadies
 
 def test_a_webcams_height_is_that_of_its_wide_picture() -> None:
     guess = guess_lens((640, 480))
-    assert "webcam" in guess.reason
+    assert "webcam" in guess.source
     focal_px = guess.lens_mm / guess.sensor_width_mm * 640
     wide_diagonal_px = np.hypot(480 * 16 / 9, 480)
     assert np.degrees(2 * np.arctan(wide_diagonal_px / 2 / focal_px)) == pytest.approx(68.0, abs=0.2)

@@ -22,9 +22,9 @@ from _synthetic_take import (
 from keymark.core.detect.keypoint_file import read_keypoints
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.prior.library import write_library
-from keymark.core.session import read
+from keymark.core.session import see
 from keymark.core.shoot.discovery import find_takes
-from keymark.core.take import clip_check
+from keymark.core.take import read_footage
 from keymark.core.take.motion import read_motion
 from keymark.core.take.take_file import read_take
 from keymark.operators.cli.conversion import convert_take
@@ -102,8 +102,8 @@ def test_without_keypoints_they_are_detected(
     found = read_keypoints(file, FRAMES, (160, 120), 30.0, 1)
     file.unlink()
 
-    monkeypatch.setattr(read, "PoseNetwork", SimpleNamespace)
-    monkeypatch.setattr(read, "PeopleFinder", lambda *_given: KnownPeople(found))
+    monkeypatch.setattr(see, "PoseNetwork", SimpleNamespace)
+    monkeypatch.setattr(see, "PeopleFinder", lambda *_given: KnownPeople(found))
     assert animate(clip, tmp_path / "out", "--height", 1.75, "--quiet") == 0
     fields = json.loads((tmp_path / "out" / "take.json").read_text(encoding="utf-8"))
     assert fields["//found"][0] == f"Keypoints: somebody in {FRAMES} of {FRAMES} frames, by drawn"
@@ -129,8 +129,8 @@ def test_a_height_that_is_none_is_refused(
 def damaged(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     model = folder / "model.onnx"
     model.write_bytes(b"ONNX")
-    network = read.PoseNetwork
-    monkeypatch.setattr(read, "PoseNetwork", lambda: network(model))
+    network = see.PoseNetwork
+    monkeypatch.setattr(see, "PoseNetwork", lambda: network(model))
     write_frames(folder / "clip.mp4", list(drawn_frames(true_postures(5))))
     return folder / "clip.mp4"
 
@@ -150,8 +150,8 @@ def of_one_frame(folder: Path, _monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def too_long(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     write_frames(folder / "clip.mp4", list(drawn_frames(true_postures(8))))
-    monkeypatch.setattr(clip_check, "LONGEST_FRAMES", 6)
-    monkeypatch.setattr(read, "PoseNetwork", lambda: pytest.fail("the network was read"))
+    monkeypatch.setattr(read_footage, "LONGEST_FRAMES", 6)
+    monkeypatch.setattr(see, "PoseNetwork", lambda: pytest.fail("the network was read"))
     return folder / "clip.mp4"
 
 

@@ -18,7 +18,7 @@ from keymark.core.detect.keypoints import People, SeenPeople
 from keymark.core.errors import ConversionError
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.review.score import read_truth, score_points
-from keymark.core.session import read
+from keymark.core.session import see
 from keymark.core.take import examples
 from keymark.core.take.motion import read_motion
 from keymark.core.take.take_file import read_take
@@ -61,8 +61,8 @@ def bare_clip(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
     posture, metadata = true_postures(24), LibraryMetadata("Swaying", "Nobody")
     library = learn_library(BODY, posture, np.arange(24) / 30.0, metadata)
-    monkeypatch.setattr(read, "PoseNetwork", SimpleNamespace)
-    monkeypatch.setattr(read, "PeopleFinder", lambda *_given: KnownPeople(people))
+    monkeypatch.setattr(see, "PoseNetwork", SimpleNamespace)
+    monkeypatch.setattr(see, "PeopleFinder", lambda *_given: KnownPeople(people))
     monkeypatch.setattr(convert_take, "requested_libraries", lambda _name: (library,))
 
 

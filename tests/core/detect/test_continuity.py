@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from keymark.core.arrays import Array
-from keymark.core.detect.continuity import same_person
+from keymark.core.detect.performer import same_person
 
 FPS, FRAMES, POINTS = 30.0, 90, 17
 SHAPE = np.random.default_rng(5).uniform([-25.0, -60.0], [25.0, 60.0], (POINTS, 2))

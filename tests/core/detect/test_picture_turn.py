@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from keymark.core.detect.picture_turn import picture_turn
 from keymark.core.detect.pose_network import MODEL, PoseNetwork
+from keymark.core.detect.standing_moments import picture_turn
 from keymark.core.errors import InputError
 from keymark.core.video.clip import Clip
-from keymark.core.video.turned import TURNS, can_turn, write_turned
+from keymark.core.video.header import TURNS, can_turn, write_turned
 
 
 @pytest.fixture

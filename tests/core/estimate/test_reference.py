@@ -30,8 +30,8 @@ from keymark.core.markers.reading import Reading
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import run
+from keymark.core.take.presence import seen_take
 from keymark.core.take.reference import ReferenceMotion
-from keymark.core.take.seen_take import seen_take
 from keymark.core.take.take import Take
 from scipy.spatial.transform import Rotation
 

@@ -6,7 +6,7 @@ from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.body.posture import Posture
 from keymark.core.feet.contacts import Contact
 from keymark.core.feet.ground import CHANGE_S, Ground, _under
-from keymark.core.retarget.solve.foot_shape import performer_ground
+from keymark.core.retarget.solve.feet import performer_ground
 
 
 def raised(*heights_m: float) -> SegmentMotion:

@@ -24,7 +24,6 @@ from keymark.core.retarget.character import LIMBS, ROLES, SOURCES
 from keymark.core.retarget.maps import character_map
 from keymark.core.shoot import discovery
 from keymark.core.take import (
-    character_settings,
     conversion_record,
     conversion_settings,
     description,
@@ -196,10 +195,10 @@ def test_characters_have_every_option_and_field_and_an_example(tmp_path: Path) -
         options = [action.option_strings for action in parser._actions if action.option_strings]
         known = ("--help", "--replace")
         assert [names for names in options if not any(name in text or name in known for name in names)] == []
-    assert [end for end in character_settings.CHARACTER_ENDINGS if f"`{end}`" not in text] == []
+    assert [end for end in conversion_settings.CHARACTER_ENDINGS if f"`{end}`" not in text] == []
     section = text.split("## In a shoot")[1]
-    assert [name for name in character_settings.CharacterSettings.ORDER if f"`{name}`" not in section] == []
-    assert f"{character_settings.RetargetOptions().tolerance_mm:g} by default" in section
+    assert [name for name in conversion_settings.CharacterSettings.ORDER if f"`{name}`" not in section] == []
+    assert f"{conversion_settings.RetargetOptions().tolerance_mm:g} by default" in section
     example(section, tmp_path, "shoot.json")
     said = description.describe(write_synthetic_take(tmp_path / "take", 3)).settings.character
     assert said is not None and said.object == "rig" and said.options.tolerance_mm == 2.0

@@ -3,9 +3,16 @@
 import numpy as np
 import pytest
 from _synthetic_take import COLORS, drawn_frames, true_postures
-from keymark.core.markers.appearance import NO_PART, Appearance, learn_appearance
+from keymark.core.markers.appearance import (
+    BANDS,
+    NO_PART,
+    Appearance,
+    BandColors,
+    band_cells,
+    learn_appearance,
+    learn_band_colors,
+)
 from keymark.core.markers.color_model import chromaticity, strong_colors
-from keymark.core.markers.surface_colors import BANDS, BandColors, band_cells, learn_band_colors
 
 PLACE = np.kron(np.random.default_rng(1).uniform(60, 220, size=(6, 8, 3)), np.ones((10, 10, 1)))
 RED = np.array([40.0, 40.0, 210.0])

@@ -21,8 +21,8 @@ from keymark.core.retarget.controls.point_tolerances import ToleranceRules
 from keymark.core.retarget.controls.reduction import reduce_controls
 from keymark.core.retarget.quality import direction_errors_deg
 from keymark.core.retarget.recognition.recognize import recognize
-from keymark.core.retarget.solve.foot_shape import performer_ground
-from keymark.core.take.character_settings import LimbKeys, RetargetOptions
+from keymark.core.retarget.solve.feet import performer_ground
+from keymark.core.take.conversion_settings import LimbKeys, RetargetOptions
 
 FRAMES = 60
 UP = np.array([0.0, 0.0, 1.0])

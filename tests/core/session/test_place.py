@@ -9,14 +9,13 @@ import pytest
 from _synthetic_take import BODY, SIZE, write_json
 from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.posture import Posture
-from keymark.core.camera.camera import Camera, lens_of_equivalent
+from keymark.core.camera.camera import Camera, Lens, lens_of_equivalent
 from keymark.core.camera.camera_fields import CameraPlacement
 from keymark.core.detect.keypoints import Keypoints
 from keymark.core.detect.standing_moments import standing_keypoints, turned_note
-from keymark.core.session.described import is_unplaced
-from keymark.core.session.lens import Lens, lens_of
-from keymark.core.session.made import FoundCamera
+from keymark.core.session.described import is_unplaced, lens_of
 from keymark.core.session.place import camera_in_words, find_camera
+from keymark.core.session.session import FoundCamera
 from keymark.core.take.conversion_settings import ConversionSettings
 from keymark.core.take.description import describe, keypoints_beside
 from keymark.core.video.header import FOCAL_LENGTH, stated_lens_mm

@@ -18,9 +18,8 @@ from keymark.core.estimate.reconstruct import Reconstruction
 from keymark.core.markers.reading import Reading
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.progress import Progress
-from keymark.core.session import read, see
-from keymark.core.session.made import Placed, Sight
-from keymark.core.session.session import Inputs, Session, Stage, advance
+from keymark.core.session import see
+from keymark.core.session.session import Inputs, Placed, Session, Sight, Stage, advance
 from keymark.core.session.stages import STAGES, reach
 from keymark.core.take.motion import read_motion
 from keymark.core.take.take_file import read_take
@@ -67,9 +66,8 @@ def test_the_network_looks_while_the_clip_is_read_or_by_itself_where_that_is_kno
         yield found.pop()
         return people
 
-    monkeypatch.setattr(read, "PoseNetwork", SimpleNamespace)
     monkeypatch.setattr(see, "PoseNetwork", SimpleNamespace)
-    monkeypatch.setattr(read, "PeopleFinder", lambda *_given: finder)
+    monkeypatch.setattr(see, "PeopleFinder", lambda *_given: finder)
     monkeypatch.setattr(see, "find_people", find)
     asked = replace(inputs, detects=True, kept=known[Reading] if is_kept else None)
     assert run(reach(Session(asked), "see"))[Sight].people == (people,)

@@ -8,10 +8,9 @@ import pytest
 from keymark.core.detect.pose_network import MODEL
 from keymark.core.progress import run
 from keymark.core.session.described import described
-from keymark.core.session.made import Sight
-from keymark.core.session.session import Session
+from keymark.core.session.see import PictureTurnedError, require_upright
+from keymark.core.session.session import Session, Sight
 from keymark.core.session.stages import reach
-from keymark.core.session.upright import PictureTurnedError, require_upright
 from keymark.core.take.description import describe
 from keymark.core.take.performer_keypoints import people_of, performer_keypoints
 

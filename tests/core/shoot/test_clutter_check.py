@@ -8,11 +8,9 @@ import numpy as np
 import pytest
 from _synthetic_take import PANEL, SLEEVE, panelled_take
 from keymark.core.progress import run
-from keymark.core.shoot.check.evidence_check import Findings
-from keymark.core.shoot.check.footage_check import check_footage
+from keymark.core.shoot.check.evidence_check import Findings, check_footage
 from keymark.core.shoot.check.take_check import TakeCheck, estimate_cost, flag_outliers
-from keymark.core.take.clip_check import open_clip
-from keymark.core.take.read_footage import read_footage
+from keymark.core.take.read_footage import open_clip, read_footage
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 

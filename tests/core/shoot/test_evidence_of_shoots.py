@@ -9,7 +9,7 @@ import pytest
 from _synthetic_take import edit_json, true_postures, write_json, write_keypoints, write_shoot
 from keymark.core.errors import InputError
 from keymark.core.shoot.discovery import open_shoot
-from keymark.core.take.conversion_digest import conversion_digest
+from keymark.core.take.conversion_record import conversion_digest
 from keymark.core.take.conversion_settings import NO_SETTINGS, ConversionSettings
 from keymark.core.take.description import Description, describe, effective_settings
 from keymark.core.take.take import evidence_of

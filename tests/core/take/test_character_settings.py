@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from _synthetic_take import write_json, write_synthetic_take
 from keymark.core.errors import InputError
-from keymark.core.take.character_settings import (
+from keymark.core.take.conversion_settings import (
     CharacterFile,
     RetargetOptions,
 )

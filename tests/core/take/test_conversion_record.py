@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 from _synthetic_take import edit_json, write_shoot
 from keymark.core.errors import InputError
-from keymark.core.take.conversion_digest import conversion_digest
 from keymark.core.take.conversion_record import (
     RECORD_FILE,
     ConversionRecord,
+    conversion_digest,
     is_up_to_date,
     read_record,
     write_record,

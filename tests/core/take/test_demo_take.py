@@ -10,7 +10,7 @@ from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.core.camera.camera import Camera
 from keymark.core.review.score import read_truth
-from keymark.core.take.clip_check import open_clip
+from keymark.core.take.read_footage import open_clip
 from keymark.core.take.take import Take, evidence_of
 from keymark.core.take.take_file import read_take
 

@@ -15,10 +15,10 @@ from _synthetic_take import (
 )
 from keymark.core.errors import InputError
 from keymark.core.estimate.reconstruct import check_method
-from keymark.core.take.clip_check import check_frame_count, open_clip
 from keymark.core.take.conversion_settings import MOST_KEYPOINT_FILES
 from keymark.core.take.description import describe
 from keymark.core.take.evidence import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
+from keymark.core.take.read_footage import check_frame_count, open_clip
 from keymark.core.take.take import Take, evidence_of
 from keymark.core.take.take_file import read_take, write_take
 

@@ -12,8 +12,7 @@ from keymark.core.errors import InputError
 from keymark.core.markers.reading import Reading, reading_arrays, reading_from_arrays
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe
-from keymark.core.take.presence import absence_notes, presence
-from keymark.core.take.shots import of_one_shot, shot_of, within_shot
+from keymark.core.take.presence import absence_notes, of_one_shot, presence, shot_of, within_shot
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 from keymark.core.video.album import Album

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from _synthetic_take import BODY, SIZE, edit_json, named, true_postures, write_synthetic_take
 from keymark.core.errors import InputError
-from keymark.core.take.clip_check import check_frame_count, open_clip, rate_note
+from keymark.core.take.read_footage import check_frame_count, open_clip, rate_note
 from keymark.core.take.take_file import read_take, write_take
 
 FRAMES = 24

@@ -12,8 +12,8 @@ from keymark.core.errors import InputError
 from keymark.core.markers.reading import read_clip
 from keymark.core.markers.region_tracks import is_variable_frame_rate
 from keymark.core.progress import run
-from keymark.core.shoot.check.footage_check import count_frames
-from keymark.core.take.clip_check import clip_notes, picture_count
+from keymark.core.shoot.check.evidence_check import count_frames
+from keymark.core.take.read_footage import clip_notes, picture_count
 from keymark.core.video import clip as glancing
 from keymark.core.video.clip import Clip, sample_spread_frames
 from keymark.core.video.container import quickly_found, read_packets

@@ -26,9 +26,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core.errors import InputError
 from keymark.core.progress import run
-from keymark.core.take import clip_check
-from keymark.core.take.clip_check import open_clip, open_footage
-from keymark.core.take.read_footage import read_footage
+from keymark.core.take import read_footage as footage_reading
+from keymark.core.take.read_footage import open_clip, open_footage, read_footage
 from keymark.core.take.take_file import read_take
 from keymark.core.video.clip import Clip
 from keymark.core.video.frame_checks import FrameChecks
@@ -262,9 +261,9 @@ def test_why_nothing_can_be_found_is_known(picture: np.ndarray, why: str) -> Non
 def test_a_clip_of_hours_is_refused_before_it_is_read(drawn: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     described = read_take(drawn)
     whole = replace(described, frame_count=None)
-    monkeypatch.setattr(clip_check, "LONGEST_FRAMES", FRAMES)
+    monkeypatch.setattr(footage_reading, "LONGEST_FRAMES", FRAMES)
     assert open_clip(whole).frame_count == FRAMES
-    monkeypatch.setattr(clip_check, "LONGEST_FRAMES", FRAMES - 1)
+    monkeypatch.setattr(footage_reading, "LONGEST_FRAMES", FRAMES - 1)
     sentence = rf"more than {FRAMES - 1} frames.*must be shorter: cut it, as with ffmpeg .*-t \d+ "
     for read in (lambda: open_clip(whole), lambda: open_footage(whole.clip, None)):
         with pytest.raises(InputError, match=sentence):

@@ -13,7 +13,7 @@ from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character, CharacterBone
 from keymark.core.retarget.maps.character_map import CharacterMap
-from keymark.core.take.character_settings import Placement, RetargetOptions
+from keymark.core.take.conversion_settings import Placement, RetargetOptions
 from keymark.operators.bridge.character.retarget import retarget
 
 FRAMES = 40

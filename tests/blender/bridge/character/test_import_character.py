@@ -11,7 +11,7 @@ from _armatures import build_character
 from _character_glb import write_glb, write_gltf
 from _characters import plain_character
 from keymark.core.errors import InputError
-from keymark.core.take.character_settings import CharacterFile
+from keymark.core.take.conversion_settings import CharacterFile
 from keymark.operators.bridge.blend_files import own_scene
 from keymark.operators.bridge.character.import_character import ImportedCharacter, import_character
 

@@ -14,7 +14,7 @@ from keymark.core.errors import InputError
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.recognition.recognize import recognize
-from keymark.core.take.character_settings import CharacterFile, RetargetOptions, RootMotion
+from keymark.core.take.conversion_settings import CharacterFile, RetargetOptions, RootMotion
 from keymark.operators.bridge.character.import_character import import_character, skins
 from keymark.operators.bridge.character.read_character import read_character
 from keymark.operators.bridge.character.retarget import Retargeted

@@ -11,7 +11,7 @@ from _characters import plain_character
 from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.errors import InputError
 from keymark.core.retarget.recognition.recognize import recognize
-from keymark.core.take.character_settings import LimbKeys, RetargetOptions
+from keymark.core.take.conversion_settings import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.read_character import make_override, needs_override, read_character
 
 

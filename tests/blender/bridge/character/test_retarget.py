@@ -15,7 +15,7 @@ from keymark.core.progress import run
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.recognition.recognize import recognize
-from keymark.core.take.character_settings import LimbKeys, Placement, RetargetOptions, RootMotion
+from keymark.core.take.conversion_settings import LimbKeys, Placement, RetargetOptions, RootMotion
 from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.character.read_character import read_character
 from keymark.operators.bridge.character.retarget import Retargeted, retarget

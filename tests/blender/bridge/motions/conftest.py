@@ -10,7 +10,7 @@ from _characters import plain_character
 from _performances import steps
 from keymark.core.progress import run
 from keymark.core.retarget.maps.map_registry import choose_map
-from keymark.core.take.character_settings import LimbKeys, Placement, RetargetOptions
+from keymark.core.take.conversion_settings import LimbKeys, Placement, RetargetOptions
 from keymark.operators.bridge.character.read_character import read_character
 from keymark.operators.bridge.character.retarget import retarget
 from keymark.operators.bridge.keys import mark_generated

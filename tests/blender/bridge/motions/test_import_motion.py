@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.errors import InputError
-from keymark.core.take.character_settings import CharacterFile
+from keymark.core.take.conversion_settings import CharacterFile
 from keymark.operators.bridge.blend_files import own_scene, showing_scene
 from keymark.operators.bridge.export_formats import FORMATS, export_motion
 from keymark.operators.bridge.motions.action_names import action_names

@@ -10,15 +10,14 @@ from keymark.core.feet.contacts import Contact
 from keymark.core.keys.tolerances import RESTING_M
 from keymark.core.retarget.character import Similarity
 from keymark.core.retarget.character_motion import CharacterMotion
-from keymark.core.retarget.controls.control_channels import Control
+from keymark.core.retarget.controls.control_channels import NOTHING, Control, ControlSpace
+from keymark.core.retarget.controls.control_motion import PoleSetting, pole_offset, pole_poses
 from keymark.core.retarget.controls.control_plan import (
     ControlKind,
     PlannedControl,
     limb_keys,
     planned_controls,
 )
-from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
-from keymark.core.retarget.controls.control_targets import PoleSetting, pole_offset, pole_poses
 from keymark.core.retarget.controls.point_tolerances import (
     SWITCH_M,
     HeldPoint,
@@ -28,7 +27,7 @@ from keymark.core.retarget.controls.point_tolerances import (
 )
 from keymark.core.retarget.controls.reduction import FollowingControls, control_stages
 from keymark.core.retarget.maps.character_map import CharacterMap
-from keymark.core.take.character_settings import LimbKeys, RetargetOptions, RootMotion
+from keymark.core.take.conversion_settings import LimbKeys, RetargetOptions, RootMotion
 
 FRAMES = 30
 

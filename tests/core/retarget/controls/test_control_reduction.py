@@ -15,18 +15,19 @@ from keymark.core.progress import run
 from keymark.core.retarget.character import Similarity
 from keymark.core.retarget.character_motion import CharacterMotion
 from keymark.core.retarget.controls.control_channels import (
+    NOTHING,
     Control,
     ControlChannels,
+    ControlSpace,
     control_channels,
     ordered_controls,
 )
 from keymark.core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
 from keymark.core.retarget.controls.control_plan import ControlKind, PlannedControl
-from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
 from keymark.core.retarget.controls.point_tolerances import ToleranceRules
 from keymark.core.retarget.controls.reduction import reduce_controls
 from keymark.core.retarget.solve.solve_motion import solve_motion
-from keymark.core.take.character_settings import LimbKeys, RetargetOptions
+from keymark.core.take.conversion_settings import LimbKeys, RetargetOptions
 
 FRAMES = 60
 TIMES = 1.0 + np.arange(FRAMES)

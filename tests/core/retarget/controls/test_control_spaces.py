@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from keymark.core.retarget.controls.control_spaces import NOTHING, PosedControls, find_spaces, rigid_offset
+from keymark.core.retarget.controls.control_channels import NOTHING, PosedControls, find_spaces, rigid_offset
 from scipy.spatial.transform import Rotation
 
 STILL, MOVED = 3, 4

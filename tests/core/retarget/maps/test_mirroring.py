@@ -9,7 +9,7 @@ from keymark.core.arrays import Array
 from keymark.core.body.rotations import hinge
 from keymark.core.retarget.character import LIMBS, ROLES, Character, CharacterBone
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Switch
-from keymark.core.retarget.maps.mirroring import mirrored_map
+from keymark.core.retarget.maps.map_registry import mirrored_map
 
 LEFT, RIGHT = (LIMBS[f"arm.{side}"] + LIMBS[f"leg.{side}"] for side in "LR")
 

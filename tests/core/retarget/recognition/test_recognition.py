@@ -21,8 +21,7 @@ from keymark.core.body.posture import yaw_rotation
 from keymark.core.errors import InputError
 from keymark.core.retarget.character import FINGER_ROLES, ROLES, Character
 from keymark.core.retarget.character_motion import find_stance
-from keymark.core.retarget.recognition.facing import find_root
-from keymark.core.retarget.recognition.recognize import Recognition, recognize
+from keymark.core.retarget.recognition.recognize import Recognition, find_root, recognize
 
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 TRUTH = {

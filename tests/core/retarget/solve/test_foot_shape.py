@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from _characters import plain_character, plain_map
 from _performances import shaped, solved, steps
-from keymark.core.retarget.solve.foot_shape import HEEL_BEHIND, foot_shape, rest_floor_m, sole_points
+from keymark.core.retarget.solve.feet import HEEL_BEHIND, foot_shape, rest_floor_m, sole_points
 from keymark.core.retarget.solve.rest_body import RestBody
 
 

@@ -10,7 +10,7 @@ from keymark.core.body.kinematics import Body, SegmentMotion
 from keymark.core.body.posture import Posture
 from keymark.core.body.posture_fit import fit_posture
 from keymark.core.retarget.character_motion import CharacterMotion
-from keymark.core.take.character_settings import RetargetOptions
+from keymark.core.take.conversion_settings import RetargetOptions
 
 ON_HIPS = (np.array([0.2, -0.02, 1.03]), np.array([-0.2, -0.02, 1.03]))
 TOGETHER = (np.array([0.05, -0.32, 1.25]), np.array([-0.05, -0.32, 1.25]))

@@ -27,7 +27,7 @@ from keymark.core.retarget.character_motion import CharacterMotion
 from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones
 from keymark.core.retarget.quality import direction_errors_deg
 from keymark.core.retarget.recognition.recognize import recognize
-from keymark.core.take.character_settings import Placement, RetargetOptions, RootMotion
+from keymark.core.take.conversion_settings import Placement, RetargetOptions, RootMotion
 
 FREE = RetargetOptions(plant_feet=False, reach_hands=False)
 LYING = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])

@@ -8,7 +8,7 @@ import pytest
 from _armatures import control_rig, retargeted
 from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, Setting, Switch
-from keymark.core.take.character_settings import LimbKeys, RetargetOptions
+from keymark.core.take.conversion_settings import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.read_character import read_character
 from keymark.operators.bridge.character.retarget import complete_map
 

@@ -8,7 +8,7 @@ import pytest
 from keymark.core.retarget.controls.control_plan import planned_controls
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.recognition.recognize import recognize
-from keymark.core.take.character_settings import LimbKeys, RetargetOptions
+from keymark.core.take.conversion_settings import LimbKeys, RetargetOptions
 from keymark.operators.bridge.character.probe_controls import ProbedControls, probe_controls
 from keymark.operators.bridge.character.read_character import read_character
 
