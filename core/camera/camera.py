@@ -34,8 +34,6 @@ class Camera:
 
     def __post_init__(self) -> None:
         matrix = np.array(self.matrix_world, dtype=np.float64)
-        if matrix.ndim not in (2, 3) or matrix.shape[-2:] != (4, 4):
-            raise ValueError(f"matrix_world must have shape (4, 4) or (F, 4, 4), not {matrix.shape}")
         matrix.setflags(write=False)
         object.__setattr__(self, "matrix_world", matrix)
 
@@ -163,16 +161,8 @@ class Camera:
         return location, np.einsum("...ij,...j->...i", rotation, camera)
 
     def pose(self, frame: ArrayLike | None = None) -> tuple[Array, Array]:
-        """The camera's orientation (..., 3, 3), its axes as columns, and its position (..., 3) [m].
-
-        Raises:
-            ValueError: The camera moves and no frame is given.
-        """
-        matrix = self.matrix_world
-        if self.is_moving:
-            if frame is None:
-                raise ValueError("a moving camera needs the frame of each point")
-            matrix = matrix[np.asarray(frame)]
+        """The camera's orientation (..., 3, 3), its axes as columns, and its position (..., 3) [m]."""
+        matrix = self.matrix_world[np.asarray(frame)] if self.is_moving else self.matrix_world
         return matrix[..., :3, :3], matrix[..., :3, 3]
 
     @staticmethod

@@ -1,6 +1,7 @@
 """What a picture shows of the camera that took it: lines of buildings, and upright things of known length."""
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,7 @@ COMMON_LEAN_RAD = float(np.radians(2.5))
 STATURE_STD = 0.015  # share by which stated statures are off: shoes, hair, and what people say
 
 
-def _no_lines() -> Array:
-    return np.zeros((0, 2, 2))
+NO_LINES = partial(np.zeros, (0, 2, 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,10 +99,10 @@ class RoomView:
 class CameraEvidence:
     """Lines in the picture by their two ends [px], upright things of known length, what a room shows."""
 
-    vertical: Array = field(default_factory=_no_lines)  # (V, 2, 2) plumb: door frames, corners of walls
-    along: Array = field(default_factory=_no_lines)
+    vertical: Array = field(default_factory=NO_LINES)  # (V, 2, 2) plumb: door frames, corners of walls
+    along: Array = field(default_factory=NO_LINES)
     """(A, 2, 2) level and parallel to each other in the world: on the floor, or on a wall."""
-    across: Array = field(default_factory=_no_lines)  # (C, 2, 2) level and at right angles to those
+    across: Array = field(default_factory=NO_LINES)  # (C, 2, 2) level and at right angles to those
     uprights: Uprights = field(default_factory=Uprights.none)
     room: RoomView | None = None
 

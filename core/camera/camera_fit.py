@@ -80,13 +80,7 @@ class CameraFit:
 
 
 def fit_camera(camera: Camera, evidence: CameraEvidence, lens_is_known: bool = False) -> CameraFit:
-    """Find the camera that took a picture, from the still one believed now; a known lens is kept.
-
-    Raises:
-        ValueError: The camera moves.
-    """
-    if camera.is_moving:
-        raise ValueError("a moving camera has no single pose to be found")
+    """Find the camera that took a picture, from the still one believed now; a known lens is kept."""
     problem = _Problem(camera, evidence, lens_is_known)
     everything = problem.descend()
     covariance = problem.covariance(everything)

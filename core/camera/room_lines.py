@@ -13,6 +13,7 @@ from ..arrays import Array, Image
 from ..numerics.vectors import unit
 from .camera import Camera
 from .camera_evidence import RoomView
+from .camera_fields import CameraPlacement
 
 SEARCHED_SIDE_PX = 960  # pictures are enlarged to this: edges are found to a fraction of a pixel
 SHORTEST = 0.05  # segment, by the height of the picture
@@ -107,14 +108,9 @@ def room_of(lines: Array, camera: Camera) -> RoomView | None:
 
 def _directions(tilt: float, roll: float, heading: float) -> Array:
     """(3, 3) the room's directions in the camera's axes, the plumb one first."""
-    forward, right = (
-        np.array([np.cos(heading), np.sin(heading)]),
-        np.array([-np.sin(heading), np.cos(heading)]),
-    )
-    level = [[x, -y * np.sin(tilt), -y * np.cos(tilt)] for x, y in (forward, right)]
-    lifted = np.array([[0.0, np.cos(tilt), -np.sin(tilt)], *level])
-    turn = np.array([[np.cos(roll), -np.sin(roll), 0.0], [np.sin(roll), np.cos(roll), 0.0], [0.0, 0.0, 1.0]])
-    return lifted @ turn
+    cos, sin = np.cos(heading), np.sin(heading)
+    room = np.array([[0.0, 0.0, 1.0], [cos, sin, 0.0], [-sin, cos, 0.0]])
+    return np.asarray(room @ CameraPlacement(0.0, tilt, roll).rotation())
 
 
 def _starts(planes: list[tuple[float, Array]], weight: Array) -> list[Array]:

@@ -46,12 +46,14 @@ class HandNetwork:
             crop = _first_crop(pose, side)
             if crop.side < CROP_HANDS * SMALLEST_PX:
                 continue
-            crop = _around(self._look(picture, crop, False)[0])
+            pixel = self._look(picture, crop, False)[0]
+            up = pixel[MIDDLE] - pixel[WRIST]  # the next crop is about what is seen, fingers up
+            crop = Crop.around(pixel, float(np.arctan2(up[0], -up[1])), CROP_HANDS)
             looks = [self._look(picture, crop, mirrored) for mirrored in (False, True)]
             hands[row, :2] = np.mean([pixel[WRIST] for pixel, *_ in looks], axis=0)
             hands[row, 2:] = np.concatenate(
                 [
-                    [*logarithm(hand_turn(place, side)), there, _of(side, left), *curls_of(place)]
+                    [*logarithm(hand_turn(place, side)), there, abs((side == "R") - left), *curls_of(place)]
                     for _, place, there, left in looks
                 ]
             )
@@ -73,10 +75,6 @@ class HandNetwork:
         turned = exponential(np.array([0.0, 0.0, crop.angle]))
         pixel = place @ matrix[:, :2].T + matrix[:, 2]
         return pixel, space @ turned.T, float(presence.ravel()[0]), left
-
-
-def _of(side: str, left: float) -> float:
-    return left if side == "L" else 1.0 - left
 
 
 def hand_turn(points: Array, side: str) -> Array:
@@ -115,9 +113,3 @@ def _first_crop(pose: Pose, side: str) -> Crop:
         up = pixel[wrist] - pixel[elbow]
     angle = float(np.arctan2(up[0], -up[1]))
     return Crop(pixel[wrist] + 0.5 * length * ahead, CROP_HANDS * length, angle)
-
-
-def _around(pixel: Array) -> Crop:
-    """The crop about a hand's points (21, 2), fingers up."""
-    up = pixel[MIDDLE] - pixel[WRIST]
-    return Crop.around(pixel, float(np.arctan2(up[0], -up[1])), CROP_HANDS)

@@ -88,11 +88,6 @@ class Keypoints:
     hands: Array | None = None  # (F, 2, 22) hands, left and right, as in `hands`, likewise
 
     def __post_init__(self) -> None:
-        unknown = set(self.names) - set(BODY_POINTS)
-        if unknown:
-            raise ValueError(f"unknown body points {sorted(unknown)}")
-        if len(self.sources) != len(self.names):
-            raise ValueError(f"{len(self.sources)} sources for {len(self.names)} keypoints")
         frames, count = len(self.pixel), len(self.names)
         shapes = {"pixel": (frames, count, 2), "score": (frames, count), "hint_m": (frames, count, 3)}
         if self.face is not None:

@@ -9,7 +9,7 @@ deviations, each limited, so that one wrong point or frame decides nothing.
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -143,17 +143,16 @@ def principal_keypoints(keypoints: Keypoints) -> Keypoints:
     """
     size = performer_size_px(keypoints)
     found = [_agreed(keypoints, name, size) for name in HUMAN.point_names]
-    head = HUMAN.point_names.index("head")
     left, right, nose = (_agreed(keypoints, name, size) for name in ("ear.L", "ear.R", "nose"))
-    doubted = replace(nose, score=0.3 * nose.score)  # it lies a decimeter before the head's middle
-    found[head] = found[head].or_else(_middle(left, right)).or_else(doubted)
-    return Keypoints(
-        HUMAN.point_names,
-        ("",) * len(found),
-        np.stack([point.pixel for point in found], axis=1),
-        np.stack([point.score for point in found], axis=1),
-        np.stack([point.hint_m for point in found], axis=1),
-    )
+    ears = 0.5 * (left + right)
+    ears[:, 2] = np.minimum(left[:, 2], right[:, 2])
+    nose[:, 2] *= 0.3  # it lies a decimeter before the head's middle
+    for other in (ears, nose):
+        head = found[HUMAN.point_names.index("head")]
+        head[:] = np.where(np.isfinite(head[:, :1]), head, other)
+    points = np.stack(found, axis=1)
+    names, nothing = HUMAN.point_names, ("",) * len(found)
+    return Keypoints(names, nothing, points[..., :2], points[..., 2], points[..., 3:])
 
 
 def performer_size_px(keypoints: Keypoints) -> Array:
@@ -167,46 +166,21 @@ def performer_size_px(keypoints: Keypoints) -> Array:
     return np.maximum(side, np.median(side[seen.any(axis=1)]))
 
 
-@dataclass(frozen=True, eq=False)
-class _Point:
-    """One point of the body over F frames."""
+def _agreed(keypoints: Keypoints, name: str, size_px: Array) -> Array:
+    """(F, 6) place [px], score and hint [m] of a point by all sources that agree with the most confident one.
 
-    pixel: Array  # (F, 2) [px], NaN where not seen
-    score: Array  # (F,) 0 where not seen
-    hint_m: Array  # (F, 3) NaN where there is none
-
-    def or_else(self, other: "_Point") -> "_Point":
-        """This point where it is seen, the other elsewhere."""
-        seen = np.isfinite(self.pixel).all(axis=-1)
-        return _Point(
-            np.where(seen[:, None], self.pixel, other.pixel),
-            np.where(seen, self.score, other.score),
-            np.where(seen[:, None], self.hint_m, other.hint_m),
-        )
-
-
-def _middle(first: _Point, second: _Point) -> _Point:
-    """The point halfway between two that are both seen."""
-    return _Point(
-        0.5 * (first.pixel + second.pixel),
-        np.minimum(first.score, second.score),
-        0.5 * (first.hint_m + second.hint_m),
-    )
-
-
-def _agreed(keypoints: Keypoints, name: str, size_px: Array) -> _Point:
-    """A point of the body by all sources that agree with the most confident one."""
+    Where it is not seen the score is 0, all else NaN.
+    """
     own = [index for index, known in enumerate(keypoints.names) if known == name]
     if not own:
-        frames = keypoints.frame_count
-        return _Point(np.full((frames, 2), np.nan), np.zeros(frames), np.full((frames, 3), np.nan))
+        return np.tile([np.nan, np.nan, 0.0, np.nan, np.nan, np.nan], (keypoints.frame_count, 1))
     pixel, hint = keypoints.pixel[:, own], keypoints.hint_m[:, own]
     score = np.where(keypoints.seen[:, own], keypoints.score[:, own], -1.0)
     best = (np.arange(len(score)), score.argmax(axis=1))
     apart = np.linalg.norm(pixel - pixel[best][:, None], axis=-1)  # NaN where not seen
     weight = np.where(apart <= 0.1 * size_px[:, None], np.maximum(score, 1e-6), 0.0)
     hinted = weight * np.isfinite(hint).all(axis=-1)
-    return _Point(_mean(pixel, weight), np.maximum(score[best], 0.0), _mean(hint, hinted))
+    return np.column_stack([_mean(pixel, weight), np.maximum(score[best], 0.0), _mean(hint, hinted)])
 
 
 def _mean(values: Array, weight: Array) -> Array:

@@ -170,6 +170,7 @@ def conversion_digest(
         contents = tuple((file.name, content_digest(file)) for file in files)
         options = json.dumps(character.options.to_json(), sort_keys=True)
     keypoints = keypoint_files(description, settings)
+    network = None if keypoints else settings.network
     evidence: tuple[object, ...] = ()
     if keypoints or settings.evidence is not None:
         evidence = (tuple(_keypoints(file) for file in keypoints), settings.evidence)
@@ -189,19 +190,8 @@ def conversion_digest(
         None if character is None else ((contents, character.object, options), tuple(maps)),
         *evidence,
         *(value for value in (settings.subject, settings.shot, settings.performer) if value is not None),
-        *_named(settings.reference, "reference motion"),
-        *_named(None if keypoints else settings.network, "network"),
+        *((path.name, content_digest(path)) for path in (settings.reference, network) if path is not None),
     )
-
-
-def _named(path: Path | None, what: str) -> tuple[object, ...]:
-    """The name and the content of a file, where there is one."""
-    if path is None:
-        return ()
-    try:
-        return ((path.name, content_digest(path)),)
-    except OSError as error:
-        raise InputError(f"{path}: the {what} cannot be read ({error.strerror})") from error
 
 
 def _keypoints(path: Path) -> tuple[object, ...]:

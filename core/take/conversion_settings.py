@@ -13,7 +13,7 @@ from ..files.json_file import ENDING
 from ..files.kinds import INSIDE, LONGEST_PATH, Choice, Items, Kind, Number, Text, Whole, relative_path
 from ..files.records import Record, declared, read_record
 from ..prior.texts import EVERY_LIBRARY
-from .evidence import FARTHEST_FRAME, evidence_mistake, in_order
+from .evidence import DEPTH_HINTS, EVIDENCE, FARTHEST_FRAME, KEYPOINTS
 
 
 class RootMotion(StrEnum):
@@ -205,19 +205,7 @@ class KeypointFiles(Kind):
         return files
 
 
-class EvidenceKinds(Kind):
-    """Kinds of evidence, each once."""
-
-    valid = "a list of kinds of evidence"
-
-    def read(self, value: Any, where: str, name: str) -> tuple[str, ...]:
-        """See `Kind`."""
-        mistake = evidence_mistake(value)
-        if mistake is not None:
-            raise InputError(f"{where}: {name} is {shown(value)}; {mistake}")
-        return in_order(value)
-
-
+KINDS = Items("kinds of evidence", 1, len(EVIDENCE), unique="kind")
 SHOT = Items(
     "frames",
     2,
@@ -258,7 +246,7 @@ class ConversionSettings(Record):
     network: Annotated[Path, relative_path(NETWORK_VALID)] | None = None
     """A network's file, .onnx, that looks for points of the body beside Keymark's own where keypoints are
     detected."""
-    evidence: Annotated[tuple[str, ...], EvidenceKinds()] | None = None
+    evidence: Annotated[tuple[Annotated[str, Choice(EVIDENCE)], ...], KINDS] | None = None
     """What the motion is held against; the default is whatever the take has. Hints of depth come with
     keypoints."""
     reference: Annotated[Path, relative_path(REFERENCE_VALID)] | None = None
@@ -273,6 +261,14 @@ class ConversionSettings(Record):
     performer: Annotated[int, Whole(1, MOST_PEOPLE)] | None = None
     """Who of several people performs, counted from the left where all are first seen; the default is the one
     that is posed, or the largest who is there longest."""
+
+    def mistake(self) -> str:
+        """See `Record`."""
+        if DEPTH_HINTS not in (self.evidence or ()) or KEYPOINTS in (self.evidence or ()):
+            return ""
+        return (
+            f"evidence: {DEPTH_HINTS} are guesses of the depth of keypoints and need {KEYPOINTS} beside them"
+        )
 
     def with_defaults(self, defaults: "ConversionSettings") -> "ConversionSettings":
         """These settings, and the default for each that is None."""

@@ -140,16 +140,18 @@ def describe(
         clip = path
         keyframes = settings.keyframes or sidecar_file(path, KEYFRAME_FILE)
     bare = None if is_folder else path
-    said_in = Path(fields.source_of("keypoints"))
-    if settings.keypoints is not None and said_in in shared:  # names that every take has
-        own = (_own_name(folder, bare, file.relative_to(said_in.parent)) for file in settings.keypoints)
-        settings = replace(settings, keypoints=tuple(own))
+
+    def own(name: str, file: Path) -> Path:
+        """The take's own file where a `shoot.json` says a name that every take has."""
+        said_in = Path(fields.source_of(name))
+        return _own_name(folder, bare, file.relative_to(said_in.parent)) if said_in in shared else file
+
+    if settings.keypoints is not None:
+        settings = replace(settings, keypoints=tuple(own("keypoints", file) for file in settings.keypoints))
+    if settings.reference is not None:
+        settings = replace(settings, reference=own("reference", settings.reference))
     usual = _own_name(folder, bare, Path(KEYPOINT_FILE)) if is_folder else keypoints_beside(path)
     keypoints = settings.keypoints or ((usual,) if usual is not None and os.path.lexists(usual) else ())
-    said_in = Path(fields.source_of("reference"))
-    if settings.reference is not None and said_in in shared:
-        own_reference = _own_name(folder, bare, settings.reference.relative_to(said_in.parent))
-        settings = replace(settings, reference=own_reference)
     used = [*files, clip, keyframes, *keypoints, *filter(None, [settings.reference, settings.network])]
     used += [link for within in (clip, *keypoints) for link in _links(within)]
     if settings.library is not None and settings.library.endswith(".json"):

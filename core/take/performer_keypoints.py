@@ -53,7 +53,8 @@ def performer_keypoints(take: Take, tracks: RegionTracks | None = None) -> Keypo
     found does not, which was found by these very keypoints. `tracks`: the markers' regions, where the clip
     has been read.
     """
-    frames = _frame_count(take, tracks)
+    frames = take.frame_count or max((len(people.frames) for people in take.keypoints), default=0)
+    frames = frames if tracks is None else tracks.frame_count
     take = replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None and k.index < frames))
     hand = [people for people in take.keypoints if people.by_hand]
     vouched = take.keyframes or hand or (tracks is not None and tracks.visible.any())
@@ -70,7 +71,10 @@ def performer_keypoints(take: Take, tracks: RegionTracks | None = None) -> Keypo
                 chosen = choose_performer(seen, expected, take.fps)
                 if _is_somebody_else(take, people, chosen):
                     chosen = np.full(frames, NOBODY, dtype=np.intp)
-                    notes += (_elsewhere(people.source),)
+                    notes += (
+                        f"{people.source}: nobody in it is where most of the posed keyframes have the "
+                        "performer, so it is left out; it must be of this clip",
+                    )
                 else:
                     notes += _notes(people, chosen, _said_by(take, tracks, hand))
             if not vouched and people.most_people > 1:
@@ -112,12 +116,6 @@ def people_of(people: People, number: int, fps: float) -> People:
     return replace(people, frames=frames)
 
 
-def _frame_count(take: Take, tracks: RegionTracks | None) -> int:
-    if tracks is not None:
-        return tracks.frame_count
-    return take.frame_count or max((len(people.frames) for people in take.keypoints), default=0)
-
-
 def _is_somebody_else(take: Take, people: People, chosen: IndexArray) -> bool:
     """Whether most posed keyframes say that none of the people is the performer."""
     fits = [
@@ -133,9 +131,7 @@ def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: 
     pixel = np.full((frames, len(people.names), 2), np.nan)
     score, hint = np.zeros(pixel.shape[:2]), np.full((*pixel.shape[:2], 3), np.nan)
     face = no_faces(frames) if any(seen.face is not None for seen in people.frames) else None
-    hands = None
-    if any(seen.hands is not None for seen in people.frames):
-        hands = no_hands(frames)
+    hands = no_hands(frames) if any(seen.hands is not None for seen in people.frames) else None
     for index, seen in enumerate(people.frames[:frames]):
         row = chosen[index]
         if row != NOBODY and len(seen.pixel):
@@ -243,13 +239,6 @@ def _said_by(take: Take, tracks: RegionTracks | None, hand: list[People]) -> str
     return (
         "the performer is taken to be the largest who is there longest; click on another, or name one with "
         "--performer, counted from the left, to change it"
-    )
-
-
-def _elsewhere(source: str) -> str:
-    return (
-        f"{source}: nobody in it is where most of the posed keyframes have the performer, so it is left "
-        "out; it must be of this clip"
     )
 
 

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from ..arrays import Array
-from ..body.human import HUMAN
 from ..detect.keypoints import Keypoints, People
 from ..errors import InputError, shown
 from ..files.fields import listed
@@ -42,11 +41,6 @@ class ReferenceMotion:
     def name(self) -> str:
         """What it is called in sentences."""
         return Path(self.file).name or self.source or "the reference motion"
-
-    def __post_init__(self) -> None:
-        shape = self.points_m.shape
-        if len(shape) != 3 or shape[1:] != (len(HUMAN.point_names), 3):
-            raise ValueError(f"points must have the shape (R, 13, 3), not {shape}")
 
 
 def reference_of_take(

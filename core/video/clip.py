@@ -101,13 +101,7 @@ class Clip:
         return self.source.frames()
 
     def sample(self, count: int) -> Iterator[tuple[int, Image]]:
-        """Yield about `count` frames spread evenly over the clip, each with its index.
-
-        Raises:
-            ValueError: `count` is below 1.
-        """
-        if count < 1:
-            raise ValueError(f"count must be at least 1, not {count}")
+        """Yield about `count` frames spread evenly over the clip, each with its index."""
         return self.source.at(spread_frames(self.frame_count, count))
 
 

@@ -148,7 +148,12 @@ class FrameChecks:
     def findings(self) -> FrameFindings:
         """The findings so far."""
         usual = float(np.median(list(self._changes.values()))) if self._changes else 0.0
-        cuts = self._cuts()
+        known, unlike = list(self._unlike), [0.0, *self._unlike.values(), 0.0]
+        cuts = tuple(  # frames that show another picture all at once, which stays
+            index
+            for index, before, own, after in zip(known, unlike, unlike[1:], unlike[2:], strict=False)
+            if index in self._stays and own > ALONE * max(before, after)
+        )
         # Levels, and several times the usual change.
         changed = [index for index, one in self._changes.items() if one > max(10.0, 5.0 * usual)]
         changes = tuple(index for index in changed if index not in cuts)
@@ -157,15 +162,6 @@ class FrameChecks:
         interlaced = bool(rows > 5e-4 and rows > 10.0 * columns)
         repeated = _repeated(self._moved)
         return FrameFindings(self._frames, tuple(self._blank), cuts, changes, interlaced, repeated)
-
-    def _cuts(self) -> tuple[int, ...]:
-        """Frames after a cut: another picture all at once, which stays."""
-        known, unlike = list(self._unlike), [0.0, *self._unlike.values(), 0.0]
-        return tuple(
-            index
-            for index, before, own, after in zip(known, unlike, unlike[1:], unlike[2:], strict=False)
-            if index in self._stays and own > ALONE * max(before, after)
-        )
 
     def nothing_seen(self) -> str | None:
         """The reason why no marker can be found in the clip; None without one."""

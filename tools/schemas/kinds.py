@@ -21,10 +21,8 @@ from keymark.core.retarget.maps.character_map import PropertyValue, Turn
 from keymark.core.take.conversion_settings import (
     CharacterSettings,
     ConversionSettings,
-    EvidenceKinds,
     KeypointFiles,
 )
-from keymark.core.take.evidence import DEPTH_HINTS, EVIDENCE, KEYPOINTS
 from keymark.core.take.keyframe_file import KeyframeRow
 from keymark.core.take.motion import Diagnostic
 from keymark.core.take.take_file import ActorFields, CameraKind, MarkerFields, TakeFields
@@ -293,16 +291,6 @@ def _(kind: Distortion, defs: dict[str, Schema]) -> Schema:
 def _(kind: KeypointFiles, defs: dict[str, Schema]) -> Schema:
     files = kind_schema(kind.paths, defs) | {"uniqueItems": True}
     return {"anyOf": [kind_schema(kind.path, defs), files]}
-
-
-@kind_schema.register
-def _(kind: EvidenceKinds, defs: dict[str, Schema]) -> Schema:
-    rule = {
-        "if": {"type": "array", "contains": {"const": DEPTH_HINTS}},
-        "then": {"contains": {"const": KEYPOINTS}},
-    }
-    kinds = {"type": "array", "minItems": 1, "uniqueItems": True, "items": {"enum": list(EVIDENCE)}}
-    return {"anyOf": [kinds | rule]}
 
 
 @kind_schema.register
