@@ -28,6 +28,7 @@ from keymark.core.shoot.discovery import KNOWN_FIELDS  # noqa: E402
 from keymark.core.take.conversion_record import ConversionRecord  # noqa: E402
 from keymark.core.take.conversion_settings import ConversionSettings  # noqa: E402
 from keymark.core.take.description import SCHEMA_VERSION, SETTING_FIELDS, SHARED_FIELDS  # noqa: E402
+from keymark.core.take.evidence import DEPTH_HINTS, KEYPOINTS  # noqa: E402
 from keymark.core.take.keyframe_file import KeyframeFile  # noqa: E402
 from keymark.core.take.motion import MotionFile  # noqa: E402
 from keymark.core.take.take_file import ActorFields, MarkerFields, TakeFields  # noqa: E402
@@ -86,6 +87,10 @@ def take_schema() -> Schema:
     properties: dict[str, Schema] = {}
     for record in (TakeFields, ConversionSettings):
         properties |= inherited_schema(record, defs)["properties"]
+    properties["evidence"] |= {
+        "if": {"type": "array", "contains": {"const": DEPTH_HINTS}},
+        "then": {"contains": {"const": KEYPOINTS}},
+    }
     clip = (
         "The footage: a video, a folder of images or a pattern of numbered ones (img_####.png), relative to "
         "the take's folder and inside it; the default is clip.mp4."

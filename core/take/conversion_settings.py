@@ -205,7 +205,18 @@ class KeypointFiles(Kind):
         return files
 
 
-KINDS = Items("kinds of evidence", 1, len(EVIDENCE), unique="kind")
+class EvidenceKinds(Items):
+    """Kinds of evidence, each once."""
+
+    def read(self, value: Any, where: str, name: str) -> tuple[str, ...]:
+        """See `Kind`."""
+        kinds = super().read(value, where, name)
+        if DEPTH_HINTS in kinds and KEYPOINTS not in kinds:
+            raise InputError(f"{where}: {name} has {DEPTH_HINTS}, guesses for {KEYPOINTS}, without these")
+        return kinds
+
+
+KINDS = EvidenceKinds("kinds of evidence", 1, len(EVIDENCE), unique="kind", item=Choice(EVIDENCE))
 SHOT = Items(
     "frames",
     2,
@@ -246,7 +257,7 @@ class ConversionSettings(Record):
     network: Annotated[Path, relative_path(NETWORK_VALID)] | None = None
     """A network's file, .onnx, that looks for points of the body beside Keymark's own where keypoints are
     detected."""
-    evidence: Annotated[tuple[Annotated[str, Choice(EVIDENCE)], ...], KINDS] | None = None
+    evidence: Annotated[tuple[str, ...], KINDS] | None = None
     """What the motion is held against; the default is whatever the take has. Hints of depth come with
     keypoints."""
     reference: Annotated[Path, relative_path(REFERENCE_VALID)] | None = None
@@ -261,14 +272,6 @@ class ConversionSettings(Record):
     performer: Annotated[int, Whole(1, MOST_PEOPLE)] | None = None
     """Who of several people performs, counted from the left where all are first seen; the default is the one
     that is posed, or the largest who is there longest."""
-
-    def mistake(self) -> str:
-        """See `Record`."""
-        if DEPTH_HINTS not in (self.evidence or ()) or KEYPOINTS in (self.evidence or ()):
-            return ""
-        return (
-            f"evidence: {DEPTH_HINTS} are guesses of the depth of keypoints and need {KEYPOINTS} beside them"
-        )
 
     def with_defaults(self, defaults: "ConversionSettings") -> "ConversionSettings":
         """These settings, and the default for each that is None."""

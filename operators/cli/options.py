@@ -11,11 +11,11 @@ from ...core.files.kinds import Choice, Flag, Nullable, Number, Whole, relative_
 from ...core.files.records import Record, declared, descriptions
 from ...core.prior.texts import EVERY_LIBRARY
 from ...core.take.conversion_settings import (
+    KINDS,
     SHOT,
     CharacterFile,
     CharacterSettings,
     ConversionSettings,
-    EvidenceKinds,
     LimbKeys,
     RetargetOptions,
 )
@@ -78,7 +78,7 @@ def jobs_option(most: int, words: str) -> Argument:
 def _kinds(text: str) -> tuple[str, ...] | None:
     """The kinds of evidence; None for an empty text, which farms pass for a setting that is not filled in."""
     kinds = [kind.strip().replace("-", "_") for kind in text.split(",")]
-    return EvidenceKinds().read(kinds, WHERE, "--evidence") if text else None
+    return KINDS.read(kinds, WHERE, "--evidence") if text else None
 
 
 def _name_in_take(text: str) -> Path | None:
