@@ -121,7 +121,11 @@ def checked(folder: Path, network: PoseNetwork) -> dict[str, str]:
         away = [frame for frame, there in finding.looked.items() if not there]
         said = [f"elsewhere in {len(away)} of {len(finding.looked)}"] if away else []
         said += ["mirrored"] if finding.mirrored else []
-        said += [f"scaled by {finding.scale[0]:.3f}, {finding.scale[1]:.3f}"] if finding.is_scaled else []
+        said += (
+            [f"scaled by {finding.scale[0]:.3f}, {finding.scale[1]:.3f}"]
+            if finding.scale != (1.0, 1.0)
+            else []
+        )
         found[wrong] = finding.refusal or ", ".join(said) or "believed"
     return found
 

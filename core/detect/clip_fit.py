@@ -39,8 +39,12 @@ def held_against_clip(
     Raises:
         InputError: It is of another clip, or nobody is seen in it.
     """
-    if detected.time_s is not None and not detected.numbered:
-        detected = _numbered_by_time(detected, detected.time_s, frame_count, fps)
+    time_s = detected.time_s
+    if time_s is not None and not detected.numbered and fps is not None and frame_count != len(time_s):
+        numbers = np.round(time_s * fps).astype(np.int64)
+        if (np.diff(numbers) > 0).all() and frame_count is not None and numbers[-1] < frame_count:
+            by_number = dict(zip(numbers.tolist(), detected.people.values(), strict=True))
+            detected = replace(detected, people=by_number, numbered=True)
     fit = _fit_numbered if detected.numbered else _fit_listed
     aligned = fit(detected, frame_count, fps, frame_start)
     if aligned.frame_count > MOST_FRAMES:
@@ -183,19 +187,6 @@ class Alignment(NamedTuple):
 def tolerance(frame_count: int) -> int:
     """By how many frames a result may be longer or shorter than the clip."""
     return max(2, round(0.01 * frame_count))
-
-
-def _numbered_by_time(
-    detected: DetectedFrames, time_s: Array, frame_count: int | None, fps: float | None
-) -> DetectedFrames:
-    """The same with the numbers that its times give, from 0, where they are of some of the clip's frames."""
-    if fps is None or frame_count is None or frame_count == len(time_s):
-        return detected
-    numbers = np.round(time_s * fps).astype(np.int64)
-    if (np.diff(numbers) < 1).any() or numbers[-1] >= frame_count:
-        return detected
-    by_number = dict(zip(numbers.tolist(), detected.people.values(), strict=True))
-    return replace(detected, people=by_number, numbered=True)
 
 
 def _fit_listed(

@@ -10,7 +10,7 @@ from ..arrays import Array
 from ..errors import InputError, shown
 from ..files.kinds import number_array
 from .keypoints import SecondSource
-from .layouts import Layout, layout_of, layout_words, with_hands
+from .layouts import LAYOUTS, Layout, layout_of
 
 MOST_PEOPLE = 100  # people of one frame; the performer among more is nobody's take
 MOST_POINTS = 8 * 10**6  # points of all people in all frames of a file
@@ -78,7 +78,14 @@ class Everyone:
             if person is None:
                 self._bodiless.update(str(name) for name, own in entry.items() if own)
                 continue
-            self._check_layout(person.body or len(person.place), at)
+            count = person.body or len(person.place)
+            self.layout = self.layout or layout_of(count)
+            if self.layout is None:
+                known = ", ".join(f"{layout.name} ({layout.count})" for layout in LAYOUTS.values())
+                raise InputError(f"{at} has {count} points; layouts that are read have {known}")
+            if self.layout.count != count:
+                before = f"those before have {self.layout.count}"
+                raise InputError(f"{at} has {count} points; {before}, and all must be alike")
             self._longest = max(self._longest, len(person.place))
             self._points += len(person.place)
             if self._points > MOST_POINTS:  # before more is read
@@ -86,15 +93,6 @@ class Everyone:
                     f"{self.where}: has {self._points} points in all frames; at most {MOST_POINTS} are read"
                 )
             found.append(person)
-
-    def _check_layout(self, count: int, at: str) -> None:
-        self.layout = self.layout or layout_of(count)
-        if self.layout is None:
-            raise InputError(f"{at} has {count} points; layouts that are read have {layout_words()}")
-        if self.layout.count != count:
-            raise InputError(
-                f"{at} has {count} points; those before have {self.layout.count}, and all must be alike"
-            )
 
     def frames(self, source: str, stated_by: Sequence[Any] = (), **more: Any) -> DetectedFrames:
         """Everyone, with `more` fields; `stated_by` are entries that may state which frame each is of."""
@@ -105,7 +103,7 @@ class Everyone:
                 why = f"its people have {shown(sorted(self._bodiless))} and no {BODY}, which they must have"
             raise InputError(f"{self.where}: {why}")
         if self._longest > layout.count:
-            layout = with_hands(layout)
+            layout = layout.with_hands
             people = {at: [_as_long(one, self._longest) for one in there] for at, there in people.items()}
         numbers, time_s = stated_frames(stated_by)
         if numbers is not None or time_s is not None:

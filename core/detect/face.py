@@ -4,7 +4,6 @@ A face is six numbers: its middle [px], the turn from facing the viewer upright 
 axes of the line of sight (x right, y down, z away), and how sure the network is that there is one, 0 to 1.
 """
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -76,8 +75,3 @@ def _seen(points: Array, crop: Crop) -> tuple[Array, Array, Crop]:
     upright = pixel[CHIN] - pixel[TOP]
     best = Crop.around(pixel, float(np.arctan2(-upright[0], upright[1])), CROP_SIZES)
     return turn, pixel.mean(axis=0), best
-
-
-def scaled_faces(faces: Sequence[Array], scale: float) -> Array:
-    """(H, 6) faces of people as in a picture so much larger."""
-    return np.reshape(faces, (-1, FACE_NUMBERS)) * [scale, scale, 1.0, 1.0, 1.0, 1.0]

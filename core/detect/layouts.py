@@ -38,6 +38,12 @@ class Layout:
         """Their numbers."""
         return sorted(self.points)
 
+    @property
+    def with_hands(self) -> "Layout":
+        """The layout followed by the points of the left hand and of the right, unless it has hands itself."""
+        more = {} if "index.L" in self.names else _hands(self.count, self.count + HAND_POINTS)
+        return Layout(self.name, self.count + 2 * HAND_POINTS, MappingProxyType({**self.points, **more}))
+
 
 def _both(*parts: str) -> list[str]:
     return [f"{part}.{side}" for part in parts for side in SIDES]
@@ -95,18 +101,6 @@ def layout_of(count: int) -> Layout | None:
 def own_layout(names: Sequence[str]) -> Layout:
     """A layout of these body points."""
     return _layout(OWN, len(names), names)
-
-
-def with_hands(layout: Layout) -> Layout:
-    """A layout followed by the points of the left hand and of the right, unless it has hands itself."""
-    count = layout.count + 2 * HAND_POINTS
-    hands = {} if "index.L" in layout.names else _hands(layout.count, layout.count + HAND_POINTS)
-    return Layout(layout.name, count, MappingProxyType({**layout.points, **hands}))
-
-
-def layout_words() -> str:
-    """The layouts with their numbers of points, for sentences."""
-    return ", ".join(f"{layout.name} ({layout.count})" for layout in LAYOUTS.values())
 
 
 SIDE_WORDS = {"l": "L", "left": "L", "r": "R", "right": "R"}

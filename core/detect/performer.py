@@ -117,23 +117,18 @@ def _costs(seen: Sightings, expected: Expected | None) -> tuple[list[Array], Arr
         if expected is not None and len(pixel):
             known = np.isfinite(expected.pixel[frame]).all(axis=-1)
             if known.any():
-                weight = float(expected.weight[frame])
-                cost = cost + weight * _distance_cost(pixel, score, expected, frame, known)
+                weight, own = float(expected.weight[frame]), np.where(there & known, score, 0.0)
+                apart2 = ((pixel - expected.pixel[frame]) ** 2).sum(axis=-1) / expected.std_px[frame] ** 2
+                # Each point counts by its score, up to four deviations.
+                off = (own * np.minimum(0.5 * np.where(own > 0.0, apart2, 0.0), 8.0)).sum(axis=1)
+                total = own.sum(axis=1)
+                # Somebody of whom no expected point is seen is as good as nobody.
+                cost += weight * np.where(total > 0.0, off / np.where(total > 0.0, total, 1.0), ABSENT_COST)
                 absent[frame] = weight * ABSENT_COST
         if len(cost) > MOST_CANDIDATES:
             cost = np.where(cost.argsort().argsort() < MOST_CANDIDATES, cost, np.inf)
         costs.append(cost)
     return costs, absent
-
-
-def _distance_cost(pixel: Array, score: Array, expected: Expected, frame: int, known: BoolArray) -> Array:
-    """(H,) mean over the points of half the squared distance, each limited, weighted by the scores."""
-    weight = np.where(np.isfinite(pixel).all(axis=-1) & known, score, 0.0)
-    distance2 = ((pixel - expected.pixel[frame]) ** 2).sum(axis=-1) / expected.std_px[frame] ** 2
-    cost = np.minimum(0.5 * np.where(weight > 0.0, distance2, 0.0), 8.0)  # four deviations
-    total = weight.sum(axis=1)
-    # Somebody of whom no expected point is seen is as good as nobody.
-    return np.where(total > 0.0, (weight * cost).sum(axis=1) / np.where(total > 0.0, total, 1.0), ABSENT_COST)
 
 
 def principal_keypoints(keypoints: Keypoints) -> Keypoints:

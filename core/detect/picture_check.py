@@ -18,7 +18,7 @@ from ..video.album import Glimpses
 from .keypoints import People, SeenPeople, mirrored_point
 from .performer import FITS, person_size
 from .pose_network import CIRCLE, LAYOUT, NAME, Crop, Pose, PoseNetwork
-from .pose_tracking import find_in_picture
+from .pose_tracking import scan
 
 BETTER = 0.6  # another reading of a file must bring its points so much nearer
 LEAST_OFF = 0.04  # nearer points are right as they stand
@@ -46,11 +46,6 @@ class PictureFinding:
     """(N, 2) where the network sees the points of a file that is right [px]; NaN where it does not."""
     shift: int = 0  # by how many frames it is late
     refusal: str = ""  # why it cannot be used, to follow the file's name
-
-    @property
-    def is_scaled(self) -> bool:
-        """Whether it is of another size than the clip."""
-        return self.scale != (1.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +78,7 @@ def check_by_pictures(
         wanted = max(MOST_SCANNED - len(sure_looks), 0)
         for frame in rest[:: max(len(rest) // max(wanted, 1), 1)][:wanted]:
             picture, factor = glimpses.picture(frame)
-            found = find_in_picture(network, picture)
+            found = scan(network, picture)
             if found:
                 sure_looks.append(check.seen(frame, found, factor))
             yield 0.5 + 0.5 * len(sure_looks) / MOST_SCANNED
@@ -250,7 +245,7 @@ def applied(people: People, finding: PictureFinding) -> People:
         raise InputError(f"{where}: {finding.refusal}")
     notes, names = [], people.names
     scale, size = np.array(finding.scale), np.array(people.size, dtype=np.float64)
-    if finding.is_scaled:
+    if finding.scale != (1.0, 1.0):
         width, height = np.round(size / scale).astype(int)
         notes.append(
             f"{people.source}: its points lie where the person in the clip's pictures is if it was made from "

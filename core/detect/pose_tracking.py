@@ -24,7 +24,7 @@ from ..progress import Job, Progress
 from ..video.clip import Clip
 from ..video.working_image import measuring_image
 from .closer_look import CloserLook
-from .face import no_faces, scaled_faces
+from .face import no_faces
 from .hands import no_hands
 from .keypoints import People, SeenPeople
 from .pose_network import LAYOUT, NAME, Crop, Pose, PoseNetwork
@@ -192,7 +192,7 @@ class _Tracking:
 
     def _new(self, index: int) -> list[_Sighting]:
         """New people in a picture."""
-        poses = _scan(self._network, self._pictures[index], [one.pose for one in self._seen[index]])
+        poses = scan(self._network, self._pictures[index], [one.pose for one in self._seen[index]])
         new = [_Sighting(track, pose) for track, pose in enumerate(poses, self._tracks)]
         self._tracks += len(new)
         self._seen[index] += new
@@ -207,28 +207,16 @@ class _Tracking:
             poses = self._network.each([(picture, one.pose.crop) for one in people])
             followed: list[_Sighting] = []
             for one, pose in zip(people, poses, strict=True):
-                if _is_followed(one.pose, pose, picture) and not _is_among(pose, known):
+                before, now = one.pose.crop, pose.crop
+                moved = np.hypot(*(now.center - before.center)) / before.side
+                grown = max(now.side / before.side, before.side / max(now.side, 1.0))
+                same = pose.presence >= 0.5 and _sure(pose, picture) >= 0.3 and moved <= 0.35 and grown <= 1.5
+                if same and not _is_among(pose, known):
                     followed.append(_Sighting(one.track, pose))
                     known.append(pose)  # two may have become one
             people = followed
             self._seen[index] += people
         return people
-
-
-def _is_followed(before: Pose, now: Pose, picture: Image) -> bool:
-    """Whether a person is the one of the picture before, and not lost."""
-    moved = np.hypot(*(now.crop.center - before.crop.center)) / before.crop.side
-    grown = max(now.crop.side / before.crop.side, before.crop.side / max(now.crop.side, 1.0))
-    return now.presence >= 0.5 and _sure(now, picture) >= 0.3 and moved <= 0.35 and grown <= 1.5
-
-
-def _settled(network: PoseNetwork, picture: Image, crops: Sequence[Crop]) -> list[Pose]:
-    """Whom crops show for sure, once these have moved to them; the surest first."""
-    poses = network.each([(picture, crop) for crop in crops])
-    poses = _distinct([pose for pose in poses if pose.presence > 0.3])
-    for _ in range(2):  # somebody may be there, in another place of the crop
-        poses = _distinct(network.each([(picture, pose.crop) for pose in poses]))
-    return [pose for pose in poses if pose.presence > 0.9 and _sure(pose, picture) > 0.5]
 
 
 def _distinct(poses: Sequence[Pose]) -> list[Pose]:
@@ -240,7 +228,7 @@ def _distinct(poses: Sequence[Pose]) -> list[Pose]:
     return found
 
 
-def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[Pose]:
+def scan(network: PoseNetwork, picture: Image, known: Sequence[Pose] = ()) -> list[Pose]:
     """People who are not known yet, the surest first."""
     largest = max((pose.crop.side for pose in known), default=0.0)
     sides = [size * largest for size in SIZES] if known else [size * len(picture) for size in HEIGHTS]
@@ -253,7 +241,11 @@ def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[P
             if all(np.hypot(*(crop.center - one.center)) >= APART * one.side for one in there)
         ]
         small = SMALLEST * largest
-        for pose in _settled(network, picture, crops):
+        seen = network.each([(picture, crop) for crop in crops])
+        seen = _distinct([pose for pose in seen if pose.presence > 0.3])
+        for _ in range(2):  # somebody may be there, in another place of the crop
+            seen = _distinct(network.each([(picture, pose.crop) for pose in seen]))
+        for pose in (one for one in seen if one.presence > 0.9 and _sure(one, picture) > 0.5):
             new = pose.crop.side > small and not _is_among(pose, [*known, *found])
             if new and len(known) + len(found) < 4:
                 found.append(pose)
@@ -261,11 +253,6 @@ def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[P
         if found and not known and number:  # somebody else may be one size smaller
             break
     return [pose for pose in found if pose.crop.side > SMALLEST * largest]
-
-
-def find_in_picture(network: PoseNetwork, picture: Image) -> list[Pose]:
-    """Whoever is seen in a single picture, the surest first."""
-    return _scan(network, picture, [])
 
 
 def _grid(picture: Image, side: float) -> Iterator[Crop]:
@@ -334,7 +321,8 @@ def _fill(
     face, hands = no_faces(int(at[-1] - at[0]) + 1), no_hands(int(at[-1] - at[0]) + 1)
     if any(one.face is not None for one in poses):
         known = [no_faces(1)[0] if one.face is None else one.face for one in poses]
-        face[at - at[0]] = scaled_faces(known, 1.0 / scale)
+        face[at - at[0]] = known
+        face[:, :2] /= scale
     if any(one.hands is not None for one in poses):
         hands[at - at[0]] = [no_hands(1)[0] if one.hands is None else one.hands for one in poses]
         hands[..., :2] /= scale
@@ -351,14 +339,6 @@ def _fill(
             np.concatenate([others.pixel, pixel[row][None]]),
             np.concatenate([others.score, score[row][None]]),
             np.concatenate([others.hint_m, seen[row, None, :, 3:]]),
-            np.concatenate([_faces(others), face[row, None]]),
-            np.concatenate([_hands(others), hands[row, None]]),
+            np.concatenate([*([] if others.face is None else [others.face]), face[row, None]]),
+            np.concatenate([*([] if others.hands is None else [others.hands]), hands[row, None]]),
         )
-
-
-def _faces(people: SeenPeople) -> Array:
-    return no_faces(len(people.pixel)) if people.face is None else people.face
-
-
-def _hands(people: SeenPeople) -> Array:
-    return no_hands(len(people.pixel)) if people.hands is None else people.hands

@@ -41,11 +41,6 @@ class Preset:
     lacks: tuple[str, ...] = ()  # bones that must not be there
 
 
-def read_preset(path: Path) -> Preset:
-    """Read a preset. InputError: the file is missing, no preset, or invalid."""
-    return preset_from_json(read_json(path, 2**20), str(path), path.stem)
-
-
 def preset_from_json(value: Any, where: str, identifier: str) -> Preset:
     """Read a preset from JSON that is not trusted: a character map's fields, and `requires` and `lacks`.
 
@@ -61,7 +56,8 @@ def preset_from_json(value: Any, where: str, identifier: str) -> Preset:
 @lru_cache(maxsize=1)
 def shipped_presets() -> tuple[Preset, ...]:
     """The presets that come with Keymark, in order of their files."""
-    return tuple(read_preset(path) for path in json_files(SHIPPED))
+    files = json_files(SHIPPED)
+    return tuple(preset_from_json(read_json(path, 2**20), str(path), path.stem) for path in files)
 
 
 def find_preset(character: Character, presets: tuple[Preset, ...] | None = None) -> CharacterMap | None:

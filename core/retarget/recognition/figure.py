@@ -96,7 +96,14 @@ def _figure(frame: Frame, chains: _Chains) -> Figure | None:
         leg, arm = (int(each) for each in np.unravel_index(flat, scores.shape))
         if not np.isfinite(scores[leg, arm]):
             return None
-        fork = _fork(frame, legs, arms, leg, arm)
+        # The lowest bone that carries both; none where one limb is part of the other.
+        first, second, below = int(legs.bones[leg, 0]), int(arms.bones[arm, 0]), frame.bones.subtree
+        ends = int(legs.attached[leg]), int(arms.attached[arm])
+        if second in below[first] or first in below[second] or min(ends) < 0:
+            continue
+        above = [ends[0], *frame.bones.ancestors(ends[0])]
+        carriers = (bone for bone in (ends[1], *frame.bones.ancestors(ends[1])) if bone in above)
+        fork = next(carriers, -1)
         if fork >= 0:
             break
     else:
@@ -251,17 +258,6 @@ def _pair_fits(frame: Frame, legs: _Chains, arms: _Chains) -> Array:
     fits += near(np.log(reach / leg), np.log(0.6), 0.35) + near(np.log(arm / leg), np.log(0.65), 0.35)
     fits += near(np.log((shoulder[..., 0] + 1e-3) / (hip[..., 0] + 1e-3)), np.log(1.9), 0.45, 5.0)
     return np.asarray(fits)
-
-
-def _fork(frame: Frame, legs: _Chains, arms: _Chains, leg: int, arm: int) -> int:
-    """The lowest bone that carries a leg and an arm; -1 where none does, or one limb is part of the other."""
-    first, second = int(legs.bones[leg, 0]), int(arms.bones[arm, 0])
-    below = frame.bones.subtree
-    ends = int(legs.attached[leg]), int(arms.attached[arm])
-    if second in below[first] or first in below[second] or min(ends) < 0:
-        return -1
-    above = [ends[0], *frame.bones.ancestors(ends[0])]
-    return next((bone for bone in (ends[1], *frame.bones.ancestors(ends[1])) if bone in above), -1)
 
 
 def _toes(frame: Frame, foot: int, thigh: int) -> dict[int, float]:

@@ -26,8 +26,13 @@ def find_fingers(character: Character, character_map: CharacterMap) -> dict[str,
         if hand is None or hand not in character.index or known:
             continue
         wrist = character.bone(hand).head
-        chains = [_finger(character, wrist, chain) for chain in _chains(character, character.index[hand])]
-        chains = [chain for chain in chains if len(chain) > 1]
+        chains = []
+        for chain in _chains(character, character.index[hand]):
+            while len(chain) > MOST_BONES:  # without the bone of the palm before it, and the end after it
+                first, second = (np.linalg.norm(character.bones[bone].head - wrist) for bone in chain[:2])
+                thumb = _named(character, chain) == FINGERS[0]
+                chain = chain[1:] if first < KNUCKLE * second and not thumb else chain[:-1]
+            chains += [chain] if len(chain) > 1 else []
         names = [_named(character, chain) for chain in chains]
         sure, source = NAMED, "names"
         if None in names or len(set(names)) < len(names):
@@ -54,15 +59,6 @@ def _chains(character: Character, above: int) -> Iterator[list[int]]:
 def _longest(character: Character, bone: int) -> list[int]:
     ways = [_longest(character, child) for child in character.children[bone]]
     return [bone, *max(ways, key=len, default=[])]
-
-
-def _finger(character: Character, wrist: Array, chain: list[int]) -> list[int]:
-    """The bones of a finger: without that of the palm before it, and the end after it."""
-    while len(chain) > MOST_BONES:
-        first, second = (float(np.linalg.norm(character.bones[bone].head - wrist)) for bone in chain[:2])
-        thumb = _named(character, chain) == FINGERS[0]
-        chain = chain[1:] if first < KNUCKLE * second and not thumb else chain[:-1]
-    return chain
 
 
 def _named(character: Character, chain: list[int]) -> str | None:

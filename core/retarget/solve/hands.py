@@ -41,15 +41,6 @@ FULL_SHARE = 0.2
 """Share of a goal from which the arm is solved for it; below, it is between that and its directions."""
 
 
-def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Array:
-    """(F,) how near a hand, given by points (F, 3) along it, is to a part of the body, 0 to 1."""
-    distance_m = np.minimum.reduce([distances_m(source, segment, point) for point in hand])
-    inside = in_segment(source, segment, hand[0])
-    speed = speeds(inside, source.time_s)
-    touching = 1.0 - ease(smoothed(speed, source.time_s, LINGER_S, ends_kept=False), *PASSING_M_S)
-    return _near(source, distance_m, NEAR_M) * touching
-
-
 def near_floor(source: SegmentMotion, ground: Ground, side: str) -> Array:
     """(F,) how near the performer's hand is to the floor, 0 to 1."""
     return _near(source, source.start[f"hand.{side}"][:, 2] - ground.lowest_m, FLOOR_M)
@@ -82,8 +73,14 @@ def hand_goals(
         wrist, own = source.start[f"hand.{side}"], arms[side].end
         by_part = np.stack([one.place(source, wrist, places[one.bone], turns[one.bone]) for one in shapes])
         end, floors[side] = source.end[f"hand.{side}"], near_floor(source, ground, side)
-        along = [wrist, 0.5 * (wrist + end), end]
-        weight = np.stack([_near_part(source, shape.segment, along) for shape in shapes])
+        near = []
+        for segment in (shape.segment for shape in shapes):
+            along = [wrist, 0.5 * (wrist + end), end]
+            distance_m = np.minimum.reduce([distances_m(source, segment, point) for point in along])
+            speed = speeds(in_segment(source, segment, wrist), source.time_s)
+            passing = ease(smoothed(speed, source.time_s, LINGER_S, ends_kept=False), *PASSING_M_S)
+            near.append(_near(source, distance_m, NEAR_M) * (1.0 - passing))
+        weight = np.stack(near)
         total = np.maximum(weight.sum(axis=0), 1e-9)[:, None]
         mean = (weight[..., None] * (by_part - own)).sum(axis=0) / total
         share = 1.0 - np.prod(1.0 - weight, axis=0)
@@ -108,15 +105,6 @@ def hand_goals(
         )
         for side, arm in arms.items()
     }
-
-
-def floor_goals(
-    source: SegmentMotion, stage: Stage, ground: Ground, arm: LimbPose, side: str
-) -> tuple[Array, Array]:
-    """The wrist's goal (F, 3) by the floor alone [m], and how much it counts (F,)."""
-    goal = arm.end.copy()
-    goal[:, 2] = stage.heights(source.start[f"hand.{side}"][:, 2])
-    return goal, near_floor(source, ground, side)
 
 
 def reach(arm: LimbPose, goal: Array, share: Array) -> LimbPose:
@@ -180,7 +168,11 @@ def finger_bends(body: RestBody, wanted: Mapping[str, Array]) -> dict[int, Array
     """
     found: dict[int, Array] = {}
     for side in SIDES:
-        palm = _palm(body, side)
+        starts = {one: body.joint(f"{one}.{side}") for one in FINGERS if f"{one}.{side}" in body.first}
+        others, palm = [start for finger, start in starts.items() if finger != FINGERS[0]], None
+        if others and len(starts) > 1:  # which tell where a palm faces at rest
+            ends = (others[0], others[-1]) if len(others) > 1 else (starts[FINGERS[0]], others[0])
+            palm = palm_axes(np.mean(others, axis=0) - body.joint(f"hand.{side}"), ends[0] - ends[1], side)
         for finger in FINGERS:
             role = f"{finger}.{side}"
             if palm is None or role not in wanted or not body.is_moved(role):
@@ -198,15 +190,3 @@ def finger_bends(body: RestBody, wanted: Mapping[str, Array]) -> dict[int, Array
             bent = own - flexions(ways, axis)
             found |= {bone: hinge(axis, bent[:, number]) for number, bone in enumerate(bones)}
     return found
-
-
-def _palm(body: RestBody, side: str) -> Array | None:
-    """(3, 3) axes of a hand at rest, by where its fingers begin; None of fewer than two."""
-    starts = {
-        finger: body.joint(f"{finger}.{side}") for finger in FINGERS if f"{finger}.{side}" in body.first
-    }
-    others = [start for finger, start in starts.items() if finger != FINGERS[0]]
-    if not others or len(starts) < 2:
-        return None
-    first, last = (others[0], others[-1]) if len(others) > 1 else (starts[FINGERS[0]], others[0])
-    return palm_axes(np.mean(others, axis=0) - body.joint(f"hand.{side}"), first - last, side)

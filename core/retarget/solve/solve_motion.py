@@ -27,7 +27,7 @@ from .feet import (
     sole_points,
     toe_bends,
 )
-from .hands import above_floor, finger_bends, floor_goals, hand_goals, reach
+from .hands import above_floor, finger_bends, hand_goals, near_floor, reach
 from .rest_body import RestBody, Stage, find_stage, rest_notes
 from .two_bone import ARM_SOFT, LEG_SOFT, STRAIGHTEST, LimbPose, reach_for
 
@@ -95,7 +95,8 @@ class Solution:
             moved = feet[side].ankle - raised[:, None] * UP
             needed.append(_needed_drop_m(leg, moved, feet[side].planted, LEG_SOFT, time_s))
         for side, arm in arms.items():
-            goal, share = floor_goals(stage.source, stage, stage.ground, arm, side)
+            goal, share = arm.end.copy(), near_floor(stage.source, stage.ground, side)
+            goal[:, 2] = stage.heights(stage.source.start[f"hand.{side}"][:, 2])
             moved = goal - raised[:, None] * UP
             needed.append(share * _needed_drop_m(arm, moved, share > 0.0, ARM_SOFT, time_s))
         lowered = np.minimum(np.maximum.reduce(needed), deepest_m)
@@ -133,14 +134,6 @@ class Solution:
                 along = aligned @ (tip - self.body.joint(role))
                 self._turn(role, above_floor(turn, solved.end[:, 2] - floor_m, along))
         return goals
-
-    def bend_fingers(self) -> None:
-        """Bend the fingers on the hands where these are now."""
-        bends = finger_bends(self.body, self.stage.source.fingers)
-        for index, bone in enumerate(self.body.bones):
-            if bone.role in FINGER_ROLES:
-                carried = self.turns[bone.carrier]
-                self.turns[index] = np.asarray(carried @ bends[index]) if index in bends else carried
 
     def _turn(self, role: str, turn: Array) -> None:
         if self.body.is_moved(role):
@@ -217,7 +210,11 @@ def solve_motion(
     solution.plant(feet, shapes)
     yield Progress("Reaching with hands", 0.6)
     hands = solution.reach_with_hands() if arms else {}
-    solution.bend_fingers()
+    bends = finger_bends(body, source.fingers)
+    for index, bone in enumerate(body.bones):  # on the hands where these are now
+        if bone.role in FINGER_ROLES:
+            carried = turns[bone.carrier]
+            turns[index] = np.asarray(carried @ bends[index]) if index in bends else carried
     yield Progress("Going over the ground", 0.8)
     way, root, notes = _root_motion(solution, options)
     to_world = object_space

@@ -7,13 +7,13 @@ import pytest
 from _characters import full_map
 from keymark.core.retarget.character import LIMBS, ROLES
 from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones, read_character_map
-from keymark.core.retarget.maps.presets import SHIPPED, read_preset
+from keymark.core.retarget.maps.presets import shipped_presets
 from keymark.core.take.conversion_settings import RetargetOptions
 from keymark.operators.character.map_properties import map_of, show_map
 from keymark.operators.character.retarget import options_of
 from keymark.operators.shell.takes import active_take
 
-RIGIFY = read_preset(SHIPPED / "rigify.json").character_map
+RIGIFY = next(one.character_map for one in shipped_presets() if one.identifier == "rigify")
 
 pytestmark = pytest.mark.usefixtures("registered")
 
