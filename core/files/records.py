@@ -113,13 +113,9 @@ class Declared(NamedTuple):
     default: Any
 
 
+@cache
 def declared(record: Any) -> Mapping[str, Declared]:
     """The fields of a record, a class, by name."""
-    return _declared(record)
-
-
-@cache
-def _declared(record: Any) -> Mapping[str, Declared]:
     hints = get_type_hints(record, include_extras=True)
     found: dict[str, Declared] = {}
     known = {field.name: field for field in dataclasses.fields(record)}

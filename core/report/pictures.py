@@ -202,7 +202,12 @@ def overlay_sheet(
             take.markers, tracks.centroid[frame], tracks.second_moment[frame], strict=False
         ):
             red, green, blue = style.color_srgb
-            _draw_region(tile, scale * center, scale**2 * moment, (blue, green, red))
+            outline = ellipse_outline(scale * center, scale**2 * moment)
+            tile.line(outline, WHITE, 2.6, closed=True)
+            tile.line(outline, (blue, green, red), 1.4, closed=True)
+            for step in 4.0 * np.eye(2):
+                tile.line([scale * center - step, scale * center + step], WHITE, 2.4)
+                tile.line([scale * center - step, scale * center + step], INK, 1.0)
         if keypoints is not None:
             draw_keypoints(tile, keypoints, frame, lambda pixels: scale * pixels)
         return [tile.image()]
@@ -220,15 +225,6 @@ def paler(image: Image) -> Image:
     gray = cv2.cvtColor(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR)
     mixed = 0.7 * image.astype(np.float64) + 0.12 * gray + 0.18 * 255.0
     return np.asarray(np.clip(mixed, 0.0, 255.0), dtype=np.uint8)
-
-
-def _draw_region(tile: Canvas, center: Array, second_moment: Array, color: Color) -> None:
-    outline = ellipse_outline(center, second_moment)
-    tile.line(outline, WHITE, 2.6, closed=True)
-    tile.line(outline, color, 1.4, closed=True)
-    for step in (np.array([4.0, 0.0]), np.array([0.0, 4.0])):
-        tile.line([center - step, center + step], WHITE, 2.4)
-        tile.line([center - step, center + step], INK, 1.0)
 
 
 def footage_frames(clip: Clip, frames: Sequence[int]) -> dict[int, Image]:

@@ -16,7 +16,6 @@ from ..progress import Job, stretch, within
 from ..take.performer_keypoints import FEWEST_KEYFRAMES, people_of, performer_keypoints
 from ..take.read_footage import open_footage, read_footage
 from ..take.take import Take, with_evidence
-from ..video.frame_checks import FrameFindings
 from .session import Inputs, Session, Sight, Stage, WatchedReading
 
 
@@ -97,18 +96,21 @@ def checked_keypoints(take: Take, reading: Reading) -> Job[tuple[People, ...]]:
     """
     checked = []
     posed = sum(keyframe.is_posed for keyframe in take.keyframes)
-    is_asked = [not (each.by_hand or each.looked or _is_own(each)) for each in take.keypoints]
+    is_own = [each.source == NAME and not each.file for each in take.keypoints]
+    is_asked = [
+        not (each.by_hand or each.looked or own) for each, own in zip(take.keypoints, is_own, strict=True)
+    ]
     network = _network() if any(is_asked) and posed < FEWEST_KEYFRAMES else None
     for people, asked in zip(take.keypoints, is_asked, strict=True):
         if network is not None and reading.glimpses is not None and asked:
             job = check_by_pictures(people, reading.glimpses, network, take.fps)
             people = applied(people, (yield from within("Checking the keypoints", job, 0.0, 1.0)))
-        checked.append(_each_once(people, reading.frame_findings))
+        again = {index for index in reading.frame_findings.repeated if index < len(people.frames)}
+        if again and not people.by_hand:  # repeated pictures show no other moment
+            nobody, frames = SeenPeople.nobody(len(people.names)), enumerate(people.frames)
+            people = replace(people, frames=tuple(nobody if i in again else frame for i, frame in frames))
+        checked.append(people)
     return tuple(checked)
-
-
-def _is_own(people: People) -> bool:
-    return people.source == NAME and not people.file
 
 
 @lru_cache(maxsize=1)
@@ -117,16 +119,6 @@ def _network() -> PoseNetwork | None:
         return PoseNetwork()
     except InputError:  # detecting says what is wrong with it
         return None
-
-
-def _each_once(people: People, findings: FrameFindings) -> People:
-    """The people without those of repeated pictures, which show no other moment."""
-    again = {index for index in findings.repeated if index < len(people.frames)}
-    if not again or people.by_hand:
-        return people
-    nobody = SeenPeople.nobody(len(people.names))
-    frames = tuple(nobody if index in again else frame for index, frame in enumerate(people.frames))
-    return replace(people, frames=frames)
 
 
 # --- A picture on its side or upside down, noticed once people are detected, so that the clip can be turned

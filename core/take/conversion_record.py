@@ -9,7 +9,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from .. import MOST_FRAMES
 from ..errors import InputError
@@ -169,6 +169,10 @@ def conversion_digest(
         files = (character.file, *_buffers(character.file))
         contents = tuple((file.name, content_digest(file)) for file in files)
         options = json.dumps(character.options.to_json(), sort_keys=True)
+    about_files = (*FILE_FIELDS, *SETTING_FIELDS)
+    fields = {name: value for name, value in description.fields.values.items() if name not in about_files}
+    if isinstance(fields.get("markers"), Mapping):  # in their order, which is that of the results
+        fields["markers"] = list(fields["markers"].items())
     keypoints = keypoint_files(description, settings)
     network = None if keypoints else settings.network
     evidence: tuple[object, ...] = ()
@@ -177,7 +181,7 @@ def conversion_digest(
     return digest(
         FORMAT,
         version,
-        _take_fields(description.fields.values),
+        json.dumps(fields, sort_keys=True, ensure_ascii=False),
         description.name,
         clip,
         tuple((file.name, content_digest(file)) for file in footage),
@@ -216,12 +220,3 @@ def _buffers(path: Path) -> list[Path]:
     names = [one.get("uri") for one in buffers if isinstance(one, dict)] if isinstance(buffers, list) else []
     beside = [path.parent / name for name in names if isinstance(name, str) and Path(name).name == name]
     return [file for file in beside if file.is_file()]
-
-
-def _take_fields(fields: Mapping[str, Any]) -> str:
-    """The fields of the take itself as JSON; markers in their order, which is that of the results."""
-    kept = {name: value for name, value in fields.items() if name not in (*FILE_FIELDS, *SETTING_FIELDS)}
-    markers = kept.get("markers")
-    if isinstance(markers, Mapping):
-        kept["markers"] = list(markers.items())
-    return json.dumps(kept, sort_keys=True, ensure_ascii=False)

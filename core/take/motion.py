@@ -1,6 +1,6 @@
 """A motion: posture, thirteen points and their covariance for every frame of the clip."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -189,16 +189,8 @@ class MotionFile(Record):
 
     ORDER = (
         *("fps", "frame_start", "frame_count", "method", "keyframes", "time_s", "points", "sigma_m"),
-        *(
-            "covariance_mm2",
-            "posture",
-            "actor",
-            "diagnostics",
-            "unseen",
-            "curls_rad",
-            "wrists_rad",
-            "hands_seen",
-        ),
+        *("covariance_mm2", "posture", "actor", "diagnostics", "unseen"),
+        *("curls_rad", "wrists_rad", "hands_seen"),
     )
 
     def mistake(self) -> str:
@@ -235,41 +227,49 @@ def write_motion(motion: Motion, path: Path) -> None:
     have null where the performer is not there.
     A method that has no covariance (all NaN) leaves `sigma_m` and `covariance_mm2` out.
     """
-    _check_finite(motion)
-    names, empty = motion.body.skeleton.point_names, motion.empty
+    frames, names = len(motion.time_s), motion.body.skeleton.point_names
+    has_covariance, own = not np.isnan(motion.point_covariance).all(), motion.hands
+    arrays = {"points": motion.points, "posture": motion.posture.to_vector()}
+    arrays |= {"covariance": motion.point_covariance} if has_covariance else {}
+    for name, values in arrays.items():
+        bad = ~np.isfinite(values.reshape(frames, -1)).all(axis=1) & motion.there
+        if bad.any():
+            frame = int(np.flatnonzero(bad)[0]) + motion.frame_start
+            raise ConversionError(
+                f"the {motion.method} estimate has no finite {name} at frame {frame} and "
+                f"{int(bad.sum()) - 1} more frames; nothing was written"
+            )
     posture: dict[str, Any] = posture_to_json(motion.posture)
-    places: Any = _rows(rounded(np.swapaxes(motion.points, 0, 1)), empty)
-    angles: Any = _rows(list(posture.values()), empty)
-    uncertainty: dict[str, Any] = {}
-    if _has_covariance(motion):
+    lists: dict[str, tuple[Sequence[str], list[list[Any]]]] = {
+        "points": (names, rounded(np.swapaxes(motion.points, 0, 1))),
+        "posture": (tuple(posture), list(posture.values())),
+    }
+    if has_covariance:
         covariance = 1e6 * motion.point_covariance[:, :, UPPER[0], UPPER[1]]  # (F, P, 6), square millimeters
-        spread = _rows(_significant(np.swapaxes(covariance, 0, 1)), empty)
-        uncertainty["sigma_m"] = dict(zip(names, _rows(rounded(motion.sigma_m.T), empty), strict=True))
-        uncertainty["covariance_mm2"] = dict(zip(names, spread, strict=True))
-    hands: dict[str, Any] = {}
-    if motion.hands is not None:
-        own = motion.hands
-        lists = {
-            "curls_rad": (FINGER_NAMES, own.curls.reshape(len(own.sure), -1)),
-            "wrists_rad": (SIDES, own.bend),
-            "hands_seen": (SIDES, own.sure),
-        }
-        for name, (keys, values) in lists.items():
-            hands[name] = dict(zip(keys, _rows(rounded(np.swapaxes(values, 0, 1)), empty), strict=True))
+        lists["sigma_m"] = (names, rounded(motion.sigma_m.T))
+        lists["covariance_mm2"] = (names, _significant(np.swapaxes(covariance, 0, 1)))
+    if own is not None:
+        lists["curls_rad"] = (FINGER_NAMES, rounded(own.curls.reshape(frames, -1).T))
+        lists["wrists_rad"] = (SIDES, rounded(np.swapaxes(own.bend, 0, 1)))
+        lists["hands_seen"] = (SIDES, rounded(own.sure.T))
+    for _, columns in lists.values():
+        for column in columns:
+            for frame in motion.empty:
+                column[frame] = None
+    fields: dict[str, Any] = {
+        name: dict(zip(keys, rows, strict=True)) for name, (keys, rows) in lists.items()
+    }
     file = MotionFile(
         fps=motion.fps,
         frame_start=motion.frame_start,
-        frame_count=len(motion.time_s),
+        frame_count=frames,
         method=motion.method,
         keyframes=tuple(index + motion.frame_start for index in motion.keyframe_indices),
         time_s=rounded(motion.time_s),
-        points=dict(zip(names, places, strict=True)),
-        posture=dict(zip(posture, angles, strict=True)),
         actor=motion.body.actor,
         diagnostics={name: _significant(rows) for name, rows in sorted(motion.diagnostics.items())},
         unseen=motion.unseen,
-        **uncertainty,
-        **hands,
+        **fields,
     )
     write_json(path, file.to_json())
 
@@ -283,6 +283,11 @@ def read_motion(path: Path) -> Motion:
     if file.covariance_mm2:
         upper = 1e-6 * np.stack(list(file.covariance_mm2.values()), axis=1)
         covariance[:, :, UPPER[0], UPPER[1]] = covariance[:, :, UPPER[1], UPPER[0]] = upper
+    hands = None
+    if file.curls_rad:
+        lists = (file.curls_rad, file.wrists_rad, file.hands_seen)
+        curls, bend, sure = (np.stack(list(one.values()), axis=1) for one in lists)
+        hands = Hands(curls.reshape(len(sure), len(SIDES), -1), bend, sure)[_nearest(there)]
     return Motion(
         body=body,
         fps=file.fps,
@@ -296,43 +301,8 @@ def read_motion(path: Path) -> Motion:
         diagnostics=MappingProxyType(dict(file.diagnostics)),
         empty=tuple(np.flatnonzero(~there).tolist()),
         unseen=file.unseen,
-        hands=_hands_of(file, _nearest(there)),
+        hands=hands,
     )
-
-
-def _hands_of(file: MotionFile, frames: IndexArray) -> Hands | None:
-    if not file.curls_rad:
-        return None
-    curls, bend, sure = (
-        np.stack(list(lists.values()), axis=1) for lists in (file.curls_rad, file.wrists_rad, file.hands_seen)
-    )
-    return Hands(curls.reshape(len(sure), len(SIDES), -1), bend, sure)[frames]
-
-
-def _has_covariance(motion: Motion) -> bool:
-    return not np.isnan(motion.point_covariance).all()
-
-
-def _rows(columns: list[list[Any]], empty: tuple[int, ...]) -> list[list[Any]]:
-    """Lists over F frames with None in those that are empty."""
-    for column in columns:
-        for frame in empty:
-            column[frame] = None
-    return columns
-
-
-def _check_finite(motion: Motion) -> None:
-    arrays = {"points": motion.points, "posture": motion.posture.to_vector()}
-    if _has_covariance(motion):
-        arrays["covariance"] = motion.point_covariance
-    for name, values in arrays.items():
-        bad = ~np.isfinite(values.reshape(len(values), -1)).all(axis=1) & motion.there
-        if bad.any():
-            frame = int(np.flatnonzero(bad)[0]) + motion.frame_start
-            raise ConversionError(
-                f"the {motion.method} estimate has no finite {name} at frame {frame} and "
-                f"{int(bad.sum()) - 1} more frames; nothing was written"
-            )
 
 
 def _significant(values: Array) -> Any:

@@ -10,7 +10,7 @@ from ..arrays import chunks
 from ..detect.clip_fit import tolerance
 from ..errors import InputError
 from ..markers.reading import Reading, read_clip
-from ..markers.region_tracks import ExpectedRegions, RegionTracks
+from ..markers.region_tracks import ExpectedRegions
 from ..prior.keyframes import interpolate
 from ..progress import Job, Progress, within
 from ..terms.region_model import MarkerPlacement, RegionModel
@@ -180,7 +180,15 @@ def clip_notes(take: Take, clip: Clip, reading: Reading) -> tuple[str, ...]:
             f"{clip.path.name} claims {clip.frame_count} frames, of which {tracks.frame_count} can "
             "be decoded; it may be cut off or damaged"
         )
-    return (*notes, *reading.frame_findings.notes(take.frame_start, clip.fps), *_gap_notes(take, tracks))
+    notes += reading.frame_findings.notes(take.frame_start, clip.fps)
+    intervals = np.diff(tracks.time_s)
+    if len(intervals) > 1 and intervals.max() >= LONGEST_INTERVAL * np.median(intervals):
+        before = int(intervals.argmax())  # from there on frame numbers are no longer times
+        notes.append(
+            f"{intervals[before]:.2f} s are missing after frame {before + take.frame_start}; check the "
+            "keyframes after it"
+        )
+    return tuple(notes)
 
 
 def rate_note(take: Take, clip: Clip) -> str | None:
@@ -190,18 +198,6 @@ def rate_note(take: Take, clip: Clip) -> str | None:
     return (
         f"{take.file.name} says {take.fps:g} frames per second, {take.clip.name} says {clip.fps:g}; "
         "check that it is the take's own clip"
-    )
-
-
-def _gap_notes(take: Take, tracks: RegionTracks) -> tuple[str, ...]:
-    """A sentence on the longest gap in the time stamps: there, frame numbers are no longer times."""
-    intervals = np.diff(tracks.time_s)
-    if len(intervals) < 2 or intervals.max() < LONGEST_INTERVAL * np.median(intervals):
-        return ()
-    before = int(intervals.argmax())
-    return (
-        f"{intervals[before]:.2f} s are missing after frame {before + take.frame_start}; check the keyframes "
-        "after it",
     )
 
 

@@ -294,7 +294,11 @@ def _copied(original: Path, folder: Path) -> str:
 
 
 def _write_keypoints(take: Take, folder: Path) -> list[str]:
-    names = [_name_within(people, folder) for people in take.keypoints]
+    names, within = [""] * len(take.keypoints), folder.resolve()
+    for index, people in enumerate(take.keypoints):  # of files that lie there already
+        source = Path(people.file).resolve()
+        if people.file and source.exists() and source.is_relative_to(within):
+            names[index] = source.relative_to(within).as_posix()
     ending, number = Path(KEYPOINT_FILE), 1
     for index, people in enumerate(take.keypoints):
         if names[index]:
@@ -306,13 +310,6 @@ def _write_keypoints(take: Take, folder: Path) -> list[str]:
         write_keypoints(folder / name, people, take.frame_start, take.fps)
         names[index] = name
     return names
-
-
-def _name_within(people: People, folder: Path) -> str:
-    """The path in `folder` of the file that keypoints were read from; empty where it lies elsewhere."""
-    source, within = Path(people.file).resolve(), folder.resolve()
-    there = people.file and source.exists() and source.is_relative_to(within)
-    return source.relative_to(within).as_posix() if there else ""
 
 
 def _with_clip_fields(fields: Fields, path: Path) -> Fields:

@@ -60,9 +60,13 @@ class FrameFindings:
                 "bwdif=mode=send_frame"
             )
         if self.repeated:
+            span = self.repeated[-1] - self.repeated[0] + 2
+            own = (
+                "" if fps is None else f" of {fps * (1.0 - len(self.repeated) / span):.0f} pictures a second"
+            )
             notes.append(
                 f"{len(self.repeated)} of {self.frames} pictures repeat the one before "
-                f"({self._named(self.repeated, first)}), as where a clip{self._own_rate(fps)} was saved at a "
+                f"({self._named(self.repeated, first)}), as where a clip{own} was saved at a "
                 "higher rate; each counts once, and the motion goes on in between"
             )
         if self.changes:
@@ -77,13 +81,6 @@ class FrameFindings:
     def cut_note(self, first: int) -> str:
         """A sentence with the frame of each cut; the clip's first frame has the number `first`."""
         return f"the clip is cut at {frames_in_words((cut + first for cut in self.cuts), MOST_CUTS)}"
-
-    def _own_rate(self, fps: float | None) -> str:
-        """How many pictures a second show another moment, as far as some are repeated."""
-        if fps is None:
-            return ""
-        span = self.repeated[-1] - self.repeated[0] + 2
-        return f" of {fps * (1.0 - len(self.repeated) / span):.0f} pictures a second"
 
     @staticmethod
     def _named(frames: Sequence[int], first: int) -> str:

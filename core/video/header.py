@@ -75,7 +75,11 @@ def trimmed_s(path: Path) -> float | None:
                 continue
             edits = dict(_boxes(track.get(b"edts", b""))).get(b"elst", b"")
             rate, whole = _timing(media[b"mdhd"])
-            shown = sum(_edits(edits)) / clock
+            form = ">QqI" if edits[:1] == b"\x01" else ">IiI"  # duration, where it begins, rate
+            count = struct.unpack_from(">I", edits, 4)[0] if edits else 0
+            starts = [8 + number * struct.calcsize(form) for number in range(min(count, 1000))]
+            parts = [struct.unpack_from(form, edits, start) for start in starts]
+            shown = sum(duration for duration, begins, _ in parts if begins >= 0) / clock
             # A frame or two at the ends are left out by encoders, whose first pictures come late.
             return shown if 0.0 < shown < whole / rate - 0.1 else None
     return None
@@ -86,15 +90,6 @@ def _timing(header: bytes) -> tuple[int, int]:
     form, at = (">IQ", 20) if header[:1] == b"\x01" else (">II", 12)
     scale, duration = struct.unpack_from(form, header, at)
     return int(scale), int(duration)
-
-
-def _edits(content: bytes) -> Iterator[int]:
-    """Durations of the edits that show something, on the movie's clock."""
-    form = ">QqI" if content[:1] == b"\x01" else ">IiI"
-    count = struct.unpack_from(">I", content, 4)[0] if content else 0
-    for number in range(min(count, 1000)):
-        duration, begins, _ = struct.unpack_from(form, content, 8 + number * struct.calcsize(form))
-        yield duration if begins >= 0 else 0
 
 
 def stated_lens_mm(path: Path) -> float | None:

@@ -161,7 +161,14 @@ def _check_agreement(take: Take, performer: Keypoints, name: str, findings: Find
     Detectors place hips and shoulders up to half as far from the joint as is still one of the same person: a
     tenth of the performer's height in the picture. 3 % are the detector's error and that of posing.
     """
-    posed, height_px = _posed_joints(take)
+    posed, heights = {}, [0.0]
+    for keyframe in (one for one in take.keyframes if one.matched is None):
+        points = take.body.points(take.body.pose(keyframe.posture))
+        pixel, _ = take.camera.project(points, keyframe.index)
+        posed[keyframe.index] = dict(zip(take.body.skeleton.point_names, pixel, strict=True))
+        depth = float(np.median(take.camera.depth(points, keyframe.index)))
+        heights.append(float(take.camera.pixels_per_meter(depth)) * take.body.actor.stature_m)
+    height_px = float(np.median(heights[1:] or heights))
     plain = _error(performer, posed, 0, str)
     if plain is None or plain <= 0.03 * height_px:
         return plain
@@ -180,20 +187,6 @@ def _check_agreement(take: Take, performer: Keypoints, name: str, findings: Find
             f"{(best if explained else 'check that they are of this clip and this person')}"
         )
     return plain
-
-
-def _posed_joints(take: Take) -> tuple[dict[int, dict[str, Array]], float]:
-    """The joints (2,) [px] of each posed keyframe by its index, and the performer's usual height [px]."""
-    joints, heights = {}, []
-    for keyframe in take.keyframes:
-        if keyframe.matched is not None:
-            continue
-        points = take.body.points(take.body.pose(keyframe.posture))
-        pixel, _ = take.camera.project(points, keyframe.index)
-        joints[keyframe.index] = dict(zip(take.body.skeleton.point_names, pixel, strict=True))
-        depth = float(np.median(take.camera.depth(points, keyframe.index)))
-        heights.append(float(take.camera.pixels_per_meter(depth)) * take.body.actor.stature_m)
-    return joints, float(np.median(heights)) if heights else 0.0
 
 
 def _error(
@@ -249,7 +242,16 @@ def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tu
         samples = run(sample_spread_frames(clip))
     if samples is None:
         return ()
-    dark = _check_light(samples, findings)
+    bright = np.array([np.percentile(image.max(axis=-1), 90.0) for image in samples.images])
+    dark = False
+    for limit, word in ((16.0, "black"), (40.0, "dark")):  # levels of 255 of the brightest tenth
+        count = int(np.count_nonzero(bright < limit))
+        if not dark and count >= max(0.25 * len(bright), 1):
+            dark = True
+            findings.warn(
+                f"{count} of {len(bright)} sampled frames are {word}; colors are hard to tell there, more "
+                "light is worth most"
+            )
     if not take.markers:
         return ()
     check = _find_markers(take, samples, frames, findings)
@@ -274,20 +276,6 @@ def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tu
             f'says "{IGNORED_REGIONS}": {field}'
         )
     return check.readouts
-
-
-def _check_light(samples: ClipSamples, findings: Findings) -> bool:
-    """Whether many frames are dark; warns of them."""
-    bright = np.array([np.percentile(image.max(axis=-1), 90.0) for image in samples.images])
-    for limit, word in ((16.0, "black"), (40.0, "dark")):  # levels of 255 of the brightest tenth
-        count = int(np.count_nonzero(bright < limit))
-        if count >= max(0.25 * len(bright), 1):
-            findings.warn(
-                f"{count} of {len(bright)} sampled frames are {word}; colors are hard to tell "
-                "there, more light is worth most"
-            )
-            return True
-    return False
 
 
 def _find_markers(take: Take, samples: ClipSamples, frames: int, findings: Findings) -> MarkerCheck:
