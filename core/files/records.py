@@ -113,9 +113,13 @@ class Declared(NamedTuple):
     default: Any
 
 
-@cache
 def declared(record: Any) -> Mapping[str, Declared]:
     """The fields of a record, a class, by name."""
+    return _declared(record)  # the types of a cache know no hash of classes of records
+
+
+@cache
+def _declared(record: Any) -> Mapping[str, Declared]:
     hints = get_type_hints(record, include_extras=True)
     found: dict[str, Declared] = {}
     known = {field.name: field for field in dataclasses.fields(record)}
