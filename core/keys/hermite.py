@@ -8,12 +8,13 @@ section 7.5). The handles' heights are then `value + slope * length / 3` and `va
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg.lapack import dpbsv
 
 from ..arrays import Array, IndexArray
 
 BAND = 3  # bandwidth: value and slope of a key couple with those of the next
+SLOPE_WEIGHT = 0.0025
+"""Weight of the data's slope at a key [frames²]: it decides where no frame lies between keys."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,21 +29,11 @@ class Spline:
         """Values (N, C) at the frames `first` to `last`, both included, which lie between the outer keys."""
         frames = np.arange(first, last + 1)
         piece = np.clip(np.searchsorted(self.keys, frames, side="right") - 1, 0, len(self.keys) - 2)
-        v0, m0, v1, m1 = _basis(times, self.keys, frames, piece).T[..., None]
+        v0, m0, v1, m1 = _basis(times, self.keys[:-1], self.keys[1:], frames, piece).T[..., None]
         values, slopes = self.values, self.slopes
         return np.asarray(
             v0 * values[piece] + m0 * slopes[piece] + v1 * values[piece + 1] + m1 * slopes[piece + 1]
         )
-
-    def with_keys(self, times: Array, new: IndexArray) -> "Spline":
-        """The spline with further keys on its own curve (between its outer keys): nothing moves yet."""
-        fresh = np.setdiff1d(new, self.keys).astype(np.intp)
-        curve = CubicHermiteSpline(times[self.keys], self.values, self.slopes)
-        keys = np.concatenate([self.keys, fresh])
-        order = np.argsort(keys, kind="stable")
-        values = np.concatenate([self.values, curve(times[fresh])])
-        slopes = np.concatenate([self.slopes, curve(times[fresh], 1)])
-        return Spline(keys[order], values[order], slopes[order])
 
     def without_key(self, position: int) -> "Spline":
         """The spline without one of its inner keys."""
@@ -72,11 +63,8 @@ def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exac
     low, high = max(first - 1, 0), min(last + 1, len(spline.keys) - 1)
     keys = spline.keys[low : high + 1]
     band, right = _normal_equations(times, data, keys)
-    # The data's slope at a key has a little weight [frames²]: it decides where no frame lies between keys.
-    before, after = np.maximum(keys - 1, 0), np.minimum(keys + 1, len(times) - 1)
-    slope = (data[after] - data[before]) / (times[after] - times[before])[:, None]
-    band[BAND, 1::2] += 0.0025
-    right[1::2] += 0.0025 * slope
+    band[BAND, 1::2] += SLOPE_WEIGHT
+    right[1::2] += SLOPE_WEIGHT * _slopes(times, data, keys)
     pinned = np.searchsorted(exact, keys, "right") > np.searchsorted(exact, keys)
     values = np.zeros_like(right)  # the known ones, and zero for those that are sought
     values[0::2] = np.where(pinned[:, None], data[keys], spline.values[low : high + 1])
@@ -102,19 +90,74 @@ def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exac
     return Spline(spline.keys, values, slopes)
 
 
+def without_each(
+    times: Array, data: Array, spline: Spline, inner: IndexArray, exact: IndexArray, reach: int
+) -> tuple[IndexArray, IndexArray, Array]:
+    """Curves without one key each, and the `reach` keys on either side of it fitted anew as by `refit`.
+
+    `inner` (T,) are the keys left out, with more than `reach` keys on both sides. The frames (N,) that
+    change, trial after trial, where each trial's begin (T,), and the curves' values (N, C) there.
+    """
+    around = np.arange(-reach - 1, reach + 2)
+    window = inner[:, None] + around[around != 0]  # (T, W) keys of each trial, the outer ones as they are
+    keys = spline.keys[window]
+    trials, width = keys.shape
+    rows = 2 * width
+    own, merged = (
+        _pieces(times, data, starts, ends)
+        for starts, ends in (
+            (spline.keys[:-1], spline.keys[1:]),
+            (spline.keys[inner - 1], spline.keys[inner + 1]),
+        )
+    )
+    matrix = np.zeros((trials, rows, rows))
+    right = np.zeros((trials, rows, data.shape[1]))
+    for number in range(width - 1):
+        at = slice(2 * number, 2 * number + 4)
+        squares, products = merged if number == reach else [each[window[:, number]] for each in own]
+        matrix[:, at, at] += squares
+        right[:, at] += products
+    matrix[:, range(1, rows, 2), range(1, rows, 2)] += SLOPE_WEIGHT
+    right[:, 1::2] += SLOPE_WEIGHT * _slopes(times, data, keys)
+    pinned = np.isin(keys, exact)
+    fixed = np.zeros((trials, rows), dtype=bool)
+    fixed[:, 0::2] = pinned
+    fixed[:, [0, 1, -2, -1]] = True
+    values = np.zeros_like(right)
+    values[:, 0::2] = np.where(pinned[..., None], data[keys], spline.values[window])
+    values[:, 1::2] = spline.slopes[window]
+    values[~fixed] = 0.0
+    right -= matrix @ values
+    right[fixed] = values[fixed]
+    matrix[fixed[:, :, None] | fixed[:, None, :]] = 0.0
+    matrix[:, range(rows), range(rows)] += fixed
+    solved = np.linalg.solve(matrix, right).reshape(trials, width, 2, -1)
+    earlier, later = (each.reshape(-1, 2, solved.shape[-1]) for each in (solved[:, :-1], solved[:, 1:]))
+    starts, ends = keys[:, :-1].ravel(), keys[:, 1:].ravel()
+    lengths = ends - starts
+    lengths[width - 2 :: width - 1] += 1  # the last piece of a trial has its end as well
+    frame, piece = _ranges(starts, lengths)
+    v0, m0, v1, m1 = _basis(times, starts, ends, frame, piece).T[..., None]
+    shown = v0 * earlier[piece, 0] + m0 * earlier[piece, 1] + v1 * later[piece, 0] + m1 * later[piece, 1]
+    counts = keys[:, -1] - keys[:, 0] + 1
+    return frame, np.cumsum(counts) - counts, np.asarray(shown)
+
+
+def _slopes(times: Array, data: Array, keys: IndexArray) -> Array:
+    """(..., C) the data's slopes at keys (...)."""
+    before, after = np.maximum(keys - 1, 0), np.minimum(keys + 1, len(times) - 1)
+    return np.asarray((data[after] - data[before]) / (times[after] - times[before])[..., None])
+
+
 def _normal_equations(times: Array, data: Array, keys: IndexArray) -> tuple[Array, Array]:
     """Normal equations of the frames from the first to the last of K keys, values and slopes in turn.
 
     The matrix as upper bands (BAND + 1, 2 K), and the right-hand side (2 K, C).
     """
     pieces = len(keys) - 1
-    lengths = np.diff(keys)
-    lengths[-1] += 1  # the last piece has its end as well
-    frame = np.arange(keys[0], keys[-1] + 1)
-    basis = _basis(times, keys, frame, np.repeat(np.arange(pieces), lengths))
-    starts = keys[:-1] - keys[0]
-    squares = np.add.reduceat(basis[:, :, None] * basis[:, None, :], starts)  # (pieces, 4, 4)
-    products = np.add.reduceat(basis[:, :, None] * data[frame, None, :], starts)  # (pieces, 4, C)
+    squares, products = _pieces(times, data, keys[:-1], keys[1:])
+    squares[-1, 2, 2] += 1.0  # the last piece has its end as well
+    products[-1, 2] += data[keys[-1]]
     band = np.zeros((BAND + 1, 2 * len(keys)))
     right = np.zeros((2 * len(keys), data.shape[1]))
     for i in range(BAND + 1):
@@ -124,11 +167,26 @@ def _normal_equations(times: Array, data: Array, keys: IndexArray) -> tuple[Arra
     return band, right
 
 
-def _basis(times: Array, keys: IndexArray, frame: IndexArray, piece: IndexArray) -> Array:
+def _pieces(times: Array, data: Array, starts: IndexArray, ends: IndexArray) -> tuple[Array, Array]:
+    """Normal equations (pieces, 4, 4) and (pieces, 4, C) of pieces from frames up to before others."""
+    lengths = ends - starts
+    frame, piece = _ranges(starts, lengths)
+    basis, first = _basis(times, starts, ends, frame, piece), np.cumsum(lengths) - lengths
+    squares = np.add.reduceat(basis[:, :, None] * basis[:, None, :], first)
+    return squares, np.add.reduceat(basis[:, :, None] * data[frame, None, :], first)
+
+
+def _ranges(starts: IndexArray, lengths: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """Frames that follow some starts, one range after another, and the range that each is of."""
+    piece = np.repeat(np.arange(len(starts)), lengths)
+    return np.arange(len(piece)) + (starts - np.cumsum(lengths) + lengths)[piece], piece
+
+
+def _basis(times: Array, starts: IndexArray, ends: IndexArray, frame: IndexArray, piece: IndexArray) -> Array:
     """(N, 4) Hermite basis: factors of the earlier key's value and slope and of the later one's."""
-    at = times[keys]
-    start, length = at[piece], np.diff(at)[piece]
-    s = (times[frame] - start) / length
+    begun = times[starts]
+    length = (times[ends] - begun)[piece]
+    s = (times[frame] - begun[piece]) / length
     rest = 1.0 - s
     basis = np.empty((len(frame), 4))
     basis[:, 0] = rest * rest * (1.0 + 2.0 * s)

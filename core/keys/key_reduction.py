@@ -3,18 +3,18 @@
 import heapq
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
-from itertools import count
 
 import numpy as np
 
-from ..arrays import Array, BoolArray, IndexArray
+from ..arrays import Array, BoolArray, IndexArray, chunks
 from ..body import rotations
-from .hermite import Spline, fit_keys, refit
+from .hermite import Spline, fit_keys, refit, without_each
 from .rig import Rig, RigPose
 
-REACH = 3  # number of keys on either side of a new or removed one that are fitted anew
+REACH = 3  # number of keys on either side of a removed one that are fitted anew
 REMOVAL_MARGIN = 0.98  # share of the tolerance that removal may use: F-curves store numbers with few digits
 TRIALS_A_YIELD = 25  # removals tried between two reports of progress
+TRIALS_AT_ONCE = 100  # removals tried together, which bounds their memory
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,22 +69,15 @@ class KeyedBody:
                 found[bone] = Spline(one.keys, value, slope)
         return tuple(found[bone] for bone in range(len(self.rig.bones)))
 
-    def insert(self, group: int, frames: IndexArray, everywhere: bool) -> None:
-        """Add keys to a group and fit all its keys anew, or only those near the new ones.
+    def insert(self, group: int, frames: IndexArray) -> None:
+        """Add keys to a group and fit all its keys anew.
 
         A frame that is a key already is pinned: from now on the key has the target's own value.
         """
         again = np.intersect1d(frames, self.splines[group].keys)
         self.pinned[group] = np.union1d(self.pinned[group], again).astype(np.intp)
-        spline, data = self.splines[group].with_keys(self.times, frames), self.data[group]
-        last = len(spline.keys) - 1
-        if everywhere:
-            self.splines[group] = refit(self.times, data, spline, 0, last, self.pinned[group])
-            return
-        for at in np.searchsorted(spline.keys, frames):
-            low, high = max(int(at) - REACH, 0), min(int(at) + REACH, last)
-            spline = refit(self.times, data, spline, low, high, self.pinned[group])
-        self.splines[group] = spline
+        keys = np.union1d(self.splines[group].keys, frames).astype(np.intp)
+        self.splines[group] = fit_keys(self.times, self.data[group], keys, self.pinned[group])
 
     def without_key(self, group: int, frame: int) -> Trial:
         """The result without the group's key at a frame, its neighbors fitted anew."""
@@ -100,6 +93,23 @@ class KeyedBody:
         pose = self.rig.pose_changed(self.pose, frames, changed)
         distance = np.linalg.norm(pose.points - self.target.points[frames], axis=-1)
         return Trial(spline, frames, pose, float((distance / self.tolerance_m[frames]).max()))
+
+    def worst_without(self, group: int, frames: IndexArray) -> Array:
+        """(T,) the largest error that each of the group's keys at some frames leaves if it alone goes."""
+        spline = self.splines[group]
+        at = np.searchsorted(spline.keys, frames)
+        inner = (at > REACH) & (at < len(spline.keys) - 1 - REACH)
+        worst = np.empty(len(frames))
+        worst[~inner] = [self.without_key(group, int(frame)).worst for frame in frames[~inner]]
+        if inner.any():
+            exact = self.pinned[group]
+            rows, starts, shown = without_each(self.times, self.data[group], spline, at[inner], exact, REACH)
+            values = np.split(shown, self._ends[group], axis=1)
+            changed = dict(zip(self.groups[group], values, strict=True))
+            points = self.rig.pose_changed(self.pose, rows, changed).points
+            distance = np.linalg.norm(points - self.target.points[rows], axis=-1)
+            worst[inner] = np.maximum.reduceat((distance / self.tolerance_m[rows]).max(axis=1), starts)
+        return worst
 
     def influence(self, group: int, off: BoolArray) -> Array:
         """(F,) largest displacement [m] that a group's own error gives the points that are `off` (F, P).
@@ -166,7 +176,7 @@ def reduce_keys(
 def _add_keys(body: KeyedBody) -> Generator[float, None, None]:
     """Add keys until the body has no error beyond the margin; yields the fraction done."""
     most = 0
-    for number in count():
+    while True:
         # Share of the tolerance that added keys must reach; removal then chooses among them.
         off = body.update() > 0.5 * body.tolerance_m
         frames_off = int(off.any(axis=1).sum())
@@ -178,30 +188,28 @@ def _add_keys(body: KeyedBody) -> Generator[float, None, None]:
         # A bone gets a key where its influence on a point is at least this share of the largest bone's.
         wanted = np.where(influence >= 0.6 * influence.max(axis=0), influence, 0.0)
         for group, own in enumerate(wanted):
-            # At most one new or pinned frame between two keys.
+            # At most one new or pinned frame between two keys: the first of the largest.
             starts = body.splines[group].keys
-            pieces = zip(starts, np.append(starts[1:], len(own)), strict=True)
-            frames = [int(a) + int(own[a:b].argmax()) for a, b in pieces if own[a:b].max() > 0.0]
-            if frames:
-                # Rounds in which all keys are fitted anew; later ones fit only the new keys' neighbors.
-                body.insert(group, np.array(frames, dtype=np.intp), everywhere=number < 3)
+            piece = np.searchsorted(starts, np.arange(len(own)), side="right") - 1
+            largest = np.flatnonzero((own > 0.0) & (own == np.maximum.reduceat(own, starts)[piece]))
+            frames = largest[np.unique(piece[largest], return_index=True)[1]]
+            if len(frames):
+                body.insert(group, frames)
                 yield 1.0 - frames_off / most
 
 
 def _remove_keys(body: KeyedBody) -> Generator[float, None, None]:
     """Remove keys while the tolerance holds, the most dispensable first; yields the fraction done."""
     waiting: list[tuple[float, int, int]] = []
-    candidates = [
-        (group, int(frame))
-        for group, spline in enumerate(body.splines)
-        for frame in np.setdiff1d(spline.keys[1:-1], body.posed)
-    ]
-    for number, (group, frame) in enumerate(candidates):
-        worst = body.without_key(group, frame).worst
-        if worst <= REMOVAL_MARGIN:
-            waiting.append((worst, group, frame))
-        if number % TRIALS_A_YIELD == 0:
-            yield 0.5 * number / len(candidates)
+    for group, spline in enumerate(body.splines):
+        for frames in chunks(np.setdiff1d(spline.keys[1:-1], body.posed), TRIALS_AT_ONCE):
+            worst = body.worst_without(group, frames)
+            waiting += [
+                (float(own), group, int(frame))
+                for own, frame in zip(worst, frames, strict=True)
+                if own <= REMOVAL_MARGIN
+            ]
+            yield 0.3 * group / len(body.splines)
     heapq.heapify(waiting)
     judged, number = len(waiting), 0
     while waiting:
@@ -217,4 +225,4 @@ def _remove_keys(body: KeyedBody) -> Generator[float, None, None]:
                 body.pose.rotation[:, trial.frames] = trial.pose.rotation
                 body.pose.points[trial.frames] = trial.pose.points
         if number % TRIALS_A_YIELD == 0:
-            yield 0.5 + 0.5 * (1.0 - len(waiting) / judged)
+            yield 0.3 + 0.7 * (1.0 - len(waiting) / judged)

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..arrays import Array
+from ..arrays import Array, IndexArray
 
 NO_TURN = "NONE"  # rotation mode of a bone that is placed and not turned
 
@@ -74,7 +74,9 @@ class Rig:
             self._place(pose, index, *self._local(index, own))
         return pose
 
-    def pose_changed(self, pose: "RigPose", frames: slice, changed: dict[int, Array]) -> "RigPose":
+    def pose_changed(
+        self, pose: "RigPose", frames: slice | IndexArray, changed: dict[int, Array]
+    ) -> "RigPose":
         """The pose at some frames when some bones take other values (N, C) there."""
         part = RigPose(pose.rotation[:, frames].copy(), pose.points[frames].copy())
         touched = sorted({index for bone in changed for index in self.subtrees[bone]})
@@ -117,13 +119,13 @@ class RigPose:
     rotation: Array  # (B, F, 3, 3) each bone's joint's frame in the world
     points: Array  # (F, P, 3) joints and ends in the world [m], in the order of `Rig.point_slices`
 
-    def local(self, rig: Rig, index: int, frames: slice) -> Array:
+    def local(self, rig: Rig, index: int, frames: slice | IndexArray) -> Array:
         """(N, 3, 3) a bone's joint's frame in that of the bone that turns it."""
         own = self.rotation[index, frames]
         above = rig.bones[index].turner
         return own if above < 0 else np.swapaxes(self.rotation[above, frames], -1, -2) @ own
 
-    def place(self, rig: Rig, index: int, frames: slice) -> Array:
+    def place(self, rig: Rig, index: int, frames: slice | IndexArray) -> Array:
         """A bone's joint in its parent's joint's frame: (N, 3), or (3,) where it has no location."""
         bone = rig.bones[index]
         if bone.location_axes is None:

@@ -19,6 +19,7 @@ from .actor_bones import evaluated
 
 Pose = dict[str, list[tuple[float, ...]]]  # values of all channels, by bone
 CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
+LOOKS_AT_ONCE = 40  # frames looked at in a row: putting the scene back takes as long as five
 
 
 def scene_frames(time_s: Array, first: float, rate: float) -> Array:
@@ -65,12 +66,12 @@ def each_frame(
     look: Callable[[], None],
 ) -> Part[None]:
     """Look at scene frames (F,), with what `meanwhile` does; while it yields, the scene is as it was."""
-    for first in range(0, len(frames), 10):
+    for first in range(0, len(frames), LOOKS_AT_ONCE):
         with at_scene_frame(scene) as go_to, meanwhile():
-            for frame in frames[first : first + 10]:
+            for frame in frames[first : first + LOOKS_AT_ONCE]:
                 go_to(frame)
                 look()
-        yield min(first + 10, len(frames)) / len(frames)
+        yield min(first + LOOKS_AT_ONCE, len(frames)) / len(frames)
 
 
 @contextmanager

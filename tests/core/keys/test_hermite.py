@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from keymark.core.keys.hermite import Spline, fit_keys, refit
+from keymark.core.keys.hermite import Spline, fit_keys, refit, without_each
 
 TIMES = np.concatenate([np.arange(20.0), 20.0 + 0.5 * np.arange(20)])
 NONE = np.zeros(0, dtype=np.intp)
@@ -40,10 +40,13 @@ def test_fitting_some_keys_anew_leaves_the_others() -> None:
     assert after < 0.5 * before
 
 
-def test_a_key_on_the_curve_moves_nothing() -> None:
-    spline = fit_keys(TIMES, wave(), np.array([0, 12, 39]), NONE)
-    further = spline.with_keys(TIMES, np.array([5, 27]))
-    assert list(further.keys) == [0, 5, 12, 27, 39]
-    assert further.evaluate(TIMES, 0, 39) == pytest.approx(spline.evaluate(TIMES, 0, 39), abs=1e-12)
-    back = further.without_key(3).without_key(1)
-    assert np.array_equal(back.values, spline.values)
+def test_keys_left_out_together_leave_what_each_leaves_alone() -> None:
+    keys, exact = np.array([0, 3, 6, 10, 13, 14, 18, 22, 25, 29, 33, 39]), np.array([10])
+    spline = fit_keys(TIMES, wave(), keys, exact)
+    inner = np.array([3, 4, 6, 8])
+    frames, starts, shown = without_each(TIMES, wave(), spline, inner, exact, 2)
+    pieces = zip(inner, np.split(frames, starts[1:]), np.split(shown, starts[1:]), strict=True)
+    for at, own, values in pieces:
+        assert [own[0], own[-1]] == [keys[at - 3], keys[at + 3]]
+        alone = refit(TIMES, wave(), spline.without_key(at), at - 2, at + 1, exact)
+        assert values == pytest.approx(alone.evaluate(TIMES, own[0], own[-1]), abs=1e-12)
