@@ -8,8 +8,7 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import UP, Posture, yaw_rotation, yawed_at
 from keymark.core.body.posture_spline import cubic_spline, find_intervals
-from keymark.core.prior.library import Library, LibraryMotion, LibraryPosture, MotionStep
-from keymark.core.prior.transfer import transferred
+from keymark.core.prior.library import Library, LibraryMotion, LibraryPosture, MotionStep, transferred
 
 ACTOR = Actor.from_stature(1.75)
 

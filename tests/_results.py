@@ -9,7 +9,7 @@ from _faults import tree
 from keymark.core.body.posture import Posture
 from keymark.core.files.digest import content_digest
 from keymark.core.files.paths import real_path
-from keymark.core.poses.candidates import Candidate, MatchedFrame
+from keymark.core.poses.found_poses import Candidate, MatchedFrame
 from keymark.core.prior.library import Library, LibraryPosture
 from keymark.core.session.result import AS_MADE
 from keymark.core.take.conversion_record import read_record

@@ -216,11 +216,8 @@ def standing_posture(
 ) -> Posture:
     """A posture of the default skeleton that stands upright on the ground.
 
-    Args:
-        body: The actor's body.
-        place: (3,) point on the ground between the feet [m]; the world's origin by default.
-        heading_rad: Turn about the world's Z from facing -Y.
-        arms_lowered_rad: Angle of the arms below the horizontal.
+    `place` (3,) is the point between the feet [m], by default the world's origin, `heading_rad` the turn from
+    facing -Y, `arms_lowered_rad` the angle of the arms below the horizontal.
     """
     skeleton = body.skeleton
     values = {"pelvis.rotation_z": heading_rad}

@@ -136,12 +136,9 @@ def _residuals(body: Body, posture: Posture, targets: Array, weights: Array) -> 
 def fit_posture(body: Body, points: Array, start: Posture | None = None, iterations: int = 60) -> PostureFit:
     """Fit postures of an actor to given points, as closely as its segment lengths allow.
 
-    Args:
-        body: The actor's body.
-        points: (N, 13, 3) principal points in the world [m]; NaN for an unknown point (then `start` is
-            required).
-        start: A batch of N postures to start from; by default a geometric guess.
-        iterations: Most of them; the points are reached long before what they hardly show comes to rest.
+    `points` (N, 13, 3) are the principal points in the world [m]; with NaN for an unknown one `start` is
+    required, N postures in place of a geometric guess. The points are reached long before what they hardly
+    show comes to rest, after most `iterations`.
     """
     targets = np.asarray(points, dtype=np.float64)
     posture = guess_posture(body, targets) if start is None else start

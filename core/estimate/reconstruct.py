@@ -114,7 +114,11 @@ def _reconstruct(
 ) -> Job[Reconstruction]:
     take, reading, keypoints, there = shown.take, shown.reading, shown.keypoints, shown.there
     notes, tracks, referred, shaken = take.notes, reading.tracks, None, shown.camera_notes
-    _check_tracks(take, tracks)
+    names = tuple(style.name for style in take.markers)
+    if tracks.names != names:
+        raise ValueError(f"the tracks are those of {tracks.names}, not of the take's markers {names}")
+    check_frame_count(take, tracks.frame_count)
+    check_in_front(take)
     if reference is not None:
         notes += reference.notes
         if isinstance(reference, ReferenceEvidence):
@@ -158,14 +162,6 @@ def _present(take: Take, there: BoolArray) -> Take:
             f"{take.name} has {len(kept)} keyframes in frames that show somebody; at least 2 are needed"
         )
     return replace(take, keyframes=kept)
-
-
-def _check_tracks(take: Take, tracks: RegionTracks) -> None:
-    names = tuple(style.name for style in take.markers)
-    if tracks.names != names:
-        raise ValueError(f"the tracks are those of {tracks.names}, not of the take's markers {names}")
-    check_frame_count(take, tracks.frame_count)
-    check_in_front(take)
 
 
 def _belief(

@@ -1,4 +1,4 @@
-"""How far the motion departs from the prior, learned from the estimate by the markers.
+"""How the motion departs from the prior, learned from the estimate by the markers: turns, and how far.
 
 Keyframes tell only roughly how much happens between them: swings that all of them show at the same phase, or
 a gap as long as the swing, leave them alike. Once the markers are followed the footage itself tells, for each
@@ -10,7 +10,7 @@ models Shumway & Stoffer 1982, *An approach to time series smoothing and forecas
 """
 
 from collections.abc import Generator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import compress
 
 import numpy as np
@@ -18,6 +18,7 @@ import numpy as np
 from ..arrays import Array
 from ..numerics.vectors import runs
 from ..prior.frame_prior import REFERENCE_STEP_S
+from ..prior.keyframes import FULL_TURN, heading_steps_rad
 from ..progress import Part, scaled
 from ..terms.depths import DEPTH_STD_M
 from ..terms.state import ClipState
@@ -28,9 +29,125 @@ from .clip_problem import ClipData, ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_search import all_located, contour_schedule, points_locate
 from .sigma import GRACE_S
-from .turn_choice import choose_turns
-from .window_problem import WindowProblem
+from .window_problem import WindowProblem, image_cost
 from .windows import Window, spliced
+
+# --- Which way round the body turns between two keyframes
+
+
+BEGUN = (8.0, 4.0, 2.0, 1.0, 1.0)  # image variance in an alternative's first steps, which tell a hopeless one
+LARGE_STEP_RAD = np.radians(60.0)  # a turn between keyframes from which on the other way round is tried
+FASTEST_RAD_PER_S = 3.0 * FULL_TURN  # nobody turns faster: dancers make two to three turns a second
+
+
+def other_way(problem: ClipProblem, state: ClipState, other: ClipProblem) -> Generator[None, None, float]:
+    """How much less a stretch costs about another prior, in negative log probability.
+
+    It is solved once more from its `state`, the solution of consecutive frames cut from a window's, and anew
+    about the other prior; -inf where that is hopeless.
+    """
+    first, last = int(state.frame[0]), int(state.frame[-1]) + 1
+    window = Window(first, last, first, last)
+    here = WindowProblem(problem, window, state)
+    there = WindowProblem(other, window, other.start(window))
+    known = yield from here.descend(())
+    begun = yield from there.descend(BEGUN)
+    # An alternative that costs more than the estimate by three tenths of it and 50 besides is given up by
+    # then. The other steps save a third of an alternative's cost at most, and mostly a tenth.
+    if begun.sum() > 1.3 * known.sum() + 50.0:
+        return -np.inf
+    settled = yield from here.descend((1.0,) * 4)  # its window was solved already
+    ended = yield from there.descend((1.0,) * 10)  # where it departs far from the prior, as in long gaps
+    return float(settled.sum() - ended.sum())
+
+
+def cut(states: list[ClipState], first: int, last: int, margin: int) -> ClipState | None:
+    """The state of frames `first` to `last - 1` and a margin around them; None where no window has all."""
+    for state in states:
+        begin, end = int(state.frame[0]), int(state.frame[-1]) + 1
+        if begin <= first and last <= end:
+            return state.of_frames(slice(max(first - margin - begin, 0), min(last + margin, end) - begin))
+    return None
+
+
+@dataclass(frozen=True)
+class DoubtedTurn:
+    """A gap between keyframes in which the body may turn another way."""
+
+    gap: int
+    turns: tuple[int, ...]  # whole turns that may have to be added to the short way round
+    strength: float  # by which the most doubtful gap comes first
+
+
+def doubted_turns(problem: ClipProblem, cost: Array) -> list[DoubtedTurn]:
+    """Gaps to be tried another way round, the most doubtful first.
+
+    `cost` (F,): what each marker seen costs on average, the short way round.
+    """
+    keyframes = problem.data.belief.frame
+    step = heading_steps_rad(problem.data.belief.postures)
+    found = []
+    for gap in range(len(step)):
+        first, last = int(keyframes[gap]), int(keyframes[gap + 1])
+        if last - first < 2:
+            continue
+        time_s = float(problem.data.step_s[first:last].sum())
+        misfit = float(cost[first + 1 : last].mean())
+        # 0.3: gaps of this time and longer ...
+        # 0.5: ... in which each marker seen costs more than this are tried both ways round. With noise as
+        # assumed it would cost 2; the slow biases take most of that, so that it is 0.1 to 0.2 where all is
+        # well.
+        doubted = time_s >= 0.3 and misfit > 0.5
+        if abs(step[gap]) < LARGE_STEP_RAD and not doubted:
+            continue
+        ways = (-1, 1) if doubted else (-1 if step[gap] > 0.0 else 1,)
+        farthest = FASTEST_RAD_PER_S * time_s
+        possible = [way for way in ways if abs(step[gap] + FULL_TURN * way) <= farthest]
+        if possible:
+            found.append(DoubtedTurn(gap, tuple(possible), misfit + abs(float(step[gap])) / np.pi))
+    return sorted(found, key=lambda doubt: (-doubt.strength, doubt.gap))
+
+
+def choose_turns(problem: ClipProblem, states: list[ClipState]) -> Part[tuple[ClipProblem, list[ClipState]]]:
+    """Turn the other way round where that costs less: Gauss-Newton ends in the optimum next to its start.
+
+    `states` are windows, solved, which may overlap.
+    """
+    states = list(states)
+    data = problem.data
+    # 0.2: how far beyond its keyframes, which hold it, a stretch is solved
+    margin = round(0.2 / (data.pace * REFERENCE_STEP_S))
+    seen = bool(data.observed.quality.any() or data.points.seen.any())  # contours alone decide nothing
+    doubts = doubted_turns(problem, image_cost(problem, states)) if seen else []
+    for number, doubt in enumerate(doubts):
+        first, last = (int(frame) for frame in problem.data.belief.frame[doubt.gap : doubt.gap + 2])
+        state = cut(states, first, last + 1, margin)
+        if state is None:
+            continue
+        # 3.0: another turn is taken where it costs less by so much: it is twenty times as probable
+        best, most = problem, 3.0
+        for way in doubt.turns:
+            turns = problem.turns.copy()
+            turns[doubt.gap] = way
+            other = problem.with_turns(turns)
+            trying = other_way(problem, state, other)
+            gain = yield from scaled(trying, number / len(doubts), (number + 1) / len(doubts))
+            if gain > most:
+                best, most = other, gain
+        if best is not problem:
+            turned = (best.prior.rotations != problem.prior.rotations).any(axis=(1, 2, 3))
+            problem = best
+            for index, one in enumerate(states):
+                if turned[one.frame].any():
+                    whole = Window(int(one.frame[0]), int(one.frame[-1]) + 1, 0, 0)
+                    part = WindowProblem(problem, whole, problem.start(whole))
+                    yield from scaled(part.follow_markers(), 1.0, 1.0)
+                    states[index] = part.state.without_cache()
+    return problem, states
+
+
+# --- Sizes of the motion
+
 
 # Root mean square second difference of a limb's unknowns at which the keyframes told the size right: a
 # solution is smoother than the motion, whose size is one.

@@ -44,13 +44,9 @@ def find_ground(
 ) -> Ground:
     """Find the ground under both feet.
 
-    Args:
-        ankles: (F, 2, 3) their places [m].
-        depth_m: (F, 2) depth of the lowest point of the sole below the ankle [m].
-        flat_m: The same of a foot that lies flat [m].
-        time_s: (F,) times.
-        rests: Rests of the ankles.
-        on_scene: Whether rests on one level are at one height, and those near the scene's ground on it.
+    `ankles` (F, 2, 3) are their places, `depth_m` (F, 2) that of the lowest point of the sole below the
+    ankle, `flat_m` the same of a foot that lies flat. With `on_scene` rests on one level are at one height,
+    and those near the scene's ground on it.
     """
     soles = ankles[..., 2] - depth_m
     if not rests:

@@ -164,11 +164,8 @@ def hand_turns(body: Body, pose: Pose, ground_m: Array, time_s: Array) -> dict[s
 def _above_ground(bend: Array, over: Array, ahead: Array, palm: Array) -> Array:
     """The bends (F,) [rad] that keep fingertips above the ground, as far as the wrists let them.
 
-    Args:
-        bend: (F,) the relaxed ones [rad].
-        over: (F,) height of the wrist above the ground, in lengths of the hand.
-        ahead: (F,) upward component of the forearm's direction; of a straight hand's.
-        palm: (F,) upward component of the direction that the palm faces.
+    Of F frames: `bend` are the relaxed ones, `over` is the wrist's height above the ground in lengths of the
+    hand, `ahead` and `palm` are the upward components of the forearm's direction and of the palm's.
     """
     # A tip rises by ahead cos(bend) + palm sin(bend), least where the hand is as steep as its hinge lets it.
     steepness = np.hypot(ahead, palm)

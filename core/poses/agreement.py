@@ -17,8 +17,8 @@ from ..estimate.performer_placement import feet_over_floor_m
 from ..estimate.sigma import GROUND_STD_M
 from ..files.fields import listed
 from ..take.presence import named_limbs
-from .candidates import PROBABILITY_BOUNDS, MatchedFrame
 from .clip_input import PosingInput
+from .found_poses import PROBABILITY_BOUNDS, MatchedFrame
 
 GUESSED_SIZE, GUESSED_SIZE_STD = 0.89, 0.07
 """Length of limbs by a network's guess over that between the joints' centers, and the deviation of its
@@ -34,13 +34,8 @@ def agreement(
 ) -> tuple[float, str]:
     """Probability that a found motion is usable, and a sentence with what speaks for or against it.
 
-    Usable is a mean error of less than 10 cm, the hips aligned, and of half a meter in place.
-
-    Args:
-        given: What the poses were found from.
-        postures: (F,) of its frames.
-        frames: The frames that were proposed for keyframes, with their candidates.
-        floor_m: Height of the floor [m]; None where it is wherever the feet are.
+    Usable is a mean error of less than 10 cm, the hips aligned, and of half a meter in place. `frames` are
+    those proposed for keyframes; `floor_m` is None where the floor is wherever the feet are.
     """
     chosen = [frame.candidates[0].confidence for frame in frames]
     probability = float(np.mean(chosen)) if chosen else 0.0

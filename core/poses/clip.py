@@ -25,10 +25,9 @@ from ..progress import Job, Part, Progress, stretch, within
 from ..take.presence import SeenTake
 from ..take.take import Take
 from .agreement import agreement
-from .candidates import MatchedFrame, composed_candidates
 from .clip_input import PosingInput, posing_input, stretch_of, tempering
 from .compose_clip import Composition, compose_frames
-from .found_poses import FoundPoses
+from .found_poses import FoundPoses, MatchedFrame, composed_candidates
 from .frame_likelihood import frame_likelihood
 from .match_evidence import marker_moments
 from .part_features import HEADINGS

@@ -201,12 +201,7 @@ def section_around(time_s: Array, corrected: int, keyframes: Collection[Keyframe
 
     On either side it reaches to the next keyframe that the animator decided on, or else to the first found
     one beyond `FARTHEST_S`, or else to the clip's end; but always beyond one found keyframe, and nowhere
-    without one.
-
-    Args:
-        time_s: (F,) times of the clip's frames [s].
-        corrected: Index of the corrected keyframe.
-        keyframes: All keyframes, those with `matched` found.
+    without one. `corrected` is the keyframe's index.
     """
     ends, changed = [], []
     for side, end in ((-1, 0), (1, len(time_s) - 1)):

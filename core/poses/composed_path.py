@@ -43,14 +43,8 @@ def best_path(
 ) -> Part[ComposedPath]:
     """The likeliest path through the states of T frames.
 
-    Args:
-        stances: All stances.
-        states: Those of each frame.
-        costs: What each frame says.
-        others: The same with left and right of the keypoints exchanged; none where that is not tried.
-        time_s: (T,) times of the frames.
-        tempering: Weight of a frame.
-        depth_step_m: Distance between the depths that were tried.
+    `others` are the costs with left and right of the keypoints exchanged, none where that is not tried;
+    `tempering` is the weight of a frame, `depth_step_m` the distance between the depths that were tried.
     """
     own, duration_s = [np.float32(tempering) * each.cost for each in states], np.diff(time_s)
 

@@ -22,16 +22,11 @@ def flipped(body: Body, posture: Posture, camera: Camera, part: str) -> tuple[Po
 
     Its joints keep their image, lengths are exact, and joint limits are kept: where they forbid the flipped
     posture, it is the nearest one within them that still lies on the other side. With a limb all else stays.
-    With the trunk arms and head keep their image, and the feet their place.
+    With the trunk arms and head keep their image, and the feet their place. There are up to three, and none
+    where the part lies flat in the picture, so that it has no depth to flip.
 
-    Args:
-        body: The actor's body.
-        posture: A single posture.
-        camera: The camera in this frame, as one that stands still.
-        part: The trunk or a limb, as `body/human` names them; KeyError for another.
-
-    Returns:
-        Up to three postures, none where the part lies flat in the picture, so that it has no depth to flip.
+    `camera` is that of the frame, as one that stands still; `part` is the trunk or a limb, as `body/human`
+    names them, KeyError for another.
     """
     found: list[Posture] = []
     if part == TRUNK:

@@ -13,7 +13,7 @@ from ..estimate.single_frame import fit_frame, frame_residuals
 from ..prior.frame_prior import FramePrior, unrelated_std
 from ..prior.library import Library
 from ..terms.keypoints import JOINT_ERROR_STD_M, USUAL_PLACES
-from .candidates import DISTINCT_M, Candidate, by_confidence, confidence, distinct_rows, log_odds
+from .found_poses import DISTINCT_M, Candidate, by_confidence, confidence, distinct_rows, log_odds
 from .frame_search import (
     FrameSearch,
     FrameShown,
@@ -102,13 +102,7 @@ def find_frame_poses(
     floor_m: float | None = None,
     belief: FramePrior | None = None,
 ) -> FramePoses:
-    """Find the postures that a frame may show.
-
-    Args:
-        shown: The frame.
-        libraries: What is known of postures.
-        floor_m: Height of the floor in the world [m]; None where it is not known.
-        belief: What keyframes nearby tell of the frame; None without any.
+    """Find the postures that a frame may show, by libraries, a known floor and what keyframes nearby tell.
 
     Raises:
         InputError: No library has a posture, or nothing is seen in the frame.

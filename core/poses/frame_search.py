@@ -24,9 +24,9 @@ from ..terms.regions import FEATURES, ObservedRegions, limb_widths
 from ..terms.solver import descend
 from ..terms.state import ClipState
 from ..terms.term import total_cost
-from .candidates import ABOUT_RIGHT_M, distinct_rows
 from .compose_clip import WIDE, frame_costs
 from .composed_states import NO_CONTACT_COST
+from .found_poses import ABOUT_RIGHT_M, distinct_rows
 from .match_evidence import MatchEvidence
 from .part_features import StanceFeatures, stance_features
 from .part_pools import PartPools, kept, part_pools

@@ -92,13 +92,8 @@ def pulled(
 ) -> Posture:
     """A single posture whose points come as near to their places as its joints allow; lengths are exact.
 
-    Args:
-        body: The actor's body.
-        posture: The posture to start from.
-        pulls: Where points should come to.
-        free: Standard deviation of each joint that may move, in the tangent space about `posture` [rad]; of
-            the hips' place as `place` [m]. All others stay.
-        begin: Where the search begins, off `posture` [rad, m].
+    `free` has the standard deviation of each joint that may move, in the tangent space about `posture` [rad],
+    that of the hips' place as `place` [m]; all others stay. The search begins off `posture` by `begin`.
     """
     skeleton = body.skeleton
     names = [name.rpartition(".") for name in skeleton.dof_names]

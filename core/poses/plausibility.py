@@ -18,8 +18,7 @@ from ..body.mirror import mirrored
 from ..body.posture import Posture, headings_rad, yaw_rotation, yawed_at
 from ..errors import InputError
 from ..numerics.robust import DEGREES, multivariate_cost
-from ..prior.library import Library
-from ..prior.transfer import transferred
+from ..prior.library import Library, transferred
 from .part_pools import TORSO, part_dofs
 
 PARTS = (TRUNK, *LIMBS)

@@ -103,10 +103,8 @@ class DepthHintTerm(Term):
     def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
         """One row for each link."""
         error = (self.links.depths(self.model, state.pose, state.frame) - self.expected) / self.std_m
-        by = None
-        if slopes:
-            by = self.links.jacobian(self.model, state.pose, state.frame) / self.std_m[..., None]
-            by = by[:, :, None]
+        by = self.links.jacobian(self.model, state.pose, state.frame) if slopes else None
+        by = None if by is None else (by / self.std_m[..., None])[:, :, None]
         yield Rows(error[..., None], by, np.isfinite(error) & np.isfinite(self.std_m))
 
 
@@ -144,9 +142,7 @@ class DepthTerm(Term):
     def rows(self, state: ClipState, slopes: bool = True) -> Iterator[Rows]:
         """One row for each point."""
         depth = point_depths(state.body, self.camera, state.pose, state.frame)
-        by = None
-        if slopes:
-            by = depths_jacobian(state.body, self.camera, state.pose, state.frame) / self.std_m[..., None]
-            by = by[:, :, None]
+        by = depths_jacobian(state.body, self.camera, state.pose, state.frame) if slopes else None
+        by = None if by is None else (by / self.std_m[..., None])[:, :, None]
         error = (depth - self.prior_depth) / self.std_m
         yield Rows(error[..., None], by, np.ones(error.shape, dtype=bool))

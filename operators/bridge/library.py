@@ -27,9 +27,9 @@ from ...core.prior.library import (
     LibraryPosture,
     MotionStep,
     read_library,
+    transferred,
 )
 from ...core.prior.texts import LONGEST_NAME, LONGEST_TAG, identifier_from, text_fault, unique_name
-from ...core.prior.transfer import transferred
 from ...core.report.mannequin import posture_picture
 from .actor_lengths import read_body
 from .asset_catalogs import catalog_identifier, write_asset_blend

@@ -21,8 +21,8 @@ from ...core.estimate.single_frame import calibrated, expected_in_frame, frame_r
 from ...core.markers.markers import regions_of_frame
 from ...core.markers.reading import Reading, clip_times, of_same_footage, reading_key
 from ...core.markers.region_tracks import ExpectedRegions, MarkerStyle, RegionTracks
-from ...core.poses.candidates import Candidate
 from ...core.poses.clip_input import PosedFrames
+from ...core.poses.found_poses import Candidate
 from ...core.poses.frame import find_frame_poses, near_pose
 from ...core.poses.frame_search import FrameShown
 from ...core.prior.frame_prior import prior_from_keyframes, prior_from_pose

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
-from keymark.core.poses.candidates import Candidate, MatchedFrame
-from keymark.core.poses.found_poses import FoundPoses
+from keymark.core.poses.found_poses import Candidate, FoundPoses, MatchedFrame
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.prior.library import library_digest, read_library, write_library
 from keymark.core.session import pose as pose_stage

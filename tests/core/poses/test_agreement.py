@@ -9,8 +9,8 @@ from _performed import BODY, FRAMES, camera, detected, performed, unmarked
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.performer_placement import feet_over_floor_m
 from keymark.core.poses.agreement import GUESSED_SIZE, agreement
-from keymark.core.poses.candidates import Candidate, MatchedFrame
 from keymark.core.poses.clip_input import PosingInput, posing_input
+from keymark.core.poses.found_poses import Candidate, MatchedFrame
 from keymark.core.prior.registry import SHIPPED, find_libraries
 from keymark.core.session.stages import seen_in
 

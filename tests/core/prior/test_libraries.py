@@ -12,9 +12,8 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.core.prior.library import write_library
+from keymark.core.prior.library import leg_length_m, transferred, write_library
 from keymark.core.prior.registry import find_library, identifier_of, library_path, registered_libraries
-from keymark.core.prior.transfer import leg_length_m, transferred
 
 LIBRARY = small_library()
 

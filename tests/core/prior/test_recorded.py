@@ -22,8 +22,8 @@ from keymark.core.prior.keyframes import (
     with_turns,
 )
 from keymark.core.prior.learning import LibraryMetadata, learn_library, shape_vectors, spread_frames
+from keymark.core.prior.library import transferred
 from keymark.core.prior.registry import SHIPPED, find_library
-from keymark.core.prior.transfer import transferred
 
 KEYFRAMES = tuple(Keyframe(index, exercise(60)[index]) for index in (0, 9, 21, 30, 44, 59))
 PERFORMER, STEPS = stepping()

@@ -9,8 +9,7 @@ import pytest
 from _synthetic_take import true_postures, write_synthetic_take
 from keymark.core.api import reconstruct
 from keymark.core.estimate.notes import filter_notes, found_notes
-from keymark.core.poses.candidates import Candidate, MatchedFrame
-from keymark.core.poses.found_poses import NEAR_FRAMES, FoundPoses, with_found
+from keymark.core.poses.found_poses import NEAR_FRAMES, Candidate, FoundPoses, MatchedFrame, with_found
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.progress import run
 from keymark.core.take.take import Take
