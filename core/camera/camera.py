@@ -41,8 +41,7 @@ class Camera:
     def from_dict(cls, fields: Mapping[str, Any], where: str = "camera") -> "Camera":
         """Read a camera from the `CameraFields` of `take.json`; `where` is their place for messages.
 
-        Raises:
-            InputError: A field is missing or invalid; the sentence names it.
+        InputError: a field is missing or invalid; the sentence names it.
         """
         read = CameraFields.of(Fields(fields, where))
         lens = (read.lens_mm, read.sensor_width_mm)

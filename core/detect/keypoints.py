@@ -156,11 +156,6 @@ class Keypoints:
         """(F, N) whether each keypoint is seen in each frame."""
         return np.asarray(np.isfinite(self.pixel).all(axis=-1))
 
-    @property
-    def has_hints(self) -> bool:
-        """Whether any depth is guessed."""
-        return bool(np.isfinite(self.hint_m).any())
-
     def without_hints(self) -> "Keypoints":
         """The same keypoints without the guess of the points in space."""
         return replace(self, hint_m=np.full(self.hint_m.shape, np.nan))

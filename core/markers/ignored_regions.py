@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import BoolArray, Image
 from ..camera.camera_fields import LARGEST_SIDE_PX
 from ..errors import InputError, shown
-from ..files.kinds import Items, Number, Whole, refuse
+from ..files.kinds import Items, Number, Whole
 from ..files.records import Record
 
 IGNORED = 255  # value of ignored pixels in a mask; of one made smaller, pixels from half of it on are ignored
@@ -140,23 +140,14 @@ def ignored_regions(
     regions: Sequence[RegionFields], size: tuple[int, int], frame_start: int, source: str
 ) -> tuple[IgnoredRegion, ...]:
     """Regions of a take, from the fields that `source` gives, for footage of (width, height)."""
-    made, farthest = [], max(size)
+    made = []
     for number, region in enumerate(regions):
         where = f"{source}: {IGNORED_REGIONS}[{number}]"
         first, last = region.frames or (frame_start, frame_start)
         frames = None if region.frames is None else (first - frame_start, last - frame_start)
         stroke = tuple((x, y) for x, y in region.stroke or ())
-        parts = [*(region.box or ()), *(part for point in stroke for part in point)]
-        if any(not -farthest <= part <= 2 * farthest for part in parts):
-            if region.box is not None:
-                refuse(where, "box", list(region.box), VALID_BOX)
-            refuse(where, "stroke", [list(point) for point in stroke], VALID_STROKE)
         if region.box is None:
-            radius_px = region.radius_px or 0.0
-            if radius_px > farthest:
-                valid = f"a number from 0.5 to {farthest} pixels of the footage"
-                refuse(where, "radius_px", radius_px, valid)
-            made.append(IgnoredRegion(stroke=stroke, radius_px=radius_px, frames=frames))
+            made.append(IgnoredRegion(stroke=stroke, radius_px=region.radius_px or 0.0, frames=frames))
             continue
         left, top, right, bottom = region.box
         sides = shown([int(part) if part.is_integer() else part for part in region.box])

@@ -89,10 +89,8 @@ def checked_keypoints(take: Take, reading: Reading) -> Job[tuple[People, ...]]:
     """A take's keypoints as the pictures say that they are meant, each picture's once.
 
     Pictures are not asked where posed keyframes tell (see `estimate/keypoint_trust`), of points that a person
-    has placed or that the pose network has just found in them, and without the network.
-
-    Raises:
-        InputError: Keypoints are not of this clip.
+    has placed or that the pose network has just found in them, and without the network. InputError: keypoints
+    are not of this clip.
     """
     checked = []
     posed = sum(keyframe.is_posed for keyframe in take.keyframes)
@@ -136,11 +134,7 @@ class PictureTurnedError(Exception):
 
 
 def require_upright(stage: str, session: Session) -> None:
-    """Stop the way of a take whose picture is turned: a `Keep` for stages.
-
-    Raises:
-        PictureTurnedError: It is.
-    """
+    """Stop the way of a take whose picture is turned: a `Keep` for stages. PictureTurnedError: it is."""
     take = session.inputs.take
     if stage != "see" or not session.inputs.detects or not session[Sight].people:
         return

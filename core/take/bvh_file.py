@@ -29,11 +29,8 @@ class _Root:
 def read_bvh(path: Path, subject: str | None = None) -> tuple[str, tuple[str, ...]]:
     """The text of a BVH with one ROOT alone, and notes.
 
-    Of several ROOTs it is that of the subject, or else the one with the most joints.
-
-    Raises:
-        InputError: It is no BVH, its header lies about its rate or frames, which Blender would believe, or
-            it has no such subject.
+    Of several ROOTs it is that of the subject, or else the one with the most joints. InputError: it is no
+    BVH, its header lies about its rate or frames, which Blender would believe, or it has no such subject.
     """
     if regular_file_size(path, "a BVH") > LARGEST_BYTES:
         raise InputError(f"{path}: is larger than {LARGEST_BYTES // 2**20} MB; a motion must be smaller")

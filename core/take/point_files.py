@@ -52,10 +52,8 @@ def read_points(path: Path, subject: str | None = None) -> tuple[Array, float | 
     """The 13 points (F, 13, 3) [m], Z up, NaN where absent, frames a second where the file tells, and notes.
 
     Where names have prefixes, as in Anna:LKnee, the points are those of one: the subject's, or else of the
-    prefix that has all of them in the most frames.
-
-    Raises:
-        InputError: The file is damaged, lacks points, has no such subject, or no size of a person.
+    prefix that has all of them in the most frames. InputError: the file is damaged, lacks points, has no such
+    subject, or no size of a person.
     """
     if regular_file_size(path, "a file of points") > LARGEST_BYTES:
         raise InputError(f"{path}: is larger than a gigabyte; a motion must be smaller")

@@ -46,11 +46,7 @@ class ReferenceMotion:
 def reference_of_take(
     path: Path | None, subject: str | None, read_armature: ReadArmature | None
 ) -> ReferenceMotion | None:
-    """The reference motion that a take names; None without one, and of an armature where nobody can read it.
-
-    Raises:
-        InputError: See `read_reference`.
-    """
+    """The reference motion that a take names; None without one, and of an armature that nobody can read."""
     if path is None or path.suffix.lower() not in ARMATURE_ENDINGS:
         return None if path is None else read_reference(path, subject)
     regular_file_size(path, "a reference motion")
@@ -79,9 +75,8 @@ def seen_reference(
 def read_reference(path: Path, subject: str | None = None) -> ReferenceMotion:
     """Read a reference motion: points by name, as MHR-70's csv and FreeMoCap have them, or a motion.json.
 
-    Raises:
-        InputError: The file is none of these or damaged, has no such subject, or fewer than two of its
-            frames have a performer.
+    InputError: the file is none of these or damaged, has no such subject, or fewer than two of its frames
+    have a performer.
     """
     ending = path.suffix.lower()
     if ending not in REFERENCE_ENDINGS:

@@ -77,11 +77,7 @@ class Album:
         return index in self._pictures
 
     def pictures(self, indices: Sequence[int] | IndexArray) -> tuple[Image, BoolArray]:
-        """The small pictures (F, rows, columns, 3) of F frames, and (F,) which exist; others are black.
-
-        Raises:
-            KeyError: The album is empty.
-        """
+        """The small pictures (F, rows, columns, 3) of F frames, and (F,) which exist; others are black."""
         known = np.array([int(index) in self for index in indices], dtype=np.bool_)
         if not self._pictures:
             raise KeyError("the album is empty")
@@ -92,11 +88,7 @@ class Album:
         return np.stack(seen), known
 
     def picture(self, index: int) -> Image:
-        """A frame's small picture (rows, columns, 3), smoothed like all images that colors are read from.
-
-        Raises:
-            KeyError: The frame was never read, or is blank.
-        """
+        """A frame's small picture (rows, columns, 3), smoothed like all images that colors are read from."""
         if index in self._opened:
             return self._opened[index]
         packed = self._pictures[index]

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 
 import cv2
@@ -93,7 +94,9 @@ class VideoFile:
                 else:
                     found = all(capture.grab() for _ in range(index + 1 - position))
                 if not found:  # damaged here; a pass from the beginning counts what is lost
-                    yield from self._run_through(indices[done:])
+                    wanted = set(indices[done:])
+                    frames = ((number, picture) for number, _, picture in self.frames() if number in wanted)
+                    yield from islice(frames, len(wanted))
                     return
                 position = index + 1
                 yield index, self._picture(capture, index)
@@ -119,15 +122,6 @@ class VideoFile:
             for position, (stamp, found) in enumerate(self._stamped(capture, index), index):
                 if position >= first:
                     yield stamp, self._picture(capture, position) if found else self._nothing()
-
-    def _run_through(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
-        wanted = set(indices)
-        with self._capture() as capture:
-            for index, (_, found) in enumerate(self._stamped(capture)):
-                if index > indices[-1]:
-                    return
-                if index in wanted:
-                    yield index, self._picture(capture, index) if found else self._nothing()
 
     def _stamped(self, capture: cv2.VideoCapture, index: int = 0) -> Iterator[tuple[float, bool]]:
         """Yield the time of every frame from `index` on, and whether it was decoded.

@@ -150,7 +150,7 @@ def _readout(take: Take, people: People, findings: Findings) -> KeypointReadout:
         seen_frames=share,
         seen_points=float(performer.seen[found].mean()) if found.any() else 0.0,
         people=people.most_people,
-        depth_hints=performer.has_hints,
+        depth_hints=bool(np.isfinite(performer.hint_m).any()),
         error_px=error,
     )
 
