@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
+from bpy.types import Context, Event, Operator, Scene
 
 from ...core.errors import InputError
 from ...core.progress import Progress, stretch
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
 outdated = of_take(lambda state: state.is_outdated, "Everything is up to date")
 
 
-def update_take(operator: PreviewedJob, scene: bpy.types.Scene) -> "Job[list[str]]":
+def update_take(operator: PreviewedJob, scene: Scene) -> "Job[list[str]]":
     """Make anew what is outdated of the active take, each part in the scene once it is complete.
 
     Returns:
@@ -73,12 +74,12 @@ def update_take(operator: PreviewedJob, scene: bpy.types.Scene) -> "Job[list[str
 class StagedOperator(PreviewedJob):
     """Mixin of a job that writes what is complete into the scene on its way, and returns lines on it."""
 
-    def finish(self, scene: bpy.types.Scene, result: list[str]) -> None:
+    def finish(self, scene: Scene, result: list[str]) -> None:
         """Report the lines."""
         for line in result:
             self.report({"INFO"}, line)
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: Context, event: Event) -> set[str]:
         """An early end is a step that can be undone as well: complete stages stay."""
         done = super().modal(context, event)
         if done != {"CANCELLED"}:
@@ -93,7 +94,7 @@ class KEYMARK_OT_update(StagedOperator, bpy.types.Operator):
     bl_label = "Update"
     requirements = (outdated, footage, actor, anything_to_follow, all_colors, two_keyframes, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[list[str]]":
+    def start(self, scene: Scene) -> "Job[list[str]]":
         return (yield from update_take(self, scene))
 
 
@@ -111,9 +112,7 @@ LAST_FOLDER = "last_clip_folder.txt"
 _items: list[tuple[str, str, str, str, int]] = []  # Blender keeps no copy of the strings
 
 
-def _characters(
-    _operator: bpy.types.Operator, context: bpy.types.Context | None
-) -> list[tuple[str, str, str, str, int]]:
+def _characters(_operator: Operator, context: Context | None) -> list[tuple[str, str, str, str, int]]:
     """Those in the scene, then a Rigify human, a file, and none at all."""
     from ..bridge.character.rigify_human import has_rigify
 
@@ -150,7 +149,7 @@ class KEYMARK_OT_animate(Stature, Part, StagedOperator, bpy.types.Operator):
     filter_glob: Text(default=PATTERNS, options={"HIDDEN", "SKIP_SAVE"})
     filter_folder: Switch(default=True, options=HIDDEN)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         """Ask for what is missing, the clip first; then run as a job."""
         if self.filepath and (self.character != FILE or self.character_file):
             return super().invoke(context, event)
@@ -163,7 +162,7 @@ class KEYMARK_OT_animate(Stature, Part, StagedOperator, bpy.types.Operator):
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: Context) -> set[str]:
         """Go on with what the file browser gave, or, without one, run the whole job."""
         if not self.asking:
             return super().execute(context)
@@ -182,7 +181,7 @@ class KEYMARK_OT_animate(Stature, Part, StagedOperator, bpy.types.Operator):
                 )
         return {"CANCELLED"}  # the job is a step of its own
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         if self.asking == CHARACTER:
             return
         layout = self.layout
@@ -200,7 +199,7 @@ class KEYMARK_OT_animate(Stature, Part, StagedOperator, bpy.types.Operator):
             body.prop(self, "turn")
             draw_part(body, self)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[list[str]]":
+    def start(self, scene: Scene) -> "Job[list[str]]":
         """Load the clip, and go on; what is complete stays in the scene where the job ends early."""
         from .stages import animate, follow_found_file, turned_copy
 

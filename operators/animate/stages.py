@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
+from bpy.types import Context, Object, Operator, PropertyGroup, Scene
 from mathutils import Vector
 
 from ...core.errors import InputError
@@ -45,12 +46,7 @@ VIEWED = 0.96
 
 
 def animate(
-    operator: PreviewedJob,
-    scene: bpy.types.Scene,
-    stature_m: float,
-    character: str,
-    file: str,
-    turns: bool = True,
+    operator: PreviewedJob, scene: Scene, stature_m: float, character: str, file: str, turns: bool = True
 ) -> "Job[list[str]]":
     """Go from the active take's clip all the way; each stage's result is in the scene once it is complete.
 
@@ -117,9 +113,7 @@ def turned_copy(clip: Path, turn_deg: int) -> Path:
     return copy
 
 
-def _clip_session(
-    scene: bpy.types.Scene, take: bpy.types.PropertyGroup, character: str, file: str
-) -> "Job[SceneSession]":
+def _clip_session(scene: Scene, take: PropertyGroup, character: str, file: str) -> "Job[SceneSession]":
     """What is known of a clip: its performer's height, its keypoints if there are any, and about its lens."""
     from ...core.camera.camera import Lens
     from ...core.session.described import lens_of
@@ -155,7 +149,7 @@ def _clip_session(
     )
 
 
-def _keep_keypoints(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession) -> str:
+def _keep_keypoints(_operator: Operator, scene: Scene, made: SceneSession) -> str:
     from ...core.session.session import Sight
 
     inputs, take = made.session.inputs, take_by_identifier(scene, made.take)
@@ -166,7 +160,7 @@ def _keep_keypoints(_operator: bpy.types.Operator, scene: bpy.types.Scene, made:
     return keep_detected(scene, Detected(made.take, output, people, inputs.take.fps, inputs.take.frame_start))
 
 
-def _keep_place(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession) -> str:
+def _keep_place(_operator: Operator, scene: Scene, made: SceneSession) -> str:
     """Put camera and actor where they are; a camera that nothing tells stays as it was put."""
     from ...core.session.place import camera_in_words
     from ...core.session.session import Placed
@@ -187,7 +181,7 @@ def _keep_place(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: Sce
     return f"Camera: {said}"
 
 
-def _keep_poses(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: SceneSession) -> str:
+def _keep_poses(_operator: Operator, scene: Scene, made: SceneSession) -> str:
     """Key the poses; a camera that was seen to turn turns from now on, and the floor is where they stand."""
     from ...core.session.session import Posed
     from ...core.take.steady_camera import followed_camera
@@ -201,9 +195,7 @@ def _keep_poses(_operator: bpy.types.Operator, scene: bpy.types.Scene, made: Sce
     return said
 
 
-def _keep_motion(
-    operator: PreviewedJob, scene: bpy.types.Scene, made: SceneSession, said: list[str]
-) -> "Job[None]":
+def _keep_motion(operator: PreviewedJob, scene: Scene, made: SceneSession, said: list[str]) -> "Job[None]":
     judged = yield from judge(made)
     operator.unwatch()  # the motion takes the place of its preview
     said.append(keep_motion(operator, scene, made, judged))
@@ -219,7 +211,7 @@ KEPT = {
 """How the result of a stage is written into the scene; each returns a sentence on it."""
 
 
-def follow_found_file(take: bpy.types.PropertyGroup, clip: Path) -> None:
+def follow_found_file(take: PropertyGroup, clip: Path) -> None:
     """Let a take follow the keypoints that lie beside its clip, where there are some."""
     from ...core.take.description import keypoints_beside
 
@@ -228,7 +220,7 @@ def follow_found_file(take: bpy.types.PropertyGroup, clip: Path) -> None:
         follow_file(take, file)
 
 
-def _add_character(context: bpy.types.Context, character: str, file: str) -> None:
+def _add_character(context: Context, character: str, file: str) -> None:
     take = active_take(context.scene)
     if character == RIGIFY:
         add_rigify_character(context)
@@ -243,7 +235,7 @@ def _add_character(context: bpy.types.Context, character: str, file: str) -> Non
         add_character(take, armature)
 
 
-def _opened(context: bpy.types.Context, file: str) -> bpy.types.Object:
+def _opened(context: Context, file: str) -> Object:
     """The armature of a character's file, with all that belongs to it in the scene."""
     from ..bridge.character.import_character import import_character
 
@@ -258,7 +250,7 @@ def _opened(context: bpy.types.Context, file: str) -> bpy.types.Object:
     return imported.armature
 
 
-def _hide_what_stands_before(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> "Job[None]":
+def _hide_what_stands_before(context: Context, take: PropertyGroup) -> "Job[None]":
     """Hide, in the view layer, objects of others between the camera and the performer; Alt H shows them."""
     scene, layer = context.scene, context.view_layer
     own = set(_of_performers(take))
@@ -277,14 +269,14 @@ def _hide_what_stands_before(context: bpy.types.Context, take: bpy.types.Propert
                 layer.update()
 
 
-def _first_between(context: bpy.types.Context, eye: Vector, target: Vector) -> bpy.types.Object | None:
+def _first_between(context: Context, eye: Vector, target: Vector) -> Object | None:
     away = target - eye
     graph = context.evaluated_depsgraph_get()
     hit, _, _, _, found, _ = context.scene.ray_cast(graph, eye, away.normalized(), distance=away.length)
     return found.original if hit and found is not None else None
 
 
-def _of_performers(take: bpy.types.PropertyGroup) -> Iterator[bpy.types.Object]:
+def _of_performers(take: PropertyGroup) -> Iterator[Object]:
     """The actor and the characters with what they move."""
     roots = [take.armature, *(character.armature for character in take.characters)]
     for root in filter(None, roots):

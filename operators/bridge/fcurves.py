@@ -4,7 +4,7 @@ from collections.abc import Collection
 
 import bpy
 import numpy as np
-from bpy.types import Action, Object
+from bpy.types import Action, ActionChannelbag, FCurve, Object
 
 from ...core.arrays import Array
 from ...core.body.fingers import FINGER_BONES, finger_turns
@@ -37,9 +37,7 @@ EXTREMITY_PATHS = {
 """Their names by the data paths of their channels."""
 
 
-def posed_extremities(
-    armature_object: bpy.types.Object, keyframe_action: bpy.types.Action | None
-) -> frozenset[str]:
+def posed_extremities(armature_object: Object, keyframe_action: Action | None) -> frozenset[str]:
     """Names of the hands and feet that the animator has keyed away from rest in the Action of keyframes."""
     if keyframe_action is None:
         return frozenset()
@@ -48,9 +46,7 @@ def posed_extremities(
 
 
 def turned_extremities(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    keyframe_action: bpy.types.Action | None,
+    armature_object: Object, action: Action, keyframe_action: Action | None
 ) -> dict[str, Array]:
     """Frames of the unchanged keys by which a motion has turned hands and feet by itself, by name.
 
@@ -69,10 +65,7 @@ def turned_extremities(
 
 
 def copy_posed_extremities(
-    armature_object: bpy.types.Object,
-    source: bpy.types.Action,
-    posed: Collection[str],
-    channelbag: bpy.types.ActionChannelbag,
+    armature_object: Object, source: Action, posed: Collection[str], channelbag: ActionChannelbag
 ) -> None:
     """Copy the curves of some hands and feet as GENERATED keys; where the animator has a key, that stays."""
     for (path, index), curve in curves_of(source, armature_object).items():
@@ -81,10 +74,7 @@ def copy_posed_extremities(
 
 
 def straighten_extremities(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    keyframe_action: bpy.types.Action | None,
-    frame: float,
+    armature_object: Object, action: Action, keyframe_action: Action | None, frame: float
 ) -> None:
     """Put hands and feet back to rest that stand, at a scene frame, as the Action of a motion turned them.
 
@@ -107,9 +97,7 @@ def straighten_extremities(
             bone.rotation_axis_angle = (0.0, 0.0, 1.0, 0.0)
 
 
-def _shown_curves(
-    armature_object: bpy.types.Object, action: bpy.types.Action
-) -> dict[str, list[bpy.types.FCurve]]:
+def _shown_curves(armature_object: Object, action: Action) -> dict[str, list[FCurve]]:
     """The curves that move each of them: those of its rotation mode, and of its location."""
     curves = curves_of(action, armature_object)
     found = {}
@@ -121,7 +109,7 @@ def _shown_curves(
     return found
 
 
-def _leaves_rest(curve: bpy.types.FCurve) -> bool:
+def _leaves_rest(curve: FCurve) -> bool:
     channel = curve.data_path.rpartition(".")[2]
     rest = AT_REST.get(channel, (0.0, 0.0, 0.0))[curve.array_index]
     return rest is not None and any(abs(key.co[1] - rest) > SAME_VALUE for key in curve.keyframe_points)

@@ -1,6 +1,7 @@
 """Add a character that is to perform the take's motion."""
 
 import bpy
+from bpy.types import Context, Event, Menu, PropertyGroup
 
 from ...core.errors import InputError
 from ..bridge.character.read_character import make_override, needs_override
@@ -34,13 +35,13 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
         options=SKIP_SAVE,
     )
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         found = candidates(context.scene, context.view_layer)
         if self.armature or len(found) < 2:
             return self.execute(context)
         names, own = [each.name for each in found], "keymark.add_character"
 
-        def draw(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
+        def draw(menu: Menu, _context: Context) -> None:
             for name in names:  # Blender has freed the operator by then
                 entry = menu.layout.operator(own, text=name, icon="ARMATURE_DATA", translate=False)
                 entry.armature = name
@@ -48,7 +49,7 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
         context.window_manager.popup_menu(draw, title=self.bl_label)
         return {"CANCELLED"}  # each entry is a step of its own
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         if self.armature:
             chosen = bpy.data.objects.get(self.armature)
             require_character_armature(chosen, self.armature)
@@ -67,7 +68,7 @@ rigify = of_take(
 )
 
 
-def add_rigify_character(context: bpy.types.Context) -> bpy.types.PropertyGroup:
+def add_rigify_character(context: Context) -> PropertyGroup:
     """Add a Rigify rig of the performer's size; enables Rigify. InputError: it cannot make one."""
     from ..actor.take_actor import leave_mode
 
@@ -94,7 +95,7 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
     bl_label = "Add Rigify Human"
     requirements = (take, rigify, bones_editable, idle)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         if is_rigify_enabled():
             return self.execute(context)
         return context.window_manager.invoke_confirm(
@@ -105,7 +106,7 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
             confirm_text="Enable and Add",
         )
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         say_recognized(self, add_rigify_character(context))
 
 
@@ -115,7 +116,7 @@ class KEYMARK_OT_remove_character(BaseOperator, bpy.types.Operator):
     bl_label = "Remove Character"
     requirements = (character, idle)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         remove_active(active_take(context.scene), "characters", "active_character")
 
 
@@ -130,7 +131,7 @@ class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
     bl_label = "Make Override"
     requirements = (armature, linked, idle)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         character = active_character(context.scene)
         original, scene = character.armature, context.scene
         # A linked collection often stands in a scene as an empty, in whose place it is overridden.

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import bpy
+from bpy.types import Action, Context, Object, PropertyGroup, Scene, ViewLayer
 
 from ...core.errors import InputError
 from ...core.files.fields import listed
@@ -19,14 +20,14 @@ from .map_properties import map_of, role_title
 MOST_NAMED = 3  # roles or bones that a sentence names
 
 
-def may_be_character(candidate: bpy.types.Object | None) -> bool:
+def may_be_character(candidate: Object | None) -> bool:
     """Whether an object is an armature that is no actor, not even one that has lost bones."""
     if candidate is None or candidate.type != "ARMATURE" or is_actor(candidate):
         return False
     return all(take.armature != candidate for scene in bpy.data.scenes for take in scene.keymark.takes)
 
 
-def require_character_armature(candidate: bpy.types.Object | None, named: str = "") -> None:
+def require_character_armature(candidate: Object | None, named: str = "") -> None:
     """Raise InputError where an object, of this name, is no armature that may be a character."""
     if not may_be_character(candidate):
         raise InputError(
@@ -35,7 +36,7 @@ def require_character_armature(candidate: bpy.types.Object | None, named: str = 
         )
 
 
-def candidates(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[bpy.types.Object]:
+def candidates(scene: Scene, view_layer: ViewLayer) -> list[Object]:
     """Free armatures that may be characters: the active or selected ones alone, else all that are visible."""
     take = find_take(scene)
     taken = {character.armature for character in take.characters} if take is not None else set()
@@ -52,7 +53,7 @@ def candidates(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[
     return selected or [each for each in free if each not in hidden] or free
 
 
-def active_character(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
+def active_character(scene: Scene) -> PropertyGroup:
     """Return the character that is chosen in the active take's list. InputError: there is none."""
     character = find_character(scene)
     if character is None:
@@ -60,7 +61,7 @@ def active_character(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
     return character
 
 
-def find_character(scene: bpy.types.Scene) -> bpy.types.PropertyGroup | None:
+def find_character(scene: Scene) -> PropertyGroup | None:
     """Return the character that is chosen in the active take's list; None where there is none."""
     take = find_take(scene)
     if take is None or not len(take.characters):
@@ -68,9 +69,7 @@ def find_character(scene: bpy.types.Scene) -> bpy.types.PropertyGroup | None:
     return take.characters[min(take.active_character, len(take.characters) - 1)]
 
 
-def add_character(
-    take: bpy.types.PropertyGroup, armature_object: bpy.types.Object | None
-) -> bpy.types.PropertyGroup:
+def add_character(take: PropertyGroup, armature_object: Object | None) -> PropertyGroup:
     """Add a character to a take and choose it; its bones are recognized where it has an armature."""
     character = take.characters.add()
     take.active_character = len(take.characters) - 1
@@ -79,9 +78,7 @@ def add_character(
     return character
 
 
-def with_map(
-    armature_object: bpy.types.Object, beside: bpy.types.PropertyGroup | None = None
-) -> bpy.types.PropertyGroup | None:
+def with_map(armature_object: Object, beside: PropertyGroup | None = None) -> PropertyGroup | None:
     """A character of the file, of any take, of this armature, that has a map; another one than `beside`."""
     takes = (take for scene in bpy.data.scenes for take in scene.keymark.takes)
     characters = (character for take in takes for character in take.characters)
@@ -89,7 +86,7 @@ def with_map(
     return next((each for each in of_it if len(each.character_map.roles)), None)
 
 
-def missing_roles(character: bpy.types.PropertyGroup) -> list[str]:
+def missing_roles(character: PropertyGroup) -> list[str]:
     """Roles a character cannot do without that have no bone."""
     roles = character.character_map.roles
     chosen = {role.name for role in roles if any(entry.bone for entry in role.bones)}
@@ -102,7 +99,7 @@ def full_title(role: str) -> str:
     return {"L": "left ", "R": "right "}.get(side, "") + role_title(part).lower()
 
 
-def shown_result(character: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:
+def shown_result(character: PropertyGroup) -> PropertyGroup | None:
     """The result that is chosen in a character's list; None where there is none."""
     if not len(character.results):
         return None
@@ -119,7 +116,7 @@ class SourceMotion:
     title: str  # what a result is named after
 
 
-def source_of(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> SourceMotion:
+def source_of(take: PropertyGroup, character: PropertyGroup) -> SourceMotion:
     """The motion that a character is to perform. InputError: there is none; the sentence says what to do."""
     kind, action, actor = _source(take, character)
     if (problem := missing_source(take, character)) is not None:
@@ -127,7 +124,7 @@ def source_of(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup)
     return SourceMotion(kind, action, actor, action.name if kind == "ACTION" else take.name)
 
 
-def missing_source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> str | None:
+def missing_source(take: PropertyGroup, character: PropertyGroup) -> str | None:
     """What is missing for a character to perform, as a sentence; None where nothing is."""
     kind, action, actor = _source(take, character)
     if action is None:
@@ -143,7 +140,7 @@ def missing_source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyG
     return None
 
 
-def _source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> tuple[str, Any, Any]:
+def _source(take: PropertyGroup, character: PropertyGroup) -> tuple[str, Any, Any]:
     """The kind of motion that a character is to perform, its Action, and the actor that this moves."""
     kind = str(character.source)
     if kind == "ACTION":
@@ -157,8 +154,8 @@ def _source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -
 
 
 def result_to_replace(
-    character: bpy.types.PropertyGroup, kind: str, source_action: bpy.types.Action | None
-) -> bpy.types.PropertyGroup | None:
+    character: PropertyGroup, kind: str, source_action: Action | None
+) -> PropertyGroup | None:
     """The result that retargeting again replaces: the chosen one, or else the newest, of the same motion.
 
     The take's final and its reconstructed motion are one motion; any other Action is one of its own.
@@ -175,8 +172,8 @@ def result_to_replace(
 
 
 def add_result(
-    character: bpy.types.PropertyGroup, source: SourceMotion, action: bpy.types.Action, made_from: str
-) -> bpy.types.PropertyGroup:
+    character: PropertyGroup, source: SourceMotion, action: Action, made_from: str
+) -> PropertyGroup:
     """List and choose an Action, in place of what was of it, with its source's digest; deleted ones go."""
     for index in reversed(range(len(character.results))):
         if character.results[index].action is None:
@@ -206,7 +203,7 @@ take = of_take(lambda state: True, "Load the footage or open a take first")
 character = of_take(lambda state: len(state.take.characters), "Add a character first")
 
 
-def armature(context: bpy.types.Context, _state: TakeState | None) -> str | None:
+def armature(context: Context, _state: TakeState | None) -> str | None:
     """The chosen character has an armature, in this scene."""
     chosen = find_character(context.scene)
     if chosen is None:
@@ -218,7 +215,7 @@ def armature(context: bpy.types.Context, _state: TakeState | None) -> str | None
     return None
 
 
-def editable(context: bpy.types.Context, _state: TakeState | None) -> str | None:
+def editable(context: Context, _state: TakeState | None) -> str | None:
     """The chosen character, which has an armature, is in the scene and can be animated."""
     chosen = active_character(context.scene).armature
     if needs_override(chosen):
@@ -228,7 +225,7 @@ def editable(context: bpy.types.Context, _state: TakeState | None) -> str | None
     return None
 
 
-def recognized(context: bpy.types.Context, _state: TakeState | None) -> str | None:
+def recognized(context: Context, _state: TakeState | None) -> str | None:
     """The bones of the chosen character, which has an armature, have their roles, and are there."""
     chosen = active_character(context.scene)
     if not len(chosen.character_map.roles):
@@ -244,12 +241,12 @@ def recognized(context: bpy.types.Context, _state: TakeState | None) -> str | No
     return f"{lacking}; recognize its bones again, or choose others"
 
 
-def source(context: bpy.types.Context, _state: TakeState | None) -> str | None:
+def source(context: Context, _state: TakeState | None) -> str | None:
     """There is a motion for the chosen character to perform."""
     return missing_source(active_take(context.scene), active_character(context.scene))
 
 
-def result(context: bpy.types.Context, _state: TakeState | None) -> str | None:
+def result(context: Context, _state: TakeState | None) -> str | None:
     """The chosen character has a result."""
     made = any(each.action is not None for each in active_character(context.scene).results)
     return None if made else "Retarget the motion first"

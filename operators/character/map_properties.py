@@ -6,6 +6,7 @@ Bones are kept by name, so that a bone that was renamed or removed is said and n
 from collections.abc import Mapping
 
 import bpy
+from bpy.types import Context, PropertyGroup
 
 from ...core.retarget.character import HANDS, LIMBS, MIDDLE, ROLES, SOURCES, TRUNK_CHAINS
 from ...core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting
@@ -35,7 +36,7 @@ def role_title(role: str) -> str:
     return role.partition(".")[0].replace("_", " ").title()
 
 
-def _bone_chosen(entry: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _bone_chosen(entry: PropertyGroup, context: Context) -> None:
     """Make the role the person's, and drop what belonged to the bone before.
 
     A control that was found for another bone would move the wrong part of the rig without a word.
@@ -136,7 +137,7 @@ TYPES = {"BOOL": bool, "INT": int, "FLOAT": float}  # the types of properties' v
 NO_DOUBTS: Mapping[str, str] = {}
 
 
-def map_of(group: bpy.types.PropertyGroup) -> CharacterMap:
+def map_of(group: PropertyGroup) -> CharacterMap:
     """The character map that properties hold; without roles where nothing was recognized yet."""
     roles: dict[str, RoleBones] = {}
     fk: dict[str, tuple[str | None, ...]] = {}
@@ -178,7 +179,7 @@ def map_of(group: bpy.types.PropertyGroup) -> CharacterMap:
 
 
 def show_map(
-    group: bpy.types.PropertyGroup, character_map: CharacterMap, doubts: Mapping[str, str] = NO_DOUBTS
+    group: PropertyGroup, character_map: CharacterMap, doubts: Mapping[str, str] = NO_DOUBTS
 ) -> None:
     """Set properties to a character map, with doubts by role; roles without bones have an empty entry."""
     clear_map(group)
@@ -203,20 +204,20 @@ def show_map(
         shown.kind = next(kind for kind, value in TYPES.items() if value is type(setting.value))
 
 
-def clear_map(group: bpy.types.PropertyGroup) -> None:
+def clear_map(group: PropertyGroup) -> None:
     """Empty the properties of a map."""
     for name in ("title", *WORDS, "tags", "roles", "limbs", "settings", "root", "preset"):
         group.property_unset(name)
 
 
-def role_named(group: bpy.types.PropertyGroup, role: str) -> bpy.types.PropertyGroup:
+def role_named(group: PropertyGroup, role: str) -> PropertyGroup:
     """The properties of a role; those of all roles are added where there are none yet."""
     if not len(group.roles):
         show_map(group, CharacterMap(group.title, {}))
     return group.roles[role]
 
 
-def _show_role(shown: bpy.types.PropertyGroup, name: str, character_map: CharacterMap, doubt: str) -> None:
+def _show_role(shown: PropertyGroup, name: str, character_map: CharacterMap, doubt: str) -> None:
     shown.name = name
     found = character_map.roles.get(name)
     keyed = character_map.keyed_bones(name)
@@ -239,7 +240,7 @@ def _show_role(shown: bpy.types.PropertyGroup, name: str, character_map: Charact
         shown.corrected, shown.correction = True, character_map.rest_corrections[name]
 
 
-def _ik_of(limb: bpy.types.PropertyGroup) -> IkControls:
+def _ik_of(limb: PropertyGroup) -> IkControls:
     switch = None
     if limb.switch_bone and limb.switch_property:
         switch = SwitchControl(

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
+from bpy.types import Context, Event, Operator, Scene
 
 from ...core.errors import InputError
 from ...core.progress import run as run_job
@@ -26,7 +27,7 @@ ONTO = (
 FILTER = "*.bvh;*.fbx;*.glb;*.gltf;*.vrm;*.usd;*.usda;*.usdc;*.usdz;*.blend;*.csv;*.npy;*.trc;*.c3d;*.json"
 
 
-def animated(context: bpy.types.Context, _state: object) -> str | None:
+def animated(context: Context, _state: object) -> str | None:
     """The active object is an armature with an Action."""
     active = context.view_layer.objects.active
     if active is None or active.type != "ARMATURE":
@@ -36,7 +37,7 @@ def animated(context: bpy.types.Context, _state: object) -> str | None:
     return None if moving else f"'{active.name}' has no Action; choose the one that moves it first"
 
 
-def _actions(operator: bpy.types.Operator, context: bpy.types.Context, _typed: str) -> list[str]:
+def _actions(operator: Operator, context: Context, _typed: str) -> list[str]:
     """The names of the Actions in the file that is chosen, in the file browser too."""
     from ..bridge.motions.action_names import action_names
 
@@ -64,10 +65,10 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
     )
     filter_glob: Text(default=FILTER, options=HIDDEN)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         return browse(self, context)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         from ...core.mend.mend_motion import MendOptions, mend_motion
         from ...core.take.conversion_settings import CharacterFile
         from ...core.take.reference import REFERENCE_ENDINGS, read_reference
@@ -107,7 +108,7 @@ class KEYMARK_OT_mend_motion(JobOperator, bpy.types.Operator):
     plant_feet: Switch("Plant Feet", "Hold resting feet still; the hips go as the feet say", default=True)
     floor: Switch("On the Floor", "Bring the height on which the feet stand to zero", default=True)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[tuple[int, MendedAction]]":
+    def start(self, scene: Scene) -> "Job[tuple[int, MendedAction]]":
         from ..bridge.motions.mend_action import mend_action
         from ..bridge.motions.read_poses import motion_map
 
@@ -126,7 +127,7 @@ class KEYMARK_OT_mend_motion(JobOperator, bpy.types.Operator):
         found = yield from mend_action(active, character_map, frames, self.plant_feet, self.floor)
         return active.session_uid, found
 
-    def finish(self, scene: bpy.types.Scene, result: "tuple[int, MendedAction]") -> None:
+    def finish(self, scene: Scene, result: "tuple[int, MendedAction]") -> None:
         from ..actor.take_actor import select_alone
         from ..bridge.motions.mend_action import add_actor, write_mended
 

@@ -2,6 +2,7 @@
 
 import bpy
 import numpy as np
+from bpy.types import Context, Event, Object, OperatorProperties, PoseBone, PropertyGroup
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 from ...core.arrays import Array
@@ -21,9 +22,7 @@ ENTER, ESCAPE = "Enter: {bone}, the active one   |   ", "Esc: Cancel"
 SAME_PX = 3.0  # farther than the nearest by this, bones lie over it: the front one counts
 
 
-def bone_under(
-    context: bpy.types.Context, armature_object: bpy.types.Object, mouse_x: int, mouse_y: int
-) -> str | None:
+def bone_under(context: Context, armature_object: Object, mouse_x: int, mouse_y: int) -> str | None:
     """Name of the visible bone nearest to the mouse [window px], in a 3D viewport; None where none is."""
     areas = (area for area in context.screen.areas if area.type == "VIEW_3D")
     regions = (region for area in areas for region in area.regions if region.type == "WINDOW")
@@ -64,7 +63,7 @@ def nearest_segment(point: Array, ends: Array, depths: Array, near: float) -> in
     return int(level[np.argmin(depths[level])])
 
 
-def is_visible(pose_bone: bpy.types.PoseBone) -> bool:
+def is_visible(pose_bone: PoseBone) -> bool:
     """Whether the viewport shows a bone: not hidden, and in a visible collection or in none."""
     bone = pose_bone.bone
     if bone.hide or getattr(pose_bone, "hide", False):  # Blender 5 hides pose bones, 4.5 bones
@@ -81,12 +80,12 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     bone: Text("Bone", "Name of the bone", options=SKIP_SAVE)
 
     @classmethod
-    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+    def description(cls, context: Context, properties: OperatorProperties) -> str:
         known = told(context, properties.role)
         asked = "Click on the bone in the viewport to choose it"
         return f"{known}. {asked}" if known else asked
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         if self.bone or bpy.app.background:
             return self.execute(context)
         self._ask(context, "")
@@ -95,7 +94,7 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: Context, event: Event) -> set[str]:
         if cancel_click(self, context, event):
             return {"CANCELLED"}
         follow_mouse(context, event)
@@ -117,7 +116,7 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         self.cancel(context)
         return {"CANCELLED"}
 
-    def _take(self, context: bpy.types.Context, bone: str | None) -> set[str]:
+    def _take(self, context: Context, bone: str | None) -> set[str]:
         """Give the bone to the role; wait on where there is none."""
         if bone is None:
             self.report({"WARNING"}, "That is no bone of the character; click on one")
@@ -126,15 +125,15 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         self.cancel(context)
         return self.execute(context)
 
-    def _ask(self, context: bpy.types.Context, under: str) -> None:
+    def _ask(self, context: Context, under: str) -> None:
         request = FootageRequest(f"Click on the bone: {full_title(self.role)}", under, of_footage=False)
         active = active_bone_of(active_character(context.scene))
         ask(context, request, ENTER.format(bone=active) + ESCAPE if active is not None else ESCAPE)
 
-    def cancel(self, context: bpy.types.Context) -> None:
+    def cancel(self, context: Context) -> None:
         stop_asking(context)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         if not self.bone:
             raise InputError("no bone is chosen; click on one in Pose Mode, or give its name")
         give_bone(active_character(context.scene), self.role, self.index, self.bone)
@@ -146,7 +145,7 @@ class KEYMARK_OT_add_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Operat
     bl_label = "Add Bone"
     requirements = (armature,)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         character = active_character(context.scene)
         shown = chain_of(character, self.role)
         taken = {entry.bone for role in character.character_map.roles for entry in role.bones}
@@ -164,7 +163,7 @@ class KEYMARK_OT_remove_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Ope
     bl_label = "Remove Bone"
     requirements = (armature,)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         shown = chain_of(active_character(context.scene), self.role)
         count = len(shown.bones)
         if self.index >= count:
@@ -176,7 +175,7 @@ class KEYMARK_OT_remove_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Ope
         shown.source, shown.confidence, shown.doubt, shown.uneven = "you", 1.0, "", False
 
 
-def chain_of(character: bpy.types.PropertyGroup, role: str) -> bpy.types.PropertyGroup:
+def chain_of(character: PropertyGroup, role: str) -> PropertyGroup:
     """The properties of a role that several bones may share. InputError: it is one bone's."""
     if role not in CHAINS:
         raise InputError(f"'{role}' is no chain of bones; spine, neck and fingers are")
@@ -197,7 +196,7 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
 
     side: Choice("Direction", "Which side is copied", items=SIDES)
 
-    def run(self, context: bpy.types.Context) -> set[str] | None:
+    def run(self, context: Context) -> set[str] | None:
         from ...core.retarget.maps.map_registry import mirrored_map
         from ..bridge.character.read_character import read_character
 

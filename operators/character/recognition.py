@@ -4,6 +4,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import bpy
+from bpy.types import Context, Event, OperatorProperties, PropertyGroup
 
 from ...core.errors import InputError, KeymarkError
 from ...core.retarget.character import ROLES
@@ -30,7 +31,7 @@ class RoleBoneOperator:
     index: Integer("Index", "Number of the bone in a chain, from 0", min=0, options=SKIP_SAVE)
 
 
-def give_bone(character: bpy.types.PropertyGroup, role: str, index: int, bone: str) -> None:
+def give_bone(character: PropertyGroup, role: str, index: int, bone: str) -> None:
     """Give a role a bone, which makes it the person's. InputError: no such role, place or bone."""
     if role not in ROLES:
         raise InputError(f"there is no role '{role}'; roles are {', '.join(ROLES)}")
@@ -46,13 +47,13 @@ def give_bone(character: bpy.types.PropertyGroup, role: str, index: int, bone: s
     shown.bones[index].bone = bone
 
 
-def active_bone_of(character: bpy.types.PropertyGroup) -> str | None:
+def active_bone_of(character: PropertyGroup) -> str | None:
     """Name of the active bone of a character's armature; None where there is none."""
     active = character.armature.data.bones.active if character.armature is not None else None
     return active.name if active is not None else None
 
 
-def told(context: bpy.types.Context, role: str) -> str:
+def told(context: Context, role: str) -> str:
     """Where a role's bones come from and why they are doubtful, for a tooltip; empty where unknown."""
     character = find_character(context.scene)
     if character is None or role not in character.character_map.roles:
@@ -68,7 +69,7 @@ def told(context: bpy.types.Context, role: str) -> str:
     return f"{full_title(role).capitalize()}: {found}"
 
 
-def recognize_bones(character: bpy.types.PropertyGroup) -> None:
+def recognize_bones(character: PropertyGroup) -> None:
     """Recognize a character's bones and show them. InputError: it is none; properties stay."""
     from ...core.retarget.recognition.recognize import recognize
     from ..bridge.character.read_character import read_character
@@ -83,13 +84,13 @@ def recognize_bones(character: bpy.types.PropertyGroup) -> None:
     character.problem = ""
 
 
-def show_doubts(character: bpy.types.PropertyGroup, doubts: tuple[str, ...] = ()) -> None:
+def show_doubts(character: PropertyGroup, doubts: tuple[str, ...] = ()) -> None:
     """Show what is doubtful about a character's map as a whole."""
     character.doubts.clear()
     add_lines(character.doubts, doubts, "ERROR")
 
 
-def say_recognized(operator: BaseOperator, character: bpy.types.PropertyGroup) -> None:
+def say_recognized(operator: BaseOperator, character: PropertyGroup) -> None:
     """Report what came of recognizing a character's bones: what is wrong, or all that is doubtful."""
     doubts = [line.text for line in character.doubts]
     doubts += [role.doubt for role in character.character_map.roles if role.doubt]
@@ -99,7 +100,7 @@ def say_recognized(operator: BaseOperator, character: bpy.types.PropertyGroup) -
         operator.report({"INFO"}, f"Recognized the bones of '{character.armature.name}'")
 
 
-def armature_chosen(character: bpy.types.PropertyGroup) -> None:
+def armature_chosen(character: PropertyGroup) -> None:
     """Find out about the armature that was chosen: the map it has elsewhere in the file, or recognition.
 
     A person may be in the middle of choosing: what is wrong is shown in the panel and not raised.
@@ -140,7 +141,7 @@ class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
     bl_label = "Recognize"
     requirements = (armature, idle)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         character = active_character(context.scene)
         recognize_bones(character)
         say_recognized(self, character)
@@ -153,26 +154,22 @@ class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
     requirements = (armature, idle)
 
     filepath: Text("File Path", "A character map", subtype="FILE_PATH", options=SKIP_SAVE)
-    title: Text(
-        "Title",
-        "Title of a map in your library folder, instead of a file",
-        options=SKIP_SAVE,
-    )
+    title: Text("Title", "Title of a map in your library folder, instead of a file", options=SKIP_SAVE)
     filter_glob: Text(default="*.json", options=HIDDEN)
     filter_folder: Switch(default=True, options=HIDDEN)
 
     @classmethod
-    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+    def description(cls, context: Context, properties: OperatorProperties) -> str:
         if properties.title:
             return "Use this map from your library folder, which names this armature's bones"
         return "Load which bones play which role from a file, instead of what was recognized"
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         if self.filepath or self.title:
             return self.execute(context)
         return browse(self, context, str(map_folders()[0]))
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         from ...core.retarget.maps.map_registry import check_map, find_map
         from ..bridge.character.read_character import read_character
 
@@ -198,7 +195,7 @@ class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
     check_existing: Switch(default=True, options=HIDDEN)
     filter_glob: Text(default="*.json", options=HIDDEN)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         from ...core.retarget.maps.map_registry import map_path
 
         with reported(self):
@@ -208,19 +205,19 @@ class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
             return {"RUNNING_MODAL"}
         return {"CANCELLED"}
 
-    def check(self, context: bpy.types.Context) -> bool:
+    def check(self, context: Context) -> bool:
         path = bpy.path.ensure_ext(self.filepath, ".json")
         changed = path != self.filepath
         self.filepath = path
         return changed
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         character, column = active_character(context.scene), self.layout.column()
         if character is not None:
             for name in ("title", "author", "license", "description", "tags"):
                 column.prop(character.character_map, name)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         from ...core.retarget.maps.character_map import write_character_map
 
         if not self.filepath:
@@ -232,5 +229,5 @@ class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, f"Wrote {path}")
 
 
-def _title(character: bpy.types.PropertyGroup) -> str:
+def _title(character: PropertyGroup) -> str:
     return character.character_map.title.strip() or str(character.armature.name)

@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import bpy
+from bpy.types import Context, Operator, PropertyGroup, Scene
 
 from ...core.errors import InputError
 from ...core.progress import stretch
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from ...core.retarget.quality import Quality
 
 
-def retarget_take(scene: bpy.types.Scene) -> "Job[tuple[Any, ...]]":
+def retarget_take(scene: Scene) -> "Job[tuple[Any, ...]]":
     """Put the motion of the active take onto its chosen character; the scene stays as it is."""
     from ..bridge.character.retarget import retarget
     from ..bridge.character.source import read_source
@@ -57,7 +58,7 @@ def retarget_take(scene: bpy.types.Scene) -> "Job[tuple[Any, ...]]":
     return identifier, uids, motion.kind, motion.title, made_from, retargeted
 
 
-def keep_retargeted(operator: bpy.types.Operator, scene: bpy.types.Scene, result: tuple[Any, ...]) -> str:
+def keep_retargeted(operator: Operator, scene: Scene, result: tuple[Any, ...]) -> str:
     """Let the character perform the motion; returns a sentence on it."""
     identifier, uids, kind, title, made_from, retargeted = result
     take = take_by_identifier(scene, identifier)
@@ -88,15 +89,15 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
     bl_label = "Retarget"
     requirements = (character, source, armature, editable, recognized, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[tuple[Any, ...]]":
+    def start(self, scene: Scene) -> "Job[tuple[Any, ...]]":
         return retarget_take(scene)
 
-    def finish(self, scene: bpy.types.Scene, result: tuple[Any, ...]) -> None:
+    def finish(self, scene: Scene, result: tuple[Any, ...]) -> None:
         performs = keep_retargeted(self, scene, result)
         self.report({"INFO"}, performs)
 
 
-def options_of(group: bpy.types.PropertyGroup) -> RetargetOptions:
+def options_of(group: PropertyGroup) -> RetargetOptions:
     """The options that properties hold."""
     options = read_declared(RetargetOptions, group, place="placement")
     return options if group.keys == "TOLERANCE" else replace(options, tolerance_mm=0.0)
@@ -126,7 +127,7 @@ class KEYMARK_OT_show_result(BaseOperator, bpy.types.Operator):
 
     index: Integer("Index", "Number of the result in the list, from 0", min=0)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         character = active_character(context.scene)
         if self.index >= len(character.results) or character.results[self.index].action is None:
             raise InputError(f"there is no result number {self.index}; retarget the motion again")
@@ -142,7 +143,7 @@ class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
 
     index: Integer("Index", "Number of the result in the list, from 0", min=0)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         chosen = active_character(context.scene)
         if self.index >= len(chosen.results):
             count = len(chosen.results)
@@ -157,7 +158,7 @@ class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
     bl_label = "Mark Asset"
     requirements = (character, result, idle)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         take, made = active_take(context.scene), shown_result(active_character(context.scene))
         if made is None or made.action is None:
             raise InputError("the result's Action has been deleted; retarget the motion again")

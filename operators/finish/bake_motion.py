@@ -5,6 +5,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
+from bpy.types import (
+    Action,
+    Context,
+    Event,
+    Object,
+    Operator,
+    OperatorProperties,
+    PropertyGroup,
+    Scene,
+    UILayout,
+)
 
 from ...core.errors import InputError
 from ...core.files.fields import listed
@@ -26,11 +37,11 @@ if TYPE_CHECKING:
 
 
 def mark_motion_asset(
-    context: bpy.types.Context,
-    take: bpy.types.PropertyGroup,
-    action: bpy.types.Action,
-    pictured: bpy.types.Action | None,
-    actor: bpy.types.Object | None = None,
+    context: Context,
+    take: PropertyGroup,
+    action: Action,
+    pictured: Action | None,
+    actor: Object | None = None,
 ) -> None:
     """Add the catalog to its file, then mark an Action with the details that the take's finish has.
 
@@ -64,7 +75,7 @@ class FinishedTake:
     finished: "Finished"
 
 
-def bake(scene: bpy.types.Scene) -> "Job[FinishedTake]":
+def bake(scene: Scene) -> "Job[FinishedTake]":
     """Finish the motion of the active take; the scene stays as it is."""
     from ..bridge.finish_motion import FinishOptions, finish_motion
 
@@ -81,7 +92,7 @@ def bake(scene: bpy.types.Scene) -> "Job[FinishedTake]":
     return FinishedTake(identifier, made_from, (yield from job))
 
 
-def keep_baked(operator: bpy.types.Operator, scene: bpy.types.Scene, result: FinishedTake) -> str:
+def keep_baked(operator: Operator, scene: Scene, result: FinishedTake) -> str:
     """Write the final Action; returns a sentence on it."""
     take, finished = take_by_identifier(scene, result.take), result.finished
     settings, armature_object = take.finish, actor_of(take)
@@ -108,10 +119,10 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     bl_label = "Bake Final Action"
     requirements = (actor, motion, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[FinishedTake]":
+    def start(self, scene: Scene) -> "Job[FinishedTake]":
         return bake(scene)
 
-    def finish(self, scene: bpy.types.Scene, result: FinishedTake) -> None:
+    def finish(self, scene: Scene, result: FinishedTake) -> None:
         self.report({"INFO"}, keep_baked(self, scene, result))
 
 
@@ -121,7 +132,7 @@ class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
     bl_label = "Mark Asset"
     requirements = (actor, motion, idle)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         take = active_take(context.scene)
         action = take.finish.action or take.motion_action
         mark_motion_asset(context, take, action, action)
@@ -152,30 +163,30 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
     requirements = (performance, idle)
 
     @classmethod
-    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+    def description(cls, context: Context, properties: OperatorProperties) -> str:
         chosen = FORMATS[properties.format]
         return chosen.missing() or chosen.description
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         take, self.who = active_take(context.scene), ""
         folder, name = "//" if bpy.data.filepath else "", f"{take.name} {take.finish.who}"
         self.filepath = bpy.path.abspath(folder + bpy.path.clean_name(name) + FORMATS[self.format].suffix)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         take, of_actor = active_take(context.scene), FORMATS[self.format].of_actor
         draw_who(self.layout, take, of_actor)
         if not of_actor and take.armature is not None and take.finish.who == take.armature.name:
             self.layout.prop(self, "bake")
 
-    def check(self, context: bpy.types.Context) -> bool:
+    def check(self, context: Context) -> bool:
         path = bpy.path.ensure_ext(self.filepath, FORMATS[self.format].suffix)
         changed = path != self.filepath
         self.filepath = path
         return changed
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         if not self.filepath:
             raise InputError("no file is named to export to; give filepath")
         chosen, scene = FORMATS[self.format], context.scene
@@ -199,9 +210,7 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
                 warn(self, f"'{who.name}' performs an earlier motion; retarget again for the newest")
         self.report({"INFO"}, f"Wrote what '{who.name}' performs: {path}")
 
-    def _write_actor(
-        self, scene: bpy.types.Scene, take: bpy.types.PropertyGroup, chosen: ExportFormat, path: Path
-    ) -> None:
+    def _write_actor(self, scene: Scene, take: PropertyGroup, chosen: ExportFormat, path: Path) -> None:
         """Write the actor's final Action, baked anew where there is none of the newest motion."""
         from ..bridge.rig import absence_note, motion_frames
 
@@ -219,7 +228,7 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
             warn(self, away)
 
 
-def draw_who(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup, of_actor: bool = False) -> None:
+def draw_who(layout: UILayout, take: PropertyGroup, of_actor: bool = False) -> None:
     """Draw the choice of whose motion is exported; of a format that holds the actor's alone, that it does."""
     row = layout.row()
     row.use_property_split, row.use_property_decorate = True, False

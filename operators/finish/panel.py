@@ -1,6 +1,7 @@
 """The panel of the last step: final Action, asset and files; formats are listed in `export_formats`."""
 
 import bpy
+from bpy.types import Context, UILayout
 
 from ..bridge.export_formats import FORMATS
 from ..reconstruct.panel import draw_shown_action
@@ -30,7 +31,7 @@ class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
     def action(cls, state: TakeState) -> tuple[str, str]:
         return "keymark.bake_motion", "Bake"
 
-    def draw_step(self, context: bpy.types.Context, body: bpy.types.UILayout, state: TakeState) -> None:
+    def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         take = state.take
         column = body.column()
         if state.performers:
@@ -65,7 +66,7 @@ class KEYMARK_PT_finish_options(Popover, bpy.types.Panel):
 
     bl_label = "Options of the Final Action"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings, column = active_take(context.scene).finish, self.column()
         few = settings.keys == "TOLERANCE"
         shown = {"keys": True, "tolerance_mm": few, "shared": few, "plant_feet": True}
@@ -80,7 +81,7 @@ class KEYMARK_PT_asset(Popover, bpy.types.Panel):
 
     bl_label = "Mark as Asset"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         settings, column = active_take(context.scene).finish, self.column()
         for name in ("catalog", "tags", "author", "license", "description"):
             column.prop(settings, name)

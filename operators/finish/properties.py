@@ -1,6 +1,7 @@
 """Properties of the finish: options and result of the final Action, and details of the asset."""
 
 import bpy
+from bpy.types import PropertyGroup
 
 from ..shell.fields import HIDDEN, Choice, Group, Integer, Number, Switch, Text
 from ..shell.take_state import TakeState
@@ -16,19 +17,19 @@ SHARED = (
 _performers: list[tuple[str, str, str, str, int]] = []  # Blender keeps no copy of the strings
 
 
-def _names(finish: bpy.types.PropertyGroup) -> list[str]:
+def _names(finish: PropertyGroup) -> list[str]:
     take = next(take for take in finish.id_data.keymark.takes if take.finish == finish)
     return [each.name for each, _ in TakeState(take).performers]
 
 
-def _items(finish: bpy.types.PropertyGroup, _context: object) -> list[tuple[str, str, str, str, int]]:
+def _items(finish: PropertyGroup, _context: object) -> list[tuple[str, str, str, str, int]]:
     words = "Write what this armature performs, with what it moves"
     names = _names(finish) or ["Nobody"]  # Blender reads the choice before there is one
     _performers[:] = [(name, name, words, "ARMATURE_DATA", index) for index, name in enumerate(names)]
     return _performers
 
 
-def _chosen(finish: bpy.types.PropertyGroup) -> int:
+def _chosen(finish: PropertyGroup) -> int:
     names = _names(finish)
     return names.index(finish.performer) if finish.performer in names else 0
 

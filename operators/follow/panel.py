@@ -4,7 +4,7 @@ The viewport's sidebar shows them in the step Performer, and the Movie Clip edit
 """
 
 import bpy
-from bpy.types import Context, PropertyGroup, UILayout
+from bpy.types import AnyType, Context, PropertyGroup, UILayout
 
 from ...core.errors import pluralize
 from ..bridge.footage_camera import may_move
@@ -162,9 +162,7 @@ class KEYMARK_UL_clicked_points(RowList, bpy.types.UIList):
 
     use_filter_show = False
 
-    def filter_items(
-        self, context: Context, data: bpy.types.AnyType, name: str
-    ) -> tuple[list[int], list[int]]:
+    def filter_items(self, context: Context, data: AnyType, name: str) -> tuple[list[int], list[int]]:
         here = clip_frame(active_take(context.scene))
         return [self.bitflag_filter_item if each.frame == here else 0 for each in getattr(data, name)], []
 
@@ -232,10 +230,10 @@ class KEYMARK_UL_tracks(bpy.types.UIList):
         self,
         context: Context,
         layout: UILayout,
-        data: bpy.types.AnyType,
-        item: bpy.types.AnyType,
+        data: AnyType,
+        item: AnyType,
         icon: int,
-        active_data: bpy.types.AnyType,
+        active_data: AnyType,
         active_property: str,
     ) -> None:
         point = point_of(active_take(context.scene), data.name, item.name)

@@ -6,6 +6,7 @@ from math import isclose, sqrt
 
 import bpy
 from bpy.app import timers
+from bpy.types import Area, Camera, Context, Object, Region, RenderSettings, Scene, SpaceView3D, WindowManager
 
 from ..shell.takes import find_take
 
@@ -18,9 +19,7 @@ View = tuple[float, float, float]
 """Zoom and offset of a camera view, as Blender keeps them in single precision."""
 
 
-def fit_beside_sidebar(
-    area: bpy.types.Area, render: bpy.types.RenderSettings, camera: bpy.types.Camera
-) -> None:
+def fit_beside_sidebar(area: Area, render: RenderSettings, camera: Camera) -> None:
     """Let the camera's picture fill the part of a viewport that no panel covers."""
     fitting = fitting_view(area, render, camera)
     if fitting is not None:
@@ -28,9 +27,7 @@ def fit_beside_sidebar(
         view.view_camera_zoom, view.view_camera_offset = fitting[0], fitting[1:]
 
 
-def fitting_view(
-    area: bpy.types.Area, render: bpy.types.RenderSettings, camera: bpy.types.Camera
-) -> View | None:
+def fitting_view(area: Area, render: RenderSettings, camera: Camera) -> View | None:
     """Return the camera view that shows the whole picture beside the panels; None where there is no room."""
     region = next((each for each in area.regions if each.type == "WINDOW"), None)
     view = area.spaces.active.region_3d
@@ -42,7 +39,7 @@ def fitting_view(
     return zoom, *offset
 
 
-def free_box(area: bpy.types.Area, region: bpy.types.Region) -> Box:
+def free_box(area: Area, region: Region) -> Box:
     """Return the part of a region that no sidebar, toolbar or header covers, from the region's own corner."""
     left, bottom, right, top = 0.0, 0.0, float(region.width), float(region.height)
     for other in area.regions:
@@ -97,7 +94,7 @@ def camera_view(
     return zoom, (away[0] / (2.0 * factor * region_size[0]), away[1] / (2.0 * factor * region_size[1]))
 
 
-def viewports(manager: bpy.types.WindowManager) -> Iterator[bpy.types.SpaceView3D]:
+def viewports(manager: WindowManager) -> Iterator[SpaceView3D]:
     """Yield the open 3D viewports."""
     for window in manager.windows:
         for area in window.screen.areas:
@@ -105,7 +102,7 @@ def viewports(manager: bpy.types.WindowManager) -> Iterator[bpy.types.SpaceView3
                 yield area.spaces.active
 
 
-def look_through(space: bpy.types.SpaceView3D, scene: bpy.types.Scene, camera: bpy.types.Object) -> None:
+def look_through(space: SpaceView3D, scene: Scene, camera: Object) -> None:
     """Let one viewport look through a camera; the scene keeps its active camera."""
     space.use_local_camera = camera != scene.camera
     if space.use_local_camera:
@@ -118,7 +115,7 @@ SAME = 1e-4  # Difference within which views are one; Blender keeps them in sing
 _fitted: dict[int, View] = {}  # The view that was fitted last, by the pointer of an area
 
 
-def keep_beside_sidebar(context: bpy.types.Context) -> None:
+def keep_beside_sidebar(context: Context) -> None:
     """Fit the view of the take's camera again, after this drawing, if the sidebar has changed."""
     wanted = _wanted(context.area, context.scene)
     if wanted is None:
@@ -141,7 +138,7 @@ def is_same(first: View, second: View) -> bool:
     return all(isclose(a, b, rel_tol=SAME, abs_tol=SAME) for a, b in zip(first, second, strict=True))
 
 
-def _wanted(area: bpy.types.Area, scene: bpy.types.Scene) -> View | None:
+def _wanted(area: Area, scene: Scene) -> View | None:
     take, space = find_take(scene), area.spaces.active
     if take is None or take.clip is None or take.camera is None or space.region_3d is None:
         return None
@@ -151,7 +148,7 @@ def _wanted(area: bpy.types.Area, scene: bpy.types.Scene) -> View | None:
     return fitting_view(area, scene.render, take.camera.data)
 
 
-def _shown(area: bpy.types.Area) -> View:
+def _shown(area: Area) -> View:
     view = area.spaces.active.region_3d
     x, y = view.view_camera_offset
     return view.view_camera_zoom, x, y

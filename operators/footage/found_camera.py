@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
+from bpy.types import PropertyGroup
 
 from ...core.arrays import Array
 from ...core.errors import InputError
@@ -213,7 +214,7 @@ NOTHING_FOUND = (
 CONTRADICTION = "The lines are {px:.1f} px off: one of them is not what it is said to be, or lies wrong"
 
 
-def fit_take(take: bpy.types.PropertyGroup, evidence: "CameraEvidence") -> "CameraFit":
+def fit_take(take: PropertyGroup, evidence: "CameraEvidence") -> "CameraFit":
     """Find a take's camera from what its picture shows; a lens that nobody guessed is kept."""
     from ...core.camera.camera_fit import fit_camera
 
@@ -226,7 +227,7 @@ def is_found(fit: "CameraFit") -> bool:
     return len(fit.kept) < len(fit.std)
 
 
-def write_fit(take: bpy.types.PropertyGroup, fit: "CameraFit") -> None:
+def write_fit(take: PropertyGroup, fit: "CameraFit") -> None:
     """Give the take's camera what was found, and keep in words how sure it is."""
     if not is_found(fit):
         raise InputError(NOTHING_FOUND)

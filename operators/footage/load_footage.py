@@ -5,6 +5,7 @@ from itertools import islice
 from pathlib import Path
 
 import bpy
+from bpy.types import Context, Event, MovieClip, Object, PropertyGroup
 
 from ...core.errors import InputError
 from ...core.markers.region_tracks import is_variable_frame_rate
@@ -23,7 +24,7 @@ VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mts")
 IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")  # Extensions of the files that footage is loaded from
 
 
-def give_footage(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> None:
+def give_footage(take: PropertyGroup, clip: MovieClip) -> None:
     """Put a clip behind a take's camera; the scene's size, rate and range follow."""
     scene = take.id_data
     attached = attach_footage(scene, clip, _camera_for(take, clip), take.guessed_lens_mm)
@@ -37,7 +38,7 @@ def give_footage(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> No
     take.clip = clip  # its update notes the state, see `clip_chosen`
 
 
-def clip_chosen(take: bpy.types.PropertyGroup) -> None:
+def clip_chosen(take: PropertyGroup) -> None:
     """Update a take whose clip was set; results, keypoints and lines from another clip are dropped."""
     clip, before = take.clip, take.clip_state.contents
     if clip is not None and not shows_behind(take.camera, clip):
@@ -55,7 +56,7 @@ def clip_chosen(take: bpy.types.PropertyGroup) -> None:
             drawn.clear()
 
 
-def camera_chosen(take: bpy.types.PropertyGroup) -> None:
+def camera_chosen(take: PropertyGroup) -> None:
     """Update a take whose camera was set: the camera shows the clip and becomes the scene's."""
     camera, scene = take.camera, take.id_data
     if camera is None:
@@ -66,7 +67,7 @@ def camera_chosen(take: bpy.types.PropertyGroup) -> None:
         scene.camera = camera
 
 
-def update_clip_state(take: bpy.types.PropertyGroup) -> None:
+def update_clip_state(take: PropertyGroup) -> None:
     """Check a take's clip, and store the state that panels show."""
     state = take.clip_state
     state.missing = is_missing(take.clip)
@@ -82,7 +83,7 @@ def update_clip_state(take: bpy.types.PropertyGroup) -> None:
             state.variable_rate = is_variable_frame_rate(list(islice(stamps, 90)))
 
 
-def update_clip_digest(take: bpy.types.PropertyGroup) -> None:
+def update_clip_digest(take: PropertyGroup) -> None:
     """Store the digest of a take's clip as it is on disk now; if it is missing, the stored one stays."""
     with suppress(InputError, ModuleNotFoundError):  # reported when the clip is read
         from ...core.markers.reading import footage_digest
@@ -90,7 +91,7 @@ def update_clip_digest(take: bpy.types.PropertyGroup) -> None:
         take.clip_state.contents = footage_digest(footage_of(take.id_data, take).path)
 
 
-def is_missing(clip: bpy.types.MovieClip | None) -> bool:
+def is_missing(clip: MovieClip | None) -> bool:
     """Whether a clip's file is missing."""
     if clip is None:
         return False
@@ -106,7 +107,7 @@ def take_name(path: Path) -> str:
     return path.parent.name if path.stem == GENERIC_STEM and path.parent.name else path.stem
 
 
-def look_through_camera(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+def look_through_camera(context: Context, take: PropertyGroup) -> None:
     """Let the viewport of the context show the footage, which is visible only through the camera."""
     space, camera = context.space_data, take.camera
     if not isinstance(space, bpy.types.SpaceView3D) or space.region_3d is None or camera is None:
@@ -115,7 +116,7 @@ def look_through_camera(context: bpy.types.Context, take: bpy.types.PropertyGrou
     fit_beside_sidebar(context.area, take.id_data.render, camera.data)
 
 
-def show_range(context: bpy.types.Context) -> None:
+def show_range(context: Context) -> None:
     """Zoom the timelines to the scene's range of frames."""
     if bpy.app.background:  # there may be no screen
         return
@@ -127,12 +128,12 @@ def show_range(context: bpy.types.Context) -> None:
                     bpy.ops.action.view_all()
 
 
-def lens_is_guess(take: bpy.types.PropertyGroup) -> bool:
+def lens_is_guess(take: PropertyGroup) -> bool:
     """Whether the take's camera still has the lens that was guessed."""
     return take.camera is not None and is_guess(take.camera.data, take.guessed_lens_mm)
 
 
-def _camera_for(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> bpy.types.Object | None:
+def _camera_for(take: PropertyGroup, clip: MovieClip) -> Object | None:
     """Return the camera to put a clip behind; None for a new one.
 
     The take's own, unless another take uses it for another clip; else the one animated by the clip's camera
@@ -158,7 +159,7 @@ def _camera_for(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> bpy
 # --- A take's footage: loaded, found again or used from this file, and its guessed camera confirmed
 
 
-def any_clip(_context: bpy.types.Context, _state: object) -> str | None:
+def any_clip(_context: Context, _state: object) -> str | None:
     """The file has a clip."""
     return None if bpy.data.movieclips else "This file has no clip; load the footage"
 
@@ -176,7 +177,7 @@ class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
         options=SKIP_SAVE,
     )
 
-    def run(self, context: bpy.types.Context) -> set[str] | None:
+    def run(self, context: Context) -> set[str] | None:
         scene, clips = context.scene, bpy.data.movieclips
         clip = clips.get(self.clip) if self.clip else scene.active_clip or clips[0]
         if clip is None:
@@ -200,7 +201,7 @@ class KEYMARK_OT_keep_lens(BaseOperator, bpy.types.Operator):
     bl_label = "Confirm Lens"
     requirements = (guessed_lens,)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         camera = active_take(context.scene).camera
         for take in context.scene.keymark.takes:
             if take.camera == camera:
@@ -216,11 +217,11 @@ class KEYMARK_OT_keep_camera(BaseOperator, bpy.types.Operator):
     bl_label = "Confirm Camera"
     requirements = (guessed_placement,)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         confirm_placement(active_take(context.scene))
 
 
-def hide_startup_cube(context: bpy.types.Context) -> None:
+def hide_startup_cube(context: Context) -> None:
     """Hide the cube of Blender's startup file where nobody has touched it; Alt H brings it back."""
     cube = context.view_layer.objects.get("Cube")
     if cube is None or cube.type != "MESH" or len(cube.data.vertices) != 8:
@@ -230,7 +231,7 @@ def hide_startup_cube(context: bpy.types.Context) -> None:
         cube.hide_set(True)
 
 
-def load_into_take(context: bpy.types.Context, path: Path, as_new_take: bool) -> bpy.types.PropertyGroup:
+def load_into_take(context: Context, path: Path, as_new_take: bool) -> PropertyGroup:
     """Load a clip behind the camera of a take, a new one or the active one, and show it."""
     from ..bridge.result_files import load_footage
 
@@ -265,7 +266,7 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
     filter_glob: Text(default=PATTERNS, options=HIDDEN)
     filter_folder: Switch(default=True, options=HIDDEN)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         """Show the file browser, unless a file was dropped; a dropped one never replaces a clip."""
         if not self.filepath:
             return browse(self, context)
@@ -273,7 +274,7 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         self.as_new_take = take is not None and take.clip is not None
         return self.execute(context)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         path = chosen_file(self, "a video, or one image of a numbered sequence")
         take = load_into_take(context, path, self.as_new_take)
         clip, extent = (
@@ -301,12 +302,12 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
     filter_glob: Text(default=PATTERNS, options=HIDDEN)
     filter_folder: Switch(default=True, options=HIDDEN)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         self.filepath = bpy.path.abspath(active_take(context.scene).clip.filepath)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Check the file, and only then set the clip's path."""
         from ...core.video.clip import Clip
         from ..bridge.result_files import clip_file, stored_path

@@ -1,6 +1,7 @@
 """The panel of the first step: the clip, its camera, whether that is a guess, and how it can be found."""
 
 import bpy
+from bpy.types import Context, PropertyGroup, UILayout
 
 from ..bridge.camera_placement import fixed_reason
 from ..bridge.footage_camera import may_move, solver_constraint
@@ -12,7 +13,7 @@ from .load_footage import lens_is_guess
 from .properties import draw_part
 
 
-def _draw_camera(column: bpy.types.UILayout, context: bpy.types.Context, state: TakeState) -> None:
+def _draw_camera(column: UILayout, context: Context, state: TakeState) -> None:
     """Draw the lens and the camera's place, whether that is a guess, and the tools that find it."""
     scene, take, camera = context.scene, state.take, state.take.camera
     if camera.name not in scene.objects:
@@ -40,7 +41,7 @@ def _draw_camera(column: bpy.types.UILayout, context: bpy.types.Context, state: 
             draw_sentence(column, context, sentence, "DOT" if index else "CHECKMARK")
 
 
-def _draw_guess(column: bpy.types.UILayout, text: str, operator: str) -> None:
+def _draw_guess(column: UILayout, text: str, operator: str) -> None:
     row = column.row(align=True)
     row.label(text=text, translate=False, icon="QUESTION")
     row.operator(operator, text="", icon="CHECKMARK")
@@ -62,7 +63,7 @@ class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
     def is_wrong(cls, state: TakeState) -> bool:
         return bool(state.take.clip_state.missing)
 
-    def draw_step(self, context: bpy.types.Context, body: bpy.types.UILayout, state: TakeState) -> None:
+    def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         take = state.take
         column = body.column()
         if take.clip is not None:
@@ -82,7 +83,7 @@ class KEYMARK_PT_footage_options(Popover, bpy.types.Panel):
 
     bl_label = "Clip Options"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         take, column = active_take(context.scene), self.column()
         column.prop(take, "clip")
         row = column.row(align=True)
@@ -107,7 +108,7 @@ class KEYMARK_MT_clips(bpy.types.Menu):
 
     bl_label = "Use Clip of This File"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         take = find_take(context.scene)
         for clip in bpy.data.movieclips:
             entry = self.layout.operator("keymark.use_clip", text=clip.name, translate=False, icon="TRACKER")
@@ -115,7 +116,7 @@ class KEYMARK_MT_clips(bpy.types.Menu):
             entry.as_new_take = take is not None and take.clip is not None
 
 
-def _draw_clip(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+def _draw_clip(column: UILayout, context: Context, take: PropertyGroup) -> None:
     """Draw the clip's size, length and rate, or that its file is missing."""
     clip, state = take.clip, take.clip_state
     if state.missing:

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import bpy
+from bpy.types import Context, PropertyGroup, UILayout
 
 from ...core.take.conversion_settings import MOST_PEOPLE
 from ..bridge.camera_placement import fixed_reason, read_placement, write_placement
@@ -16,13 +17,13 @@ from ..shell.takes import NO_GUESS
 DECIMALS = 5  # Digits that are shown: Blender's own matrices have about as many, and a level camera shows 0
 
 
-def still_camera(_context: bpy.types.Context, state: TakeState | None) -> str | None:
+def still_camera(_context: Context, state: TakeState | None) -> str | None:
     """The take's camera stands still, and can be set."""
     reason = fixed_reason(None if state is None else state.take.camera)
     return None if reason is None else capitalized(reason)
 
 
-def confirm_placement(take: bpy.types.PropertyGroup) -> None:
+def confirm_placement(take: PropertyGroup) -> None:
     """Let the camera's placement count as known in every take with this camera."""
     for other in take.id_data.keymark.takes:
         if other.camera == take.camera:
@@ -32,10 +33,10 @@ def confirm_placement(take: bpy.types.PropertyGroup) -> None:
 def placement_accessors(field: str) -> dict[str, Callable[..., Any]]:
     """Getter and setter of a property for a field of the placement of a take's camera."""
 
-    def get(take: bpy.types.PropertyGroup) -> float:
+    def get(take: PropertyGroup) -> float:
         return 0.0 if take.camera is None else round(getattr(read_placement(take.camera), field), DECIMALS)
 
-    def change(take: bpy.types.PropertyGroup, value: float) -> None:
+    def change(take: PropertyGroup, value: float) -> None:
         """What was entered is no guess, whatever the number."""
         if fixed_reason(take.camera) is None:
             write_placement(take.camera, replace(read_placement(take.camera), **{field: value}))
@@ -75,7 +76,7 @@ class Part:
         return {"shot": shot, "performer": self.performer or None}
 
 
-def draw_part(layout: bpy.types.UILayout, part: Part) -> None:
+def draw_part(layout: UILayout, part: Part) -> None:
     """Draw which part is animated, and who performs."""
     layout.prop(part, "performer")
     layout.prop(part, "is_part")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
-from bpy.types import Context, OperatorProperties, PropertyGroup, Scene
+from bpy.types import Context, Operator, OperatorProperties, PropertyGroup, Scene
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN, TRUNK, limb_of
@@ -49,7 +49,7 @@ def camera_now(scene: Scene, take: PropertyGroup) -> Camera:
 
 
 def set_corrected(
-    operator: bpy.types.Operator, context: Context, take: PropertyGroup, posture: "Posture", in_depth: bool
+    operator: Operator, context: Context, take: PropertyGroup, posture: "Posture", in_depth: bool
 ) -> None:
     """Give the actor a corrected posture; where this frame holds a keyframe, that is the new one at once.
 

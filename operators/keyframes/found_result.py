@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from math import pi
 
-import bpy
 import numpy as np
-from bpy.types import PropertyGroup
+from bpy.types import PropertyGroup, Scene
 from numpy.typing import ArrayLike
 
 from ...core.arrays import Array
@@ -71,7 +70,7 @@ def key_matches(take: PropertyGroup, frames: ArrayLike, postures: Sequence[Postu
     assign_action(actor, take.keyframe_action)
 
 
-def write_poses(scene: bpy.types.Scene, made: SceneSession) -> PropertyGroup:
+def write_poses(scene: Scene, made: SceneSession) -> PropertyGroup:
     """Key what was found beside what is decided, in place of what was found earlier; returns the take.
 
     Where the world was moved so that the floor is z = 0, the camera is.

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-import bpy
+from bpy.types import PropertyGroup, Scene
 
 from ...core.arrays import Array
 from ...core.body.actor import Actor
@@ -44,7 +44,7 @@ class SceneSession:
 
 
 def clip_session(
-    scene: bpy.types.Scene, settings: bpy.types.PropertyGroup, camera: Camera | None = None, **wanted: Any
+    scene: Scene, settings: PropertyGroup, camera: Camera | None = None, **wanted: Any
 ) -> Job[SceneSession]:
     """Read what the session of a take starts from before there is an actor: it is of average proportions.
 
@@ -64,7 +64,7 @@ def clip_session(
 
 
 def read_session(
-    scene: bpy.types.Scene, settings: bpy.types.PropertyGroup, matches: "Matches", **wanted: Any
+    scene: Scene, settings: PropertyGroup, matches: "Matches", **wanted: Any
 ) -> Job[SceneSession]:
     """Read what the session of a take starts from; the scene stays as it is.
 

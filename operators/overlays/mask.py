@@ -7,7 +7,7 @@ import bpy
 import gpu
 import numpy as np
 from bpy.app.handlers import persistent
-from bpy.types import Context, Scene
+from bpy.types import Context, Depsgraph, Scene
 
 from ...core.arrays import Image, SingleArray
 from ...core.errors import KeymarkError
@@ -149,7 +149,7 @@ def is_fast(cost_s: float, scene: Scene) -> bool:
 
 
 @persistent
-def _frame_changed(scene: Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
+def _frame_changed(scene: Scene, _depsgraph: Depsgraph | None = None) -> None:
     """Make the masks of the scene's current frame; in playback only where the last ones were fast."""
     global _cost_s
     if not bpy.context.window_manager.keymark_show_masks or bpy.app.is_job_running("RENDER"):
@@ -166,7 +166,7 @@ def _frame_changed(scene: Scene, _depsgraph: bpy.types.Depsgraph | None = None) 
 
 
 @persistent
-def _stopped(scene: Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
+def _stopped(scene: Scene, _depsgraph: Depsgraph | None = None) -> None:
     """Make the masks that playback has left out."""
     global _cost_s
     _cost_s = 0.0

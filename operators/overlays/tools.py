@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import bpy
 import numpy as np
-from bpy.types import Context, PropertyGroup
+from bpy.types import Context, Object, PropertyGroup
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
@@ -247,7 +247,7 @@ def draw_candidate(context: Context) -> list[Item]:
     return candidate_figure(positions, candidate, match.chosen, settings)
 
 
-def candidate_points(armature_object: bpy.types.Object, match: PropertyGroup) -> Array:
+def candidate_points(armature_object: Object, match: PropertyGroup) -> Array:
     """(N, 13, 3) points of a found keyframe's candidates in the world."""
     places = [[*candidate.place, *candidate.turns] for candidate in match.candidates]
     lengths = [bone.length for bone in armature_object.data.bones]

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import bpy
 import numpy as np
-from bpy.types import Context, PropertyGroup, Region
+from bpy.types import Context, PropertyGroup, Region, RegionView3D
 
 from ...core.arrays import Array, IndexArray
 from ...core.camera.camera import Camera
@@ -47,7 +46,7 @@ class WorldView:
         return np.where(divisor > 1e-6, divisor, np.nan)
 
 
-def world_view(region: Region, view: bpy.types.RegionView3D, footage: FootageView | None) -> WorldView:
+def world_view(region: Region, view: RegionView3D, footage: FootageView | None) -> WorldView:
     """A region of a 3D viewport as a view of the motion."""
     right = np.array(view.view_matrix, dtype=np.float64)[0, :3]
     return WorldView(

@@ -6,6 +6,7 @@ from math import floor
 import bpy
 import numpy as np
 from bpy.app import handlers
+from bpy.types import Object, PropertyGroup, Scene
 
 from ...core.arrays import Array
 from ...core.errors import InputError
@@ -28,7 +29,7 @@ ENDS = ("save_pre", "undo_pre", "redo_pre", "load_pre")
 class LivePreview:
     """Shows previews on an armature in its scene; `end` leaves both as they were."""
 
-    def __init__(self, scene: bpy.types.Scene, armature_object: bpy.types.Object, frames: Array) -> None:
+    def __init__(self, scene: Scene, armature_object: Object, frames: Array) -> None:
         """Change nothing before the first preview; `frames` (F,) are the scene frames of the clip's."""
         self._scene, self._armature, self._frames = scene, armature_object, frames
         self._uids = scene.session_uid, armature_object.session_uid
@@ -86,7 +87,7 @@ class LivePreview:
                 getattr(handlers, name).append(self._restore)
 
 
-def write_result(scene: bpy.types.Scene, made: SceneSession, judged: Review) -> bpy.types.PropertyGroup:
+def write_result(scene: Scene, made: SceneSession, judged: Review) -> PropertyGroup:
     """Write a motion and its review, and let its Action animate the actor; return the take."""
     take, result = take_by_identifier(scene, made.take), made.session[Reconstruction]
     take.motion_action = write_motion(
@@ -100,7 +101,7 @@ def write_result(scene: bpy.types.Scene, made: SceneSession, judged: Review) -> 
     return take
 
 
-def show_review(take: bpy.types.PropertyGroup, review: Review) -> None:
+def show_review(take: PropertyGroup, review: Review) -> None:
     """Fill the review of a take whose motion was written."""
     shown = take.review
     clear_review(take)

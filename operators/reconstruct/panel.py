@@ -1,6 +1,7 @@
 """The panel of the fourth step: the motion, and the review of it."""
 
 import bpy
+from bpy.types import Action, Context, UILayout
 
 from ..review.weak_frames import draw_review
 from ..shell.panel import Popover, StepPanel, draw_progress, draw_sentence
@@ -24,7 +25,7 @@ class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
     def action(cls, state: TakeState) -> tuple[str, str]:
         return "keymark.reconstruct", "Reconstruct"
 
-    def draw_step(self, context: bpy.types.Context, body: bpy.types.UILayout, state: TakeState) -> None:
+    def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         take = state.take
         column = body.column()
         row = column.row()
@@ -44,9 +45,7 @@ class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
             draw_review(column, context, state)
 
 
-def draw_shown_action(
-    layout: bpy.types.UILayout, state: TakeState, actions: dict[str, bpy.types.Action | None]
-) -> None:
+def draw_shown_action(layout: UILayout, state: TakeState, actions: dict[str, Action | None]) -> None:
     """Draw the switch between Actions on the actor, by the names of `keymark.show_action`."""
     row = layout.row(align=True)
     for which, action in actions.items():
@@ -60,7 +59,7 @@ class KEYMARK_PT_reconstruct_options(Popover, bpy.types.Panel):
 
     bl_label = "Options of the Motion"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         take, column = active_take(context.scene), self.column()
         column.prop(take.follow, "reference")
         column.prop(take, "method")
@@ -72,7 +71,7 @@ class KEYMARK_PT_reconstruct_notes(Popover, bpy.types.Panel):
 
     bl_label = "Notes"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         column = self.layout.column()
         for note in active_take(context.scene).notes:
             draw_sentence(column, context, note.text)

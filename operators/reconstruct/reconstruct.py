@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 import bpy
+from bpy.types import Context, Scene
 
 from ...core.errors import InputError
 from ...core.progress import stretch
@@ -35,7 +36,7 @@ SOLVED = 0.97
 """Share of the job at which the motion is found."""
 
 
-def reconstruct_take(operator: "PreviewedJob", scene: bpy.types.Scene) -> "Job[tuple[SceneSession, Review]]":
+def reconstruct_take(operator: "PreviewedJob", scene: Scene) -> "Job[tuple[SceneSession, Review]]":
     """Go on with the active take until its motion is reconstructed and judged; the scene stays as it is."""
     from ...core.estimate.reconstruct import check_reconstructible
     from .live_preview import LivePreview
@@ -71,7 +72,7 @@ def judge(made: "SceneSession") -> "Job[Review]":
     return review(made.session[Posed].seen.take, made.session[Reconstruction], made.frames)
 
 
-def keep_motion(operator: JobOperator, scene: bpy.types.Scene, made: "SceneSession", judged: "Review") -> str:
+def keep_motion(operator: JobOperator, scene: Scene, made: "SceneSession", judged: "Review") -> str:
     """Write the motion; the keyframes stay in their own Action. Returns a line."""
     from ...core.estimate.reconstruct import Reconstruction
     from ...core.take.presence import unseen_line
@@ -109,10 +110,10 @@ class KEYMARK_OT_reconstruct(PreviewedJob, bpy.types.Operator):
     bl_label = "Reconstruct"
     requirements = (footage, actor, anything_to_follow, all_colors, two_keyframes, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[tuple[SceneSession, Review]]":
+    def start(self, scene: Scene) -> "Job[tuple[SceneSession, Review]]":
         return (yield from reconstruct_take(self, scene))
 
-    def finish(self, scene: bpy.types.Scene, result: "tuple[SceneSession, Review]") -> None:
+    def finish(self, scene: Scene, result: "tuple[SceneSession, Review]") -> None:
         self.report({"INFO"}, keep_motion(self, scene, *result))
 
 
@@ -132,7 +133,7 @@ class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
         ],
     )
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         take = active_take(context.scene)
         action, missing = {
             "KEYFRAMES": (take.keyframe_action, "there are no keyframes yet; pose the actor and store one"),

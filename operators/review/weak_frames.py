@@ -2,7 +2,7 @@
 
 import bpy
 import numpy as np
-from bpy.types import Context, Event, OperatorProperties, PropertyGroup, UILayout
+from bpy.types import Context, Event, Object, OperatorProperties, PropertyGroup, SpaceView3D, UILayout
 from mathutils import Matrix, Vector
 
 from ...core.errors import InputError
@@ -175,9 +175,7 @@ class KEYMARK_OT_look_from_side(BaseOperator, bpy.types.Operator):
                 look_from_side(space, take.camera, take.armature)
 
 
-def look_from_side(
-    space: bpy.types.SpaceView3D, camera_object: bpy.types.Object, armature_object: bpy.types.Object
-) -> None:
+def look_from_side(space: SpaceView3D, camera_object: Object, armature_object: Object) -> None:
     """Let a viewport look at an actor across a camera's line of sight, the camera being on the left.
 
     The view is level and without perspective, so that depths can be compared.

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import ClassVar
 
 import bpy
-from bpy.types import Context, PropertyGroup
+from bpy.types import Context, Operator, PropertyGroup
 
 from ...core.errors import InputError, KeymarkError
 from ..bridge.actor_bones import is_actor, missing_bones
@@ -38,7 +38,7 @@ motion = of_take(lambda state: state.take.motion_action, "Reconstruct the motion
 keypoint_files = of_take(lambda state: len(state.take.follow.files), "Load keypoints first")
 
 
-def actor(_context: bpy.types.Context, state: TakeState | None) -> str | None:
+def actor(_context: Context, state: TakeState | None) -> str | None:
     """The take's actor is in the scene and can be edited."""
     if state is not None and state.has_lost_actor:
         return "Bring the deleted actor back first, in the step Performer"
@@ -56,12 +56,12 @@ def actor(_context: bpy.types.Context, state: TakeState | None) -> str | None:
     return None
 
 
-def any_actor(context: bpy.types.Context, state: TakeState | None) -> str | None:
+def any_actor(context: Context, state: TakeState | None) -> str | None:
     """The take has an actor, or had one."""
     return None if state is not None and state.has_lost_actor else actor(context, state)
 
 
-def anything_to_follow(_context: bpy.types.Context, state: TakeState | None) -> str | None:
+def anything_to_follow(_context: Context, state: TakeState | None) -> str | None:
     """The take follows markers, keypoints, tracks or contours."""
     if state is None or state.has_points or state.has_contours:
         return None  # a take without footage says so itself
@@ -70,20 +70,20 @@ def anything_to_follow(_context: bpy.types.Context, state: TakeState | None) -> 
     return "Switch on the contours, load keypoints, assign tracks or add markers first (step Performer)"
 
 
-def points_to_follow(_context: bpy.types.Context, state: TakeState | None) -> str | None:
+def points_to_follow(_context: Context, state: TakeState | None) -> str | None:
     """The take follows markers, keypoints or tracks; contours alone are not enough."""
     if state is None or state.has_points:
         return None
     return "Load keypoints, assign tracks or add markers first; this needs more than contours"
 
 
-def all_colors(_context: bpy.types.Context, state: TakeState | None) -> str | None:
+def all_colors(_context: Context, state: TakeState | None) -> str | None:
     """Every marker that is followed has a color."""
     lacking = "Pick the colors of all markers first, or remove those that have none"
     return lacking if state is not None and state.lacks_colors else None
 
 
-def two_keyframes(context: bpy.types.Context, state: TakeState | None) -> str | None:
+def two_keyframes(context: Context, state: TakeState | None) -> str | None:
     """The take has at least two keyframes, or a motion from elsewhere."""
     if state is not None and state.take.follow.reference and state.take.method == "map":
         return None  # the motion from elsewhere has keyframes of its own
@@ -96,19 +96,19 @@ def two_keyframes(context: bpy.types.Context, state: TakeState | None) -> str | 
     return None
 
 
-def weak_frames(_context: bpy.types.Context, state: TakeState | None) -> str | None:
+def weak_frames(_context: Context, state: TakeState | None) -> str | None:
     """The review found frames worth another keyframe."""
     if state is None or state.take.review.frame_count == 0:
         return "Reconstruct the motion first"
     return None if len(state.take.review.weak_frames) else "No frame needs another keyframe"
 
 
-def of_context(has: Callable[[bpy.types.Context], object], otherwise: str) -> Requirement:
+def of_context(has: Callable[[Context], object], otherwise: str) -> Requirement:
     """Something that must be so whatever the take."""
     return lambda context, _: None if has(context) else otherwise
 
 
-def _mode(context: bpy.types.Context) -> str:
+def _mode(context: Context) -> str:
     """The mode of the active object; Blender adds objects in Object Mode alone."""
     active = context.view_layer.objects.active
     return "OBJECT" if active is None else active.mode
@@ -129,9 +129,7 @@ idle = of_context(
 )
 
 
-def all_met(
-    operator_class: type[bpy.types.Operator], context: bpy.types.Context, *requirements: Requirement
-) -> bool:
+def all_met(operator_class: type[Operator], context: Context, *requirements: Requirement) -> bool:
     """Whether all requirements are met; the sentence of the first unmet one becomes the tooltip."""
     take = find_take(context.scene)
     state = None if take is None else TakeState(take)
@@ -144,13 +142,13 @@ def all_met(
 # --- Base of Keymark's operators, and their reports: sentences with a capital letter
 
 
-def warn_if_outdated(operator: bpy.types.Operator, take: PropertyGroup) -> None:
+def warn_if_outdated(operator: Operator, take: PropertyGroup) -> None:
     """Warn that a take's final Action, which is about to be used, was baked from an earlier motion."""
     if TakeState(take).final_is_outdated:
         operator.report({"WARNING"}, "The final Action is of an earlier motion; bake it again for the newest")
 
 
-def warn(operator: bpy.types.Operator, sentence: str) -> str:
+def warn(operator: Operator, sentence: str) -> str:
     """Report a sentence of core's, or a notice, as a warning; return it as it was shown."""
     text = capitalized(sentence)
     operator.report({"WARNING"}, text)
@@ -163,7 +161,7 @@ def capitalized(sentence: str) -> str:
 
 
 @contextmanager
-def reported(operator: bpy.types.Operator) -> Iterator[None]:
+def reported(operator: Operator) -> Iterator[None]:
     """Turn expected failures into the operator's error report.
 
     In a script Blender raises the report as a RuntimeError. Unexpected failures pass through.
@@ -252,7 +250,7 @@ def remove_active(owner: PropertyGroup, entries: str, active: str) -> None:
 _folders: dict[str, str] = {}  # folder that each operator's browser was left in, for this session
 
 
-def browse(operator: bpy.types.Operator, context: Context, folder: str = "") -> set[str]:
+def browse(operator: Operator, context: Context, folder: str = "") -> set[str]:
     """Show the file browser where this operator's was left last, first in `folder`; returns as `invoke`."""
     begin = _folders.get(operator.bl_idname, folder)
     if begin:
@@ -261,7 +259,7 @@ def browse(operator: bpy.types.Operator, context: Context, folder: str = "") -> 
     return {"RUNNING_MODAL"}
 
 
-def chosen_path(operator: bpy.types.Operator) -> Path:
+def chosen_path(operator: Operator) -> Path:
     """The path that an operator got from its browser or a script; the folder is kept for the next time."""
     path = Path(bpy.path.abspath(operator.filepath))
     if operator.filepath:
@@ -269,7 +267,7 @@ def chosen_path(operator: bpy.types.Operator) -> Path:
     return path
 
 
-def chosen_file(operator: bpy.types.Operator, wanted: str) -> Path:
+def chosen_file(operator: Operator, wanted: str) -> Path:
     """The file that an operator got, as `chosen_path`; a script may name a folder of images.
 
     Raises:

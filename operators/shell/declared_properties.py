@@ -3,6 +3,7 @@
 from typing import Any, TypeVar
 
 import bpy
+from bpy.types import PropertyGroup
 
 from ...core.files.kinds import Choice, Flag, Nullable, Text
 from ...core.files.records import Record, declared, descriptions
@@ -32,7 +33,7 @@ def declared_property(record: type[Record], field: str, **settings: Any) -> Any:
 R = TypeVar("R", bound=Record)
 
 
-def read_declared(record: type[R], group: bpy.types.PropertyGroup, **names: str) -> R:
+def read_declared(record: type[R], group: PropertyGroup, **names: str) -> R:
     """The record that a group's properties hold; `names` are those of properties that differ from fields."""
     values = {}
     for field, (kind, _, _) in declared(record).items():

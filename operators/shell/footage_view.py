@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
-from bpy.types import Area, Context, Event, PropertyGroup, Region, Scene
+from bpy.types import Area, Context, Event, PropertyGroup, Region, Scene, SpaceClipEditor, SpaceView3D
 from bpy_extras.view3d_utils import location_3d_to_region_2d, region_2d_to_location_3d, region_2d_to_vector_3d
 from numpy.typing import ArrayLike
 
@@ -109,9 +109,7 @@ def shows_footage(context: Context, take: PropertyGroup) -> bool:
     return next(_views(context, take), None) is not None
 
 
-def _camera_view(
-    scene: Scene, take: PropertyGroup, space: bpy.types.SpaceView3D, region: Region
-) -> FootageView | None:
+def _camera_view(scene: Scene, take: PropertyGroup, space: SpaceView3D, region: Region) -> FootageView | None:
     camera = space.camera if space.use_local_camera else scene.camera
     view = space.region_3d
     if camera is None or camera != take.camera or view is None or view.view_perspective != "CAMERA":
@@ -129,9 +127,7 @@ def _camera_view(
     )
 
 
-def _clip_view(
-    scene: Scene, take: PropertyGroup, space: bpy.types.SpaceClipEditor, region: Region
-) -> FootageView:
+def _clip_view(scene: Scene, take: PropertyGroup, space: SpaceClipEditor, region: Region) -> FootageView:
     view = region.view2d
     top_left, bottom_right = (
         np.array(view.view_to_region(*corner, clip=False), dtype=np.float64)

@@ -1,7 +1,7 @@
 """The running job: whether there is one, its progress, and the time left."""
 
 import bpy
-from bpy.types import Context
+from bpy.types import Context, Operator, WindowManager
 
 from .fields import Group, Number, Text
 
@@ -66,7 +66,7 @@ def time_left(elapsed_s: float, fraction: float) -> str:
     return f"about {max(step * round(seconds / step), 1.0):.0f} s left"
 
 
-def is_browsing(operator: bpy.types.Operator, manager: bpy.types.WindowManager) -> bool:
+def is_browsing(operator: Operator, manager: WindowManager) -> bool:
     """Whether a modal operator waits for its file browser alone, in whichever window that is."""
     areas = (area for window in manager.windows for area in window.screen.areas)
     asking = (area.spaces.active.active_operator for area in areas if area.type == "FILE_BROWSER")

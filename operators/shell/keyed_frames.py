@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import bpy
 import numpy as np
 from bpy.app.handlers import persistent
+from bpy.types import Action, Depsgraph, Object, PropertyGroup
 from numpy.typing import ArrayLike
 
 from ...core.arrays import BoolArray
@@ -14,7 +15,7 @@ from ..bridge.actor_bones import evaluated
 from ..bridge.keys import keys_changed
 
 
-def show_keyframes(take: bpy.types.PropertyGroup) -> bool:
+def show_keyframes(take: PropertyGroup) -> bool:
     """Let the keyframe Action animate the actor instead of the motion; return whether that changed anything.
 
     The new Action is evaluated at once: evaluated later, it would overwrite a pose set in between.
@@ -31,7 +32,7 @@ def show_keyframes(take: bpy.types.PropertyGroup) -> bool:
     return True
 
 
-def straighten_unposed(take: bpy.types.PropertyGroup) -> None:
+def straighten_unposed(take: PropertyGroup) -> None:
     """Put hands and feet back to rest where they stand as the motion that is shown has turned them.
 
     To be called before keyframes are stored or shown: nobody has posed these.
@@ -45,7 +46,7 @@ def straighten_unposed(take: bpy.types.PropertyGroup) -> None:
         straighten_extremities(take.armature, shown, take.keyframe_action, frame)
 
 
-def new_keyframe_action(armature_object: bpy.types.Object) -> bpy.types.Action:
+def new_keyframe_action(armature_object: Object) -> Action:
     """An empty Action for keyframes, with a fake user: kept while the motion's is in use."""
     action = bpy.data.actions.new(f"{armature_object.name} Keyframes")
     action.use_fake_user = True
@@ -72,7 +73,7 @@ def have_frames(frames: Sequence[float], wanted: ArrayLike) -> BoolArray:
 
 
 @persistent
-def _on_change(_scene: object = None, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+def _on_change(_scene: object = None, depsgraph: Depsgraph | None = None) -> None:
     if depsgraph is None or depsgraph.id_type_updated("ACTION"):
         keys_changed()
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 
 import bpy
+from bpy.types import PropertyGroup
 
 from .fields import HIDDEN, Number, Switch, Text
 
@@ -18,7 +19,7 @@ class KEYMARK_PG_contradiction(bpy.types.PropertyGroup):
     reading: Text("Reading", "Key of the reading of the clip that it was found in", options=HIDDEN)
 
 
-def note_contradictions(take: bpy.types.PropertyGroup, frame: float, names: Sequence[str]) -> None:
+def note_contradictions(take: PropertyGroup, frame: float, names: Sequence[str]) -> None:
     """Note which markers and keypoints no plausible posture explains at a scene frame; none: all are."""
     noted = take.contradictions
     for index in reversed(range(len(noted))):
@@ -43,11 +44,7 @@ class KEYMARK_PG_notice(bpy.types.PropertyGroup):
 
 
 def give_notices(
-    take: bpy.types.PropertyGroup,
-    step: str,
-    about: str,
-    sentences: Iterable[str] = (),
-    frame: float | None = None,
+    take: PropertyGroup, step: str, about: str, sentences: Iterable[str] = (), frame: float | None = None
 ) -> None:
     """Replace the notices about something of a step of `STEPS`; none: there is nothing to know any more.
 

@@ -5,7 +5,7 @@ from textwrap import wrap
 from typing import ClassVar
 
 import bpy
-from bpy.types import Context, PropertyGroup, UILayout
+from bpy.types import AnyType, Context, PropertyGroup, UILayout
 
 from .fields import Group, Switch
 from .job_progress import job_is_running, steady_frame
@@ -22,7 +22,7 @@ KINDS = ("markers", "keypoints", "tracks", "contours")
 """Kinds of evidence, whose settings fold in the same way."""
 
 
-def is_open(take: bpy.types.PropertyGroup, name: str) -> bool:
+def is_open(take: PropertyGroup, name: str) -> bool:
     """Whether a step, or a kind of evidence, is open in the sidebar."""
     if name in KINDS:
         return name == _kinds.get(take.identifier, "markers" if len(take.markers) else "keypoints")
@@ -31,7 +31,7 @@ def is_open(take: bpy.types.PropertyGroup, name: str) -> bool:
     return name == (chosen if chosen_at == reached else reached)
 
 
-def open_step(take: bpy.types.PropertyGroup, name: str, opened: bool) -> None:
+def open_step(take: PropertyGroup, name: str, opened: bool) -> None:
     """Open a step, or a kind of evidence, in the sidebar, which folds the others; or fold it."""
     if opened == is_open(take, name):
         return
@@ -42,11 +42,11 @@ def open_step(take: bpy.types.PropertyGroup, name: str, opened: bool) -> None:
 
 
 def _switch(name: str) -> "bpy.types.AnyType":
-    def get(_steps: bpy.types.PropertyGroup) -> bool:
+    def get(_steps: PropertyGroup) -> bool:
         take = find_take(bpy.context.scene)
         return take is not None and is_open(take, name)
 
-    def set_(_steps: bpy.types.PropertyGroup, opened: bool) -> None:
+    def set_(_steps: PropertyGroup, opened: bool) -> None:
         take = find_take(bpy.context.scene)
         if take is not None:
             open_step(take, name, opened)
@@ -122,10 +122,10 @@ class RowList:
         self,
         context: Context,
         layout: UILayout,
-        data: bpy.types.AnyType,
+        data: AnyType,
         item: PropertyGroup,
         icon: int,
-        active_data: bpy.types.AnyType,
+        active_data: AnyType,
         active_property: str,
     ) -> None:
         self.draw_row(context, layout, item)

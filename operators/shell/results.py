@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import bpy
+from bpy.types import PropertyGroup
 
 from ...core.errors import ConversionError
 from ...core.files.digest import ArrayCache, Arrays, digest
@@ -64,7 +65,7 @@ MADE: LruCache[object] = LruCache(12)
 """Results of sessions' stages by the digest of all that they depend on."""
 
 
-def reading_of(take: bpy.types.PropertyGroup) -> "Reading | None":
+def reading_of(take: PropertyGroup) -> "Reading | None":
     """The last reading of a take's clip; None if there is none, or it was lost.
 
     It is for display: only `read_footage` checks whether it still holds.
@@ -74,7 +75,7 @@ def reading_of(take: bpy.types.PropertyGroup) -> "Reading | None":
     return _load(_readings, take.reading_key, reading_from_arrays)
 
 
-def keep_reading(take: bpy.types.PropertyGroup, reading: "Reading") -> None:
+def keep_reading(take: PropertyGroup, reading: "Reading") -> None:
     """Keep the reading of a take's clip, in memory and on disk."""
     from ...core.markers.reading import reading_arrays
 
@@ -85,7 +86,7 @@ def keep_reading(take: bpy.types.PropertyGroup, reading: "Reading") -> None:
         _save(reading.key, reading_arrays(reading))
 
 
-def review_of(take: bpy.types.PropertyGroup) -> "Review | None":
+def review_of(take: PropertyGroup) -> "Review | None":
     """The review of a take's motion; None if there is none, or it was lost."""
     if not take.review_key:
         return None
@@ -94,7 +95,7 @@ def review_of(take: bpy.types.PropertyGroup) -> "Review | None":
     return _load(_reviews, take.review_key, Review.from_arrays)
 
 
-def keep_review(take: bpy.types.PropertyGroup, review: "Review") -> None:
+def keep_review(take: PropertyGroup, review: "Review") -> None:
     """Keep the review of a take's motion, in memory and on disk."""
     arrays = review.to_arrays()
     key = f"review-{digest(*(part for name in sorted(arrays) for part in (name, arrays[name])))}"
@@ -103,19 +104,19 @@ def keep_review(take: bpy.types.PropertyGroup, review: "Review") -> None:
     _save(key, arrays)
 
 
-def clear_review(take: bpy.types.PropertyGroup) -> None:
+def clear_review(take: PropertyGroup) -> None:
     """Reset the properties that show the review of a motion, which is gone."""
     shown = take.review
     for name in ("frame_count", "confidence", "unseen", "weak_frames", "active_weak_frame"):
         shown.property_unset(name)
 
 
-def speed_of(take: bpy.types.PropertyGroup) -> "FootageSpeed | None":
+def speed_of(take: PropertyGroup) -> "FootageSpeed | None":
     """The speed by which keyframes were last proposed in this session, of the take's reading."""
     return _speeds.get(f"{take.identifier} {take.reading_key}")
 
 
-def keep_speed(take: bpy.types.PropertyGroup, frames: "Array", values: "Array") -> None:
+def keep_speed(take: PropertyGroup, frames: "Array", values: "Array") -> None:
     """Keep in memory the speed in a take's footage, (F,) [px per frame] at scene frames (F,)."""
     speed = FootageSpeed(f"speed-{digest(frames, values)}", frames, values)
     _speeds[f"{take.identifier} {take.reading_key}"] = speed

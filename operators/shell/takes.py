@@ -6,6 +6,7 @@ from uuid import uuid4
 
 import bpy
 from bpy.app import timers
+from bpy.types import Area, Context, Object, PropertyGroup, Scene
 
 from ...core.detect.layouts import named_point
 from ...core.errors import InputError
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 VERSION = 1  # version of Keymark's properties; each scene holds the version that wrote it
 
 
-def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
+def active_take(scene: Scene) -> PropertyGroup:
     """The active take.
 
     Raises:
@@ -31,7 +32,7 @@ def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
     return take
 
 
-def find_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup | None:
+def find_take(scene: Scene) -> PropertyGroup | None:
     """The active take; None if the scene has no take."""
     settings = scene.keymark
     if not len(settings.takes):
@@ -39,7 +40,7 @@ def find_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup | None:
     return settings.takes[min(settings.active_take, len(settings.takes) - 1)]
 
 
-def take_by_identifier(scene: bpy.types.Scene, identifier: str) -> bpy.types.PropertyGroup:
+def take_by_identifier(scene: Scene, identifier: str) -> PropertyGroup:
     """The take with an identifier, active or not.
 
     Raises:
@@ -51,7 +52,7 @@ def take_by_identifier(scene: bpy.types.Scene, identifier: str) -> bpy.types.Pro
     raise InputError("the take of this job was removed while it ran; nothing was changed")
 
 
-def actor_of(take: bpy.types.PropertyGroup) -> bpy.types.Object:
+def actor_of(take: PropertyGroup) -> Object:
     """A take's armature.
 
     Raises:
@@ -62,7 +63,7 @@ def actor_of(take: bpy.types.PropertyGroup) -> bpy.types.Object:
     return take.armature
 
 
-def add_take(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
+def add_take(scene: Scene, name: str) -> PropertyGroup:
     """Add a take and make it the active one; a number makes its name unique."""
     settings = scene.keymark
     settings.version = max(settings.version, VERSION)
@@ -82,17 +83,17 @@ def unique_name(name: str, others: Iterable[str]) -> str:
     return name if name not in taken else next(free for free in numbered if free not in taken)
 
 
-def ensure_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
+def ensure_take(scene: Scene) -> PropertyGroup:
     """The active take; if there is none, add the first one."""
     return find_take(scene) or add_take(scene, "Take")
 
 
-def footage_of(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Footage:
+def footage_of(scene: Scene, take: PropertyGroup) -> Footage:
     """A take's clip and camera in its scene."""
     return Footage(scene, take.clip, take.camera)
 
 
-def show_active_take(scene: bpy.types.Scene) -> None:
+def show_active_take(scene: Scene) -> None:
     """Set the scene's clip, camera and frame range to the active take's, and select its actor."""
     take = find_take(scene)
     if take is None:
@@ -113,7 +114,7 @@ def show_active_take(scene: bpy.types.Scene) -> None:
         scene.frame_current = min(max(scene.frame_current, scene.frame_start), scene.frame_end)
 
 
-def _select(scene: bpy.types.Scene, armature_object: bpy.types.Object | None) -> None:
+def _select(scene: Scene, armature_object: Object | None) -> None:
     """Select an actor and make it active, unless another object is being edited."""
     layer = bpy.context.view_layer
     if armature_object is None or bpy.context.scene != scene or armature_object.name not in layer.objects:
@@ -130,14 +131,14 @@ def _select(scene: bpy.types.Scene, armature_object: bpy.types.Object | None) ->
 # --- Motion tracks that follow a body point
 
 
-def assigned_tracks(take: bpy.types.PropertyGroup) -> tuple[AssignedTrack, ...]:
+def assigned_tracks(take: PropertyGroup) -> tuple[AssignedTrack, ...]:
     """The motion tracks of a take's clip that follow a body point."""
     tracks = [(owner, track.name) for owner, track in clip_tracks(take.clip)] if take.clip is not None else []
     points = [(owner, name, point_of(take, owner, name)) for owner, name in tracks]
     return tuple(AssignedTrack(*each) for each in points if each[-1])
 
 
-def point_of(take: bpy.types.PropertyGroup, owner: str, track: str) -> str:
+def point_of(take: PropertyGroup, owner: str, track: str) -> str:
     """The body point that a motion track follows; empty for none."""
     choices = {(choice.owner, choice.track): choice.point for choice in take.follow.tracks}
     return choices.get((owner, track), named_point(track) or "")
@@ -149,24 +150,24 @@ def point_of(take: bpy.types.PropertyGroup, owner: str, track: str) -> str:
 FOOTAGE_EDITORS = ("VIEW_3D", "CLIP_EDITOR")
 
 
-def areas(context: bpy.types.Context, *kinds: str) -> Iterator[bpy.types.Area]:
+def areas(context: Context, *kinds: str) -> Iterator[Area]:
     """Yield the areas of these kinds in all windows."""
     for window in context.window_manager.windows:
         yield from (area for area in window.screen.areas if area.type in kinds)
 
 
-def redraw_editors(context: bpy.types.Context, *kinds: str) -> None:
+def redraw_editors(context: Context, *kinds: str) -> None:
     """Redraw every editor of these kinds."""
     for area in areas(context, *kinds):
         area.tag_redraw()
 
 
-def redraw_footage(context: bpy.types.Context) -> None:
+def redraw_footage(context: Context) -> None:
     """Redraw every editor that can show footage."""
     redraw_editors(context, *FOOTAGE_EDITORS)
 
 
-def redraw_sidebars(context: bpy.types.Context) -> None:
+def redraw_sidebars(context: Context) -> None:
     """Redraw the sidebars, which show a job's progress."""
     for area in areas(context, *FOOTAGE_EDITORS):
         for region in area.regions:
@@ -183,7 +184,7 @@ def redraw_sidebars_soon() -> None:
         timers.register(_redraw_once, first_interval=0.1)
 
 
-def refresh_asset_browsers(context: bpy.types.Context) -> None:
+def refresh_asset_browsers(context: Context) -> None:
     """Reload the assets and catalogs of open asset browsers."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:

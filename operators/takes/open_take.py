@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import bpy
+from bpy.types import Context, Event, Menu, OperatorProperties
 
 from ...core.errors import InputError
 from ...core.files.json_file import read_json_value
@@ -35,12 +36,12 @@ class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
     filter_glob: Text(default=";".join(("*take.json", *(f"*{ending}" for ending in VIDEOS))), options=HIDDEN)
     filter_folder: Switch(default=True, options=HIDDEN)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         if self.filepath:
             return self.execute(context)
         return browse(self, context)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Read the take, and only then change the scene."""
         from ...core.shoot.discovery import take_path
         from .take_to_scene import open_in_scene, read_for_scene
@@ -48,7 +49,7 @@ class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
         open_in_scene(self, context, read_for_scene(take_path(chosen_path(self)), self.keyframes))
 
 
-def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+def _draw_import(menu: Menu, context: Context) -> None:
     menu.layout.operator(KEYMARK_OT_open_take.bl_idname, text="Keymark Take (take.json)")
 
 
@@ -90,14 +91,14 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
     filter_folder: Switch(default=True, options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
-    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+    def description(cls, context: Context, properties: OperatorProperties) -> str:
         if not properties.is_property_set("example"):
             return cls.__doc__ or ""
         shown = next(text for name, _, text in EXAMPLES if name == properties.example)
         kept = properties.bl_rna.properties["copy"].description
         return f"{shown}.\n{kept}"
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         if not self.properties.is_property_set("example"):
             context.window_manager.popup_menu(self._draw_menu, title=self.bl_label)
             return {"CANCELLED"}  # each entry is a step of its own
@@ -107,7 +108,7 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     @staticmethod
-    def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    def _draw_menu(menu: Menu, context: Context) -> None:
         """Draw each example, to be opened as it is, and once more to be copied first."""
         for copy, icon in ((False, "FILE_MOVIE"), (True, "FILE_FOLDER")):
             for name, title, _ in EXAMPLES:
@@ -117,10 +118,10 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
             if not copy:
                 menu.layout.separator()
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         self.layout.prop(self, "example", text="")
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Copy the take if that is wanted, read it, and only then change the scene."""
         from ...core.take.examples import POSED_BY_HAND, copy_example, example_folder
         from .take_to_scene import open_in_scene, read_for_scene
@@ -148,12 +149,12 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
 
     filepath: Text("File Path", subtype="FILE_PATH", options=SKIP_SAVE)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         with reported(self):
             return self.run(context, "INVOKE_DEFAULT")
         return {"CANCELLED"}
 
-    def run(self, context: bpy.types.Context, how: str = "EXEC_DEFAULT") -> set[str]:
+    def run(self, context: Context, how: str = "EXEC_DEFAULT") -> set[str]:
         """Call the operator for the file's content, and return its result."""
         from ...core.detect.keypoint_file import LARGEST_BYTES
 
@@ -176,7 +177,7 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
         return call(operator, how, filepath=str(path))
 
 
-def _over_an_editor(context: bpy.types.Context) -> bool:
+def _over_an_editor(context: Context) -> bool:
     return context.area is not None and context.area.type in {"VIEW_3D", "CLIP_EDITOR"}
 
 
@@ -189,7 +190,7 @@ class KEYMARK_FH_footage(bpy.types.FileHandler):
     bl_file_extensions = ";".join(VIDEOS + IMAGES)
 
     @classmethod
-    def poll_drop(cls, context: bpy.types.Context) -> bool:
+    def poll_drop(cls, context: Context) -> bool:
         return _over_an_editor(context)
 
 
@@ -202,7 +203,7 @@ class KEYMARK_FH_take(bpy.types.FileHandler):
     bl_file_extensions = ".json"
 
     @classmethod
-    def poll_drop(cls, context: bpy.types.Context) -> bool:
+    def poll_drop(cls, context: Context) -> bool:
         return _over_an_editor(context) or (context.area is not None and context.area.ui_type == "ASSETS")
 
 

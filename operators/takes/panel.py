@@ -1,6 +1,7 @@
 """The sidebar's main panel: the takes, the running job, or the next step of the work on a take."""
 
 import bpy
+from bpy.types import Context, PropertyGroup, UILayout
 
 from ...core.errors import pluralize
 from ..footage.camera_view import keep_beside_sidebar
@@ -28,9 +29,7 @@ STEPS = (
 class KEYMARK_UL_takes(RowList, bpy.types.UIList):
     """Takes by name; the icon tells whether a take has a motion."""
 
-    def draw_row(
-        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
-    ) -> None:
+    def draw_row(self, context: Context, layout: UILayout, item: PropertyGroup) -> None:
         row = layout.row(align=True)
         done = item.motion_action is not None
         row.prop(item, "name", text="", emboss=False, icon="ACTION" if done else "FILE_MOVIE")
@@ -43,7 +42,7 @@ class KEYMARK_MT_take(bpy.types.Menu):
 
     bl_label = "Takes"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         layout = self.layout
         layout.operator("keymark.add_performer", icon="USER")
         another = layout.operator("keymark.load_footage", text="Load Another Clip", icon="FILE_MOVIE")
@@ -67,7 +66,7 @@ class KEYMARK_PT_guide(Popover, bpy.types.Panel):
     bl_label = "How It Works"
     bl_ui_units_x = 16
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         column = self.layout.column(align=True)
         for icon, text in STEPS:
             column.label(text=text, icon=icon, translate=False)
@@ -78,13 +77,13 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
 
     bl_label = "Keymark"
 
-    def draw_header_preset(self, context: bpy.types.Context) -> None:
+    def draw_header_preset(self, context: Context) -> None:
         if find_take(context.scene) is not None:
             row = self.layout.row(align=True)
             row.prop(context.scene.keymark.overlays, "only_character", text="", icon="COMMUNITY")
             row.popover("KEYMARK_PT_overlays", text="", icon="OVERLAY")
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         registry.refresh_if_empty()
         keep_beside_sidebar(context)
         layout, take = self.layout, find_take(context.scene)
@@ -139,7 +138,7 @@ def _headline(state: TakeState) -> tuple[str, str, str]:
     return f"{good}; {frames} worth correcting", "keymark.pose_from_motion", "Start"
 
 
-def _draw_beginning(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def _draw_beginning(layout: UILayout, context: Context) -> None:
     """Draw what Keymark does and what to begin with in an empty scene."""
     draw_sentence(layout, context, "A video of a person becomes animation on your character", "INFO")
     row = layout.row()

@@ -4,6 +4,7 @@ from contextlib import suppress
 from math import pi
 
 import bpy
+from bpy.types import Context, PropertyGroup
 
 from ...core.errors import InputError
 from ..actor.properties import KEYMARK_PG_lengths, in_meters
@@ -32,7 +33,7 @@ METHODS = (
 )
 
 
-def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _armature_chosen(take: PropertyGroup, context: Context) -> None:
     """Show the lengths of the chosen armature in the panel, and animate it by what the take has."""
     if not is_actor(take.armature):
         return
@@ -44,13 +45,13 @@ def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) 
         show_lengths(take, read_body(take.armature))
 
 
-def _height_typed(take: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+def _height_typed(take: PropertyGroup, _context: Context) -> None:
     in_meters(take)
     if take.stature > 3.0:
         take.stature = 3.0
 
 
-def _renamed(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _renamed(take: PropertyGroup, context: Context) -> None:
     others = [other.name for other in take.id_data.keymark.takes if other != take]
     free = unique_name(take.name.strip() or "Take", others)
     if take.name != free:
@@ -197,7 +198,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     active_character: Integer("Active Character", "The character that is chosen in the list", min=0)
 
 
-def _active_take_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def _active_take_changed(settings: PropertyGroup, context: Context) -> None:
     show_active_take(settings.id_data)
     take = find_take(settings.id_data)
     if take is not None:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import bpy
+from bpy.types import ID, Context, Event, PropertyGroup
 
 from ...core.errors import InputError
 from ...core.progress import run
@@ -20,7 +21,7 @@ class KEYMARK_OT_add_performer(BaseOperator, bpy.types.Operator):
     bl_label = "Add Performer"
     requirements = (footage, idle)
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         """Add a take that shares clip, camera, guesses and keypoint files with the active one."""
         scene = context.scene
         source = active_take(scene)
@@ -52,7 +53,7 @@ class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
         options=SKIP_SAVE,
     )
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         settings = context.scene.keymark
         active = active_take(context.scene)
         index = next(i for i, each in enumerate(settings.takes) if each == active)
@@ -67,14 +68,14 @@ class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
             bpy.data.batch_remove([*deleted, *alone])
 
 
-def _all_data_of(take: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:
+def _all_data_of(take: PropertyGroup) -> Iterator[ID]:
     """Yield a take's data-blocks, and the Actions that its characters got; not the characters themselves."""
     yield from _data_of(take)
     for character in take.characters:
         yield from (result.action for result in character.results if result.action is not None)
 
 
-def _data_of(group: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:
+def _data_of(group: PropertyGroup) -> Iterator[ID]:
     """Yield the data-blocks that a group of properties points to, nested groups included."""
     for definition in group.bl_rna.properties:
         if definition.type != "POINTER" or definition.identifier == "rna_type":
@@ -96,11 +97,11 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
     directory: Text("Folder", "Where take.json, keyframes.json and the clip are written", subtype="DIR_PATH")
     filter_folder: Switch(default=True, options=HIDDEN)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Context, event: Event) -> set[str]:
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def run(self, context: bpy.types.Context) -> None:
+    def run(self, context: Context) -> None:
         from ...core.shoot.discovery import check_hides_no_take
         from ...core.take.take import evidence_of
         from ...core.take.take_file import write_take

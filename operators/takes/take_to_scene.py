@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-import bpy
+from bpy.types import Context, Operator
 
 from ...core.arrays import Array
 from ...core.markers.reading import clip_times
@@ -62,7 +62,7 @@ def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTa
     return OpenedTake(take, time_s, kinds, (*notes, *([rate] if rate else [])), hands)
 
 
-def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, opened: OpenedTake) -> None:
+def open_in_scene(operator: Operator, context: Context, opened: OpenedTake) -> None:
     """Add a take to the scene, show its footage and its range, and report what a person should know of it.
 
     Raises:

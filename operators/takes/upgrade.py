@@ -6,6 +6,7 @@ from uuid import uuid4
 
 import bpy
 from bpy.app.handlers import persistent
+from bpy.types import Scene
 
 from ..bridge.actor_bones import hips_at_rest, is_actor, recolor_earlier
 from ..footage.load_footage import is_missing, update_clip_digest
@@ -13,7 +14,7 @@ from ..shell.take_state import TakeState, digest_of
 from ..shell.takes import VERSION
 
 
-def upgrade_scene(scene: bpy.types.Scene) -> None:
+def upgrade_scene(scene: Scene) -> None:
     """Upgrade a scene's properties to this version, and note which clips are missing.
 
     The properties of a newer Keymark are left alone, so that nothing of them is lost.
@@ -40,12 +41,12 @@ def upgrade_scene(scene: bpy.types.Scene) -> None:
         settings.version = VERSION
 
 
-def is_newer(scene: bpy.types.Scene) -> bool:
+def is_newer(scene: Scene) -> bool:
     """Whether a newer Keymark wrote the scene's properties."""
     return bool(scene.keymark.version > VERSION)
 
 
-def ensure_unique_identifiers(scenes: Iterable[bpy.types.Scene]) -> None:
+def ensure_unique_identifiers(scenes: Iterable[Scene]) -> None:
     """Give new identifiers to takes that share one, as those of a copied scene do."""
     seen: set[str] = set()
     for scene in scenes:

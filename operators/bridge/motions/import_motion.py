@@ -7,6 +7,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from bpy.types import Action, Object, Scene
 from mathutils import Matrix
 
 from ....core.body import rotations
@@ -37,7 +38,7 @@ SHORTEST_LEG_M, LONGEST_LEG_M = 0.35, 1.5  # of a child and of a giant
 
 
 def import_motion(
-    file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = (), action_name: str | None = None
+    file: CharacterFile, scene: Scene, maps: Sequence[Path] = (), action_name: str | None = None
 ) -> tuple[ImportedCharacter, ChosenMap]:
     """Import an animated armature into a scene, which gets the motion's rate, and recognize its bones.
 
@@ -94,7 +95,7 @@ def import_motion(
     return replace(imported, notes=(*notes, *imported.notes)), chosen
 
 
-def _stand_up(armature: bpy.types.Object, body: RestBody) -> None:
+def _stand_up(armature: Object, body: RestBody) -> None:
     """Turn an armature that lies at rest upright: a BVH does not tell which axis is up, Y or as here Z."""
     turn = np.array(armature.matrix_world, dtype=np.float64)[:3, :3]
     up = unit(turn @ body.stance.T @ [0.0, 0.0, 1.0])
@@ -105,8 +106,8 @@ def _stand_up(armature: bpy.types.Object, body: RestBody) -> None:
 
 
 def load_motion(
-    file: CharacterFile, scene: bpy.types.Scene, maps: Sequence[Path] = (), action_name: str | None = None
-) -> tuple[bpy.types.Object, tuple[str, ...]]:
+    file: CharacterFile, scene: Scene, maps: Sequence[Path] = (), action_name: str | None = None
+) -> tuple[Object, tuple[str, ...]]:
     """Bring an animated armature into a scene, which keeps its rate and range; its object, and notes.
 
     The motion begins at the scene's first frame and takes as long as in the file.
@@ -160,8 +161,8 @@ def _retime(curves: Curves, first: float, factor: float, start: float) -> None:
 
 
 def _action(
-    path: Path, armature: bpy.types.Object, added: Sequence[bpy.types.Action], wanted: str | None
-) -> tuple[bpy.types.Action, tuple[str, ...]]:
+    path: Path, armature: Object, added: Sequence[Action], wanted: str | None
+) -> tuple[Action, tuple[str, ...]]:
     """The wanted Action of an armature, or else its own, that of its first strip or the file's first; notes.
 
     It is assigned, and strips are muted.
@@ -181,7 +182,7 @@ def _action(
     return actions[index], notes
 
 
-def _moves(action: bpy.types.Action, armature: bpy.types.Object) -> bool:
+def _moves(action: Action, armature: Object) -> bool:
     """Whether an Action has curves of an armature's bones."""
     curves = [path for path, _ in curves_of(action, armature)]
     found = [match for match in map(BONE_PATH.match, curves) if match]
@@ -189,7 +190,7 @@ def _moves(action: bpy.types.Action, armature: bpy.types.Object) -> bool:
     return any(bpy.utils.unescape_identifier(match[1]) in bones for match in found)
 
 
-def _own_name(action: bpy.types.Action, added: Sequence[bpy.types.Action]) -> str:
+def _own_name(action: Action, added: Sequence[Action]) -> str:
     """An Action's name in its file, without the number that it got where the name was taken."""
     stem, _, number = action.name.rpartition(".")
     taken = any(one.name == stem and one not in added for one in bpy.data.actions)
@@ -217,14 +218,12 @@ def _blend_rate(path: Path) -> float:
     return rates[0] if rates else 24.0
 
 
-def _set_rate(scene: bpy.types.Scene, rate: float) -> None:
+def _set_rate(scene: Scene, rate: float) -> None:
     scene.render.fps = max(1, round(rate))
     scene.render.fps_base = scene.render.fps / rate
 
 
-def _set_to_keys(
-    scene: bpy.types.Scene, armature: bpy.types.Object, action: bpy.types.Action, path: Path
-) -> None:
+def _set_to_keys(scene: Scene, armature: Object, action: Action, path: Path) -> None:
     """Give the scene the rate of an Action's keys and its range; keys between frames come to lie on them."""
     curves = curves_of(action, armature)
     moving = [curve for curve in curves.values() if len(curve.keyframe_points) > 1]

@@ -127,11 +127,7 @@ def _summary(people: People) -> dict[str, Any]:
 
 
 def _detect(
-    footage: Footage,
-    networks: tuple[PoseNetwork, CloserLook],
-    console: Console,
-    first: float,
-    last: float,
+    footage: Footage, networks: tuple[PoseNetwork, CloserLook], console: Console, first: float, last: float
 ) -> People:
     if not os.access(footage.output.parent, os.W_OK | os.X_OK):
         raise InputError(f"{footage.output}: cannot be written; its folder must exist and be writable")
