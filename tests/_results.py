@@ -15,7 +15,7 @@ from keymark.core.session.result import AS_MADE
 from keymark.core.take.conversion_record import read_record
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import curve_digest
-from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.armature import read_body
 from keymark.operators.bridge.pose import read_posture
 from keymark.operators.shell.takes import active_take
 

@@ -69,7 +69,7 @@ class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
     def run(self, context: Context) -> None:
         """Bring back an actor that is gone; resize the bones of one that is there."""
         from ...core.body.kinematics import Body
-        from ..bridge.actor_lengths import set_lengths
+        from ..bridge.armature import set_lengths
         from .take_actor import restore_actor
 
         take = active_take(context.scene)

@@ -12,8 +12,7 @@ from ...core.body.kinematics import Body
 from ...core.errors import InputError
 from ..bridge.actions import action_of, assign_action
 from ..bridge.actor_bones import hips_at_rest, is_actor
-from ..bridge.actor_lengths import set_lengths
-from ..bridge.armature import build_armature
+from ..bridge.armature import build_armature, set_lengths
 from ..follow.evidence import scene_evidence
 from ..shell.notes import give_notices
 from ..shell.results import reading_of

@@ -16,7 +16,7 @@ from ...core.progress import Job, Progress, stretch
 from ...core.take.conversion_settings import CharacterFile
 from ..actor.take_actor import size_actor
 from ..bridge.actor_bones import moved_by
-from ..bridge.camera_placement import still_camera
+from ..bridge.footage import still_camera
 from ..bridge.footage_camera import set_still_pose
 from ..character.add_character import add_rigify_character
 from ..character.characters import add_character

@@ -15,7 +15,7 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import SIDES
 from ...core.markers.region_tracks import MarkerStyle
-from .actor_lengths import read_bones
+from .armature import read_bones
 from .character.rigify_human import skinned
 
 SKIN = (178, 164, 150)

@@ -14,8 +14,7 @@ from ...core.body.posture import Posture
 from ...core.feet.natural_extremities import natural_extremities
 from ...core.take.motion import Motion
 from .actions import assign_action, channelbag_for, curves_of
-from .actor_lengths import add_fingers, read_bones, skeleton_bones
-from .armature import ActorBones
+from .armature import ActorBones, add_fingers, read_bones, skeleton_bones
 from .keys import (
     MOTION,
     Column,

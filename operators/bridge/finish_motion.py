@@ -22,7 +22,7 @@ from ...core.keys.rig import Rig, RigPose
 from ...core.keys.tolerances import NEAR_FLOOR_M, foot_rows, point_tolerances
 from ...core.progress import Job, Progress, within
 from .actions import channelbag_for, curves_of
-from .actor_lengths import read_body, read_bones
+from .armature import read_body, read_bones
 from .fcurves import moved_paths, posture_columns, turned_extremities
 from .keyframes import keyed_frames, unchanged_keyframes
 from .keys import FOUND, copy_keys, ensure_fcurve, write_column

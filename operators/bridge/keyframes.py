@@ -14,8 +14,7 @@ from ...core.body.posture import Posture
 from ...core.prior.keyframes import Keyframe, Matched
 from . import keys
 from .actions import channelbag_for, curves_of, existing_channelbag
-from .actor_lengths import read_bones
-from .armature import BoneModel
+from .armature import BoneModel, read_bones
 from .fcurves import moved_paths, posture_columns
 from .pose import read_posture
 from .rotation_modes import bone_path, rotation_path

@@ -31,7 +31,7 @@ from ...core.prior.library import (
 )
 from ...core.prior.texts import LONGEST_NAME, LONGEST_TAG, identifier_from, text_fault, unique_name
 from ...core.report.mannequin import posture_picture
-from .actor_lengths import read_body
+from .armature import read_body
 from .asset_catalogs import catalog_identifier, write_asset_blend
 from .assets import AssetDetails, mark_asset
 from .blend_files import check_blend, load_blocks

@@ -12,8 +12,7 @@ from ...core.body.posture import Posture
 from ...core.keys.rig import channel_count
 from .actions import channelbag_for, curves_of
 from .actor_bones import evaluated, object_space
-from .actor_lengths import read_bones, skeleton_bones
-from .armature import BoneModel, bones_at_rest
+from .armature import BoneModel, bones_at_rest, read_bones, skeleton_bones
 from .fcurves import posture_columns
 from .keys import POSED, write_keys
 from .rig import rig_of, shown_postures

@@ -17,8 +17,7 @@ from ...core.keys.rig import Rig, RigBone, RigPose, channel_count
 from ...core.progress import run, within
 from ...core.take.motion import Motion
 from .actions import curves_of
-from .actor_lengths import read_body, read_bones
-from .armature import ActorBones, bone_models, finger_models
+from .armature import ActorBones, bone_models, finger_models, read_body, read_bones
 from .fcurves import moved_paths
 from .rotation_modes import bone_path, posture_from_frames, rotation_path
 

@@ -34,9 +34,8 @@ from ...core.take.take import Take
 from ...core.terms.keypoints import ObservedKeypoints
 from ...core.terms.region_model import MarkerPlacement, RegionModel
 from ...core.terms.regions import ObservedRegions
-from .actor_lengths import read_body
-from .camera_placement import read_camera, read_lens
-from .footage import Footage
+from .armature import read_body
+from .footage import Footage, read_camera, read_lens
 from .keyframes import NEAREST, NOT_MATCHED, Matches, read_keyframes
 from .pose import read_posture
 from .scene_evidence import SceneEvidence

@@ -11,8 +11,7 @@ from bpy.types import Context, PropertyGroup
 from ...core.retarget.character import HANDS, LIMBS, MIDDLE, ROLES, SOURCES, TRUNK_CHAINS
 from ...core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting
 from ...core.retarget.maps.character_map import Switch as SwitchControl
-from ..shell.declared_properties import declared_property
-from ..shell.fields import Choice, Entries, Number, Switch, Text, Vector
+from ..shell.fields import Choice, Entries, Number, Switch, Text, Vector, declared_property
 
 KINDS = (
     ("FLOAT", "Decimal", "A decimal number"),

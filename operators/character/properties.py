@@ -4,8 +4,7 @@ import bpy
 
 from ...core.take.conversion_settings import RetargetOptions
 from ..bridge.actor_bones import is_actor, moves_an_actor
-from ..shell.declared_properties import declared_property
-from ..shell.fields import HIDDEN, Choice, Entries, Group, Integer, Switch, Text
+from ..shell.fields import HIDDEN, Choice, Entries, Group, Integer, Switch, Text, declared_property
 from .characters import may_be_character
 from .map_properties import KEYMARK_PG_character_map
 from .recognition import armature_chosen

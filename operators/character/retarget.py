@@ -12,8 +12,7 @@ from ...core.take.conversion_settings import RetargetOptions
 from ..bridge.actions import assign_action
 from ..finish.bake_motion import mark_motion_asset
 from ..shell.base_operator import BaseOperator, idle, warn
-from ..shell.declared_properties import read_declared
-from ..shell.fields import Integer
+from ..shell.fields import Integer, read_declared
 from ..shell.job_operator import JobOperator
 from ..shell.take_state import TakeState, digest_of
 from ..shell.takes import active_take, take_by_identifier
@@ -41,8 +40,7 @@ if TYPE_CHECKING:
 
 def retarget_take(scene: Scene) -> "Job[tuple[Any, ...]]":
     """Put the motion of the active take onto its chosen character; the scene stays as it is."""
-    from ..bridge.character.retarget import retarget
-    from ..bridge.character.source import read_source
+    from ..bridge.character.retarget import read_source, retarget
 
     take = active_take(scene)
     character = active_character(scene)

@@ -10,7 +10,7 @@ from bpy.types import PropertyGroup
 
 from ...core.arrays import Array
 from ...core.errors import InputError
-from ..bridge.camera_placement import still_camera, write_found_camera
+from ..bridge.footage import still_camera, write_found_camera
 from ..shell.takes import footage_of
 from .load_footage import lens_is_guess
 from .properties import confirm_placement

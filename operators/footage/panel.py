@@ -3,7 +3,7 @@
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
-from ..bridge.camera_placement import fixed_reason
+from ..bridge.footage import fixed_reason
 from ..bridge.footage_camera import may_move, solver_constraint
 from ..shell.panel import Popover, StepPanel, draw_sentence
 from ..shell.take_state import TakeState

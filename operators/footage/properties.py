@@ -8,7 +8,7 @@ import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
 from ...core.take.conversion_settings import MOST_PEOPLE
-from ..bridge.camera_placement import fixed_reason, read_placement, write_placement
+from ..bridge.footage import fixed_reason, read_placement, write_placement
 from ..shell.base_operator import capitalized
 from ..shell.fields import HIDDEN, Choice, Integer, Number, Switch, Text, Vector
 from ..shell.take_state import TakeState

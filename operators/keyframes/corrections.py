@@ -12,7 +12,7 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN, TRUNK, limb_of
 from ...core.camera.camera import Camera
 from ...core.errors import InputError
-from ..bridge.camera_placement import read_camera
+from ..bridge.footage import read_camera
 from ..bridge.scene_frames import at_scene_frame, pose_of, restore_pose, showing_action
 from ..follow.evidence import scene_evidence
 from ..shell.base_operator import BaseOperator, Unchanged, actor, camera, footage, idle, keyframes
@@ -36,7 +36,7 @@ DRAGGING = "keymark.drag_joints"
 
 def shown_pose(take: PropertyGroup) -> "tuple[Body, Posture]":
     """The actor's sizes, and the posture that it shows now."""
-    from ..bridge.actor_lengths import read_body
+    from ..bridge.armature import read_body
     from ..bridge.pose import read_posture
 
     body = read_body(take.armature)

@@ -147,7 +147,7 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
     requirements = (actor, idle)
 
     def run(self, context: Context) -> None:
-        from ..bridge.actor_lengths import read_body
+        from ..bridge.armature import read_body
         from ..bridge.keyframes import NOTICEABLE_M
         from ..bridge.pose import read_posture
 

@@ -10,7 +10,7 @@ from ...core.arrays import Array
 from ...core.body.actor import Actor
 from ...core.camera.camera import Camera
 from ...core.progress import Job, stretch
-from ..bridge.camera_placement import read_camera
+from ..bridge.footage import read_camera
 from ..bridge.scene_frames import scene_frames
 from ..follow.evidence import scene_evidence
 from ..shell.results import MADE, reading_of

@@ -1,4 +1,4 @@
 """Keyframe libraries: the registry of all at hand; loaded, saved, learned, and edited as pose assets."""
 
 PROPERTIES = ("registry",)
-MODULES = ("load_library", "save_library", "panel")
+MODULES = ("save_library", "panel")

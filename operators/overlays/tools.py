@@ -11,7 +11,7 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.camera.camera_evidence import FloorGrid, floor_grid
 from ..bridge.actor_bones import joint_places
-from ..bridge.camera_placement import still_camera
+from ..bridge.footage import still_camera
 from ..footage.camera_view import free_box
 from ..footage.found_camera import HINTS, current_camera, is_found, running, values
 from ..overlays import drawing
@@ -254,7 +254,7 @@ def candidate_points(armature_object: Object, match: PropertyGroup) -> Array:
     key = f"{armature_object.session_uid} {lengths} {tuple(armature_object.scale)} {places}"
 
     def found() -> Array:
-        from ..bridge.actor_lengths import read_body
+        from ..bridge.armature import read_body
         from ..bridge.keyframes import candidate_posture
 
         body = read_body(armature_object)

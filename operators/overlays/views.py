@@ -8,7 +8,7 @@ from bpy.types import Context, PropertyGroup, Region, RegionView3D
 
 from ...core.arrays import Array, IndexArray
 from ...core.camera.camera import Camera
-from ..bridge.camera_placement import read_lens
+from ..bridge.footage import read_lens
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.takes import footage_of
 

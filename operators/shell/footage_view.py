@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from ...core.arrays import Array
 from ...core.camera.camera import Camera
 from ...core.errors import InputError
-from ..bridge.camera_placement import read_lens
+from ..bridge.footage import read_lens
 from ..bridge.scene_frames import scene_frames, shown_index
 from .base_operator import reported
 from .job_operator import cancel_click

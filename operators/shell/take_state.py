@@ -13,7 +13,7 @@ from bpy.types import Action, Object, PropertyGroup
 from ...core.detect.keypoints import BODY_POINTS
 from ...core.errors import InputError
 from ..bridge.actions import action_digest, action_of
-from ..bridge.camera_placement import read_placement
+from ..bridge.footage import read_placement
 from ..bridge.footage_camera import may_move
 from ..bridge.keys import FOUND, PICTURED, revision
 from .keyed_frames import has_frame

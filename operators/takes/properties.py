@@ -39,7 +39,7 @@ def _armature_chosen(take: PropertyGroup, context: Context) -> None:
         return
     with suppress(InputError, ModuleNotFoundError):  # another skeleton, or SciPy is missing
         from ..actor.take_actor import reattach, show_lengths
-        from ..bridge.actor_lengths import read_body
+        from ..bridge.armature import read_body
 
         reattach(take)
         show_lengths(take, read_body(take.armature))

@@ -10,7 +10,7 @@ from keymark.core.body.body_volume import MARKER_SEGMENTS
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
-from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.armature import read_body
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.follow.properties import SEGMENTS
 from keymark.operators.shell.takes import active_take

@@ -13,8 +13,7 @@ from ....core.report.pictures import evenly_spaced_frames, footage_frames
 from ....core.retarget.character import LIMBS, MIDDLE
 from ....core.retarget.maps.character_map import CharacterMap
 from ..actor_bones import evaluated
-from ..camera_placement import read_camera
-from ..footage import Footage
+from ..footage import Footage, read_camera
 from ..scene_frames import at_scene_frame
 from .import_character import skins
 

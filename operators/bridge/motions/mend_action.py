@@ -24,7 +24,7 @@ from ..actions import assign_action, channelbag_for
 from ..armature import build_armature
 from ..blend_files import own_scene
 from ..character.read_character import read_character
-from ..character.source import show_result
+from ..character.retarget import show_result
 from ..export_formats import write_bvh
 from ..fcurves import write_motion
 from ..keys import MOTION, POSED, Column, write_keys

@@ -97,7 +97,7 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
         console.stage("Writing the motion")
         write_motion(motion, staging / MOTION)
         with blender_silence(arguments.debug):
-            from ...bridge.character.source import show_result
+            from ...bridge.character.retarget import show_result
             from ...bridge.motions.mend_action import write_actor_bvh
 
             write_actor_bvh(motion, staging / BVH)

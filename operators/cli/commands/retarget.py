@@ -64,7 +64,7 @@ def retarget_command(arguments: argparse.Namespace, console: Console) -> None:
     refuse_unsupported_output(output)
     if (output / CONVERSION).exists():
         raise InputError(f"{output}: holds the result of a conversion; name another folder for the character")
-    from ...bridge.character.source import show_result
+    from ...bridge.character.retarget import show_result
 
     console.stage("Reading the motion")
     motion = read_motion(motion_file)

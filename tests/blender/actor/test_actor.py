@@ -7,7 +7,7 @@ from _results import posture_of
 from keymark.core.body.body_volume import hip_height_m, standing_height_m
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
-from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.armature import read_body
 from keymark.operators.bridge.keyframes import keyed_frames
 from keymark.operators.shell.takes import active_take
 

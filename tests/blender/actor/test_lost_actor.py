@@ -6,8 +6,7 @@ import pytest
 from _results import posture_of
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
-from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.armature import build_armature
+from keymark.operators.bridge.armature import build_armature, read_body
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 

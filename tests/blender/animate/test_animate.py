@@ -14,7 +14,7 @@ from keymark.core.camera.camera_fields import CameraPlacement
 from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.operators.animate import NOTHING
 from keymark.operators.animate.stages import animate, follow_found_file, turned_copy
-from keymark.operators.bridge.camera_placement import read_placement
+from keymark.operators.bridge.footage import read_placement
 from keymark.operators.follow.evidence import keypoint_path
 from keymark.operators.footage.load_footage import load_into_take
 from keymark.operators.library import registry_files

@@ -10,7 +10,7 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
 from keymark.operators.bridge.actor_bones import recolor_earlier
-from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.armature import read_body
 from keymark.operators.overlays.drawing import SIDES
 
 

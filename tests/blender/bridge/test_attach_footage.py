@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from keymark.core.camera.camera import Camera
 from keymark.core.take.take import Take
-from keymark.operators.bridge.camera_placement import read_camera
-from keymark.operators.bridge.footage import Footage, attach_footage
+from keymark.operators.bridge.footage import Footage, attach_footage, read_camera
 from keymark.operators.bridge.footage_camera import clip_lens, is_startup_camera, set_clip_lens, solved_camera
 from keymark.operators.bridge.result_files import load_footage
 

@@ -10,8 +10,7 @@ from keymark.core.feet.natural_extremities import natural_extremities
 from keymark.core.progress import run
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import assign_action, existing_channelbag
-from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.armature import build_armature
+from keymark.operators.bridge.armature import build_armature, read_body
 from keymark.operators.bridge.fcurves import (
     posed_extremities,
     straighten_extremities,

@@ -12,8 +12,8 @@ from keymark.core.body.skeleton import FINGERS
 from keymark.core.progress import run
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import assign_action, existing_channelbag
-from keymark.operators.bridge.actor_lengths import has_fingers, read_body, set_lengths
-from keymark.operators.bridge.character.source import read_source
+from keymark.operators.bridge.armature import has_fingers, read_body, set_lengths
+from keymark.operators.bridge.character.retarget import read_source
 from keymark.operators.bridge.export_formats import write_bvh
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.bridge.finish_motion import FinishOptions, finish_motion

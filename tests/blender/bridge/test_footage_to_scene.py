@@ -10,8 +10,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from keymark.core.camera.camera import Camera
 from keymark.core.errors import InputError
 from keymark.core.take.take import Take
-from keymark.operators.bridge.camera_placement import read_camera
-from keymark.operators.bridge.footage import Footage, footage_color
+from keymark.operators.bridge.footage import Footage, footage_color, read_camera
 from keymark.operators.bridge.result_files import load_footage, show_footage
 from mathutils import Vector
 

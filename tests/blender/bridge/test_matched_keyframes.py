@@ -14,7 +14,7 @@ from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take, write_take
 from keymark.operators.bridge import take_from_scene
 from keymark.operators.bridge.actions import existing_channelbag
-from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.armature import read_body
 from keymark.operators.bridge.keyframes import (
     keyed_frames,
     read_keyframes,

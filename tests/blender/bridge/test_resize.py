@@ -9,7 +9,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.operators.bridge.actor_lengths import read_body, set_lengths
+from keymark.operators.bridge.armature import read_body, set_lengths
 from keymark.operators.bridge.pose import read_posture, write_posture
 
 

@@ -10,8 +10,7 @@ from _characters import plain_character
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.take.motion import Motion
-from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.armature import build_armature
+from keymark.operators.bridge.armature import build_armature, read_body
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.shell.takes import add_take
 

@@ -11,8 +11,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.progress import run
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import assign_action, curves_of, existing_channelbag
-from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.armature import build_armature
+from keymark.operators.bridge.armature import build_armature, read_body
 from keymark.operators.bridge.fcurves import straighten_extremities, write_motion
 from keymark.operators.bridge.keyframes import store_pose
 from keymark.operators.bridge.rig import motion_frames, read_rig, read_values

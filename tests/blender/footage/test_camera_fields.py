@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.camera.camera_fields import CameraPlacement, heading_rad
-from keymark.operators.bridge.camera_placement import fixed_reason
+from keymark.operators.bridge.footage import fixed_reason
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 from mathutils import Euler

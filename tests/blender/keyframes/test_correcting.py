@@ -11,7 +11,7 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.poses.turned import Facing, facing_of
 from keymark.operators.bridge.actor_bones import joint_places
-from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.armature import read_body
 from keymark.operators.bridge.keyframes import keyed_frames, unchanged_keyframes
 from keymark.operators.bridge.keys import PICTURED
 from keymark.operators.bridge.pose import write_posture

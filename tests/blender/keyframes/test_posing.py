@@ -10,7 +10,7 @@ from _results import posture_of
 from keymark.core.errors import InputError
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
-from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.armature import read_body
 from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.bridge.take_from_scene import fit_to_frame, frame_in_footage

@@ -11,8 +11,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.prior.learning import shape_vectors
 from keymark.core.prior.library import read_library
 from keymark.core.take.motion import Motion
-from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.armature import build_armature
+from keymark.operators.bridge.armature import build_armature, read_body
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.library import registry
 from keymark.operators.shell.takes import add_take

@@ -8,7 +8,7 @@ import pytest
 from _results import made_up_frames
 from keymark.core.body.human import HUMAN
 from keymark.core.take.motion import Motion
-from keymark.operators.bridge.camera_placement import read_camera
+from keymark.operators.bridge.footage import read_camera
 from keymark.operators.keyframes.change_match import KEYMARK_OT_replace_match
 from keymark.operators.keyframes.found_result import add_candidate, add_match, key_matches
 from keymark.operators.overlays import tools, views

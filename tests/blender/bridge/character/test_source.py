@@ -10,7 +10,7 @@ from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.character.source import read_source
+from keymark.operators.bridge.character.retarget import read_source
 from keymark.operators.bridge.fcurves import write_motion
 from mathutils import Quaternion
 
