@@ -24,14 +24,15 @@ RESTING = {  # axes of a hand at rest, as `palm_axes` has them
     "R": np.diag([-1.0, -1.0, -1.0]),
 }
 SHAPES = {
-    "thumb": ((0.12, 0.12), (0.75, 0.66), (0.24, 0.18, 0.15)),
-    "index": ((0.47, 0.11), (1.0, 0.0), (0.22, 0.14, 0.11)),
-    "middle": ((0.48, 0.01), (1.0, 0.0), (0.24, 0.15, 0.12)),
-    "ring": ((0.45, -0.09), (1.0, 0.0), (0.22, 0.15, 0.12)),
-    "pinky": ((0.41, -0.17), (1.0, 0.0), (0.17, 0.11, 0.1)),
+    "thumb": ((0.14, 0.11), (0.86, 0.51), (0.2, 0.15, 0.12)),
+    "index": ((0.47, 0.155), (1.0, 0.085), (0.2, 0.13, 0.1)),
+    "middle": ((0.48, 0.08), (1.0, -0.03), (0.22, 0.14, 0.12)),
+    "ring": ((0.46, -0.055), (1.0, -0.02), (0.21, 0.14, 0.11)),
+    "pinky": ((0.41, -0.15), (1.0, -0.06), (0.17, 0.11, 0.09)),
 }
-"""Of a performer's fingers, in lengths of the hand: their first joints along and across it, where they point
-at rest, and the lengths of their bones (Buryanov & Kotiuk 2010, *Proportions of Hand Segments*, rounded)."""
+"""Of a performer's fingers, as the shipped skin has them, in lengths of the hand: their first joints along
+and across it, where they point at rest, and the lengths of their bones (Buryanov & Kotiuk 2010)."""
+JOINT = 0.06  # length of skin that bends at a joint
 SURE = 0.7  # how far a hand is to be believed that is surely seen: it is taken as it is
 WRIST, INDEX, MIDDLE, LITTLE = 0, 5, 9, 17  # and knuckles among the 21 points, four of each finger
 
@@ -106,6 +107,26 @@ def finger_bones(side: str) -> Iterator[tuple[str, Array, Array, Array]]:
         for number, length in enumerate(lengths, 1):
             yield f"{finger}.{number}.{side}", start, start + length * along, axis
             start = start + length * along
+
+
+def finger_weights(places: Array, side: str) -> dict[str, Array]:
+    """(N,) how far bones move a hand's skin at places (N, 3), from the wrist in lengths of the hand."""
+    bones = list(finger_bones(side))
+    starts = np.array([start for _, start, *_ in bones[::3]])
+    along = unit(np.array([end - start for _, start, end, _ in bones[::3]]))
+    flat = (places * [1.0, 1.0, 0.0])[:, None] - starts
+    ahead = (flat * along).sum(axis=-1)
+    beside = flat - np.clip(ahead, 0.0, None)[..., None] * along
+    nearest = np.linalg.norm(beside, axis=-1).argmin(axis=1)
+    found: dict[str, Array] = {}
+    for number, (name, start, _, _) in enumerate(bones):
+        finger = number // 3
+        reach = float(np.linalg.norm(start - starts[finger]))
+        moved = np.clip((ahead[:, finger] - reach) / JOINT + 0.5, 0.0, 1.0) * (nearest == finger)
+        if number % 3:
+            found[bones[number - 1][0]] -= moved
+        found[name] = moved
+    return found
 
 
 def finger_turns(hands: Hands) -> dict[str, Array]:

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from ...core.arrays import Array
 from ...core.body.body_volume import marker_parts, segment_piece
+from ...core.body.fingers import FINGER_BONES, finger_weights
 from ...core.body.human_mesh import HumanMesh
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import SIDES
 from ...core.markers.region_tracks import MarkerStyle
-from .armature import read_bones
+from .armature import has_fingers, read_bones
 from .character.rigify_human import skinned
 
 SKIN = (178, 164, 150)
@@ -53,6 +54,12 @@ def build_body_mesh(armature_object: Object, body: Body, markers: Sequence[Marke
         share[:, None] * placed(name, standing - body.segment_ends(pose, name)[0])
         for name, share in weights.items()
     )
+    for side in SIDES if has_fingers(armature_object) else ():
+        wrist, end = (human.joints[f"{part}.{side}"] for part in ("hand", "hand_end"))
+        moved = finger_weights((human.vertices - wrist) / np.linalg.norm(end - wrist), side)
+        hand = weights[f"hand.{side}"]
+        weights |= {bone: hand * share for bone, share in moved.items()}
+        weights[f"hand.{side}"] = hand * (1.0 - sum(moved.values()))
     name = f"{armature_object.name} Body"
     body_object = skinned(armature_object, name, np.asarray(vertices), human, weights)
     mesh = body_object.data
@@ -119,7 +126,8 @@ def _cut(mesh: Mesh, worn: Sequence[tuple[str, ...]], ends: Mapping[str, Array],
 
 def _face_segments(body_object: Object) -> NDArray[np.str_]:
     """(Q,) name of the segment that moves each face most."""
-    mesh, names = body_object.data, [group.name for group in body_object.vertex_groups]
+    mesh, groups = body_object.data, [group.name for group in body_object.vertex_groups]
+    names = [f"hand.{name[-1]}" if name in FINGER_BONES else name for name in groups]
     weights = np.zeros((len(mesh.vertices), len(names)))
     for vertex in mesh.vertices:
         for group in vertex.groups:

@@ -2,8 +2,9 @@
 
 The performer at rest stands in a T pose. A limb of the character may rest anywhere (T, A, hanging, with bent
 elbows or knees): each bone takes on the turn of the one before it and then the smallest rotation of its
-direction, as if the character's arm were raised first and then stretched. So hinges and palms keep their
-places on the limb. Trunk, head, clavicles and feet are upright in both, and are not turned.
+direction, as if the character's arm were raised first and then stretched. So hinges keep their places on the
+limb, and palms that no fingers tell of; others face as the performer's. Trunk, head, clavicles and feet are
+upright in both, and are not turned.
 """
 
 from collections.abc import Mapping
@@ -15,6 +16,7 @@ from scipy.spatial.transform import Rotation
 from ...arrays import Array
 from ...body import rotations
 from ...body.body_volume import segment_piece
+from ...body.fingers import RESTING
 from ...body.kinematics import SegmentMotion
 from ...body.skeleton import SIDES
 from ...feet.fading import ease
@@ -36,8 +38,11 @@ def rest_alignment(body: RestBody) -> Mapping[str, Array]:
         leg = [f"{part}.{side}" for part in ("thigh", "shin", "foot")]
         _align(body, turns, arm, np.array([out, 0.0, 0.0]), np.array([0.0, 0.0, -out]))
         _align(body, turns, leg, np.array([0.0, 0.0, -1.0]), np.array([1.0, 0.0, 0.0]))
-        if f"hand.{side}" in turns:
-            turns[f"hand.{side}"] = turns[f"forearm.{side}"] @ turns[f"hand.{side}"]
+        hand = f"hand.{side}"
+        if hand in turns:
+            palm = None if hand in body.character_map.rest_corrections else body.palm(side)
+            aligned = turns[f"forearm.{side}"] @ turns[hand]
+            turns[hand] = aligned if palm is None else RESTING[side] @ palm.T
     return turns
 
 

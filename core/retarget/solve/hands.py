@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...body import rotations
-from ...body.fingers import flexion_axis, flexions, palm_axes
+from ...body.fingers import flexion_axis, flexions
 from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.rotations import hinge
@@ -168,11 +168,7 @@ def finger_bends(body: RestBody, wanted: Mapping[str, Array]) -> dict[int, Array
     """
     found: dict[int, Array] = {}
     for side in SIDES:
-        starts = {one: body.joint(f"{one}.{side}") for one in FINGERS if f"{one}.{side}" in body.first}
-        others, palm = [start for finger, start in starts.items() if finger != FINGERS[0]], None
-        if others and len(starts) > 1:  # which tell where a palm faces at rest
-            ends = (others[0], others[-1]) if len(others) > 1 else (starts[FINGERS[0]], others[0])
-            palm = palm_axes(np.mean(others, axis=0) - body.joint(f"hand.{side}"), ends[0] - ends[1], side)
+        palm = body.palm(side)
         for finger in FINGERS:
             role = f"{finger}.{side}"
             if palm is None or role not in wanted or not body.is_moved(role):

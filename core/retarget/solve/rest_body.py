@@ -13,9 +13,10 @@ from itertools import chain, pairwise
 import numpy as np
 
 from ...arrays import Array
+from ...body.fingers import palm_axes
 from ...body.kinematics import SegmentMotion
 from ...body.posture import turn_headings_rad, yaw_rotation
-from ...body.skeleton import SIDES
+from ...body.skeleton import FINGERS, SIDES
 from ...errors import InputError, shown
 from ...feet.ground import Ground
 from ..character import FINGER_ROLES, JOINTS, LIMBS, LONG_BONES, MIDDLE, Character
@@ -110,6 +111,15 @@ class RestBody:
     def middle(self, part: str) -> Array:
         """(3,) midpoint of the joints of a part on both sides, canonical [m]."""
         return np.asarray(0.5 * (self.joint(f"{part}.L") + self.joint(f"{part}.R")))
+
+    def palm(self, side: str) -> Array | None:
+        """(3, 3) axes of a hand by where its fingers begin, canonical; None of fewer than two."""
+        starts = {one: self.joint(f"{one}.{side}") for one in FINGERS if f"{one}.{side}" in self.first}
+        others = [start for finger, start in starts.items() if finger != FINGERS[0]]
+        if not others or len(starts) < 2:
+            return None
+        first, last = (others[0], others[-1]) if len(others) > 1 else (starts[FINGERS[0]], others[0])
+        return palm_axes(np.mean(others, axis=0) - self.joint(f"hand.{side}"), first - last, side)
 
     def tip(self, role: str) -> Array | None:
         """(3,) the end of a role's last bone: the farthest head of a child, else a tail that means something.

@@ -13,6 +13,7 @@ from keymark.core.progress import run
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import assign_action, existing_channelbag
 from keymark.operators.bridge.armature import has_fingers, read_body, set_lengths
+from keymark.operators.bridge.body_mesh import build_body_mesh
 from keymark.operators.bridge.character.retarget import read_source
 from keymark.operators.bridge.export_formats import write_bvh
 from keymark.operators.bridge.fcurves import write_motion
@@ -54,6 +55,26 @@ def test_a_motion_of_seen_hands_gives_an_actor_fingers(
     assert (actor.pose.bones["middle.3.R"].tail - actor.pose.bones["hand.R"].head).length > 1.02 * before
     write_bvh(actor, tmp_path / "motion.bvh")
     assert "JOINT index.3.L" in (tmp_path / "motion.bvh").read_text(encoding="utf-8")
+
+
+def test_the_skin_closes_with_its_fingers(actor: bpy.types.Object, closing: Motion) -> None:
+    write_motion(actor, closing)
+    skin = build_body_mesh(actor, closing.body, ())
+    reach = []
+    for curl_rad in (0.0, 1.2):
+        for bone in map(actor.pose.bones.get, FINGER_BONES):
+            bone.rotation_euler[0] = curl_rad
+        bpy.context.view_layer.update()
+        shown = skin.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+        places = np.array([vertex.co[:] for vertex in shown.vertices])
+        for side in "LR":
+            hand = actor.pose.bones[f"hand.{side}"]
+            ahead = (places - np.array(hand.head)) @ np.array(hand.vector.normalized()) / hand.length
+            near = np.linalg.norm(places - np.array(hand.head), axis=1) < 1.2 * hand.length
+            reach.append(ahead[near].max())
+    assert min(reach[:2]) > 0.9 and max(reach[2:]) < 0.75
+    total = [sum(group.weight for group in vertex.groups) for vertex in skin.data.vertices]
+    np.testing.assert_allclose(total, 1.0, atol=1e-3)
 
 
 def test_few_keys_keep_curls(actor: bpy.types.Object, closing: Motion) -> None:

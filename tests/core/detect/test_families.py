@@ -9,8 +9,8 @@ import onnx
 import pytest
 from _networks import METERS, Builder, draw_dots, heat_maps, instant_hmr, simcc
 from keymark.core.arrays import Array
-from keymark.core.body.fingers import finger_bones
-from keymark.core.body.rotations import exponential, hinge, logarithm
+from keymark.core.body.fingers import RESTING, finger_bones, palm_of
+from keymark.core.body.rotations import exponential, hinge
 from keymark.core.detect.families.instant_hmr import FROM_WRIST, LEFT
 from keymark.core.detect.families.instant_hmr import LAYOUT as MHR
 from keymark.core.detect.families.network import Box, Window
@@ -124,7 +124,8 @@ def test_points_of_hands_in_space_are_hands(side: str, tmp_path: Path) -> None:
     assert hands is not None
     hand = hands["LR".index(side)]
     np.testing.assert_allclose(hand[:2], (168.0, 112.0))
-    assert np.degrees(np.linalg.norm(logarithm(turn.T @ exponential(hand[2:5])))) < 5.0
+    own = palm_of(np.array(points), side) @ RESTING[side].T
+    np.testing.assert_allclose(exponential(hand[2:5]), turn @ FACING @ own @ FACING.T, atol=1e-6)
     np.testing.assert_allclose(hand[7:12], 0.4, atol=0.05)
 
 

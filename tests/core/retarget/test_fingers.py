@@ -8,8 +8,8 @@ import pytest
 from _characters import plain_character, plain_map, renamed, shared_characters
 from _performances import solved, steps
 from keymark.core.arrays import Array
-from keymark.core.body.fingers import RESTING, finger_bones, flexions
-from keymark.core.body.rotations import hinge, smallest
+from keymark.core.body.fingers import RESTING, finger_bones, flexions, palm_axes
+from keymark.core.body.rotations import hinge, logarithm, smallest
 from keymark.core.body.skeleton import FINGERS
 from keymark.core.numerics.vectors import unit
 from keymark.core.retarget.character import FINGER_ROLES, Character, CharacterBone
@@ -133,6 +133,24 @@ def test_fingers_bend_as_far_as_the_performers(rest_rad: float, ends: bool) -> N
         off = np.degrees(flexions(ways, axis) - angles)
         assert np.abs(off[:, 1:]).max() < 1.0
         assert np.abs(off[:, 0]).max() < 3.0
+
+
+@pytest.mark.parametrize("kind", [kind for kind in shared_characters() if kind != "cmu_mb"])
+def test_palms_face_as_the_performers(kind: str) -> None:
+    character = shared_characters()[kind]
+    character_map = recognize(character).character_map
+    motion = solved(character, character_map, steps())
+    for side in RESTING:
+        (hand,) = character_map.bones(f"hand.{side}")
+        starts = [
+            character.bone(character_map.bones(f"{finger}.{side}")[0]).head - character.bone(hand).head
+            for finger in FINGERS[1:]
+        ]
+        resting = palm_axes(np.mean(starts, axis=0), starts[0] - starts[-1], side)
+        own = motion.poses[hand][:, :3, :3] @ character.bone(hand).rest[:3, :3].T @ resting
+        palm = steps().turn[f"hand.{side}"] @ RESTING[side]
+        apart = logarithm(np.swapaxes(motion.to_world.rotation @ own, -1, -2) @ palm)
+        assert np.degrees(np.linalg.norm(apart, axis=-1)).max() < 0.1
 
 
 def test_fingers_that_nobody_saw_follow_the_hand() -> None:
