@@ -184,6 +184,18 @@ class SeenPeople:
         )
         return SeenPeople(place(self.pixel), self.score, self.hint_m, *looks)
 
+    def mirrored(self, width: float) -> "SeenPeople":
+        """The same in the mirror image of a picture so wide [px]; points keep their columns, hands do not."""
+        flipped = self.moved(lambda place: np.array([width, 0.0]) + place * [-1.0, 1.0])
+        # A turn's axis is a pseudovector. A hand's second look was at the mirror image.
+        face = None if flipped.face is None else flipped.face * [1.0, 1.0, 1.0, -1.0, -1.0, 1.0]
+        hands = None if flipped.hands is None else flipped.hands[:, ::-1].copy()
+        if hands is not None:
+            looks = hands[..., 2:].reshape(*hands.shape[:-1], 2, -1)[..., ::-1, :].copy()
+            looks[..., 1:3] *= -1.0
+            hands[..., 2:] = looks.reshape(*hands.shape[:-1], -1)
+        return replace(flipped, hint_m=flipped.hint_m * [-1.0, 1.0, 1.0], face=face, hands=hands)
+
     def only(self, rows: Sequence[int] | IndexArray) -> "SeenPeople":
         """Some of them alone."""
         face, hands = (None if own is None else own[rows] for own in (self.face, self.hands))

@@ -30,7 +30,7 @@ PEOPLE = 2  # of a file, in a picture
 SCALES = np.geomspace(0.1, 10.0, 185)  # steps of 2.5 %
 LEAST_SCALE = 0.03  # logarithm of a scale that is one
 ROUND_SHARE = 0.015  # scales are those of pictures' sizes: ratios of small numbers, if one is so near
-LONGEST_SHIFT_S = 3.0
+LONGEST_SHIFT_S, NEAR_FRAMES = 3.0, 3  # by which a file may be late; what is near although it is so late
 RATES = (0.25, 1.0 / 3.0, 0.4, 0.5, 2.0 / 3.0, 0.8, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
 
 
@@ -173,8 +173,11 @@ class _Check:
             )
 
         sided, now = cost(either_side=False), cost()
-        if sided < LEAST_OFF:
-            return None
+        wanted = min(FITS, BETTER * now)
+        if now < LEAST_OFF:  # a few frames early or late are as near, and nothing else is
+            late = self._late(looks, wanted, NEAR_FRAMES, ())[1] if now > 0.5 * LEAST_OFF else None
+            if sided < LEAST_OFF or late is not None:
+                return late
         width = np.array([float(self.people.size[0]), 0.0])
 
         def flip(pixel: Array) -> Array:
@@ -184,9 +187,8 @@ class _Check:
             return PictureFinding(mirrored=True, looked=there)
         if now < LEAST_OFF:
             return None
-        wanted = min(FITS, BETTER * now)
         # Of somebody who walks across, another time looks like another size, and the other way around.
-        best, late = self._late(looks, wanted)
+        best, late = self._late(looks, wanted, round(LONGEST_SHIFT_S * self.fps), RATES)
         costs = [cost(partial(np.multiply, scale)) for scale in SCALES]
         near = SCALES[int(np.argmin(costs))]
         if min(costs) < FARTHEST / 2:
@@ -212,12 +214,17 @@ class _Check:
             scale = np.full(2, both)
         return np.array([_rounded(float(one)) for one in scale])
 
-    def _late(self, looks: Sequence[_Look], wanted: float) -> tuple[float, PictureFinding | None]:
-        """Whether the file is of the clip at another time or rate, and its distance then, else the wanted."""
+    def _late(
+        self, looks: Sequence[_Look], wanted: float, most: int, rates: Sequence[float]
+    ) -> tuple[float, PictureFinding | None]:
+        """Whether the file is of the clip at another time, by so many frames at most, or at another rate.
+
+        And its distance then, else the wanted.
+        """
         frames = self.people.frames
-        reach = min(round(LONGEST_SHIFT_S * self.fps), len(frames) // 2)
+        reach = min(most, len(frames) // 2)
         best, shift, rate = wanted, 0, 1.0
-        for other in (1.0, *RATES):
+        for other in (1.0, *rates):
             for offset in range(-reach, reach + 1):
                 pairs = [(look, round(other * look.frame + offset)) for look in looks]
                 inside = [(look, f) for look, f in pairs if 0 <= f < len(frames) and len(frames[f].pixel)]
@@ -231,7 +238,7 @@ class _Check:
                 refusal=f"it runs through the motion {1.0 / rate:.3g} times as fast as the clip; it must be "
                 "of this clip, frame by frame"
             )
-        return (best, PictureFinding(shift=shift)) if abs(shift) >= 2 else (wanted, None)
+        return (best, PictureFinding(shift=shift)) if shift else (wanted, None)
 
 
 def applied(people: People, finding: PictureFinding) -> People:
@@ -264,10 +271,7 @@ def applied(people: People, finding: PictureFinding) -> People:
     frames = [nobody] * max(-finding.shift, 0)
     for frame in people.frames[max(finding.shift, 0) : len(people.frames) + min(finding.shift, 0)]:
         seen = frame.moved(partial(np.multiply, scale))
-        if finding.mirrored:  # a face or a hand is no longer that of the side it was looked at for
-            pixel = size * [1.0, 0.0] + seen.pixel * [-1.0, 1.0]
-            seen = SeenPeople(pixel, seen.score, seen.hint_m * [-1.0, 1.0, 1.0])
-        frames.append(seen)
+        frames.append(seen.mirrored(size[0]) if finding.mirrored else seen)
     frames += [nobody] * max(finding.shift, 0)
     ends = (max(-finding.shift, 0), len(frames) - max(finding.shift, 0))
     silent = (*range(ends[0]), *range(ends[1], len(frames)))

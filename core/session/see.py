@@ -88,21 +88,22 @@ def people_in_words(people: People) -> str:
 def checked_keypoints(take: Take, reading: Reading) -> Job[tuple[People, ...]]:
     """A take's keypoints as the pictures say that they are meant, each picture's once.
 
-    Pictures are not asked where posed keyframes tell (see `estimate/keypoint_trust`), of points that a person
-    has placed or that the pose network has just found in them, and without the network. InputError: keypoints
-    are not of this clip.
+    Pictures are not asked of points that a person has placed or that the pose network has just found in them,
+    and without the network. Where enough is posed, that tells what is of another clip (`keypoint_trust`), and
+    else: InputError: keypoints are not of this clip.
     """
     checked = []
-    posed = sum(keyframe.is_posed for keyframe in take.keyframes)
+    posed = sum(keyframe.is_posed for keyframe in take.keyframes) >= FEWEST_KEYFRAMES
     is_own = [each.source == NAME and not each.file for each in take.keypoints]
     is_asked = [
         not (each.by_hand or each.looked or own) for each, own in zip(take.keypoints, is_own, strict=True)
     ]
-    network = _network() if any(is_asked) and posed < FEWEST_KEYFRAMES else None
+    network = _network() if any(is_asked) else None
     for people, asked in zip(take.keypoints, is_asked, strict=True):
         if network is not None and reading.glimpses is not None and asked:
             job = check_by_pictures(people, reading.glimpses, network, take.fps)
-            people = applied(people, (yield from within("Checking the keypoints", job, 0.0, 1.0)))
+            finding = yield from within("Checking the keypoints", job, 0.0, 1.0)
+            people = people if finding.refusal and posed else applied(people, finding)
         again = {index for index in reading.frame_findings.repeated if index < len(people.frames)}
         if again and not people.by_hand:  # repeated pictures show no other moment
             nobody, frames = SeenPeople.nobody(len(people.names)), enumerate(people.frames)

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from _drawn_clip import SHAPE, Drawn, FakeNetwork, MiddleNetwork, draw_people
 from keymark.core.arrays import Array
+from keymark.core.body.rotations import exponential, logarithm
+from keymark.core.detect.hands import hand_of, no_hands
 from keymark.core.detect.keypoints import People, SeenPeople, mirrored_point
 from keymark.core.detect.picture_check import PictureFinding, applied, check_by_pictures
 from keymark.core.detect.pose_network import LAYOUT, NAME
@@ -99,7 +101,14 @@ def test_a_mirrored_copy_is_turned_back(glimpses: Glimpses) -> None:
 
 @pytest.mark.parametrize(
     ("late", "words"),
-    [(9, "about 9 frames before: it is late"), (5, "late"), (-9, "about 9 frames after: it is early")],
+    [
+        (9, "about 9 frames before: it is late"),
+        *((late, "it is late") for late in (2, 3, 5)),
+        (1, "about 1 frame before: it is late"),
+        (-1, "about 1 frame after: it is early"),
+        (-2, "it is early"),
+        (-9, "about 9 frames after: it is early"),
+    ],
 )
 def test_another_time_is_shifted_back(glimpses: Glimpses, late: int, words: str) -> None:
     shifted = people(frames=np.arange(FRAMES) - late)
@@ -110,6 +119,27 @@ def test_another_time_is_shifted_back(glimpses: Glimpses, late: int, words: str)
         np.testing.assert_array_equal(mended.frames[index].pixel, shifted.frames[index + late].pixel)
     silent = tuple(index for index in range(FRAMES) if index not in inside)
     assert mended.silent == silent and not any(len(mended.frames[index].pixel) for index in silent)
+
+
+@pytest.mark.parametrize("side", ["L", "R"])
+def test_faces_and_hands_change_sides_with_a_mirrored_copy(side: str) -> None:
+    rng, middle = np.random.default_rng(7), np.array([200.0, 90.0])
+    points, flip = rng.normal(size=(21, 3)), np.array([-1.0, 1.0, 1.0])
+    turn = exponential(np.array([0.3, -0.5, 0.2]))
+    hands, row = no_hands(1), "LR".index(side)
+    hands[0, row] = hand_of(points, middle, side)
+    hands[0, row, 5] = 0.4  # presence in the first look, which is the second one of a mirrored picture
+    face = np.array([[*middle, *logarithm(turn), 0.9]])
+    frames = tuple(replace(frame, face=face, hands=hands) for frame in people().frames)
+    mended = applied(replace(people(), frames=frames), PictureFinding(mirrored=True)).frames[5]
+    place = [SIZE[0] - middle[0], middle[1]]
+    assert mended.face is not None and mended.hands is not None
+    turned = logarithm(np.outer(flip, flip) * turn)
+    np.testing.assert_allclose(mended.face[0], [*place, *turned, 0.9], atol=1e-12)
+    expected = hand_of(points * flip, np.array(place), "RL"[row])
+    expected[15] = 0.4
+    np.testing.assert_allclose(mended.hands[0, 1 - row], expected, atol=1e-9)
+    assert np.isnan(mended.hands[0, row]).all()
 
 
 def test_faces_and_hands_go_along_with_what_is_scaled_and_shifted() -> None:

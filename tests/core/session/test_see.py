@@ -199,7 +199,7 @@ def test_a_jump_to_a_passer_by_is_left_out(failing: Callable[[str], Path], plain
     assert any("the 20 frames that show him are left out" in note for note in found.notes)
 
 
-def test_posed_keyframes_points_by_hand_and_those_just_found_need_no_network(
+def test_points_by_hand_and_those_just_found_need_no_network(
     synthetic: Take, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     network = FakeNetwork()
@@ -207,7 +207,6 @@ def test_posed_keyframes_points_by_hand_and_those_just_found_need_no_network(
     reading = run(read_clip(clip_of(np.arange(FRAMES, dtype=float), tmp_path), ()))
     back = walker(np.arange(FRAMES)[::-1])
     for take in (
-        replace(synthetic, keypoints=(detected(back),)),
         replace(synthetic, keyframes=(), keypoints=(detected(back, by_hand=True),)),
         replace(synthetic, keyframes=(), keypoints=(replace(detected(back), source=NAME, file=""),)),
     ):
@@ -217,6 +216,11 @@ def test_posed_keyframes_points_by_hand_and_those_just_found_need_no_network(
     with pytest.raises(InputError, match=r"seen\.json: .* must be of this clip"):
         run(check(away, reading))
     assert network.looks > 0
+    posed = replace(away, keyframes=synthetic.keyframes)  # which tell by themselves what is of another clip
+    assert run(check(posed, reading)) == posed.keypoints
+    (shifted,) = run(check(replace(posed, keypoints=(detected(walker(np.arange(FRAMES) - 4.0)),)), reading))
+    np.testing.assert_allclose(pixels(shifted)[:36], pixels(detected(walker(np.arange(36.0)))))
+    assert "about 4 frames before: it is late" in shifted.notes[0]
 
 
 def test_without_the_network_files_are_believed(
