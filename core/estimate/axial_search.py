@@ -16,7 +16,7 @@ from ..markers.appearance import BAND_LEVELS as LEVELS
 from ..markers.appearance import BANDS, Appearance, BandColors, band_cells, learn_band_colors
 from ..terms.contours import FREE, UNKNOWN, ContourModel, LimbAxes, part_map
 from ..terms.occlusion import PartOutlines
-from .contour_search import LARGEST_LOG_RATIO, SearchRange
+from .contour_search import LARGEST_LOG_RATIO, SearchRange, measured
 
 STEP_PX = 2.0  # distance of the pixels that are looked at, along the axis
 CELL_LOG_VOLUME = float(np.log((256 / LEVELS) ** 3))  # levels³ in a cell: background densities are per level³
@@ -121,13 +121,10 @@ def _measure(
     )  # (U, Q, S): where a pixel lies on a shifted part
     label = np.clip(np.floor(place * BANDS) + 1.0, 0, BANDS + 1).astype(np.intp)
     picked = np.take_along_axis(logs, label, axis=-1)
-    log = picked.sum(axis=1) - 0.5 * (offset / search.prior_std) ** 2
-    weight = np.exp(log - log.max(axis=-1, keepdims=True))
-    weight /= weight.sum(axis=-1, keepdims=True)
-    mean = weight @ offset
+    likelihood = picked.sum(axis=1)
     # Pixels are looked at every other one.
-    variance = np.sum(weight * (offset - mean[:, None]) ** 2, axis=-1) + STEP_PX**2 / 12.0
-    added = np.maximum(1.0 / variance - search.prior_std**-2, 1e-9)
+    (mean, variance), (distance, spread) = measured(likelihood, offset, search.prior_std, STEP_PX)
+    log = likelihood - 0.5 * (offset / search.prior_std) ** 2
     best = np.clip(log.argmax(axis=-1), 1, len(offset) - 2)
     pair = np.take_along_axis(picked, np.stack([best - 1, best + 1], axis=-1)[:, None], axis=-1)
     change = (pair[..., 1] - pair[..., 0]) ** 2  # (U, Q) what a pixel says of the shift
@@ -135,8 +132,8 @@ def _measure(
     known = (variance < 0.5 * search.prior_std**2) & (np.abs(mean) < search.farthest)
     where = use[known]
     found.share[where, part] = np.clip(center, 0.0, 1.0)[known]
-    found.distance[where, part] = (mean / (variance * added))[known] * factor
-    found.variance[where, part] = (1.0 / added)[known] * factor**2
+    found.distance[where, part] = distance[known] * factor
+    found.variance[where, part] = spread[known] * factor**2
 
 
 def _logs(

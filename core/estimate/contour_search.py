@@ -74,7 +74,8 @@ def find_edges(
         appearance, model.part_of[sample], behind[shown], row, column, pictures[picture[:, None], row, column]
     )
     evidence[~inside] = 0.0
-    mean, variance = _edge(evidence, offset, search.prior_std)
+    # Evidence summed up is the log likelihood of the edge after each pixel, up to a constant.
+    _, (mean, variance) = measured(np.cumsum(evidence, axis=-1), offset + 0.5, search.prior_std, 1.0)
     found = comparable & (variance < search.prior_std**2) & (np.abs(mean) < search.farthest)
     edges = Edges(np.zeros(shown.shape), np.full(shown.shape, np.inf))
     edges.distance[picture[found], sample[found]] = mean[found] * factor
@@ -105,18 +106,20 @@ def _log_likelihood_ratios(
     return ratio, comparable
 
 
-def _edge(evidence: Array, offset: Array, prior_std: float) -> tuple[Array, Array]:
-    """Mean and variance (...) of the edge's distance, by log ratios (..., K) at offsets (K,) alone."""
-    between = offset + 0.5
-    likelihood = np.cumsum(evidence, axis=-1)  # of the edge after each pixel, up to a constant
-    log = likelihood - 0.5 * (between / prior_std) ** 2
+def measured(
+    likelihood: Array, places: Array, prior_std: float, grain: float
+) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """Mean and variance (...) of a distance by log likelihoods (..., K) at places (K,), with its prior.
+
+    Then both without it, as a measurement. A distance lies anywhere in its `grain`.
+    """
+    log = likelihood - 0.5 * (places / prior_std) ** 2
     weight = np.exp(log - log.max(axis=-1, keepdims=True))
     weight /= weight.sum(axis=-1, keepdims=True)
-    mean = weight @ between
-    # An edge lies anywhere in its pixel.
-    variance = np.sum(weight * (between - mean[..., None]) ** 2, axis=-1) + 1.0 / 12.0
+    mean = weight @ places
+    variance = np.sum(weight * (places - mean[..., None]) ** 2, axis=-1) + grain**2 / 12.0
     added = np.maximum(1.0 / variance - prior_std**-2, 1e-9)
-    return mean / (variance * added), 1.0 / added
+    return (mean, variance), (mean / (variance * added), 1.0 / added)
 
 
 def _occlusion(

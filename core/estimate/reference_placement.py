@@ -4,8 +4,7 @@ A network's own distance is not believed; the picture's is smoothed over time.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +28,7 @@ class SeenPoints:
     """A places in each of F pictures, each a mean of principal points."""
 
     camera: Camera
+    rotation: Array  # (F, 3, 3) the camera's axes as columns
     mean: Array  # (A, 13) weights of the principal points
     slope: Array  # (F, A, 2) x and y of the sight at unit depth, in camera axes; NaN where not seen
     confidence: Array  # (F, A) 0 where not seen
@@ -54,7 +54,7 @@ class SeenPoints:
         pixels, scores = np.concatenate(pixel, axis=1), np.nan_to_num(np.concatenate(score, axis=1))
         frame = np.arange(frames)
         _, ray = camera.rays(pixels, frame[:, None])
-        rotation = _rotations(camera, frames)
+        rotation = np.array(np.broadcast_to(camera.pose(frame)[0], (frames, 3, 3)))
         ray = np.einsum("fji,faj->fai", rotation, ray)
         slope = ray[..., :2] / -ray[..., 2:]
         seen = np.isfinite(slope).all(axis=-1) & (scores > 0.0)
@@ -63,26 +63,16 @@ class SeenPoints:
         confidence = np.where(seen, np.clip(scores, 0.1, 1.0), 0.0)
         return cls(
             camera,
+            rotation,
             np.concatenate(mean)[kept],
             np.where(seen[..., None], slope, np.nan)[:, kept],
             confidence[:, kept],
             np.concatenate(std)[kept],
         )
 
-    @cached_property
-    def rotation(self) -> Array:
-        """(F, 3, 3) the camera's axes as columns."""
-        return _rotations(self.camera, len(self.slope))
-
     def __getitem__(self, frames: IndexArray) -> "SeenPoints":
-        part = SeenPoints(self.camera, self.mean, self.slope[frames], self.confidence[frames], self.std_m)
-        part.__dict__["rotation"] = self.rotation[frames]
-        return part
-
-
-def _rotations(camera: Camera, frames: int) -> Array:
-    rotation, _ = camera.pose(np.arange(frames))
-    return np.array(np.broadcast_to(rotation, (frames, 3, 3)))
+        rotation, slope, confidence = self.rotation[frames], self.slope[frames], self.confidence[frames]
+        return replace(self, rotation=rotation, slope=slope, confidence=confidence)
 
 
 def _middle_of(segment: str) -> Array:

@@ -17,11 +17,11 @@ def across(vector: Array) -> Array:
     return unit(np.cross(vector, np.eye(3)[np.argmin(np.abs(vector))]))
 
 
-def usual_step(time_s: Array, otherwise: float = 1.0) -> float:
-    """Median step of times (F,) that advances [s]; `otherwise` where none does."""
+def usual_step(time_s: Array) -> float:
+    """Median step of times (F,) that advances [s]; 1 where none does."""
     step = np.diff(time_s)
     advancing = step[np.isfinite(step) & (step > 0.0)]
-    return float(np.median(advancing)) if len(advancing) else otherwise
+    return float(np.median(advancing)) if len(advancing) else 1.0
 
 
 def runs(holds: BoolArray) -> list[tuple[int, int]]:
