@@ -6,9 +6,16 @@ import numpy as np
 from keymark.core.body.rotations import continuous_quaternions, to_quaternions
 from keymark.core.retarget.character import Character
 from keymark.core.retarget.character_motion import CharacterMotion
-from keymark.core.retarget.controls.control_channels import NOTHING, Control, ControlSpace, ordered_controls
+from keymark.core.retarget.controls.control_channels import (
+    NOTHING,
+    Control,
+    ControlKind,
+    ControlSpace,
+    PlannedControl,
+    ordered_controls,
+    planned_controls,
+)
 from keymark.core.retarget.controls.control_motion import ControlMotion, PoleSetting, on_controls
-from keymark.core.retarget.controls.control_plan import ControlKind, PlannedControl, planned_controls
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls
 from keymark.core.take.conversion_settings import RetargetOptions
 

@@ -13,8 +13,15 @@ from ..character import JOINTS, LIMBS, Character
 from ..character_motion import CharacterMotion
 from ..maps.character_map import CharacterMap
 from ..solve.two_bone import STRAIGHTEST, LimbPose, reach_for
-from .control_channels import NOTHING, Control, ControlChannels, control_channels
-from .control_plan import IN_FK, ControlKind, limb_bones
+from .control_channels import (
+    IN_FK,
+    NOTHING,
+    Control,
+    ControlChannels,
+    ControlKind,
+    control_channels,
+    limb_bones,
+)
 from .point_tolerances import HeldPoint, held_points
 
 ChannelValues = Callable[[Array, str], Array]

@@ -17,9 +17,8 @@ from ...arrays import Array
 from ...keys.key_reduction import reduce_keys
 from ...keys.rig import NO_TURN, Rig, RigBone
 from ...progress import Part, scaled
-from .control_channels import NOTHING, Control, ControlChannels, control_channels
+from .control_channels import NOTHING, Control, ControlChannels, ControlKind, control_channels
 from .control_motion import ChannelValues, ControlMotion, KeyedControl, leg_on_body
-from .control_plan import ControlKind
 from .point_tolerances import CARRIED_SHARE, SWITCH_M, HeldPoint, PointKind, ToleranceRules
 
 AFTER_BODY = (ControlKind.GOAL, ControlKind.TOE, ControlKind.POLE, ControlKind.FINGER)

@@ -13,7 +13,7 @@ from bpy.types import Action, Constraint, FCurve, Object, PoseBone
 from ....core.arrays import Array
 from ....core.errors import InputError
 from ....core.retarget.character import JOINTS
-from ....core.retarget.controls.control_plan import IN_FK, ControlKind, PlannedControl
+from ....core.retarget.controls.control_channels import IN_FK, ControlKind, PlannedControl
 from ....core.retarget.maps.character_map import CharacterMap, Switch
 from ..actor_bones import evaluated
 from ..scene_frames import CHANNELS, showing_action

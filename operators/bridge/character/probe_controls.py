@@ -12,19 +12,22 @@ from ....core.arrays import Array
 from ....core.body.rotations import exponential
 from ....core.retarget.controls.control_channels import (
     ALWAYS_MOVED,
+    IN_FK,
     NOTHING,
     RIGID,
     Control,
+    ControlKind,
     ControlSpace,
+    PlannedControl,
     PosedControls,
     chosen,
     constant_turn,
     find_spaces,
+    limb_bones,
     ordered_controls,
     rigid_offset,
 )
 from ....core.retarget.controls.control_motion import SHORTEST_POLE, PoleSetting, pole_offset
-from ....core.retarget.controls.control_plan import IN_FK, ControlKind, PlannedControl, limb_bones
 from ....core.retarget.maps.character_map import CharacterMap
 from .held_controls import (
     BONE_PATH,

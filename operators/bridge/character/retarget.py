@@ -18,8 +18,8 @@ from ....core.files.paths import absolute_path, real_path
 from ....core.progress import Job, Progress, run, stretch, within
 from ....core.retarget.character import FINGER_ROLES, Character
 from ....core.retarget.character_motion import CharacterMotion, find_stance
+from ....core.retarget.controls.control_channels import ControlKind, limb_keys, planned_controls
 from ....core.retarget.controls.control_motion import ControlMotion, dense_controls, on_controls
-from ....core.retarget.controls.control_plan import ControlKind, limb_keys, planned_controls
 from ....core.retarget.controls.point_tolerances import ToleranceRules
 from ....core.retarget.controls.reduction import reduce_controls
 from ....core.retarget.maps.character_map import CharacterMap, Setting, Switch

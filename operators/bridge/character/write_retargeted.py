@@ -13,9 +13,8 @@ from ....core.errors import InputError
 from ....core.files.fields import listed
 from ....core.keys.hermite import Spline, values_of
 from ....core.retarget.character import Similarity
-from ....core.retarget.controls.control_channels import Control
+from ....core.retarget.controls.control_channels import Control, ControlKind
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl
-from ....core.retarget.controls.control_plan import ControlKind
 from ..actions import channelbag_for
 from ..actor_bones import evaluated
 from ..keys import ensure_fcurve, write_column, write_linear_keys

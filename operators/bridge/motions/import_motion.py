@@ -19,9 +19,9 @@ from ....core.progress import run
 from ....core.retarget.maps.map_registry import ChosenMap
 from ....core.retarget.mended_armature import ArmaturePoints
 from ....core.retarget.solve.rest_body import RestBody
-from ....core.take.bvh_file import FASTEST, SLOWEST, read_bvh
 from ....core.take.conversion_settings import CharacterFile
 from ....core.take.named_points import chosen_subject
+from ....core.take.point_files import FASTEST, SLOWEST, read_bvh
 from ....core.take.reference import ARMATURE_ENDINGS, ReferenceMotion
 from ..actions import assign_action, curves_of, existing_channelbag
 from ..blend_files import own_scene, showing_scene

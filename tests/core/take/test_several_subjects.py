@@ -9,8 +9,7 @@ from _performances import stepping, write_mhr70
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.core.errors import InputError
-from keymark.core.take.bvh_file import read_bvh
-from keymark.core.take.point_files import read_points, write_c3d, write_trc
+from keymark.core.take.point_files import read_bvh, read_points, write_c3d, write_trc
 from keymark.core.take.reference import read_reference
 
 Write = Callable[..., None]

@@ -10,14 +10,16 @@ from keymark.core.feet.contacts import Contact
 from keymark.core.keys.tolerances import RESTING_M
 from keymark.core.retarget.character import Similarity
 from keymark.core.retarget.character_motion import CharacterMotion
-from keymark.core.retarget.controls.control_channels import NOTHING, Control, ControlSpace
-from keymark.core.retarget.controls.control_motion import PoleSetting, pole_offset, pole_poses
-from keymark.core.retarget.controls.control_plan import (
+from keymark.core.retarget.controls.control_channels import (
+    NOTHING,
+    Control,
     ControlKind,
+    ControlSpace,
     PlannedControl,
     limb_keys,
     planned_controls,
 )
+from keymark.core.retarget.controls.control_motion import PoleSetting, pole_offset, pole_poses
 from keymark.core.retarget.controls.point_tolerances import (
     SWITCH_M,
     HeldPoint,

@@ -18,12 +18,13 @@ from keymark.core.retarget.controls.control_channels import (
     NOTHING,
     Control,
     ControlChannels,
+    ControlKind,
     ControlSpace,
+    PlannedControl,
     control_channels,
     ordered_controls,
 )
 from keymark.core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
-from keymark.core.retarget.controls.control_plan import ControlKind, PlannedControl
 from keymark.core.retarget.controls.point_tolerances import ToleranceRules
 from keymark.core.retarget.controls.reduction import reduce_controls
 from keymark.core.retarget.solve.solve_motion import solve_motion

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 import pytest
-from keymark.core.retarget.controls.control_plan import planned_controls
+from keymark.core.retarget.controls.control_channels import planned_controls
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.recognition.recognize import recognize
 from keymark.core.take.conversion_settings import LimbKeys, RetargetOptions
