@@ -21,10 +21,8 @@ load_project()
 
 from keymark.core.api import convert, reconstruct  # noqa: E402
 from keymark.core.arrays import Array  # noqa: E402
-from keymark.core.body.actor import Actor  # noqa: E402
 from keymark.core.body.body_volume import standing_height_m  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
-from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.detect.keypoint_file import write_keypoints  # noqa: E402
 from keymark.core.estimate.reconstruct import Reconstruction  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
@@ -33,9 +31,10 @@ from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.progress import Job, Progress  # noqa: E402
 from keymark.core.review.score import read_truth  # noqa: E402
 from keymark.core.session.described import findings  # noqa: E402
-from keymark.core.session.session import Sight  # noqa: E402
+from keymark.core.session.session import Session, Sight  # noqa: E402
 from keymark.core.take.conversion_settings import ConversionSettings  # noqa: E402
-from keymark.core.take.description import describe  # noqa: E402
+from keymark.core.take.description import Description, describe  # noqa: E402
+from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402
 
 Result = TypeVar("Result")
@@ -124,26 +123,33 @@ def timed(job: Job[Result]) -> tuple[Result, dict[str, float]]:
         stage, since = progress.stage, now
 
 
+def from_clip(
+    take: Take, kept: Path, libraries: Sequence[Library]
+) -> tuple[Description, Session, dict[str, float]]:
+    """A take's clip converted by the performer's height alone, and by kept keypoints where there are some."""
+    settings = ConversionSettings(library="auto")
+    with tempfile.TemporaryDirectory() as place:
+        clip = Path(place) / take.clip.name  # where nothing describes it
+        shutil.copy(take.clip, clip)
+        if kept.is_file():  # of an earlier run: detecting takes longest
+            settings = replace(settings, keypoints=(kept,))
+        height_m = round(standing_height_m(take.body), 2)
+        description = describe(clip, {"actor": {"height_m": height_m}}, "--height")
+        return description, *timed(convert(description, settings, libraries))
+
+
 def measure(
     name: str, folder: Path, libraries: Sequence[Library]
 ) -> tuple[Errors, Errors, dict[str, float], list[str]]:
     """Errors without and with the true camera, process time of the stages, and what was found."""
     true = read_take(folder, keyframes_required=False, whole=True)
-    height_m = round(standing_height_m(true.body), 2)
-    settings = ConversionSettings(library="auto")
     kept = OUTPUT / "animate" / f"{name.replace('/', '_')}.keypoints.json"
-    with tempfile.TemporaryDirectory() as place:
-        clip = Path(place) / true.clip.name
-        shutil.copy(true.clip, clip)
-        if kept.is_file():  # of an earlier run: detecting takes longest
-            settings = replace(settings, keypoints=(kept,))
-        description = describe(clip, {"actor": {"height_m": height_m}}, "--height")
-        made, seconds = timed(convert(description, settings, libraries))
+    description, made, seconds = from_clip(true, kept, libraries)
     motion, take = made[Reconstruction].motion, made.inputs.take
     if not kept.is_file():
         kept.parent.mkdir(parents=True, exist_ok=True)
         write_keypoints(kept, made[Sight].people[0], take.frame_start, take.fps)
-    body = Body(Actor.from_stature(height_m))
+    body = take.body
     known = replace(true, keypoints=made[Sight].people, markers=(), keyframes=(), body=body, frame_count=None)
     by_true, _ = timed(reconstruct(known, "map", None, libraries, 0.0))
     count = len(motion.time_s)

@@ -8,6 +8,8 @@ import cv2
 import numpy as np
 import onnx
 from keymark.core.arrays import Array, Image
+from keymark.core.detect.layouts import Layout
+from keymark.core.detect.pose_network import CIRCLE, LAYOUT, Crop, Pose
 from onnx import TensorProto, helper, numpy_helper
 
 MEAN, STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
@@ -174,6 +176,35 @@ def draw_dots(size: tuple[int, int], people: Sequence[Array], radius: float = 7.
                     picture, at, round(radius * fine * 16), (255 * color[::-1]).round().tolist(), -1, shift=4
                 )
     return np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+
+
+class DotNetwork:
+    """Keymark's own: it sees the dots about the middle of a crop, in the layout's colors."""
+
+    def __init__(self, layout: Layout) -> None:
+        self.names = layout.names
+
+    def __call__(self, picture: Image, crop: Crop) -> Pose:
+        """Look at a crop."""
+        rows, columns = np.nonzero(picture.max(axis=2) > 200)
+        inside = np.abs(np.column_stack([columns, rows]) - crop.center).max(axis=1) < 0.5 * crop.side
+        colors, place = picture[rows[inside], columns[inside], ::-1] / 255.0, {}
+        whole = True
+        for name, color in zip(self.names, COLORS, strict=False):
+            own = np.abs(colors - color).max(axis=1) < 0.1
+            if own.sum() > 20:
+                whole &= bool(np.ptp(columns[inside][own]) < 20)  # no two people
+                place[name] = np.array([columns[inside][own].mean(), rows[inside][own].mean()]) + 0.5
+        middle = np.mean(list(place.values()), axis=0) if place else crop.center
+        pixel = np.array([place.get(name, middle) for name in LAYOUT.names])
+        hint = np.column_stack([pixel - middle, np.zeros(len(pixel))]) * METERS / 200.0
+        side = CIRCLE * float(np.ptp(pixel, axis=0).max()) / 2.0
+        presence = float(whole and len(place) > 0.9 * len(self.names))
+        return Pose(pixel, np.full(len(pixel), 0.9), hint, presence, Crop(middle, max(side, 20.0)))
+
+    def each(self, looks: Sequence[tuple[Image, Crop]]) -> list[Pose]:
+        """Look at one crop after the other."""
+        return [self(*look) for look in looks]
 
 
 Builder = Callable[[Path], Path]

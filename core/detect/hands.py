@@ -88,7 +88,7 @@ def hand_of(points: Array, wrist: Array, side: str) -> Array:
     Both looks are that one, of which it does not say how sure it is. NaN where the points are no hand's.
     """
     turn = hand_turn(points, side)
-    if abs(float(np.linalg.det(turn))) < 0.5:
+    if not np.isfinite(turn).all() or abs(float(np.linalg.det(turn))) < 0.5:
         return np.full(HAND_NUMBERS, np.nan)
     look = [*logarithm(turn), 0.9, 1.0, *curls_of(points)]
     return np.array([*wrist, *look, *look])

@@ -101,6 +101,7 @@ class Look:
     hint_m: Array | None = None  # (N, 3) as in `Keypoints`, NaN where there is none
     depth_m: Array | None = None  # (N,) depths alone, as those of hints, where it guesses these
     hands: Array | None = None  # (2, 22) as in `hands`, where it sees their points in space
+    fingers: Array | None = None  # (2, 21, 3) points of hands [px] with depths [m]; NaN where not seen
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,7 +25,7 @@ from ..take.presence import SeenTake
 from ..take.reference import ReferenceMotion
 from ..take.take import Take
 from ..terms.reference import ExpectedPoints
-from .reference_alignment import AlignedReference, about_hips, align
+from .reference_alignment import AlignedReference, about_hips, align, of_performer
 from .reference_placement import SeenPoints, place
 
 USUAL_STD_M = {
@@ -42,12 +42,13 @@ STD_M = np.array([USUAL_STD_M[name.partition(".")[0]] for name in HUMAN.point_na
 LIMBS = np.array([name.startswith(("elbow", "wrist", "knee", "ankle")) for name in HUMAN.point_names])
 
 
-ALONG = 2.2  # error along the line of sight, in those across it
+ALONG = 2.2  # usual error along the line of sight, in those across it
+HINT_STD_M = 0.1  # of a point that the keypoints' own network guesses, along it
+SURE_M = 0.1  # mean error of a point up to which it is no worse than poses that are found in libraries
 FACTORS = 0.7, 3.0  # least and largest factor on the usual error
 KEYFRAME_WIDTH = 4.0  # error of its keyframes, in a usual difference between performers
 LEAST_GAIN = 0.29  # right motions cost .1 to .3 of what they cost at other times, others more than .7
 OTHER_TIMES = 21
-USUAL_ERROR_M = float(STD_M.mean() * np.sqrt(2.0 + ALONG**2))  # of a point in space
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +58,7 @@ class ReferenceEvidence:
     expected: ExpectedPoints
     keyframes: tuple[Keyframe, ...]  # found in it, away from posed ones
     left_out: BoolArray  # (F,) where it is of something else
-    factor: float  # its error in usual ones
+    error_m: float  # usual error of a point
     gain: float  # 1 less its cost relative to that of the same motion at other times
     name: str  # for sentences
     notes: tuple[str, ...]  # sentences for people
@@ -65,7 +66,12 @@ class ReferenceEvidence:
     @property
     def confidence(self) -> float:
         """Probability that its postures are right to 10 cm."""
-        return _confidence(self.factor)
+        return _confidence(self.error_m)
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether its postures are worth more than such as are found in libraries."""
+        return self.error_m <= SURE_M and not self.left_out.any()
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,11 +103,23 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
             f"other times ({gain:.2f}); it must be of this clip"
         )
         return NoReference((other,))
+    off_m, mirrored = _off_hints_m(take, keypoints, aligned, seen)
+    if mirrored:
+        turned = (
+            f"{name}: is set aside, since it has near for far: its mirror image is nearer in depth to "
+            "what the keypoints' network guesses"
+        )
+        return NoReference((turned,))
     left_out = _left_out(aligned, usual, tracks.time_s)
     # 0.09: of the local quadratic that takes its jitter away
     points = smoothed(aligned.points, tracks.time_s, 0.09)
     points[left_out] = np.nan
-    factor = error_factor(aligned, seen)
+    factor = error_factor(aligned, seen, tracks.time_s)
+    along = max(
+        float(np.sqrt(np.mean(factor**2))),
+        float(np.sqrt(max(off_m**2 - HINT_STD_M**2, 0.0)) / (ALONG * np.sqrt(np.mean(STD_M**2)))),
+    )
+    along = min(along, FACTORS[1])
     hips = aligned.hips
     if posed:
         index = np.array([key.index for key in posed])
@@ -110,22 +128,23 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
         known = np.isfinite(offset).all(axis=(1, 2))
         if known.any():
             index, offset, middle = index[known], offset[known], (true - about_hips(true))[known, 0]
-            off = (_whitening(take, hips, STD_M)[index] @ offset[..., None])[..., 0]
+            off = (_whitening(take, hips, factor, along)[index] @ offset[..., None])[..., 0]
             squared = np.mean(off**2, axis=(1, 2))
-            # 3.0: posed keyframes that the error in the picture weighs as much as
-            learned = np.sqrt((3.0 * factor**2 + squared.sum()) / (3.0 + len(squared)))
-            factor = float(np.clip(learned, *FACTORS))
+            # 3.0: posed keyframes that what is seen weighs as much as
+            scale = float(np.sqrt((3.0 + squared.sum()) / (3.0 + len(squared))))
+            factor, along = np.clip(scale * factor, *FACTORS), float(np.clip(scale * along, *FACTORS))
             share = _bias(tracks.time_s[index], tracks.time_s)
             points = points + np.einsum("fk,kpi->fpi", share, offset)
             hips = hips + share @ (middle - hips[index])
     # 0.4 s: time in which its errors fade
     known_points = np.where(aligned.known[:, None, None], points, np.nan)
-    expected = ExpectedPoints(known_points, _whitening(take, hips, factor * STD_M), 0.4)
-    matched = Matched(REFERENCE, name, False, _confidence(factor))
+    expected = ExpectedPoints(known_points, _whitening(take, hips, factor, along), 0.4)
+    error_m = float(STD_M.mean() * np.sqrt(2.0 * np.mean(factor**2) + (ALONG * along) ** 2))
+    matched = Matched(REFERENCE, name, False, _confidence(error_m))
     found = _keyframes(take, points + hips[:, None], posed, tracks.time_s, matched)
     notes = [
         f"{name}: a motion from elsewhere is followed; its points are about "
-        f"{100.0 * factor * USUAL_ERROR_M:.0f} cm off by what is seen"
+        f"{100.0 * error_m:.0f} cm off by what is seen"
     ]
     for count, what in (
         (aligned.exchanged.sum(), "left and right are exchanged back"),
@@ -137,11 +156,17 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
             f"{name}: is {pluralize(abs(aligned.lag), 'frame')} {'late' if aligned.lag > 0 else 'early'}, "
             "which is taken back"
         )
-    return ReferenceEvidence(expected, found, left_out, factor, gain, name, tuple(notes))
+    return ReferenceEvidence(expected, found, left_out, error_m, gain, name, tuple(notes))
 
 
 def with_reference(take: Take, reference: ReferenceEvidence) -> Take:
-    """The take with the keyframes found in its reference motion; others found stay where it is silent."""
+    """The take with the keyframes found in its reference motion; others found stay where it is silent.
+
+    One that is not sure brings none beside others.
+    """
+    others = [key for key in take.keyframes if key.matched is None or not key.matched.is_referred]
+    if not reference.is_sure and len(others) > 1 and any(key.matched is not None for key in others):
+        return replace(take, keyframes=tuple(others))
     kept = [
         key
         for key in take.keyframes
@@ -150,12 +175,12 @@ def with_reference(take: Take, reference: ReferenceEvidence) -> Take:
     return replace(take, keyframes=tuple(sorted((*kept, *reference.keyframes), key=lambda key: key.index)))
 
 
-def _confidence(factor: float) -> float:
-    """Probability that a network's posture is right to 10 cm, given its error in usual ones.
+def _confidence(error_m: float) -> float:
+    """Probability that a network's posture is right to 10 cm, given its usual error.
 
     Mean errors of single postures are spread by half an octave, about log-normally.
     """
-    return float(np.clip(ndtr(np.log(0.1 / (factor * USUAL_ERROR_M)) / 0.4), 0.02, 0.98))
+    return float(np.clip(ndtr(np.log(0.1 / error_m) / 0.4), 0.02, 0.98))
 
 
 def _is_own_guess(reference: ReferenceMotion, keypoints: Keypoints) -> bool:
@@ -185,12 +210,12 @@ def _left_out(aligned: AlignedReference, usual: float, time_s: Array) -> BoolArr
     return np.asarray(near > (1.0 - LEAST_GAIN) * usual)
 
 
-def _whitening(take: Take, hips: Array, std_m: Array) -> Array:
-    """(F, 13, 3, 3) inverse standard deviations, larger along the line of sight; `std_m` (13,) across."""
+def _whitening(take: Take, hips: Array, across: Array, along: float) -> Array:
+    """(F, 13, 3, 3) inverse standard deviations by errors across (F,) and along the view in usual ones."""
     sight = take.camera.sight(hips, np.arange(len(hips)))
-    along = sight[:, :, None] * sight[:, None, :]
-    shape = np.eye(3) - along * (1.0 - 1.0 / ALONG)
-    return np.asarray(shape[:, None] / std_m[:, None, None])
+    away = sight[:, :, None] * sight[:, None, :]
+    shape = (np.eye(3) - away) / across[:, None, None] + away / (ALONG * along)
+    return np.asarray(shape[:, None] / STD_M[:, None, None])
 
 
 def _keyframes(
@@ -246,17 +271,37 @@ def own_and_usual_cost(aligned: AlignedReference, seen: SeenPoints) -> tuple[flo
     return float(np.nanmean(place(some, part).cost)), max(float(np.median(others)), 1e-9)
 
 
-def error_factor(aligned: AlignedReference, seen: SeenPoints) -> float:
-    """The motion's error in usual ones, by how far limbs' points are off in the picture."""
+def error_factor(aligned: AlignedReference, seen: SeenPoints, time_s: Array) -> Array:
+    """(F,) the motion's error across the view in usual ones, by limbs' points in the picture."""
     squared = (aligned.placed.residual_m**2).sum(axis=-1)  # (F, A) of two axes
-    known = np.isfinite(squared).any(axis=0)
-    usual = seen.mean @ STD_M
-    limb = known & (seen.mean @ LIMBS > 0.99)
-    if not limb.any():
-        return 1.0
+    limb = np.isfinite(squared).any(axis=0) & (seen.mean @ LIMBS > 0.99)
+    share = squared[:, limb] / (seen.mean @ STD_M)[limb] ** 2
+    known = np.isfinite(share).any(axis=1)
+    if not known.any():
+        return np.ones(len(squared))
     # The median of two axes' square is 2 log 2 variances.
-    size = np.sqrt(np.nanmedian(squared[:, limb], axis=0) / (2.0 * np.log(2.0))) / usual[limb]
-    return float(np.clip(np.median(size), *FACTORS))
+    usual = np.zeros(len(share))
+    usual[known] = np.nanmedian(share[known], axis=1) / (2.0 * np.log(2.0))
+    # 0.4 s: its errors last so long
+    width = 0.4 / usual_step(time_s)
+    near = gaussian(usual, width) / np.maximum(gaussian(1.0 * known, width), 1e-9)
+    return np.clip(np.sqrt(near), *FACTORS)
+
+
+def _off_hints_m(
+    take: Take, keypoints: Keypoints, aligned: AlignedReference, seen: SeenPoints
+) -> tuple[float, bool]:
+    """How far it is from what the keypoints' own network guesses in depth [m], and whether it mirrors that.
+
+    0 where nothing is guessed.
+    """
+    hint = principal_keypoints(keypoints).hint_m if keypoints.names else np.full(aligned.points.shape, np.nan)
+    known = aligned.known & np.isfinite(hint).all(axis=(1, 2))
+    if not known.any():
+        return 0.0, False
+    away = -np.einsum("fj,fpj->fp", seen.rotation[known, :, 2], aligned.points[known])
+    guess = of_performer(take.body, about_hips(hint[known]))[..., 2]
+    return float(np.sqrt(np.mean((away - guess) ** 2))), bool((away * guess).sum() < 0.0)
 
 
 # --- Its jitter

@@ -32,7 +32,7 @@ def pose(session: Session) -> Job[Posed]:
         said = replace(said, notes=(*seen.take.reference.notes, *said.notes))
     if inputs.libraries is None:
         return Posed(seen, floor_m, None, said)
-    if isinstance(said, ReferenceEvidence) and not said.left_out.any():
+    if isinstance(said, ReferenceEvidence) and said.is_sure:
         take = with_reference(seen.take, said)
         found = referred_poses(take, said)
     else:

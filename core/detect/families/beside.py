@@ -10,7 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import Array, Image
-from ..hands import LENGTH_M, SMALLEST_PX, alike
+from ...body.skeleton import SIDES
+from ..hands import LENGTH_M, SMALLEST_PX, alike, hand_of
 from ..keypoints import People, SecondSource, confidences, mirrored_point
 from ..performer import FITS, person_size
 from ..pose_network import LAYOUT, Look, Pose
@@ -60,6 +61,7 @@ class Beside:
         self._guesses = hint is not None or look.depth_m is not None
         if hint is None:
             hint = np.zeros((len(look.pixel), 3))
+        meters = 1.0  # of a pixel
         if look.depth_m is not None:
             # Across the view it has pixels alone, whose size the own network's guess in space tells.
             seen = pose.pixel - pose.pixel[HIPS].mean(axis=0)
@@ -69,10 +71,18 @@ class Beside:
             hips = [names.index(f"hip.{side}") for side in "LR"]
             hint = np.column_stack([meters * look.pixel, look.depth_m])
             hint -= hint[hips].mean(axis=0)
-        hands = pose.hands
+        hands, others = pose.hands, look.hands
+        if look.fingers is not None:
+            space = look.fingers * [meters, meters, 1.0]
+            others = np.array(
+                [
+                    hand_of(points, own[0, :2], side)
+                    for points, own, side in zip(space, look.fingers, SIDES, strict=True)
+                ]
+            )
         large = pose.pixels_per_meter() * LENGTH_M >= SMALLEST_PX
-        if hands is not None and look.hands is not None and large:
-            hands = np.where(np.isfinite(hands), hands, look.hands)
+        if hands is not None and others is not None and large:
+            hands = np.where(np.isfinite(hands), hands, others)
         return replace(
             pose,
             hands=hands,

@@ -9,13 +9,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...arrays import Array
-from ..layouts import LAYOUTS, layout_of
+from ...body.skeleton import SIDES
+from ..layouts import HAND_POINTS, LAYOUTS, layout_of
 from ..pose_network import Look
 from .network import Network, Signature, Window, peaks
 
 BINS = 2  # of a pixel
 DEPTH_RANGE_M = 2.1744869  # of the first and of the last bin of depths from the hips
 LAYOUT_NAMES = ("coco17", "halpe26", "wholebody133")
+BODY, HANDS = slice(17), slice(91, 133)  # of whole bodies
+LEAST_SCORE = 0.5  # of a hand's points that show one, in the body's
 
 
 class SimCC(Network):
@@ -43,10 +46,17 @@ class SimCC(Network):
     def read(self, outputs: Sequence[Array], window: Window) -> Look:
         """See `Network`."""
         used = self.layout.numbers
-        (column, sure), (row, also) = (peaks(one[0, used]) for one in outputs[:2])
+        (column, sure), (row, also) = (peaks(one[0]) for one in outputs[:2])
         place = np.stack([column, row], axis=-1) / BINS + 0.5
-        depth = None
+        pixel, score = window.pixel(place), np.maximum(np.minimum(sure, also), 0.0)
+        depth = fingers = None
         if len(outputs) == 3:
             bins = outputs[2].shape[-1]
-            depth = (peaks(outputs[2][0, used])[0] / (0.5 * bins) - 1.0) * DEPTH_RANGE_M
-        return Look(window.pixel(place), np.maximum(np.minimum(sure, also), 0.0), depth_m=depth)
+            depth = (peaks(outputs[2][0])[0] / (0.5 * bins) - 1.0) * DEPTH_RANGE_M
+        if depth is not None and self.layout is LAYOUTS["wholebody133"]:
+            shape = (len(SIDES), HAND_POINTS, -1)
+            fingers = np.column_stack([pixel, depth])[HANDS].reshape(shape)
+            shown = score[HANDS].reshape(shape).mean(axis=(1, 2)) > LEAST_SCORE * score[BODY].mean()
+            fingers = np.where(shown[:, None, None], fingers, np.nan)
+        deep = None if depth is None else depth[used]
+        return Look(pixel[used], score[used], depth_m=deep, fingers=fingers)

@@ -1,14 +1,14 @@
 """A network of somebody's own looks at whom Keymark's follows; one that errs throughout is left out."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 import pytest
-from _drawn_clip import CIRCLE, Drawn
-from _networks import COLORS, METERS, draw_dots, instant_hmr, simcc
-from keymark.core.arrays import Array, Image
+from _drawn_clip import Drawn
+from _networks import METERS, DotNetwork, draw_dots, instant_hmr, simcc
+from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.core.detect.closer_look import CloserLook
 from keymark.core.detect.families.beside import Beside
@@ -26,35 +26,6 @@ from keymark.core.video.clip import Clip
 
 SIZE, FRAMES = (640, 360), 16
 COCO = LAYOUTS["coco17"]
-
-
-class DotNetwork:
-    """Keymark's own: it sees the dots about the middle of a crop, in the layout's colors."""
-
-    def __init__(self, layout: Layout) -> None:
-        self.names = layout.names
-
-    def __call__(self, picture: Image, crop: Crop) -> Pose:
-        """Look at a crop."""
-        rows, columns = np.nonzero(picture.max(axis=2) > 200)
-        inside = np.abs(np.column_stack([columns, rows]) - crop.center).max(axis=1) < 0.5 * crop.side
-        colors, place = picture[rows[inside], columns[inside], ::-1] / 255.0, {}
-        whole = True
-        for name, color in zip(self.names, COLORS, strict=False):
-            own = np.abs(colors - color).max(axis=1) < 0.1
-            if own.sum() > 20:
-                whole &= bool(np.ptp(columns[inside][own]) < 20)  # no two people
-                place[name] = np.array([columns[inside][own].mean(), rows[inside][own].mean()]) + 0.5
-        middle = np.mean(list(place.values()), axis=0) if place else crop.center
-        pixel = np.array([place.get(name, middle) for name in LAYOUT.names])
-        hint = np.column_stack([pixel - middle, np.zeros(len(pixel))]) * METERS / 200.0
-        side = CIRCLE * float(np.ptp(pixel, axis=0).max()) / 2.0
-        presence = float(whole and len(place) > 0.9 * len(self.names))
-        return Pose(pixel, np.full(len(pixel), 0.9), hint, presence, Crop(middle, max(side, 20.0)))
-
-    def each(self, looks: Sequence[tuple[Image, Crop]]) -> list[Pose]:
-        """Look at one crop after the other."""
-        return [self(*look) for look in looks]
 
 
 def moving(layout: Layout, frame: int, at: tuple[float, float]) -> Array:

@@ -11,15 +11,17 @@ from _networks import METERS, Builder, draw_dots, heat_maps, instant_hmr, simcc
 from keymark.core.arrays import Array
 from keymark.core.body.fingers import RESTING, finger_bones, palm_of
 from keymark.core.body.rotations import exponential, hinge
+from keymark.core.detect.families.beside import Beside
 from keymark.core.detect.families.instant_hmr import FROM_WRIST, LEFT
 from keymark.core.detect.families.instant_hmr import LAYOUT as MHR
 from keymark.core.detect.families.network import Box, Window
 from keymark.core.detect.families.table import open_network
-from keymark.core.detect.hands import alike
+from keymark.core.detect.hands import alike, no_hands
 from keymark.core.detect.keypoints import FACING, HAND_NUMBERS
 from keymark.core.detect.layouts import LAYOUTS
 from keymark.core.detect.onnx_file import LARGEST_BYTES, read_onnx
-from keymark.core.detect.pose_network import Look
+from keymark.core.detect.pose_network import LAYOUT as OWN
+from keymark.core.detect.pose_network import Crop, Look, Pose
 from keymark.core.errors import InputError
 from onnx import TensorProto, helper, numpy_helper
 
@@ -104,11 +106,12 @@ def test_points_in_space_are_right_down_and_away_about_the_hips(
     np.testing.assert_allclose(look.hint_m[:29], expected, atol=0.003 if changes.get("half") else 0.001)
 
 
-@pytest.mark.parametrize("side", ["L", "R"])
-def test_points_of_hands_in_space_are_hands(side: str, tmp_path: Path) -> None:
-    network = open_network(instant_hmr(tmp_path / "body.onnx", MHR.numbers))
-    flat, space, first = np.zeros((1, 70, 2)), np.zeros((1, 70, 3)), LEFT if side == "L" else 21
-    points, turn = [np.zeros(3)], exponential(np.array([0.2, -0.5, 0.4]))
+HAND_TURN = exponential(np.array([0.2, -0.5, 0.4]))
+
+
+def bent_hand(side: str) -> Array:
+    """(21, 3) points of a hand, its joints bent by .4 rad, before it is turned [m]."""
+    points = [np.zeros(3)]
     for name, start, end, axis in finger_bones(side):
         if ".1." in name:
             bend, at = np.eye(3), start
@@ -116,7 +119,21 @@ def test_points_of_hands_in_space_are_hands(side: str, tmp_path: Path) -> None:
         bend = bend @ hinge(axis, np.array(0.4))
         at = at + bend @ (end - start)
         points.append(at)
-    space[0, first + FROM_WRIST] = np.array(points) @ (turn @ FACING).T
+    return 0.15 * np.array(points)
+
+
+def assert_bent(hand: Array, side: str, within: float) -> None:
+    own = palm_of(bent_hand(side), side) @ RESTING[side].T
+    wanted = HAND_TURN @ FACING @ own @ FACING.T
+    np.testing.assert_allclose(exponential(hand[2:5]), wanted, atol=within)
+    np.testing.assert_allclose(hand[7:12], 0.4, atol=0.05)
+
+
+@pytest.mark.parametrize("side", ["L", "R"])
+def test_points_of_hands_in_space_are_hands(side: str, tmp_path: Path) -> None:
+    network = open_network(instant_hmr(tmp_path / "body.onnx", MHR.numbers))
+    flat, space, first = np.zeros((1, 70, 2)), np.zeros((1, 70, 3)), LEFT if side == "L" else 21
+    space[0, first + FROM_WRIST] = bent_hand(side) @ (HAND_TURN @ FACING).T
     flat[0, first + FROM_WRIST[0]] = 0.5, 0.0
     outputs = [np.zeros(1)] * 5
     outputs[network._flat], outputs[network._deep] = flat, space
@@ -124,9 +141,33 @@ def test_points_of_hands_in_space_are_hands(side: str, tmp_path: Path) -> None:
     assert hands is not None
     hand = hands["LR".index(side)]
     np.testing.assert_allclose(hand[:2], (168.0, 112.0))
-    own = palm_of(np.array(points), side) @ RESTING[side].T
-    np.testing.assert_allclose(exponential(hand[2:5]), turn @ FACING @ own @ FACING.T, atol=1e-6)
-    np.testing.assert_allclose(hand[7:12], 0.4, atol=0.05)
+    assert_bent(hand, side, 1e-6)
+
+
+@pytest.mark.parametrize("side", ["L", "R"])
+def test_whole_bodies_with_depths_have_hands_where_these_are_seen(side: str, tmp_path: Path) -> None:
+    network = open_network(simcc(tmp_path / "deep.onnx", 133, WHOLE.numbers[:29], deep=True))
+    first, per_m = 91 if side == "L" else 112, 300.0
+    place, sure = np.zeros((133, 3)), np.where(np.arange(133) < 17, 0.8, 0.1)
+    place[first : first + 21] = bent_hand(side) @ (HAND_TURN @ FACING).T
+    sure[first : first + 21] = 0.7
+    columns = [
+        2.0 * (96.0 + per_m * place[:, 0]),
+        2.0 * (128.0 + per_m * place[:, 1]),
+        (place[:, 2] / 2.1744869 + 1.0) * 288.0,
+    ]
+    outputs = [
+        (sure[:, None] * np.exp(-((np.arange(bins) - at[:, None]) ** 2) / 8.0))[None]
+        for at, bins in zip(columns, (384, 512, 576), strict=True)
+    ]
+    hint = np.random.default_rng(3).normal(size=(len(OWN.names), 3)) * 0.3
+    crop, none = Crop(np.zeros(2), 300.0), no_hands(1)[0]
+    pose = Pose(per_m * hint[:, :2], np.ones(len(hint)), hint, 0.9, crop, hands=none)
+    hands = Beside(network)._joined(pose, network.read(outputs, Window(np.zeros(2), 1.0))).hands
+    assert hands is not None and np.isnan(hands["RL".index(side)]).all()
+    hand = hands["LR".index(side)]
+    np.testing.assert_allclose(hand[:2], (96.5, 128.5), atol=0.1)
+    assert_bent(hand, side, 0.02)
 
 
 def test_a_body_network_is_told_where_the_box_is(tmp_path: Path) -> None:

@@ -112,7 +112,10 @@ def test_a_reference_motion() -> None:
     found = align(ReferenceMotion(1.1 * guess[:, :, [1, 2, 0]], None), BODY, seen, tracks.time_s, 30.0)
     assert_recorded("aligned", found.points, found.hips, [found.lag], share=1e-4)
     assert_recorded(
-        "aligned, worth", own_and_usual_cost(found, seen), [error_factor(found, seen)], share=1e-4
+        "aligned, worth",
+        own_and_usual_cost(found, seen),
+        error_factor(found, seen, tracks.time_s),
+        share=1e-4,
     )
 
 

@@ -28,7 +28,7 @@ from keymark.core.estimate.reference_evidence import (
 from keymark.core.estimate.reference_placement import SeenPoints, place
 from keymark.core.markers.reading import Reading
 from keymark.core.markers.region_tracks import RegionTracks
-from keymark.core.prior.keyframes import Keyframe
+from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.progress import run
 from keymark.core.take.presence import seen_take
 from keymark.core.take.reference import ReferenceMotion
@@ -196,7 +196,7 @@ def test_posed_keyframes_correct_it_nearby_and_take_the_place_of_found_ones() ->
     assert off_mm(posed, 43) < 0.9 * off_mm(plain, 43)
     for name, said in (("plain", plain), ("posed", posed)):
         assert_recorded(f"reference {name}", said.expected.points, share=1e-4)
-        assert_recorded(f"reference {name}, worth", [said.factor, said.gain, said.confidence], share=1e-3)
+        assert_recorded(f"reference {name}, worth", [said.error_m, said.gain, said.confidence], share=1e-3)
         assert_recorded(f"reference {name}, error", said.expected.whitening, share=1e-3)
     index = [key.index for key in posed.keyframes]
     assert min(abs(one - 40) for one in index) > 9
@@ -226,6 +226,41 @@ def test_the_detectors_own_guess_is_no_other_evidence() -> None:
     said = reference_evidence(seen_take(take_of(network(), hints=hints), Reading(TRACKS)))
     assert isinstance(said, NoReference)
     assert "came with the keypoints" in said.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("depth", "error_m", "sure"), [(1.0, 0.067, True), (4.0, 0.156, False), (-1.0, 0.0, False)]
+)
+def test_how_far_it_errs_in_depth_is_told_by_the_guess_of_the_keypoints(
+    depth: float, error_m: float, sure: bool
+) -> None:
+    rng = np.random.default_rng(8)
+    rotation, _ = CAMERA.pose()
+    away = -rotation[:, 2]
+    names = [KEYPOINTS.names.index(name) if name != "head" else 0 for name in HUMAN.point_names]
+    hints = np.full((FRAMES, len(KEYPOINTS.names), 3), np.nan)
+    true = about_hips(POINTS)
+    hints[:, names] = true @ rotation * [1.0, -1.0, -1.0] + rng.normal(size=true.shape) * [0.03, 0.03, 0.1]
+    wrong = 0.6 * lasting(rng, POINTS.shape) * STD_M[:, None]
+    wrong += (abs(depth) - 1.0) * 2.2 * (wrong @ away)[..., None] * away
+    if depth < 0.0:
+        wrong -= 2.0 * (true @ away)[..., None] * away
+    said = reference_evidence(seen_take(take_of(about_hips(true + wrong), hints=hints), Reading(TRACKS)))
+    if depth < 0.0:
+        assert isinstance(said, NoReference) and "near for far" in said.notes[0]
+        return
+    assert isinstance(said, ReferenceEvidence)
+    assert said.error_m == pytest.approx(error_m, rel=0.1) and said.is_sure == sure
+    take = take_of(network(), (0, 69))
+    found = replace(
+        take,
+        keyframes=(
+            *take.keyframes[:1],
+            replace(said.keyframes[0], index=30, matched=Matched("composed", "", False, 0.6)),
+        ),
+    )
+    kept = [key.index for key in with_reference(found, said).keyframes]
+    assert (kept == [0, 30]) != sure
 
 
 def test_a_take_with_nothing_posed_follows_it_and_one_set_aside_changes_nothing() -> None:
