@@ -1,6 +1,6 @@
 """The stages of *Animate*: each does what its step's own operators do, and keeps its result in the scene."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 from bpy.types import Context, Object, Operator, PropertyGroup, Scene
-from mathutils import Vector
 
 from ...core.errors import InputError
 from ...core.files.fields import listed
@@ -253,8 +252,9 @@ def _opened(context: Context, file: str) -> Object:
 def _hide_what_stands_before(context: Context, take: PropertyGroup) -> "Job[None]":
     """Hide, in the view layer, objects of others between the camera and the performer; Alt H shows them."""
     scene, layer = context.scene, context.view_layer
-    own = set(_of_performers(take))
     actor = take.armature
+    performers = filter(None, [actor, *(character.armature for character in take.characters)])
+    own = {each for root in performers for each in (root, *moved_by(scene, root))}
     for share in SEEN_SHARES:
         yield Progress("Clearing the view", float(share))
         scene.frame_set(round(scene.frame_start + share * (scene.frame_end - scene.frame_start)))
@@ -262,23 +262,12 @@ def _hide_what_stands_before(context: Context, take: PropertyGroup) -> "Job[None
         for bone in actor.pose.bones:
             target = actor.matrix_world @ bone.head
             for _ in range(MOST_HIDDEN):
-                before = _first_between(context, eye, target)
+                away = target - eye
+                hit = scene.ray_cast(
+                    context.evaluated_depsgraph_get(), eye, away.normalized(), distance=away.length
+                )
+                before = hit[4].original if hit[0] and hit[4] is not None else None
                 if before is None or before in own or before.hide_get(view_layer=layer):
                     break
                 before.hide_set(True, view_layer=layer)
                 layer.update()
-
-
-def _first_between(context: Context, eye: Vector, target: Vector) -> Object | None:
-    away = target - eye
-    graph = context.evaluated_depsgraph_get()
-    hit, _, _, _, found, _ = context.scene.ray_cast(graph, eye, away.normalized(), distance=away.length)
-    return found.original if hit and found is not None else None
-
-
-def _of_performers(take: PropertyGroup) -> Iterator[Object]:
-    """The actor and the characters with what they move."""
-    roots = [take.armature, *(character.armature for character in take.characters)]
-    for root in filter(None, roots):
-        yield root
-        yield from moved_by(take.id_data, root)

@@ -195,7 +195,6 @@ class SceneEvidence:
 
     @property
     def has_keypoints(self) -> bool:
-        """Whether there is any source of keypoints."""
         return bool(self.files or self.tracks or self.clicks)
 
     def reference_motion(self) -> "ReferenceMotion | None":

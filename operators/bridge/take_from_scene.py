@@ -120,7 +120,6 @@ class FrameInFootage:
 
     @property
     def styles(self) -> tuple[MarkerStyle, ...]:
-        """The markers."""
         return self.evidence.markers
 
     @property

@@ -1,12 +1,11 @@
 """Blender's camera view: zoom and offset that show the whole footage beside the sidebar, not under it."""
 
-from collections.abc import Iterator
 from functools import partial
 from math import isclose, sqrt
 
 import bpy
 from bpy.app import timers
-from bpy.types import Area, Camera, Context, Object, Region, RenderSettings, Scene, SpaceView3D, WindowManager
+from bpy.types import Area, Camera, Context, Object, Region, RenderSettings, Scene, SpaceView3D
 
 from ..shell.takes import find_take
 
@@ -92,14 +91,6 @@ def camera_view(
     factor = ((sqrt(2.0) + zoom / 50.0) / 2.0) ** 2
     away = (0.5 * (region_size[0] - left - right), 0.5 * (region_size[1] - bottom - top))
     return zoom, (away[0] / (2.0 * factor * region_size[0]), away[1] / (2.0 * factor * region_size[1]))
-
-
-def viewports(manager: WindowManager) -> Iterator[SpaceView3D]:
-    """Yield the open 3D viewports."""
-    for window in manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                yield area.spaces.active
 
 
 def look_through(space: SpaceView3D, scene: Scene, camera: Object) -> None:

@@ -18,7 +18,6 @@ from .properties import confirm_placement
 if TYPE_CHECKING:
     import bpy
 
-    from ...core.camera.camera import Camera
     from ...core.camera.camera_evidence import CameraEvidence
     from ...core.camera.camera_fit import CameraFit
 
@@ -188,11 +187,6 @@ def show(drawing: Drawing | None) -> None:
     """Let the overlays draw these lines from now on; None ends the drawing."""
     global _running
     _running = drawing
-
-
-def current_camera(drawing: Drawing | None) -> "Camera | None":
-    """The camera that the lines show; None where there is nothing yet."""
-    return None if drawing is None or drawing.fit is None else drawing.fit.camera
 
 
 # --- A camera that was found: given to the take's camera, and said in words

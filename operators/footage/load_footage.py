@@ -11,7 +11,7 @@ from ...core.errors import InputError
 from ...core.markers.region_tracks import is_variable_frame_rate
 from ..bridge.footage import attach_footage, clip_path, is_guess
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
-from ..shell.base_operator import BaseOperator, browse, chosen_file, footage, idle, of_take, warn
+from ..shell.base_operator import BaseOperator, browse, chosen_file, footage, idle, of_context, of_take, warn
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.notes import give_notices
 from ..shell.results import clear_review
@@ -159,9 +159,7 @@ def _camera_for(take: PropertyGroup, clip: MovieClip) -> Object | None:
 # --- A take's footage: loaded, found again or used from this file, and its guessed camera confirmed
 
 
-def any_clip(_context: Context, _state: object) -> str | None:
-    """The file has a clip."""
-    return None if bpy.data.movieclips else "This file has no clip; load the footage"
+any_clip = of_context(lambda _: bpy.data.movieclips, "This file has no clip; load the footage")
 
 
 class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):

@@ -15,7 +15,7 @@ from ..bridge.scene_frames import Pose, pose_of, restore_pose
 from ..follow.properties import segment_title
 from ..overlays.motion import window
 from ..overlays.tools import Handles, show_keys
-from ..shell.base_operator import BaseOperator, actor, all_met, call, idle, reported
+from ..shell.base_operator import BaseOperator, actor, all_met, call, idle, of_context, reported
 from ..shell.fields import Choice, Switch, Vector
 from ..shell.footage_view import NAVIGATION, WorldInRegion, ui_scale, view_under
 from ..shell.job_progress import job_is_running
@@ -139,10 +139,10 @@ HOVER_KEYS = "{joint}   |   {keys}"
 DRAG_KEYS = "{joint}   |   Ctrl: In Depth, Up Is Away   |   Shift: Precise   |   Esc, Right Click: Cancel"
 
 
-def not_dragging(context: Context, _state: object) -> str | None:
-    """Joints are not being dragged already."""
-    running = job_is_running(context, DRAGGING)
-    return "Joints can be dragged already; Enter in the viewport ends it" if running else None
+not_dragging = of_context(
+    lambda context: not job_is_running(context, DRAGGING),
+    "Joints can be dragged already; Enter in the viewport ends it",
+)
 
 
 class KEYMARK_OT_drag_joints(bpy.types.Operator):

@@ -4,7 +4,7 @@ import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
 from ...core.errors import pluralize
-from ..shell.panel import Popover, RowList, draw_sentence
+from ..shell.panel import Popover, RowList, draw_sentence, right_end
 from ..shell.takes import active_take
 from .registry import chosen_entry, own_folder
 
@@ -19,8 +19,7 @@ class KEYMARK_UL_shelf(RowList, bpy.types.UIList):
         icon = "ERROR" if item.problem else "USER" if item.is_own else "PACKAGE"
         row.label(text=item.title, translate=False, icon=icon)
         if not item.problem:
-            facts = row.row()
-            facts.alignment = "RIGHT"
+            facts = right_end(row)
             facts.active = False
             facts.label(text=str(item.postures), translate=False)
 

@@ -153,7 +153,7 @@ def _frame_changed(scene: Scene, _depsgraph: Depsgraph | None = None) -> None:
     """Make the masks of the scene's current frame; in playback only where the last ones were fast."""
     global _cost_s
     if not bpy.context.window_manager.keymark_show_masks or bpy.app.is_job_running("RENDER"):
-        return
+        return  # as in the background, where nobody has shown them
     played = any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
     if played and not is_fast(_cost_s, scene):
         return  # `draw` shows none that are of another frame
@@ -173,17 +173,10 @@ def _stopped(scene: Scene, _depsgraph: Depsgraph | None = None) -> None:
     _frame_changed(scene)
 
 
-def register() -> None:
-    """Follow the scene's frame, unless Blender runs in the background."""
-    if not bpy.app.background:
-        bpy.app.handlers.frame_change_post.append(_frame_changed)
-        bpy.app.handlers.animation_playback_post.append(_stopped)
+HANDLERS = {"frame_change_post": _frame_changed, "animation_playback_post": _stopped}
 
 
-def unregister() -> None:
-    """Stop following it; release textures and open files."""
-    if _frame_changed in bpy.app.handlers.frame_change_post:
-        bpy.app.handlers.frame_change_post.remove(_frame_changed)
-        bpy.app.handlers.animation_playback_post.remove(_stopped)
+def detach() -> None:
+    """Release textures and open files."""
     _textures.clear()
     clear_previews()

@@ -190,7 +190,6 @@ class Shown:
 
     @property
     def colors(self) -> list[tuple[float, float, float]]:
-        """The colors of all markers."""
         chosen = {marker.name: tuple(marker.color) for marker in self.take.markers}
         return [chosen.get(name, (0.8, 0.8, 0.8)) for name in self.review.marker_names]
 

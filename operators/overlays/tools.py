@@ -13,12 +13,12 @@ from ...core.camera.camera_evidence import FloorGrid, floor_grid
 from ..bridge.actor_bones import joint_places
 from ..bridge.footage import still_camera
 from ..footage.camera_view import free_box
-from ..footage.found_camera import HINTS, current_camera, is_found, running, values
-from ..overlays import drawing
+from ..footage.found_camera import HINTS, is_found, running, values
 from ..shell.footage_view import FootageView, WorldInRegion, footage_view, shown_request
 from ..shell.results import LruCache
 from ..shell.take_state import TakeState
 from ..shell.takes import find_take, footage_of, redraw_footage
+from . import drawing
 from .drawing import (
     CANDIDATE_COLORS,
     CORE,
@@ -150,7 +150,8 @@ def draw_floor_grid(context: Context) -> list[Item]:
     view = _view(context)
     if view is None:
         return []
-    camera = current_camera(tool) or still_camera(footage_of(context.scene, take))
+    shown = None if tool is None or tool.fit is None else tool.fit.camera
+    camera = shown or still_camera(footage_of(context.scene, take))
     lens = (camera.lens_mm, camera.sensor_width_mm, *camera.resolution, camera.shift_x, camera.shift_y)
     key = repr((lens, tuple(camera.distortion), np.asarray(camera.matrix_world).tolist()))
     grid = _grids.known(key, lambda: floor_grid(camera))

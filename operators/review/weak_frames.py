@@ -9,7 +9,7 @@ from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..bridge.actor_bones import evaluated
 from ..bridge.scene_frames import at_scene_frame, show_frame, showing_action
-from ..footage.camera_view import look_through, viewports
+from ..footage.camera_view import look_through
 from ..shell.base_operator import (
     BaseOperator,
     Unchanged,
@@ -26,7 +26,7 @@ from ..shell.fields import Choice
 from ..shell.keyed_frames import new_keyframe_action, straighten_unposed
 from ..shell.panel import RowList, draw_sentence
 from ..shell.take_state import TakeState
-from ..shell.takes import active_take
+from ..shell.takes import active_take, areas
 
 
 class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
@@ -167,7 +167,8 @@ class KEYMARK_OT_look_from_side(BaseOperator, bpy.types.Operator):
 
     def run(self, context: Context) -> None:
         take, own = active_take(context.scene), context.space_data
-        spaces = [own] if isinstance(own, bpy.types.SpaceView3D) else list(viewports(context.window_manager))
+        everywhere = [area.spaces.active for area in areas(context, "VIEW_3D")]
+        spaces = [own] if isinstance(own, bpy.types.SpaceView3D) else everywhere
         for space in spaces:
             if space.region_3d.view_perspective != "CAMERA":
                 look_through(space, context.scene, take.camera)

@@ -104,11 +104,6 @@ def pixel_under(
     return (float(x), float(y)) if 0.0 <= x < view.size[0] and 0.0 <= y < view.size[1] else None
 
 
-def shows_footage(context: Context, take: PropertyGroup) -> bool:
-    """Whether any editor of the window shows the footage."""
-    return next(_views(context, take), None) is not None
-
-
 def _camera_view(scene: Scene, take: PropertyGroup, space: SpaceView3D, region: Region) -> FootageView | None:
     camera = space.camera if space.use_local_camera else scene.camera
     view = space.region_3d
@@ -332,7 +327,7 @@ class ClickSequence:
         """Begin to ask, where an editor of the window shows the footage."""
         take = active_take(context.scene)
         with reported(self):
-            if not shows_footage(context, take):
+            if next(_views(context, take), None) is None:
                 raise InputError(
                     "look through the take's camera first (Numpad 0), or open the clip in a Movie Clip editor"
                 )

@@ -243,9 +243,21 @@ class StepPanel(TakePanel):
         state = TakeState(active_take(context.scene))
         header, body = self.layout.panel_prop(context.window_manager.keymark_steps, self.step)
         header.label(text=self.bl_label)
-        self._draw_state(header, context, state)
-        if body is None:
-            self._draw_action(header, context, state)
+        # What the step has come to, if it fits, or that something is wrong.
+        right = right_end(header)
+        right.active = False
+        wrong = bool(state.notices(self.step)) or self.is_wrong(state)
+        is_behind = STEPS.index(self.step) < STEPS.index(state.next[0])
+        icon = "ERROR" if wrong else "CHECKMARK" if is_behind else "NONE"
+        right.label(text=self.summary(state) if is_roomy(context) else "", icon=icon, translate=False)
+        if body is None:  # what is next in a folded step, where it can be pressed; or that it runs
+            action, text = self.action(state)
+            if action and not draw_progress(header, context, action):
+                group, _, name = action.partition(".")
+                if getattr(getattr(bpy.ops, group), name).poll():
+                    words = text if is_roomy(context) else ""
+                    # At the end, else it is cut before the rest of the line.
+                    right_end(header).operator(action, text=words, icon="PLAY", translate=False)
             return
         if self.options:
             header.popover(self.options, text="", icon="PREFERENCES")
@@ -253,26 +265,6 @@ class StepPanel(TakePanel):
             draw_sentence(body, context, sentence, "ERROR")
         property_column(body)
         self.draw_step(context, body, state)
-
-    def _draw_state(self, header: UILayout, context: Context, state: TakeState) -> None:
-        """Draw at the header's end what the step has come to, if it fits, or that something is wrong."""
-        right = header.row()
-        right.alignment = "RIGHT"
-        right.active = False
-        wrong = bool(state.notices(self.step)) or self.is_wrong(state)
-        icon = "ERROR" if wrong else "CHECKMARK" if state.is_behind(self.step) else "NONE"
-        right.label(text=self.summary(state) if is_roomy(context) else "", icon=icon, translate=False)
-
-    def _draw_action(self, header: UILayout, context: Context, state: TakeState) -> None:
-        """Draw what is next in a step that is folded, where it can be pressed; or that it runs."""
-        action, text = self.action(state)
-        if not action or draw_progress(header, context, action):
-            return
-        group, _, name = action.partition(".")
-        if getattr(getattr(bpy.ops, group), name).poll():
-            button = header.row()
-            button.alignment = "RIGHT"  # else it is cut before the rest of the line
-            button.operator(action, text=text if is_roomy(context) else "", icon="PLAY", translate=False)
 
     @abstractmethod
     def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:

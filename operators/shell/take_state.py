@@ -352,6 +352,3 @@ class TakeState:
         else:
             found = "reconstruct", "review, then a character"
         return found
-
-    def is_behind(self, step: str) -> bool:
-        return STEPS.index(step) < STEPS.index(self.next[0])
