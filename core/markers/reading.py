@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..errors import InputError
 from ..files.digest import digest, file_fingerprint
-from ..video.album import Album, Glimpses, Watch, watch_clip
+from ..video.album import Album, Glimpses, Watch, WatchedClip
 from ..video.clip import Clip
 from ..video.frame_checks import NO_FINDINGS, FrameChecks, FrameFindings
 from ..video.image_sequence import find_images
@@ -187,7 +187,7 @@ def read_clip(
             tracks = without_tracks(assign_detections(seen, styles, expected), kept.frame_findings.repeated)
             return replace(kept, tracks=tracks, key=key)
     album, checks, glimpses = Album() if with_album else None, FrameChecks(), Glimpses.of(clip)
-    watched = watch_clip(clip, checks, album, glimpses, watch)
+    watched = WatchedClip(clip.path, clip.source, checks=checks, album=album, glimpses=glimpses, watch=watch)
     seen = None
     try:
         if styles:

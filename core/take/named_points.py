@@ -32,7 +32,12 @@ class PointTable:
 
 def one_subject(table: PointTable, path: Path, subject: str | None) -> tuple[PointTable, tuple[str, ...]]:
     """The points of one prefix alone, and notes; where some have a prefix, those without are another's."""
-    table = _with_prefixes(table)
+    if _missing(table) and not any(":" in name for name in table.names):
+        for sign in "_.|/- ":  # behind prefixes, as in Anna_LKnee
+            named = replace(table, names=tuple(name.replace(sign, ":", 1) for name in table.names))
+            if not all(_missing(part) for prefix, part in _by_prefix(named).items() if prefix):
+                table = named
+                break
     parts = _by_prefix(table)
     if len(parts) == 1 and subject is None:
         return table, ()
@@ -59,18 +64,6 @@ def one_subject(table: PointTable, path: Path, subject: str | None) -> tuple[Poi
             f"{'; '.join(lacking)}"
         )
     return list(people.values())[index], notes
-
-
-def _with_prefixes(table: PointTable) -> PointTable:
-    """The table with colons behind prefixes that end in another sign, as in Anna_LKnee."""
-    if not _missing(table) or any(":" in name for name in table.names):
-        return table
-    for sign in "_.|/- ":
-        named = replace(table, names=tuple(name.replace(sign, ":", 1) for name in table.names))
-        people = [part for prefix, part in _by_prefix(named).items() if prefix]
-        if not all(map(_missing, people)):
-            return named
-    return table
 
 
 def _by_prefix(table: PointTable) -> dict[str, PointTable]:

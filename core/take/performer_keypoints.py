@@ -69,7 +69,12 @@ def performer_keypoints(take: Take, tracks: RegionTracks | None = None) -> Keypo
             expected = _expected(take, tracks, hand, points, seen, frames)
             if expected is not None or people.most_people > 1:
                 chosen = choose_performer(seen, expected, take.fps)
-                if _is_somebody_else(take, people, chosen):
+                fits = [  # of posed keyframes that show people, whether one of them is the performer
+                    chosen[key.index] != NOBODY
+                    for key in take.keyframes
+                    if key.index < len(people.frames) and len(people.frames[key.index].pixel)
+                ]
+                if len(fits) >= FEWEST_KEYFRAMES and float(np.mean(fits)) < FEWEST_FITTING:
                     chosen = np.full(frames, NOBODY, dtype=np.intp)
                     notes += (
                         f"{people.source}: nobody in it is where most of the posed keyframes have the "
@@ -113,17 +118,6 @@ def people_of(people: People, number: int, fps: float) -> People:
         for frame, row in zip(people.frames, chosen, strict=True)
     )
     return replace(people, frames=frames)
-
-
-def _is_somebody_else(take: Take, people: People, chosen: IndexArray) -> bool:
-    """Whether most posed keyframes say that none of the people is the performer."""
-    fits = [
-        chosen[keyframe.index] != NOBODY
-        for keyframe in take.keyframes
-        if keyframe.index < len(people.frames)
-        if len(people.frames[keyframe.index].pixel)
-    ]
-    return len(fits) >= FEWEST_KEYFRAMES and float(np.mean(fits)) < FEWEST_FITTING
 
 
 def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: int) -> Keypoints:

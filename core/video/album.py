@@ -184,16 +184,16 @@ def unpacked(arrays: Mapping[str, NDArray[Any]]) -> dict[int, Image]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _WatchedClip(Clip):
+class WatchedClip(Clip):
     """A clip that passes every frame to checks, album, glimpses and `watch` before yielding it."""
 
     checks: FrameChecks
     album: Album | None
     glimpses: Glimpses
-    watch: Watch | None
+    watch: Watch | None = None
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
-        """See `Clip.frames`; blank ones are not kept in the album."""
+        """See `Clip.frames`; blank ones are not kept."""
         for index, time_s, image in self.source.frames():
             if self.checks.add(index, image):
                 self.glimpses.add(index, image)
@@ -202,13 +202,6 @@ class _WatchedClip(Clip):
             if self.watch is not None:
                 self.watch(index, image)
             yield index, time_s, image
-
-
-def watch_clip(
-    clip: Clip, checks: FrameChecks, album: Album | None, glimpses: Glimpses, watch: Watch | None = None
-) -> Clip:
-    """The clip with what is to see its frames while they are read in order."""
-    return _WatchedClip(clip.path, clip.source, checks=checks, album=album, glimpses=glimpses, watch=watch)
 
 
 TAIL_PERCENT = 2.0  # share of the changes at either edge that are not the performer's

@@ -167,7 +167,17 @@ def find_images(path: Path) -> list[Path] | None:
         if not found:
             kinds = ", ".join(sorted(extension[1:] for extension in EXTENSIONS))
             raise InputError(f"{path}: the folder holds no image; it must hold {kinds} files")
-        return _only_sequence(path, found)
+        sequences: dict[tuple[str, str], list[Path]] = {}
+        for image in found:
+            sequences.setdefault(stem_of_number(image) or ("", image.name), []).append(image)
+        several = sorted((own for own in sequences.values() if len(own) > 1), key=len, reverse=True)
+        if len(several) > 1:
+            raise InputError(
+                f"{path}: holds {len(several)} sequences of images, as {several[0][0].name} and "
+                f"{several[1][0].name}; name one by a pattern, as in img_####.png, or keep each in its own "
+                "folder"
+            )
+        return several[0] if several else found  # numbered ones without stray ones
     if path.suffix.lower() not in EXTENSIONS:
         return None
     if path.is_file():
@@ -191,22 +201,6 @@ def left_out(path: Path, images: Sequence[Path]) -> tuple[str, ...]:
     if not unused:
         return ()
     return ((f"{path}: holds also {listed(unused, 3)}, left out: not of the sequence from {images[0].name}"),)
-
-
-def _only_sequence(folder: Path, images: list[Path]) -> list[Path]:
-    """The numbered images of a folder without stray ones; all of them where none are numbered."""
-    sequences: dict[tuple[str, str], list[Path]] = {}
-    for image in images:
-        sequences.setdefault(stem_of_number(image) or ("", image.name), []).append(image)
-    several = sorted((found for found in sequences.values() if len(found) > 1), key=len, reverse=True)
-    if not several:
-        return images
-    if len(several) > 1:
-        raise InputError(
-            f"{folder}: holds {len(several)} sequences of images, as {several[0][0].name} and "
-            f"{several[1][0].name}; name one by a pattern, as in img_####.png, or keep each in its own folder"
-        )
-    return several[0]
 
 
 def is_image(path: Path) -> bool:

@@ -16,7 +16,7 @@ from keymark.core.detect.picture_check import PictureFinding, applied, check_by_
 from keymark.core.detect.pose_network import LAYOUT, NAME
 from keymark.core.errors import InputError
 from keymark.core.progress import run
-from keymark.core.video.album import GLIMPSES, Album, Glimpses, watch_clip
+from keymark.core.video.album import GLIMPSES, Album, Glimpses, WatchedClip
 from keymark.core.video.clip import Clip
 from keymark.core.video.frame_checks import FrameChecks
 
@@ -35,9 +35,9 @@ def glimpses() -> Glimpses:
 
 def seen_of(pictures: list[np.ndarray]) -> Glimpses:
     size = (pictures[0].shape[1], pictures[0].shape[0])
-    clip = Clip(Path("drawn.mp4"), cast(Any, Drawn(pictures, size=size)))
-    kept = Glimpses.of(clip)
-    for _ in watch_clip(clip, FrameChecks(), Album(), kept).frames():
+    drawn = cast(Any, Drawn(pictures, size=size))
+    kept = Glimpses.of(Clip(Path("drawn.mp4"), drawn))
+    for _ in WatchedClip(Path(), drawn, checks=FrameChecks(), album=Album(), glimpses=kept).frames():
         pass
     return kept
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from _drawn_clip import Drawn, write_video
-from keymark.core.video.album import Album, Glimpses, watch_clip
+from keymark.core.video.album import Album, Glimpses, WatchedClip
 from keymark.core.video.clip import Clip, FrameReader
 from keymark.core.video.frame_checks import FrameChecks
 
@@ -81,12 +81,8 @@ GRADIENTS = [
 
 def watched(album: Album) -> Clip:
     """A clip of them that fills an album."""
-    return watch_clip(
-        Clip(Path("drawn"), Drawn(GRADIENTS, fps=25.0, size=(640, 480))),
-        FrameChecks(),
-        album,
-        Glimpses(640, {}),
-    )
+    drawn = Drawn(GRADIENTS, fps=25.0, size=(640, 480))
+    return WatchedClip(Path(), drawn, checks=FrameChecks(), album=album, glimpses=Glimpses(640, {}))
 
 
 def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
