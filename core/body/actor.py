@@ -38,8 +38,7 @@ Segments = Annotated[
 class Actor(Record):
     """Segment lengths of one performer.
 
-    Raises:
-        InputError: A length is missing, unknown, not a number or outside 0.02 to 2 m.
+    InputError: A length is missing, unknown, not a number or outside 0.02 to 2 m.
     """
 
     segments_m: Segments = field(hash=False)
@@ -76,8 +75,7 @@ class Actor(Record):
     def from_stature(cls, stature_m: float) -> "Actor":
         """An actor of average proportions and the stature `stature_m` [m].
 
-        Raises:
-            InputError: The height is not between 0.5 and 3 m.
+        InputError: The height is not between 0.5 and 3 m.
         """
         if not (isfinite(stature_m) and 0.5 <= stature_m <= 3.0):
             raise InputError(f"actor height is {stature_m} m; a height between 0.5 and 3 m is valid")

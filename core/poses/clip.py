@@ -54,8 +54,7 @@ def pose_clip(
         frames: Indices of the frames to find keyframes at, instead of `keyframe_count` proposed ones.
         floor_open: An unknown floor is wherever the feet are; else it should be z = 0.
 
-    Raises:
-        InputError: There is no library, none has a posture, or neither a marker nor a keypoint is seen.
+    InputError: There is no library, none has a posture, or neither a marker nor a keypoint is seen.
     """
     usable = [library for library in libraries if library.postures]
     if not usable:

@@ -102,10 +102,7 @@ def tempering(time_s: Array) -> float:
 def posing_input(seen: SeenTake, keyframe_count: int | None = None) -> PosingInput:
     """Gather what a take has to find its poses by; pictures are not asked, nor what was found earlier.
 
-    `keyframe_count` is the number of frames to ask for; 10 per 100 frames where None.
-
-    Raises:
-        InputError: Neither a marker nor a keypoint is seen.
+    Frames to ask for are 10 per 100 where no count is given. InputError: no marker, no keypoint is seen.
     """
     take, tracks, keypoints, there = seen.take, seen.reading.tracks, seen.keypoints, seen.there
     check_followed(take)

@@ -35,16 +35,10 @@ def dragged(
     Wrists and ankles bend the limb, elbows and knees swing it about where wrist and ankle are, shoulders lean
     and turn the trunk over the feet, the head nods, and hips take the whole body along. All else stays.
 
-    Args:
-        body: The actor's body.
-        posture: A single posture.
-        point: Name of the principal point that is dragged; KeyError for another.
-        place: (3,) where to [m].
-        sight: (3,) unit direction in which the view looks there. Seen along it the joint comes to lie on
-            `place`; in depth it comes as near as lengths allow.
-        pushed: Whether it is dragged along the line of sight: then depth counts as much as the image.
-        floor_m: Height of the floor [m], through which no ankle is dragged: it stops there on its line of
-            sight, or above where the view looks level. None where it is not known.
+    Seen along `sight`, the unit direction (3,) in which the view looks, the joint called `point` comes to lie
+    on `place` (3,) [m]; in depth it comes as near as lengths allow. Where it is `pushed` along the line of
+    sight, depth counts as much as the image. No ankle is dragged through a known floor: it stops there on its
+    line of sight, or above where the view looks level. KeyError: the joint is no principal point.
     """
     moved = _dragged(body, posture, point, place, sight, pushed)
     stem, _, side = point.partition(".")

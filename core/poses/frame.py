@@ -104,8 +104,7 @@ def find_frame_poses(
 ) -> FramePoses:
     """Find the postures that a frame may show, by libraries, a known floor and what keyframes nearby tell.
 
-    Raises:
-        InputError: No library has a posture, or nothing is seen in the frame.
+    InputError: No library has a posture, or nothing is seen in the frame.
     """
     if shown.is_empty:
         raise InputError("neither a marker nor a keypoint is seen in the frame, so no posture can be found")

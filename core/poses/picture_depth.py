@@ -44,18 +44,10 @@ def put_right(
 ) -> Posture:
     """The likeliest posture that is seen as a person has put it right in the picture.
 
-    Args:
-        body: The take's body.
-        camera: The take's camera.
-        frame: Index of the frame in the clip, which a moving camera's place depends on.
-        found: What was found, before a person put it right.
-        shown: A posture about as it should be seen, from which to start.
-        places: By name of a point that a person has set, a place (3,) where the camera sees it [m]. The
-            others are seen about where `shown` has them.
-        confidence: Probability that the found depth is about right.
-        libraries: What is known of postures, asked where the lengths are the performer's own.
-        floor_m: Height of the floor in the world [m]; None where it is not known.
-        held: The point that is set just now, which comes to lie on its sight.
+    `found` is what it was before, its depth right with a probability of `confidence`; `shown` is about as it
+    should be seen, from which to start. `places` (3,) [m] are where the camera sees points that a person has
+    set, by name; the others are seen about where `shown` has them, and `held`, which is set just now, comes
+    to lie on its sight. `libraries` are asked where the lengths are the performer's own.
     """
     names = body.skeleton.point_names
     is_set = np.array([name in places for name in names])

@@ -87,8 +87,7 @@ class KnownPostures:
 def known_postures(body: Body, libraries: Sequence[Library]) -> KnownPostures:
     """The postures of some libraries on a body.
 
-    Raises:
-        InputError: No library has a posture.
+    InputError: No library has a posture.
     """
     batches, names, numbers = [], [], []
     for number, library in enumerate(libraries):

@@ -231,8 +231,7 @@ LARGEST_BYTES = 4 * 2**20
 def read_library(path: Path) -> Library:
     """Read a library file.
 
-    Raises:
-        InputError: The file is missing, no library, or invalid.
+    InputError: The file is missing, no library, or invalid.
     """
     return Library.from_json(read_json(path, LARGEST_BYTES), str(path))
 

@@ -44,8 +44,7 @@ def is_identifier(text: object) -> bool:
 def checked_identifier(text: object, what: str) -> str:
     """The text, if it is a valid identifier.
 
-    Raises:
-        InputError: It is invalid; `what` names it in the sentence.
+    InputError: It is invalid; `what` names it in the sentence.
     """
     if not isinstance(text, str) or not is_identifier(text):
         raise InputError(f"{what} is {shown(text)}; it must have {IDENTIFIER_RULE}")
