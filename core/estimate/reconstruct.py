@@ -6,7 +6,7 @@ from types import MappingProxyType
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from ..arrays import Array, BoolArray, chunks
+from ..arrays import Array, BoolArray, SingleArray, chunks
 from ..body.body_volume import limb_dofs, rested
 from ..body.human import ANKLES
 from ..body.kinematics import Body
@@ -250,7 +250,7 @@ def _motion(
     take: Take,
     tracks: RegionTracks,
     posture: Posture,
-    covariance: Array | None,
+    covariance: Array | SingleArray | None,
     method: str,
     diagnostics: dict[str, Array] | None = None,
     unseen: Array | None = None,
@@ -275,7 +275,9 @@ def _motion(
     )
 
 
-def point_covariance(body: Body, posture: Posture, covariance: Array, more: Array | None = None) -> Array:
+def point_covariance(
+    body: Body, posture: Posture, covariance: Array | SingleArray, more: Array | None = None
+) -> Array:
     """Covariance (F, P, 3, 3) [m²] of the principal points from the posture's (F, D, D).
 
     `more` (F, D): variances added to it.

@@ -12,7 +12,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array, BoolArray, SingleArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..camera.camera import Camera
@@ -57,7 +57,7 @@ class WholeClipResult:
     """The estimate of F frames."""
 
     posture: Posture  # a batch of F postures; the prior's where the performer is not there
-    covariance: Array  # (F, D, D) of the posture's own tangent; NaN where he is not there
+    covariance: SingleArray  # (F, D, D) of the posture's own tangent; NaN where he is not there
     residual_px: Array  # (F, M) predicted to observed centroids [px]; NaN where not compared
     problem: ClipProblem  # the problem it solves
     contours: ContourEvidence | None  # None where no background can be trusted
@@ -172,7 +172,8 @@ def _solve(
     refining = refine(problem, spans, states, album, contours)
     problem, states, contours = yield from scaled(refining, MARKERS_SHARE, REFINED_SHARE)
     dofs = data.body.skeleton.dof_count
-    covariance = np.full((problem.frames, dofs, dofs), np.nan)
+    # Half of what is kept of a frame, even in single precision.
+    covariance = np.full((problem.frames, dofs, dofs), np.nan, dtype=np.float32)
     outlined = None
     if contours is not None and contours.along is not None:
         outlined = np.zeros((problem.frames, len(contours.model.parts.segments)), dtype=bool)

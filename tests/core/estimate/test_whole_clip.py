@@ -1,6 +1,8 @@
 """The whole-clip estimate on footage whose truth is known because the region model itself filmed it."""
 
+import gc
 from dataclasses import replace
+from types import FunctionType, ModuleType
 
 import numpy as np
 import pytest
@@ -31,6 +33,22 @@ def solve(prior: Posture, tracks: RegionTracks) -> WholeClipResult:
             return stop.value
 
 
+def kept_bytes(result: WholeClipResult) -> int:
+    """Size of all arrays that a result keeps alive, each counted once."""
+    waiting, known, total = [result], set(), 0
+    while waiting:
+        one = waiting.pop()
+        if id(one) in known or isinstance(one, type | ModuleType | FunctionType):
+            continue
+        known.add(id(one))
+        waiting += gc.get_referents(one)
+        if isinstance(one, np.ndarray) and one.base is None:
+            total += one.nbytes
+        elif isinstance(one, np.ndarray):
+            waiting.append(one.base)
+    return total
+
+
 def prior_from(posed: Posture) -> Posture:
     """The interpolation of postures at the posed frames."""
     keyframes = tuple(Keyframe(index, posed[i]) for i, index in enumerate(POSED))
@@ -56,6 +74,13 @@ def test_footage_corrects_the_interpolation_between_exact_keyframes(exact: Whole
     after = point_error_m(exact.posture, TRUTH).mean()
     assert after < 0.6 * before
     assert after < 0.010
+
+
+def test_what_is_kept_of_a_frame_lets_ten_minutes_fit_into_memory(exact: WholeClipResult) -> None:
+    longer = np.concatenate([np.arange(FRAMES), np.arange(FRAMES)[::-1]])
+    result = solve(prior_from(TRUTH[np.array(POSED)])[longer], film(TRUTH[longer], 0.3))
+    a_frame = (kept_bytes(result) - kept_bytes(exact)) / FRAMES
+    assert 4 * BODY.skeleton.dof_count**2 < a_frame < 8_000
 
 
 def test_exact_keyframes_are_recognized_and_kept(exact: WholeClipResult) -> None:
