@@ -73,7 +73,8 @@ def held_against_clip(
                 "as of a program that is stuck; it must have one for every frame"
             )
         notes += (
-            f"{detected.where}: {len(again)} of {there + len(again)} results repeat the one before, as of a "
+            f"{detected.where}: {len(again)} of {there + len(again)} results "
+            f"{'repeats' if len(again) == 1 else 'repeat'} the one before, as of a "
             "program that looks at some frames only; each counts once",
         )
     # The file's name alone: notes go into results, which are the same in any folder.
@@ -269,7 +270,7 @@ def _fit_numbered(
         )
     missing = frame_count - sum(0 <= number - first < frame_count for number in numbers)
     if detected.complete and missing:
-        notes.append(f"{where}: lacks {missing} of {pluralize(frame_count, 'frame')}; nobody is seen in them")
+        notes.append(f"{where}: lacks {missing} of {pluralize(frame_count, 'frame')}; nobody is seen there")
     return Alignment(first, frame_count, tuple(notes))
 
 

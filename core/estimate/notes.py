@@ -1,4 +1,7 @@
-"""Notes on a take and its result for people, one sentence each."""
+"""Notes on a take and its result for people, one sentence each, and which of them exclude each other."""
+
+import re
+from collections.abc import Iterable
 
 from ..arrays import BoolArray
 from ..errors import frames_in_words
@@ -8,6 +11,62 @@ from ..take.take import Take
 from .clip_problem import KeyframeEvidence
 
 MOST_NAMED = 3  # largest number of frames that a note names
+
+LEFT_OUT = r"the keypoints of (?P<of>.+?) are .* left out"
+CAUSES = {
+    r"the clip is cut at": (
+        r"the whole picture changes at",
+        r": jumps to somebody else",
+        r" s are missing after frame",
+    ),
+    r"the clip is cut at [^;]*$": (r"the camera moves, by", r"its picture moves by up to"),
+    r"the camera moves, by": (
+        r"the lens is .* by keyframes and footage",
+        r"the keyframes differ from the footage",
+        r"is seldom where the keyframes put it",
+        r"contours were not followed",
+        r"lie far from where everything else has",
+    ),
+    r"where the picture is (on its side|upside down)": (
+        r"the lens is .* by keyframes and footage",
+        r"the keyframes differ from the footage",
+        r"is seldom where the keyframes put it",
+        r"never seen, as beyond the picture's edge",
+        r"no plausible pose explains",
+    ),
+    r"pictures? repeats? the one before": (r"results? repeats? the one before",),
+    r" s are missing after frame": (r"the clip has a variable frame rate",),
+    r"markers (?P<of>.+) have almost the same color": (
+        r"marker (?P<of>.+) is seldom where the keyframes put it",
+        r"marker (?P<of>.+) was found in .* frames only",
+    ),
+    r"its points lie where the person": (r": was found in pictures of",),
+    r"(?P<of>.+): is of a mirrored copy of the clip": (r"(?P<of>.+) takes left for right throughout",),
+    r"(?P<of>.+): nobody in it is where most of the posed keyframes": (LEFT_OUT,),
+    LEFT_OUT: (
+        r"(?P<of>.+): its points (lie|are) where the person",
+        r"(?P<of>.+): is of a mirrored copy of the clip",
+        r"(?P<of>.+): up to .* people in",
+        r"(?P<of>.+): .* somebody else than the performer",
+    ),
+    r"method ekf .* leaves keypoints aside": (r": up to .* people in", r": jumps to somebody else"),
+    r"the hands.* never seen, as beyond": (r"hand is surely seen in 0 % of the frames, the right in 0 %",),
+}
+"""What notes say, and what they then exclude: it follows from the same, or was taken for it. Notes on
+something else (`of`: a marker, a source of keypoints) stay."""
+
+
+def of_true_causes(notes: Iterable[str]) -> tuple[str, ...]:
+    """The notes without those that others exclude, each once."""
+    every, excluded = tuple(dict.fromkeys(notes)), set()
+    for cause, effects in CAUSES.items():
+        for said in filter(None, (re.search(cause, note) for note in every)):
+            about = said.groupdict().get("of", "")
+            for found in filter(None, (re.search(effect, note) for effect in effects for note in every)):
+                own = found.groupdict().get("of", "")
+                if own in about or about in own:
+                    excluded.add(found.string)
+    return tuple(note for note in every if note not in excluded)
 
 
 def marker_notes(tracks: RegionTracks, there: BoolArray) -> tuple[str, ...]:
@@ -71,7 +130,8 @@ def found_notes(take: Take) -> tuple[str, ...]:
     if not found:
         return ()
     referred = {match.is_referred for _, match in found}
-    origins = {True: "postures of a motion from elsewhere", False: "postures composed of all libraries"}
+    postures = "posture" if len(found) == 1 else "postures"
+    origins = {True: f"{postures} of a motion from elsewhere", False: f"{postures} composed of all libraries"}
     origin = " and ".join(words for kind, words in origins.items() if kind in referred)
     posed = len(take.keyframes) - len(found)
     if posed == 0 and referred == {True}:
@@ -84,7 +144,8 @@ def found_notes(take: Take) -> tuple[str, ...]:
             )
         ]
     else:
-        notes = [f"{posed} of {len(take.keyframes)} keyframes are posed; the others are {origin}"]
+        are, others = "is" if posed == 1 else "are", "other is a" if len(found) == 1 else "others are"
+        notes = [f"{posed} of {len(take.keyframes)} keyframes {are} posed; the {others} {origin}"]
     doubtful = [(keyframe, match) for keyframe, match in found if match.is_doubtful]
     if doubtful:
         worst = sorted(doubtful, key=lambda one: one[1].confidence)[:MOST_NAMED]

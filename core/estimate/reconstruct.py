@@ -28,7 +28,7 @@ from .belief import Belief
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
-from .notes import contour_notes, evidence_notes, filter_notes, found_notes, marker_notes
+from .notes import contour_notes, evidence_notes, filter_notes, found_notes, marker_notes, of_true_causes
 from .performer_placement import feet_over_floor_m, found_ankle_m
 from .reference_evidence import KEYFRAME_WIDTH, NoReference, ReferenceEvidence, with_reference
 from .sigma import LIMB_STD_RAD, place_depth_std_m, undetermined_covariance, unobserved_variance
@@ -111,7 +111,7 @@ def _reconstruct(
     floor_m: float | None,
 ) -> Job[Reconstruction]:
     take, reading, keypoints, there = shown.take, shown.reading, shown.keypoints, shown.there
-    notes, tracks, referred, shaken = take.notes, reading.tracks, None, shown.camera_notes
+    notes, tracks, referred = take.notes, reading.tracks, None
     names = tuple(style.name for style in take.markers)
     if tracks.names != names:
         raise ValueError(f"the tracks are those of {tracks.names}, not of the take's markers {names}")
@@ -125,7 +125,7 @@ def _reconstruct(
             raise InputError(f"{reference.notes[0]}; without it at least 2 keyframes are needed")
     absent = absence_notes(take, there, within_shot(reading))
     take = _present(take, there)
-    notes += reading.notes + shaken + absent + found_notes(take) + keypoints.notes
+    notes += reading.notes + shown.camera_notes + absent + found_notes(take) + keypoints.notes
     doubt = found_doubt(take.keyframes, take.fps)
     prior = interpolate(take.keyframes, tracks.frame_count)
     baseline = _motion(take, tracks, prior, None, "interpolation")
@@ -136,8 +136,7 @@ def _reconstruct(
         estimate = estimate_whole_clip(take.body, take.camera, footage, belief)
         solution = yield from within("Estimating the motion", estimate, 0.0, 1.0)
         motion, model = _solved(take, shown, tracks, solution, doubt, floor_m), solution.evidence.model
-        if not shaken:  # else the camera is what does not fit
-            notes += evidence_notes(take, solution.evidence)
+        notes += evidence_notes(take, solution.evidence)
         notes += keypoint_notes(solution.keypoints)
         notes += contour_notes(take, solution.contours is not None)
         notes += unseen_notes(shown.unseen, shown.unseen_ends)
@@ -149,7 +148,8 @@ def _reconstruct(
     yield Progress("Done", 1.0)
     notes += marker_notes(tracks, there)
     motion, baseline = motion.emptied(there), baseline.emptied(there)
-    return Reconstruction(motion, baseline, reading, speed.values, notes, keypoints, model, solution)
+    said = of_true_causes(notes)
+    return Reconstruction(motion, baseline, reading, speed.values, said, keypoints, model, solution)
 
 
 def _present(take: Take, there: BoolArray) -> Take:

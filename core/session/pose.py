@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..body.fingers import SURE, Hands
+from ..estimate.notes import of_true_causes
 from ..estimate.reconstruct import Reconstruction, reconstruct
 from ..estimate.reference_evidence import (
     ReferenceEvidence,
@@ -80,7 +81,7 @@ def make_motion(session: Session) -> Job[Reconstruction]:
     motion, take = made.motion, posed.seen.take
     own = [key.index for key in take.keyframes if key.is_posed]
     posture, hands = seen_hands(motion.body, motion.posture, motion.time_s, made.keypoints, take.camera, own)
-    notes = made.notes if hands is None else (*made.notes, hands_in_words(hands))
+    notes = made.notes if hands is None else of_true_causes((*made.notes, hands_in_words(hands)))
     return replace(made, motion=replace(motion, posture=posture, hands=hands), notes=notes)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputError
+from ..estimate.notes import of_true_causes
 from ..estimate.reconstruct import Reconstruction
 from ..files.digest import content_digest
 from ..files.json_file import read_json, write_json
@@ -93,7 +94,7 @@ class Conversion:
         about: tuple[str, ...] = ()
         if self.found is not None:
             about = (self.found.reason.rstrip("."), *contradiction_notes(self.take, self.found))
-        return (*self.conversion_notes, *about, *self.reconstruction.notes)
+        return of_true_causes((*self.conversion_notes, *about, *self.reconstruction.notes))
 
 
 def conversion_record(

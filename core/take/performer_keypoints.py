@@ -246,7 +246,8 @@ def _of_same_person(people: People, chosen: IndexArray, fps: float) -> tuple[Peo
         frames[index] = SeenPeople.nobody(len(people.names))
     note = (
         f"{people.source}: jumps to somebody else, farther than a person moves from one frame to the next; "
-        f"the {pluralize(len(jumped), 'frame')} that show him are left out"
+        f"the {'frame that shows' if len(jumped) == 1 else f'{len(jumped)} frames that show'} him "
+        f"{'is' if len(jumped) == 1 else 'are'} left out"
     )
     return replace(people, frames=tuple(frames)), (note,)
 
@@ -295,7 +296,8 @@ def _notes(people: People, chosen: IndexArray, why: str) -> tuple[str, ...]:
         notes.append(f"{people.source}: {who}{_copies(people, chosen)}; {why}")
     if left_out:
         notes.append(
-            f"{people.source}: {left_out} of {int((counts > 0).sum())} frames with people show "
-            "somebody else than the performer and are left out"
+            f"{people.source}: {left_out} of {int((counts > 0).sum())} frames with people "
+            f"{'shows' if left_out == 1 else 'show'} somebody else than the performer and "
+            f"{'is' if left_out == 1 else 'are'} left out"
         )
     return tuple(notes)

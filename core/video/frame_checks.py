@@ -50,7 +50,7 @@ class FrameFindings:
         notes = []
         if self.blank:
             notes.append(
-                f"{len(self.blank)} of {self.frames} frames are blank "
+                f"{len(self.blank)} of {self.frames} frames {'is' if len(self.blank) == 1 else 'are'} blank "
                 f"({self._named(self.blank, first)}): black, or lost where the file is damaged"
             )
         if self.interlaced:
@@ -60,12 +60,13 @@ class FrameFindings:
                 "bwdif=mode=send_frame"
             )
         if self.repeated:
+            repeat = "repeats" if len(self.repeated) == 1 else "repeat"
             span = self.repeated[-1] - self.repeated[0] + 2
             own = (
                 "" if fps is None else f" of {fps * (1.0 - len(self.repeated) / span):.0f} pictures a second"
             )
             notes.append(
-                f"{len(self.repeated)} of {self.frames} pictures repeat the one before "
+                f"{len(self.repeated)} of {self.frames} pictures {repeat} the one before "
                 f"({self._named(self.repeated, first)}), as where a clip{own} was saved at a "
                 "higher rate; each counts once, and the motion goes on in between"
             )

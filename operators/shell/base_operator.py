@@ -155,8 +155,24 @@ def warn(operator: Operator, sentence: str) -> str:
     return text
 
 
+FIELDS = {
+    "--frames": "Part of the Clip (in Picture and Part)",
+    "--performer": "Performer (in Picture and Part)",
+    "--rotate": "Turn Picture (in Picture and Part)",
+    "--keyframes auto": "Pose All",
+    "mend --action": "the field Action",
+    "mend --subject": "the field Armature",
+}
+"""What options of the command line, as sentences of core's have them, are called in Blender."""
+
+
 def capitalized(sentence: str) -> str:
-    """A sentence with a capital letter, unless it begins with the name of a file or a quote."""
+    """A sentence of core's as Blender shows it: fields for options, and a capital letter.
+
+    But for sentences that begin with the name of a file or a quote.
+    """
+    for option, field in FIELDS.items():
+        sentence = sentence.replace(option, field)
     return sentence[:1].upper() + sentence[1:] if sentence.partition(" ")[0].isalpha() else sentence
 
 

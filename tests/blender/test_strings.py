@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import bpy
 import pytest
-from keymark.operators.shell.base_operator import capitalized
+from keymark.operators.shell.base_operator import FIELDS, capitalized
 
 OWN = "KEYMARK_"
 OUTSIDE = ("filepath", "directory", "filter_glob", "filter_folder")
@@ -83,3 +83,13 @@ def test_sentences_begin_with_a_capital_and_names_as_they_are() -> None:
     assert capitalized("the clip is interlaced") == "The clip is interlaced"
     assert capitalized("no bone is chosen; click on one") == "No bone is chosen; click on one"
     assert capitalized("take.json: fps is 0") == "take.json: fps is 0"
+    part = "the motion is that of frames 1 to 4: --frames names another shot"
+    assert capitalized(part).endswith("4: Part of the Clip (in Picture and Part) names another shot")
+
+
+@pytest.mark.usefixtures("registered")
+def test_fields_that_sentences_name_for_options_are_there() -> None:
+    operators = [bpy.ops.keymark.animate, bpy.ops.keymark.load_motion, bpy.ops.keymark.pose_all]
+    types = [each.get_rna_type() for each in operators]
+    labels = {each.name for each in types} | {prop.name for each in types for prop in each.properties}
+    assert {field.split(" (")[0].removeprefix("the field ") for field in FIELDS.values()} <= labels

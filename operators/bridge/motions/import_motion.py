@@ -174,6 +174,8 @@ def _action(
     if not actions:
         raise InputError(f"{path}: its armature '{armature.name}' has no Action, so it has no motion")
     names = [_own_name(one, added) for one in actions]
+    # An FBX's take is the middle of the name that the importer gives: ARMATURE|TAKE|LAYER.
+    wanted = next((name for name in names if wanted in name.split("|")[1:2]), wanted)
     index, notes = chosen_subject(path, names, [1.0] * len(names), wanted, "Action")
     for track in data.nla_tracks:
         track.mute = True

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ....core.api import convert
+from ....core.errors import pluralize
 from ....core.estimate.reconstruct import Reconstruction
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
@@ -186,7 +187,7 @@ def conversion_text(conversion: Conversion) -> str:
     """The result of a conversion in words."""
     motion = conversion.reconstruction.motion
     notes = [f"Note: {note}." for note in conversion.notes]
-    count = f"{len(motion.keyframe_indices)} keyframes"
+    count = pluralize(len(motion.keyframe_indices), "keyframe")
     if conversion.found is not None:
         posed = sum(keyframe.matched is None for keyframe in conversion.take.keyframes)
         count = f"{posed} posed and {len(motion.keyframe_indices) - posed} found keyframes"

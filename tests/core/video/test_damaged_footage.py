@@ -116,7 +116,7 @@ def test_frames_lost_in_the_middle_leave_the_others_in_their_places(video: Calla
     assert 0 < len(lost) < 12 and read[-1] == FRAMES - 1
     np.testing.assert_allclose(np.diff(list(clip.source.time_stamps())), 1.0 / FPS, atol=1e-6)
     (note,) = noticed(clip)
-    assert "frames are blank" in note and "damaged" in note
+    assert " of 24 frames " in note and " blank (" in note and "damaged" in note
     sampled = dict(clip.source.at([2, FRAMES - 1]))
     assert {index: number_of(image) for index, image in sampled.items()} == {2: 2, FRAMES - 1: FRAMES - 1}
 

@@ -82,6 +82,23 @@ def test_a_menu_offers_the_actions_of_a_gltf(tmp_path: Path, ending: str) -> Non
     assert action_names(file) == action_names(tmp_path / "none.blend") == action_names(tmp_path) == []
 
 
+def test_a_menu_offers_the_takes_of_an_fbx(shaken: bpy.types.Object, tmp_path: Path) -> None:
+    walk, file = shaken.animation_data.action.copy(), tmp_path / "pack.fbx"
+    walk.name, walk.use_fake_user = "Walk", True
+    for each in bpy.context.view_layer.objects:
+        each.select_set(each == shaken)
+    kept = {"use_selection": True, "object_types": {"ARMATURE"}, "add_leaf_bones": False}
+    bpy.ops.export_scene.fbx(filepath=str(file), **kept)
+    names = action_names(file)
+    wanted = next(name for name in names if name.endswith("Walk"))
+    assert len(names) >= 2
+    with own_scene("Motion") as scene, showing_scene(scene):
+        imported, notes = import_motion(CharacterFile(file), scene, (), wanted)
+        assert wanted in imported.armature.animation_data.action.name
+    file.write_bytes(b"Kaydara FBX Binary")
+    assert action_names(file) == []
+
+
 def test_a_loaded_motion_takes_as_long_as_in_its_file_and_the_scene_stays(exported: Path) -> None:
     scene = bpy.context.scene
     scene.render.fps, scene.frame_start, scene.frame_end = 24, 10, 200
