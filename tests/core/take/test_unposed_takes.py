@@ -51,7 +51,7 @@ def test_posed_keyframes_alone_need_no_note_and_both_kinds_are_counted(take: Tak
     assert found_notes(take) == ()
     first, *others = take.keyframes
     both = replace(take, keyframes=(first, *(replace(one, matched=said()) for one in others)))
-    assert found_notes(both)[0].startswith(f"1 of {len(take.keyframes)} keyframes are posed")
+    assert found_notes(both)[0].startswith(f"1 of {len(take.keyframes)} keyframes is posed")
 
 
 def test_the_notes_name_the_limits_of_the_filter(take: Take) -> None:
