@@ -235,7 +235,7 @@ class StepPanel(TakePanel):
 
     bl_options = {"HIDE_HEADER"}
     bl_label: str
-    step: ClassVar[str]  # a name of `steps.STEPS`
+    step: ClassVar[str]  # a name of `STEPS`
     options: ClassVar[str] = ""  # the popover of what is rarely changed
 
     def draw(self, context: Context) -> None:
