@@ -31,7 +31,7 @@ CAUSES = {
         r"the lens is .* by keyframes and footage",
         r"the keyframes differ from the footage",
         r"is seldom where the keyframes put it",
-        r"never seen, as beyond the picture's edge",
+        r"hardly ever seen, as beyond the picture's edge",
         r"no plausible pose explains",
     ),
     r"pictures? repeats? the one before": (r"results? repeats? the one before",),
@@ -50,7 +50,9 @@ CAUSES = {
         r"(?P<of>.+): .* somebody else than the performer",
     ),
     r"method ekf .* leaves keypoints aside": (r": up to .* people in", r": jumps to somebody else"),
-    r"the hands.* never seen, as beyond": (r"hand is surely seen in 0 % of the frames, the right in 0 %",),
+    r"the hands.* hardly ever seen, as beyond": (
+        r"hand is surely seen in 0 % of the frames, the right in 0 %",
+    ),
 }
 """What notes say, and what they then exclude: it follows from the same, or was taken for it. Notes on
 something else (`of`: a marker, a source of keypoints) stay."""

@@ -104,6 +104,8 @@ LEAST_SCORE = 0.05
 """Of a keypoint that counts: what detectors that always answer say of an empty picture."""
 SELDOM = 0.05
 """Share of frames below which a limb is seldom seen: detectors take other things for one now and then."""
+HARDLY = 0.1
+"""Share of frames up to which a wrist or ankle is named as hardly ever seen; it may still tell the floor."""
 MOST_NAMED = 3
 
 
@@ -154,14 +156,16 @@ def unseen_limbs(take: Take, tracks: RegionTracks, keypoints: Keypoints, there: 
     return tuple(limb for limb in LIMBS if seen[:, own[limb]].any(axis=1).mean() < SELDOM)
 
 
-def unseen_ends(keypoints: Keypoints, there: BoolArray, unseen: tuple[str, ...]) -> tuple[str, ...]:
-    """Hands and feet whose wrist or ankle is seldom seen, of limbs that are not all `unseen`."""
+def unseen_ends(
+    keypoints: Keypoints, there: BoolArray, unseen: tuple[str, ...], share: float = HARDLY
+) -> tuple[str, ...]:
+    """Hands and feet whose wrist or ankle is seen in at most a share, of limbs that are not all `unseen`."""
     seen, names = (keypoints.seen & (keypoints.score > LEAST_SCORE))[there], np.array(keypoints.names)
     found = []
     for end, joint, limb in (("hand", "wrist", "arm"), ("foot", "ankle", "leg")):
         for side in SIDES:
             own = names == f"{joint}.{side}"
-            if own.any() and f"{limb}.{side}" not in unseen and seen[:, own].any(axis=1).mean() < SELDOM:
+            if own.any() and f"{limb}.{side}" not in unseen and seen[:, own].any(axis=1).mean() <= share:
                 found.append(f"{end}.{side}")
     return tuple(found)
 
@@ -230,7 +234,7 @@ def unseen_notes(limbs: tuple[str, ...], ends: tuple[str, ...] = ()) -> tuple[st
     if ends:
         is_one = len(ends) == 1
         notes.append(
-            f"{named_limbs(ends)} never seen, as beyond the picture's edge, and "
+            f"{named_limbs(ends)} hardly ever seen, as beyond the picture's edge, and "
             f"where {'it is' if is_one else 'they are'} likely to be; pose keyframes where that is wrong"
         )
     return tuple(notes)
@@ -282,7 +286,8 @@ class SeenTake:
     @property
     def feet_seen(self) -> tuple[bool, bool]:
         """Whether the left and the right foot are ever seen: those that are not tell no floor."""
-        unseen = {*self.unseen, *self.unseen_ends}
+        seldom = unseen_ends(self.keypoints, self.there, self.unseen, SELDOM)
+        unseen = {*self.unseen, *(end for end in seldom if end in self.unseen_ends)}
         left, right = (not unseen & {f"leg.{side}", f"foot.{side}"} for side in SIDES)
         return left, right
 

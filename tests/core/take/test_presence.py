@@ -22,6 +22,7 @@ from keymark.core.review.review import review
 from keymark.core.review.score import score_points
 from keymark.core.take.motion import read_motion, write_motion
 from keymark.core.take.presence import (
+    SELDOM,
     absence_notes,
     presence,
     unseen_ends,
@@ -159,11 +160,17 @@ def test_hands_and_feet_beyond_the_edge_are_named_where_their_limbs_are_seen() -
     assert unseen_ends(whole, gone(), ()) == ()
     assert unseen_ends(replace(whole, pixel=cut), gone(), ()) == ("foot.L",)
     assert unseen_ends(replace(whole, pixel=cut), gone(), ("leg.L",)) == ()
+    for seen, named, for_the_floor in ((0.04, 1, 1), (0.08, 1, 0), (0.12, 0, 0)):
+        some = cut.copy()
+        some[: round(seen * FRAMES)] = whole.pixel[: round(seen * FRAMES)]
+        now = replace(whole, pixel=some)
+        assert len(unseen_ends(now, gone(), ())) == named, seen
+        assert len(unseen_ends(now, gone(), (), SELDOM)) == for_the_floor, seen
     (note,) = unseen_notes((), ("foot.L",))
     assert note.startswith(
-        "the left foot is never seen, as beyond the picture's edge, and where it is likely"
+        "the left foot is hardly ever seen, as beyond the picture's edge, and where it is likely"
     )
-    assert "the feet are never seen" in unseen_notes((), ("foot.L", "foot.R"))[0]
+    assert "the feet are hardly ever seen" in unseen_notes((), ("foot.L", "foot.R"))[0]
 
 
 def test_resting_legs_hang_down_whatever_the_pelvis_does() -> None:
