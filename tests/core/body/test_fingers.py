@@ -17,6 +17,10 @@ from keymark.core.body.rotations import exponential
 from keymark.core.body.skeleton import FINGERS
 
 CURLS = np.array([0.5, 0.6, 1.2, 0.8, 1.0])
+OF_THE_THUMB = [0.037, 0.0, 0.0, 0.0, 0.0]
+"""Its first joint lies 8 degrees beside the line that its bones go on, in the skin too."""
+TO_MIDDLE_DEG = 9.5
+"""From the hand's bone to the middle knuckle, in the palm."""
 
 
 def hands(frames: int = 3) -> Hands:
@@ -36,9 +40,11 @@ def test_points_of_bent_fingers_have_their_curls(side: str, share: float) -> Non
         at = at + turn @ (end - start)
         points.append(at)
     seen = exponential(np.array([0.3, -0.8, 0.5]))
-    np.testing.assert_allclose(curls_of(np.array(points) @ seen.T), share * CURLS, atol=0.03)
-    straight = np.abs(palm_of(np.array(points), side) - RESTING[side])
-    assert straight.max() < 0.05
+    found = curls_of(np.array(points) @ seen.T)
+    np.testing.assert_allclose(found, share * CURLS + OF_THE_THUMB, atol=0.012)
+    palm = RESTING[side].T @ palm_of(np.array(points), side)
+    np.testing.assert_allclose(palm[:, 2], [0.0, 0.0, 1.0], atol=1e-9)
+    assert np.degrees(np.arctan2(palm[1, 0], palm[0, 0])) == pytest.approx(TO_MIDDLE_DEG, abs=0.1)
     tips = np.array(points)[[8, 12, 16, 20]]
     assert (tips[:, 2] < 0.0).all(), "fingers bend toward the palm, which is down"
 
