@@ -71,6 +71,9 @@ def of_one_shot(take: Take, reading: Reading, named: tuple[int, int] | None = No
     cut = findings.cut_note(start) if findings.cuts else ""
     whose = f"the motion is that of frames {first + start} to {last - 1 + start} and empty elsewhere"
     animated = f"{cut}; {whose}: --frames names another shot" if named is None else whose
+    if named is not None and (inside := tuple(index for index in findings.cuts if first < index < last)):
+        within = replace(findings, cuts=inside).cut_note(start)
+        animated = f"{whose}, but {within}, within them: the motion jumps there; name one shot by --frames"
     own = replace(
         reading,
         tracks=without_tracks(reading.tracks, others),

@@ -140,6 +140,9 @@ def test_frames_that_are_named_are_animated(take: Take) -> None:
     assert [key.index for key in own.keyframes] == [70] and one.shot == (64, 80)
     assert one.notes[0] == "the motion is that of frames 65 to 80 and empty elsewhere"
     assert not [note for note in one.notes if "cut" in note]
+    for frames, cut in (((15, 40), "frame 21"), ((20, 61), "frames 21, 61"), ((21, 60), "")):
+        note = of_one_shot(take, cut_reading(), frames)[1].notes[0]
+        assert (f"but the clip is cut at {cut}, within them" in note) if cut else "cut" not in note, note
     with pytest.raises(InputError, match=r"frames 65 to 91 are not all in .*, whose frames are 1 to 90"):
         of_one_shot(take, cut_reading(), (65, 91))
 
