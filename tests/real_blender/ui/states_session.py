@@ -13,6 +13,7 @@ sys.path[:0] = [str(HERE), str(HERE.parents[1])]
 
 import bpy  # noqa: E402
 import steps_correct  # noqa: E402
+import steps_export  # noqa: E402
 import steps_prepare  # noqa: E402
 from driver import Camera, Steps, drive, expect, turns, until  # noqa: E402
 from person import Person, keymark  # noqa: E402
@@ -38,9 +39,10 @@ def session(take: Path, folder: Path, camera: Camera) -> Steps[None]:
     yield from seen(person, "character", "character")
     bpy.ops.keymark.bake_motion()
     yield from seen(person, "export", "finish")
-    bpy.ops.keymark.add_rigify_human()
+    steps_export.add_mixamo(person)
     bpy.ops.keymark.retarget()
     yield from seen(person, "two_characters", "character")
+    yield from steps_export.exported(person)
     for step in keymark("operators.shell.take_state").STEPS:
         yield from fits(person, step)
 

@@ -49,6 +49,7 @@ STATES = (
     "character",
     "export",
     "two_characters",
+    "read_back",
 )
 SHELF_STEPS = ("libraries", "assets")
 MARKER_STEPS = ("asked", "masks_while_picking", "one_row", "warned", "brushing", "brushed", "still_area")
