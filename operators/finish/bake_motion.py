@@ -206,7 +206,8 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         else:
             span = int(action.frame_range[0]), int(action.frame_range[1])
             export_motion(scene, who, action, span, chosen, path, moved_by(scene, who))
-            if TakeState(take).has_outdated_result:
+            state = TakeState(take)
+            if any(state.of_earlier(result) for result in state.results if result.action == action):
                 warn(self, f"'{who.name}' performs an earlier motion; retarget again for the newest")
         self.report({"INFO"}, f"Wrote what '{who.name}' performs: {path}")
 
