@@ -142,7 +142,7 @@ class TakeFields(Record):
 def read_take(
     path: Path, keyframes: Path | None = None, *, keyframes_required: bool = True, whole: bool = False
 ) -> Take:
-    """Read a take with its inherited fields; the clip is not checked yet (see `clip_check`).
+    """Read a take with its inherited fields; the clip is not checked yet (see `read_footage.py`).
 
     `keyframes` is by default the take's own file. `whole`: evidence that its description leaves aside is read
     too, and none at all is accepted.

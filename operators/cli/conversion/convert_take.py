@@ -66,7 +66,7 @@ def convert_take(
     each stage (`advance`); `notes` are sentences on how the clip was read.
 
     Raises:
-        UpToDate: `again` is not set, the digest of the input (`core/take/conversion_digest`) is that in the
+        UpToDate: `again` is not set, the digest of the input (`conversion_digest`) is that in the
             result's record, and every file of the record is there; times of files do not count.
     """
     console.stage("Reading the take")
