@@ -140,6 +140,9 @@ def _checked(points: Array, options: MendOptions, frame_start: int) -> tuple[Arr
         )
     if any(not np.isfinite(given[frame]).all() for frame in options.posed):
         raise InputError("a posed frame lacks points; a pose must have all of them")
+    free = frames - missing - len(set(options.posed))
+    if free < 3:
+        raise InputError(f"{free} of {frames} frames show a body and are not posed; at least 3 must be so")
     notes = [f"{pluralize(missing, 'frame')} without a body, or a copy of the one before, were filled in"]
     return given, notes if missing else []
 

@@ -128,9 +128,16 @@ def test_what_cannot_be_mended_is_said_in_one_sentence(truth: Array, change: obj
         run(mend_motion(change(truth), RATE, MendOptions()))  # type: ignore[operator]
 
 
-def test_a_posed_frame_outside_is_refused(truth: Array) -> None:
-    with pytest.raises(InputError, match="posed frame 91 is not in the motion, whose frames are 1 to 90"):
-        run(mend_motion(truth, RATE, MendOptions(posed=(90,))))
+@pytest.mark.parametrize(
+    ("posed", "said"),
+    [
+        ((90,), "posed frame 91 is not in the motion, whose frames are 1 to 90"),
+        (tuple(range(88)), "2 of 90 frames show a body and are not posed; at least 3 must be so"),
+    ],
+)
+def test_posed_frames_that_cannot_be_are_refused(truth: Array, posed: tuple[int, ...], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        run(mend_motion(truth, RATE, MendOptions(posed=posed)))
 
 
 def test_an_actor_is_measured_by_its_points(truth: Array) -> None:
