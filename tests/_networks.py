@@ -7,7 +7,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 import onnx
+from _synthetic_take import BODY, CAMERA, true_postures
 from keymark.core.arrays import Array, Image
+from keymark.core.camera.camera import Camera
 from keymark.core.detect.layouts import Layout
 from keymark.core.detect.pose_network import CIRCLE, LAYOUT, Crop, Pose
 from onnx import TensorProto, helper, numpy_helper
@@ -176,6 +178,32 @@ def draw_dots(size: tuple[int, int], people: Sequence[Array], radius: float = 7.
                     picture, at, round(radius * fine * 16), (255 * color[::-1]).round().tolist(), -1, shift=4
                 )
     return np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+
+
+DOTTED_SIZE = 640, 480
+AROUND = {
+    **{"nose": ("head", 0.0, -6.0), "neck": ("head", 0.0, 30.0)},
+    **{f"{part}.{side}": ("head", sign * x, y) for side, sign in (("L", 1.0), ("R", -1.0))
+       for part, x, y in (("eye", 13.0, -14.0), ("ear", 26.0, 0.0))},
+    **{f"{part}.{side}": (f"{at}.{side}", sign * x, y) for side, sign in (("L", 1.0), ("R", -1.0))
+       for at, part, x, y in (("ankle", "toe", 0.0, 24.0), ("ankle", "small_toe", 14.0, 18.0),
+                              ("ankle", "heel", 28.0, 6.0), ("wrist", "thumb", -14.0, 8.0),
+                              ("wrist", "index", 0.0, 18.0), ("wrist", "pinky", 14.0, 8.0))},
+}  # fmt: skip
+"""Of points that are none of the principal ones: which one they lie beside, and where [px]."""
+
+
+def dotted_clip(file: Path, layout: Layout, frames: int = 24) -> None:
+    """Write a clip (.avi) of somebody who moves a little, each point a dot."""
+    camera = Camera.from_dict(CAMERA | {"resolution": list(DOTTED_SIZE)})
+    pixel, _ = camera.project(BODY.points(BODY.pose(true_postures(frames))))
+    at = BODY.skeleton.point_names.index
+    video = cv2.VideoWriter(str(file), cv2.VideoWriter.fourcc(*"FFV1"), 30.0, DOTTED_SIZE)  # as it is drawn
+    for principal in pixel:
+        places = (AROUND.get(name, (name, 0.0, 0.0)) for name in layout.names)
+        points = np.array([principal[at(beside)] + [x, y] for beside, x, y in places])
+        video.write(draw_dots(DOTTED_SIZE, [points], 4.0))
+    video.release()
 
 
 class DotNetwork:

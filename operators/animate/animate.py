@@ -14,7 +14,7 @@ from ..animate import FILE, NOTHING, RIGIFY
 from ..character.characters import candidates
 from ..character.retarget import keep_retargeted, retarget_take
 from ..finish.bake_motion import bake, keep_baked
-from ..follow.load_keypoints import draw_network
+from ..follow.load_keypoints import chosen_network, draw_network
 from ..footage.load_footage import PATTERNS, load_into_take
 from ..footage.properties import Part, draw_part
 from ..reconstruct.reconstruct import PreviewedJob, keep_motion, reconstruct_take
@@ -201,10 +201,13 @@ class KEYMARK_OT_animate(Stature, Part, StagedOperator, bpy.types.Operator):
 
     def start(self, scene: Scene) -> "Job[list[str]]":
         """Load the clip, and go on; what is complete stays in the scene where the job ends early."""
+        from ...core.take.description import keypoints_beside
         from .stages import animate, follow_found_file, turned_copy
 
         stature = self.given_stature()
         path = chosen_file(self, "a video, or one image of a numbered sequence")
+        if keypoints_beside(path) is None:
+            chosen_network()  # what is wrong with it is said before anything changes
         _keep_folder(path.parent)
         if self.turn not in ("AUTO", "0"):
             path = turned_copy(path, int(self.turn))

@@ -22,7 +22,8 @@ NEAR = 0.04
 """Mean distance of two detectors' points, in sizes of the person, below which they need not be compared with
 those of other moments: whoever stands still looks alike at all times."""
 LEAST_GAIN = 0.5
-"""By which its points must be nearer than the same points at other moments; right ones are by .6 and more."""
+"""By which its points must be nearer than the same points at other moments (right ones are by .6 and more),
+and with sides exchanged than as they are, to be called left for right."""
 FEWEST_SHARE, FEWEST_POINTS = 0.5, 4
 """Of the looks, in which it must see the same person; and points of one by which that is told."""
 
@@ -106,7 +107,7 @@ def believed(people: People) -> People:
     same = near > NEAR and near > (1.0 - LEAST_GAIN) * usual
     if same or fits.mean() < FEWEST_SHARE:
         why = "says about the same whatever it sees" if near < FITS else "is not where the performer is seen"
-        if np.median(exchanged) < near:
+        if np.median(exchanged) < (1.0 - LEAST_GAIN) * near:
             why = "has left for right"
         note = f"{second.detector}: {why}, and is left out"
         kept = slice(first)

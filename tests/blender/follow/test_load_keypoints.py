@@ -3,14 +3,13 @@
 import json
 import os
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
 from _drawn_clip import MiddleNetwork
-from keymark.core.detect.families.instant_hmr import LAYOUT
 from keymark.core.detect.keypoint_file import write_keypoints
 from keymark.core.take.description import describe
 from keymark.core.take.motion import Motion
@@ -24,8 +23,7 @@ from keymark.operators.follow.evidence import (
     keypoints_at,
     keypoints_label,
 )
-from keymark.operators.follow.load_keypoints import KEYMARK_OT_detect_keypoints, chosen_network
-from keymark.operators.shell.results import EXTENSION
+from keymark.operators.follow.load_keypoints import KEYMARK_OT_detect_keypoints
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 
@@ -278,32 +276,6 @@ def test_a_job_that_is_closed_leaves_nothing_behind(plain: bpy.types.Scene, plai
         assert next(job).stage == "Detecting keypoints"
     job.close()
     assert not list(plain_take.folder.glob("*keypoints*")) and len(active_take(plain).follow.files) == 0
-
-
-@pytest.fixture
-def own_network(tmp_path: Path) -> Iterator[Path]:
-    """A network of somebody's own, chosen in the preferences as those of an installed extension."""
-    addon = bpy.context.preferences.addons.new()
-    addon.module = EXTENSION
-    pytest.importorskip("onnx")  # a real Blender lacks it
-    from _networks import instant_hmr
-
-    addon.preferences.network = str(instant_hmr(tmp_path / "body.onnx", LAYOUT.numbers))
-    yield tmp_path / "body.onnx"
-    bpy.context.preferences.addons.remove(addon)
-
-
-def test_a_network_of_ones_own_looks_too_and_one_that_is_gone_is_said(
-    plain: bpy.types.Scene, plain_take: Take, own_network: Path
-) -> None:
-    network = chosen_network()
-    assert network is not None and network.name == "InstantHMR, 70 points, 224 x 224"
-    assert bpy.ops.keymark.detect_keypoints() == {"FINISHED"}  # it sees no dots here, and is left out
-    (entry,) = active_take(plain).follow.files
-    assert "second" not in json.loads(keypoint_path(entry).read_text(encoding="utf-8"))
-    own_network.unlink()
-    with pytest.raises(RuntimeError, match=r"body\.onnx: no such file"):
-        bpy.ops.keymark.detect_keypoints()
 
 
 SWITCHES = ("use_markers", "use_keypoints", "use_depth_hints", "use_contours")

@@ -4,13 +4,11 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 from _command_line import one_line
-from _networks import DotNetwork, draw_dots, instant_hmr
-from _synthetic_take import BODY, CAMERA, true_postures, write_json
-from keymark.core.camera.camera import Camera
+from _networks import DOTTED_SIZE, DotNetwork, dotted_clip, instant_hmr
+from _synthetic_take import BODY, true_postures, write_json
 from keymark.core.detect.families.instant_hmr import LAYOUT
 from keymark.core.detect.keypoint_file import read_keypoints
 from keymark.core.detect.pose_network import LAYOUT as OWN
@@ -24,17 +22,7 @@ from keymark.operators.cli.commands import batch, detect
 from keymark.operators.cli.conversion import convert_take
 from keymark.operators.cli.main import main
 
-SIZE, FRAMES, FPS = (640, 480), 24, 30.0
-AROUND = {
-    **{"nose": ("head", 0.0, -6.0), "neck": ("head", 0.0, 30.0)},
-    **{f"{part}.{side}": ("head", sign * x, y) for side, sign in (("L", 1.0), ("R", -1.0))
-       for part, x, y in (("eye", 13.0, -14.0), ("ear", 26.0, 0.0))},
-    **{f"{part}.{side}": (f"{at}.{side}", sign * x, y) for side, sign in (("L", 1.0), ("R", -1.0))
-       for at, part, x, y in (("ankle", "toe", 0.0, 24.0), ("ankle", "small_toe", 14.0, 18.0),
-                              ("ankle", "heel", 28.0, 6.0), ("wrist", "thumb", -14.0, 8.0),
-                              ("wrist", "index", 0.0, 18.0), ("wrist", "pinky", 14.0, 8.0))},
-}  # fmt: skip
-"""Of points that are none of the principal ones: which one they lie beside, and where [px]."""
+FRAMES, SIZE, FPS = 24, DOTTED_SIZE, 30.0
 
 pytestmark = pytest.mark.usefixtures("no_blender")
 
@@ -42,19 +30,9 @@ pytestmark = pytest.mark.usefixtures("no_blender")
 @pytest.fixture
 def clip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A clip of somebody's points, each a dot, whom a stand-in for Keymark's own network sees."""
-    camera = Camera.from_dict(CAMERA | {"resolution": list(SIZE)})
-    pixel, _ = camera.project(BODY.points(BODY.pose(true_postures(FRAMES))))
-    at = BODY.skeleton.point_names.index
     file = tmp_path / "clips" / "dots.avi"
     file.parent.mkdir()
-    video = cv2.VideoWriter(str(file), cv2.VideoWriter.fourcc(*"FFV1"), FPS, SIZE)  # as it is drawn
-    for principal in pixel:
-        points = [
-            principal[at(beside)] + [x, y]
-            for beside, x, y in (AROUND.get(name, (name, 0.0, 0.0)) for name in LAYOUT.names)
-        ]
-        video.write(draw_dots(SIZE, [np.array(points)], 4.0))
-    video.release()
+    dotted_clip(file, LAYOUT)
     for module in (see, detect):
         monkeypatch.setattr(module, "PoseNetwork", lambda: DotNetwork(LAYOUT))
     monkeypatch.setattr("keymark.core.detect.closer_look._there", lambda _network: None)

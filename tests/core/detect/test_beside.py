@@ -115,7 +115,9 @@ def test_a_network_that_errs_throughout_is_left_out_with_a_sentence(tmp_path: Pa
 
     wrong = {
         "has left for right": lambda look, _: Look(look.pixel[other], look.score),
-        "is not where the performer is seen": lambda look, _: Look(look.pixel + [90.0, 0.0], look.score),
+        "is not where the performer is seen": lambda look, _: Look(
+            look.pixel[other] + [90.0, 0.0], look.score
+        ),
         "says about the same whatever it sees": constant,
         "about the same": late,
     }
