@@ -184,8 +184,9 @@ def test_the_motion_is_reconstructed_and_finished_anew(saved: Saved, scene: bpy.
     take = active_take(scene)
     assert TakeState(take).final_is_outdated and take.review.frame_count == scene.frame_end
     assert take.notes[0].text.startswith(f"2 of {2 + matched} keyframes are posed")
-    # Intervals of found keyframes follow from their confidence now, and these are not too sure of themselves.
-    assert take.review.confidence == pytest.approx(saved.property("review.confidence"), abs=0.1)
+    # Intervals of found keyframes, also of one library, follow from their confidence now, and these are
+    # not too sure of themselves.
+    assert -0.15 < take.review.confidence - saved.property("review.confidence") < 0.1
     assert bpy.ops.keymark.bake_motion() == {"FINISHED"}
     settings = active_take(scene).finish
     assert (

@@ -157,5 +157,5 @@ def test_a_texture_is_made_anew_only_for_other_masks(drawn: Drawn) -> None:
     assert mask_overlay._textures["masks 0.5"][1] is first
     preview.masks = masks[1]
     assert drawn(lambda: paint(preview, view))[32, 48, 0] > 0.5
-    mask_overlay.unregister()
+    mask_overlay.detach()
     assert not mask_overlay._textures
