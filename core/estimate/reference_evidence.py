@@ -310,7 +310,7 @@ def _off_hints_m(
 def smoothed(points: Array, time_s: Array, width_s: float) -> Array:
     """Points (F, N, 3) by a local quadratic under a Gaussian of `width_s` (Savitzky & Golay; Cleveland 1979).
 
-    Robust: points far from their own curve count for less. NaN only where fewer than three frames are near.
+    Robust: points far from their own curve count for less. NaN only where hardly a frame near is known.
     """
     reach = max(1, round(3.0 * width_s / usual_step(time_s)))
     offsets = np.arange(-reach, reach + 1)

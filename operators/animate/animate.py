@@ -206,8 +206,8 @@ class KEYMARK_OT_animate(Stature, Part, StagedOperator, bpy.types.Operator):
 
         stature = self.given_stature()
         path = chosen_file(self, "a video, or one image of a numbered sequence")
-        if keypoints_beside(path) is None:
-            chosen_network()  # what is wrong with it is said before anything changes
+        # What is wrong with a network is said before anything changes.
+        network = chosen_network() if keypoints_beside(path) is None else None
         _keep_folder(path.parent)
         if self.turn not in ("AUTO", "0"):
             path = turned_copy(path, int(self.turn))
@@ -216,7 +216,8 @@ class KEYMARK_OT_animate(Stature, Part, StagedOperator, bpy.types.Operator):
         for name in Part.__annotations__:
             setattr(take.part, name, getattr(self, name))
         follow_found_file(take, path)
-        return animate(self, scene, stature, self.character, self.character_file, self.turn == "AUTO")
+        turns = self.turn == "AUTO"
+        return animate(self, scene, stature, self.character, self.character_file, turns, network)
 
 
 def _folder_file() -> Path | None:

@@ -22,7 +22,7 @@ from ..character.characters import add_character
 from ..character.retarget import keep_retargeted, retarget_take
 from ..finish.bake_motion import bake, keep_baked
 from ..follow.evidence import keypoint_path
-from ..follow.load_keypoints import Detected, chosen_network, follow_file, keep_detected, keypoint_output
+from ..follow.load_keypoints import Detected, follow_file, keep_detected, keypoint_output
 from ..footage.found_camera import is_found, write_fit
 from ..footage.load_footage import lens_is_guess, load_into_take
 from ..keyframes.pose_all import keep_poses
@@ -33,6 +33,7 @@ from ..shell.takes import active_take, footage_of, take_by_identifier
 from . import FILE, NOTHING, RIGIFY
 
 if TYPE_CHECKING:
+    from ...core.detect.families.network import Network
     from ...core.session.session import Session
 
 SEEN_SHARES = np.linspace(0.0, 1.0, 9)
@@ -45,11 +46,17 @@ VIEWED = 0.96
 
 
 def animate(
-    operator: PreviewedJob, scene: Scene, stature_m: float, character: str, file: str, turns: bool = True
+    operator: PreviewedJob,
+    scene: Scene,
+    stature_m: float,
+    character: str,
+    file: str,
+    turns: bool = True,
+    network: "Network | None" = None,
 ) -> "Job[list[str]]":
     """Go from the active take's clip all the way; each stage's result is in the scene once it is complete.
 
-    `turns`: a picture that is on its side or upside down is turned.
+    `turns`: a picture that is on its side or upside down is turned; `network` looks beside Keymark's own.
 
     Returns:
         A line on each stage.
@@ -62,7 +69,7 @@ def animate(
     take = active_take(scene)
     take.stature = stature_m
     said: list[str] = []
-    started = yield from stretch(_clip_session(scene, take, character, file), 0.0, 0.02)
+    started = yield from stretch(_clip_session(scene, take, character, file, network), 0.0, 0.02)
     clip = footage_of(scene, take).path
     turns = turns and can_turn(clip)
 
@@ -86,7 +93,7 @@ def animate(
         turns = False
         said.append(f"The picture is turned by {turned.turn_deg} degrees clockwise: people are upright so")
         load_into_take(bpy.context, turned_copy(clip, turned.turn_deg), False)
-        again = _clip_session(scene, active_take(scene), character, file)
+        again = _clip_session(scene, active_take(scene), character, file, network)
         started = yield from stretch(again, DETECTED, DETECTED)
         yield from stretch(reach(started.session, "retarget", None, keep), DETECTED, VIEWED)
     yield from stretch(_hide_what_stands_before(bpy.context, active_take(scene)), VIEWED, 1.0)
@@ -112,7 +119,9 @@ def turned_copy(clip: Path, turn_deg: int) -> Path:
     return copy
 
 
-def _clip_session(scene: Scene, take: PropertyGroup, character: str, file: str) -> "Job[SceneSession]":
+def _clip_session(
+    scene: Scene, take: PropertyGroup, character: str, file: str, network: "Network | None"
+) -> "Job[SceneSession]":
     """What is known of a clip: its performer's height, its keypoints if there are any, and about its lens."""
     from ...core.camera.camera import Lens
     from ...core.session.described import lens_of
@@ -139,7 +148,7 @@ def _clip_session(scene: Scene, take: PropertyGroup, character: str, file: str) 
         take,
         camera,
         detects=not TakeState(take).has_keypoints,
-        network=None if TakeState(take).has_keypoints else chosen_network(),
+        network=None if TakeState(take).has_keypoints else network,
         open_lens=lens,
         floor_open=True,
         libraries=named_libraries(matching.library_name),
