@@ -75,7 +75,8 @@ class Actor(Record):
     def from_stature(cls, stature_m: float) -> "Actor":
         """An actor of average proportions and the stature `stature_m` [m].
 
-        InputError: The height is not between 0.5 and 3 m.
+        Raises:
+            InputError: The height is not between 0.5 and 3 m.
         """
         if not (isfinite(stature_m) and 0.5 <= stature_m <= 3.0):
             raise InputError(f"actor height is {stature_m} m; a height between 0.5 and 3 m is valid")

@@ -41,7 +41,8 @@ class Camera:
     def from_dict(cls, fields: Mapping[str, Any], where: str = "camera") -> "Camera":
         """Read a camera from the `CameraFields` of `take.json`; `where` is their place for messages.
 
-        InputError: a field is missing or invalid; the sentence names it.
+        Raises:
+            InputError: A field is missing or invalid; the sentence names it.
         """
         read = CameraFields.of(Fields(fields, where))
         lens = (read.lens_mm, read.sensor_width_mm)

@@ -179,7 +179,8 @@ class CameraFields(Record):
     def of(cls, fields: Fields) -> "CameraFields":
         """Read them, of which `matrix_world` or `height_m` must be there.
 
-        InputError: a field is missing or invalid, or there are both.
+        Raises:
+            InputError: A field is missing or invalid, or there are both.
         """
         placed = [name for name in PLACED if fields.has(name) and name != FACING]
         posed = [name for name in MATRICES if fields.has(name)]

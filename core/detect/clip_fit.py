@@ -34,8 +34,10 @@ def held_against_clip(
     `stored_size` is that of its pictures in the file, whose pixels need not be square.
 
     A point is not seen where its score is 0, where it lies at exactly (0, 0), which stands for nothing found,
-    and outside the picture, where a network can only guess. InputError: it is of another clip, or nobody is
-    seen in it.
+    and outside the picture, where a network can only guess.
+
+    Raises:
+        InputError: It is of another clip, or nobody is seen in it.
     """
     time_s = detected.time_s
     if time_s is not None and not detected.numbered and fps is not None and frame_count != len(time_s):

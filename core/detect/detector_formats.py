@@ -294,7 +294,8 @@ def is_one_frame(value: Any) -> bool:
 def read_frame_folder(folder: Path) -> DetectedFrames:
     """Read the numbered files of a folder; further files are ignored.
 
-    InputError: there are none, two have the same number, a link leads outside, or one cannot be used.
+    Raises:
+        InputError: There are none, two have the same number, a link leads outside, or one cannot be used.
     """
     files = _numbered_files(folder)
     check_symlinks(files.values(), [folder])

@@ -183,7 +183,8 @@ def _person(layout: Layout) -> Callable[[tuple[Any, dict[str, tuple[Any, str]]],
 def write_keypoints(path: Path, people: People, frame_start: int, fps: float | None = None) -> None:
     """Write a file of our own, atomically; `read_keypoints` reads it back.
 
-    ConversionError: the file cannot be written.
+    Raises:
+        ConversionError: The file cannot be written.
     """
     several = people.most_people > 1
     fields: dict[str, Any] = {"detector": people.source[:LONGEST_DETECTOR] or "unknown", "layout": OWN}

@@ -17,7 +17,8 @@ CHECKSUMS = FOLDER / "SHA256SUMS"
 def network_session(model: Path, finds: str) -> Any:
     """An onnxruntime session on one thread, for several looks at once; `finds` says what, for sentences.
 
-    InputError: the file is missing, damaged or another one, or onnxruntime cannot be loaded.
+    Raises:
+        InputError: The file is missing, damaged or another one, or onnxruntime cannot be loaded.
     """
     again = "install Keymark's zip again, or run tools/fetch_model.py in a copy of its source"
     try:

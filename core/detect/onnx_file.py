@@ -52,7 +52,8 @@ class OnnxFile:
 def read_onnx(path: Path) -> OnnxFile:
     """Read a file, and refuse it where it could do anything but calculate.
 
-    InputError: it is no ONNX file, damaged, too large, uses operators of its own, or needs other files.
+    Raises:
+        InputError: It is no ONNX file, damaged, too large, has operators of its own, or needs other files.
     """
     size = regular_file_size(path, "a network")
     if size > LARGEST_BYTES:

@@ -242,7 +242,11 @@ class _Check:
 
 
 def applied(people: People, finding: PictureFinding) -> People:
-    """The people as the pictures say that they are meant. InputError: they cannot be."""
+    """The people as the pictures say that they are meant.
+
+    Raises:
+        InputError: They cannot be.
+    """
     where = people.file or people.source
     if finding.refusal:
         raise InputError(f"{where}: {finding.refusal}")

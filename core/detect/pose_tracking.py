@@ -56,7 +56,8 @@ class _Sighting:
 def find_people(clip: Clip, network: PoseNetwork, closer: CloserLook | None = None) -> Job[People]:
     """Find everyone in a clip; `closer` sees heads and hands too.
 
-    InputError: it is a picture, has no frames, or nobody is in it.
+    Raises:
+        InputError: It is a picture, has no frames, or nobody is in it.
     """
     yield Progress(DETECTING, 0.0)
     with PeopleFinder(clip, lambda: (network, closer)) as finder:

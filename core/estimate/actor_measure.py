@@ -93,7 +93,8 @@ def measure_standing(
     and `keypoints` those of this frame alone; without both the lengths are average ones. `arms_stretched`:
     the arms are held out sideways, across the view.
 
-    InputError: The height is out of range, or the two points cannot be a person's.
+    Raises:
+        InputError: The height is out of range, or the two points cannot be a person's.
     """
     average = Actor.from_stature(stature_m)
     place = ground_place(camera, frame, stature_m, crown_px, ground_px)

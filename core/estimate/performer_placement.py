@@ -186,7 +186,8 @@ def ground_place(
 
     `crown_px` and `ground_px` (2,): top of the head, and the ground between the feet [px].
 
-    InputError: The two points in the picture cannot be a person's.
+    Raises:
+        InputError: The two points in the picture cannot be a person's.
     """
     crown, ground = np.asarray(crown_px, dtype=np.float64), np.asarray(ground_px, dtype=np.float64)
     if np.linalg.norm(crown - ground) < LEAST_HEIGHT_PX:

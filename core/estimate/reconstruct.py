@@ -82,8 +82,8 @@ def reconstruct(
 def check_reconstructible(take: Take, method: str) -> None:
     """Check method, keyframes and evidence, which do not depend on the clip.
 
-    InputError: The method is unknown or needs markers that the take has not got, or there are too few
-    keyframes.
+    Raises:
+        InputError: The method is unknown or needs markers that are not there, or keyframes are too few.
     """
     check_method(take, method)
     if len(take.keyframes) < 2 and (take.reference is None or method != "map"):
@@ -93,7 +93,8 @@ def check_reconstructible(take: Take, method: str) -> None:
 def check_method(take: Take, method: str) -> None:
     """Check that a take can be reconstructed by a method, once it has keyframes.
 
-    InputError: The method is unknown, or needs markers that the take has not got.
+    Raises:
+        InputError: The method is unknown, or needs markers that the take has not got.
     """
     if method not in METHODS:
         raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")

@@ -83,7 +83,8 @@ def read_json_value(path: Path, largest_bytes: int = LARGEST_BYTES) -> Any:
 def parse_json(text: str, where: str) -> dict[str, Any]:
     """The JSON object in a text.
 
-    InputError: it is none, is nested too deeply, names a field twice or has a number that is not finite.
+    Raises:
+        InputError: It is none, nested too deeply, names a field twice or has a number that is not finite.
     """
     value = _parse(text, where)
     if not isinstance(value, dict):

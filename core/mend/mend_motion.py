@@ -58,7 +58,8 @@ class Mended:
 def mend_motion(points: Array, rate: float, options: MendOptions, frame_start: int = 1) -> Job[Mended]:
     """Mend points (F, 13, 3) [m], Z up, NaN where one is missing, at a rate [1/s].
 
-    InputError: there are too few frames, too many, or too few with the whole body; no size of a person.
+    Raises:
+        InputError: Frames are too few, too many, or too seldom show a whole body; no size of a person.
     """
     yield Progress("Looking through the motion", 0.0)
     given, notes = _checked(points, options, frame_start)
@@ -148,7 +149,11 @@ def _checked(points: Array, options: MendOptions, frame_start: int) -> tuple[Arr
 
 
 def measured_actor(points: Array) -> Actor:
-    """The actor of median lengths of points (F, 13, 3) [m]. InputError: a length is that of no person."""
+    """The actor of median lengths of points (F, 13, 3) [m].
+
+    Raises:
+        InputError: A length is that of no person.
+    """
     at = {name: points[:, index] for index, name in enumerate(HUMAN.point_names)}
     at |= {part: 0.5 * (at[f"{part}.L"] + at[f"{part}.R"]) for part in ("hip", "shoulder")}
     ends = {

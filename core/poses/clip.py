@@ -54,7 +54,8 @@ def pose_clip(
         frames: Indices of the frames to find keyframes at, instead of `keyframe_count` proposed ones.
         floor_open: An unknown floor is wherever the feet are; else it should be z = 0.
 
-    InputError: There is no library, none has a posture, or neither a marker nor a keypoint is seen.
+    Raises:
+        InputError: There is no library, none has a posture, or neither a marker nor a keypoint is seen.
     """
     usable = [library for library in libraries if library.postures]
     if not usable:

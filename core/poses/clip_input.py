@@ -102,7 +102,10 @@ def tempering(time_s: Array) -> float:
 def posing_input(seen: SeenTake, keyframe_count: int | None = None) -> PosingInput:
     """Gather what a take has to find its poses by; pictures are not asked, nor what was found earlier.
 
-    Frames to ask for are 10 per 100 where no count is given. InputError: no marker, no keypoint is seen.
+    Frames to ask for are 10 per 100 where no count is given.
+
+    Raises:
+        InputError: No marker, no keypoint is seen.
     """
     take, tracks, keypoints, there = seen.take, seen.reading.tracks, seen.keypoints, seen.there
     check_followed(take)

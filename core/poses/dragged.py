@@ -38,7 +38,10 @@ def dragged(
     Seen along `sight`, the unit direction (3,) in which the view looks, the joint called `point` comes to lie
     on `place` (3,) [m]; in depth it comes as near as lengths allow. Where it is `pushed` along the line of
     sight, depth counts as much as the image. No ankle is dragged through a known floor: it stops there on its
-    line of sight, or above where the view looks level. KeyError: the joint is no principal point.
+    line of sight, or above where the view looks level.
+
+    Raises:
+        KeyError: The joint is no principal point.
     """
     moved = _dragged(body, posture, point, place, sight, pushed)
     stem, _, side = point.partition(".")

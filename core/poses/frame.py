@@ -104,7 +104,8 @@ def find_frame_poses(
 ) -> FramePoses:
     """Find the postures that a frame may show, by libraries, a known floor and what keyframes nearby tell.
 
-    InputError: No library has a posture, or nothing is seen in the frame.
+    Raises:
+        InputError: No library has a posture, or nothing is seen in the frame.
     """
     if shown.is_empty:
         raise InputError("neither a marker nor a keypoint is seen in the frame, so no posture can be found")

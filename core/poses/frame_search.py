@@ -132,7 +132,8 @@ class Hypotheses:
 def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
     """What some libraries tell of postures on a body; that of the last few bodies is kept.
 
-    InputError: No library has a posture.
+    Raises:
+        InputError: No library has a posture.
     """
     usable = [each for each in libraries if each.postures]
 

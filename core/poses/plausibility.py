@@ -87,7 +87,8 @@ class KnownPostures:
 def known_postures(body: Body, libraries: Sequence[Library]) -> KnownPostures:
     """The postures of some libraries on a body.
 
-    InputError: No library has a posture.
+    Raises:
+        InputError: No library has a posture.
     """
     batches, names, numbers = [], [], []
     for number, library in enumerate(libraries):

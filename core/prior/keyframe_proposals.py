@@ -125,7 +125,8 @@ def propose_keyframes(
     `count`: by default 10 per 100 frames, and more where `largest_gap` wants it, which is 1.5 even gaps by
     default.
 
-    InputError: Fewer than two frames, a count that is not between 2 and F, or a gap below 1.
+    Raises:
+        InputError: Fewer than two frames, a count that is not between 2 and F, or a gap below 1.
     """
     V = np.asarray(speed, dtype=np.float64)
     frames = len(V)

@@ -34,7 +34,8 @@ def learn_library(
 
     `count` of postures: by default as many as are distinct, from 10 to 40.
 
-    InputError: The motion has fewer frames than the postures asked for, or stands still.
+    Raises:
+        InputError: The motion has fewer frames than the postures asked for, or stands still.
     """
     frames = len(time_s)
     fewest = 2 if count is None else count

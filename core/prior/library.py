@@ -231,7 +231,8 @@ LARGEST_BYTES = 4 * 2**20
 def read_library(path: Path) -> Library:
     """Read a library file.
 
-    InputError: The file is missing, no library, or invalid.
+    Raises:
+        InputError: The file is missing, no library, or invalid.
     """
     return Library.from_json(read_json(path, LARGEST_BYTES), str(path))
 

@@ -30,7 +30,8 @@ def find_library(name_or_path: str | Path, folders: Sequence[Path]) -> Library:
 
     A name that ends in `.json` or contains a path separator is a path.
 
-    InputError: There is no such library, or it is invalid.
+    Raises:
+        InputError: There is no such library, or it is invalid.
     """
     if is_path(name_or_path):
         return read_library(Path(name_or_path))
@@ -47,7 +48,8 @@ def find_library(name_or_path: str | Path, folders: Sequence[Path]) -> Library:
 def find_libraries(name_or_path: str | Path, folders: Sequence[Path]) -> tuple[Library, ...]:
     """Find the library of an identifier, title or path; every valid one, by title, for `EVERY_LIBRARY`.
 
-    InputError: There is no such library, or none at all, or it is invalid.
+    Raises:
+        InputError: There is no such library, or none at all, or it is invalid.
     """
     if name_or_path != EVERY_LIBRARY:
         return (find_library(name_or_path, folders),)
@@ -60,6 +62,7 @@ def find_libraries(name_or_path: str | Path, folders: Sequence[Path]) -> tuple[L
 def library_path(folder: Path, identifier: str) -> Path:
     """Path of a library's file in a folder, never outside of it.
 
-    InputError: The identifier is invalid.
+    Raises:
+        InputError: The identifier is invalid.
     """
     return folder / (checked_identifier(identifier, "the library's identifier") + ENDING)

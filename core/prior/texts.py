@@ -44,7 +44,8 @@ def is_identifier(text: object) -> bool:
 def checked_identifier(text: object, what: str) -> str:
     """The text, if it is a valid identifier.
 
-    InputError: It is invalid; `what` names it in the sentence.
+    Raises:
+        InputError: It is invalid; `what` names it in the sentence.
     """
     if not isinstance(text, str) or not is_identifier(text):
         raise InputError(f"{what} is {shown(text)}; it must have {IDENTIFIER_RULE}")

@@ -113,6 +113,10 @@ class RetargetRecord(Record):
 
 
 def read_retarget_record(folder: Path) -> RetargetRecord:
-    """Read a folder's record. InputError: there is none, or a field is unusable."""
+    """Read a folder's record.
+
+    Raises:
+        InputError: There is none, or a field is unusable.
+    """
     path = folder / RECORD_FILE
     return RetargetRecord.from_json(read_json(path, LARGEST_BYTES), str(path))

@@ -34,7 +34,11 @@ def to_arrays(record: Any, drawn: Collection[str], prefix: str = "") -> dict[str
 
 
 def from_arrays(record: type[Any], arrays: Arrays, prefix: str = "") -> dict[str, Any]:
-    """What a record's fields were; KeyError: an array is missing."""
+    """What a record's fields were.
+
+    Raises:
+        KeyError: An array is missing.
+    """
     return {
         field.name: RESTORED[field.type](arrays[prefix + field.name])
         for field in fields(record)
@@ -124,6 +128,10 @@ class ComparedKeypoints:
 
     @classmethod
     def from_arrays(cls, arrays: Arrays, frames: int) -> "ComparedKeypoints":
-        """Restore them; none from arrays of before there were keypoints. KeyError: an array is missing."""
+        """Restore them; none from arrays of before there were keypoints.
+
+        Raises:
+            KeyError: An array is missing.
+        """
         known = PREFIX + "names" in arrays
         return cls(**from_arrays(cls, arrays, PREFIX)) if known else cls.none(frames)

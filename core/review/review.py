@@ -68,7 +68,12 @@ class Review:
 
     @classmethod
     def from_arrays(cls, arrays: Arrays) -> "Review":
-        """Restore a review, of any version. KeyError, ValueError: an array is missing, a reason unknown."""
+        """Restore a review, of any version.
+
+        Raises:
+            KeyError: An array is missing.
+            ValueError: A reason is unknown.
+        """
         frames, weak = len(arrays["frames"]), len(arrays["weak_index"])
         new = {"contours": ContourSight.none(frames).lines, "weak_point": np.full(weak, "")}
         plain = from_arrays(cls, {**new, **arrays})

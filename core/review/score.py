@@ -52,7 +52,10 @@ def score_points(
     """Score points (F, 13, 3) against true ones [m]; frames of NaN, in which nobody is there, do not count.
 
     Keyframes count from 0; the camera's lines of sight split the error; `sigma_m` (F, 13) are roots of the
-    traces of the points' covariances. InputError: the frames differ, or every frame is a keyframe.
+    traces of the points' covariances.
+
+    Raises:
+        InputError: The frames differ, or every frame is a keyframe.
     """
     if points.shape != truth.shape:
         raise InputError(f"the motion has {len(points)} frames; the truth has {len(truth)}")
@@ -111,7 +114,11 @@ class TruthFile(Record):
 
 
 def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
-    """(F, 13, 3) true points [m] of a `truth.json`. InputError: it is unusable or lacks a frame."""
+    """(F, 13, 3) true points [m] of a `truth.json`.
+
+    Raises:
+        InputError: It is unusable or lacks a frame.
+    """
     truth = TruthFile.from_json(read_json(path), str(path))
     wanted = tuple(range(frame_start, frame_start + frame_count))
     if truth.frames != wanted:

@@ -50,8 +50,10 @@ def described(
     """Read what a session starts from; `read_armature` reads a reference motion that only Blender can.
 
     A camera that nobody has placed is put where cameras usually stand. Where keyframes are found, those that
-    an earlier run has found are left out. InputError: the take cannot be used, or its clip or the performer's
-    size is missing.
+    an earlier run has found are left out.
+
+    Raises:
+        InputError: The take cannot be used, or its clip or the performer's size is missing.
     """
     searched = None if settings.library is None else libraries
     if is_unplaced(description, settings):

@@ -25,7 +25,8 @@ from .session import Inputs, Posed, Session, Stage, placed_take
 def pose(session: Session) -> Job[Posed]:
     """Find keyframes where that is wanted; what a person has posed stays.
 
-    InputError: there is no library with a posture.
+    Raises:
+        InputError: There is no library with a posture.
     """
     inputs, seen, floor_m = session.inputs, placed_take(session), session.inputs.floor_m
     said = reference_evidence(seen) if seen.take.reference is not None and inputs.method == "map" else None

@@ -89,8 +89,10 @@ def checked_keypoints(take: Take, reading: Reading) -> Job[tuple[People, ...]]:
     """A take's keypoints as the pictures say that they are meant, each picture's once.
 
     Pictures are not asked of points that a person has placed or that the pose network has just found in them,
-    and without the network. Where enough is posed, that tells what is of another clip (`keypoint_trust`), and
-    else: InputError: keypoints are not of this clip.
+    and without the network. Where enough is posed, that tells what is of another clip (`keypoint_trust`).
+
+    Raises:
+        InputError: Keypoints are not of this clip, and too little is posed.
     """
     checked = []
     posed = sum(keyframe.is_posed for keyframe in take.keyframes) >= FEWEST_KEYFRAMES
@@ -135,7 +137,11 @@ class PictureTurnedError(Exception):
 
 
 def require_upright(stage: str, session: Session) -> None:
-    """Stop the way of a take whose picture is turned: a `Keep` for stages. PictureTurnedError: it is."""
+    """Stop the way of a take whose picture is turned: a `Keep` for stages.
+
+    Raises:
+        PictureTurnedError: It is.
+    """
     take = session.inputs.take
     if stage != "see" or not session.inputs.detects or not session[Sight].people:
         return

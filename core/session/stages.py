@@ -40,8 +40,9 @@ def reach(
 ) -> Job[Session]:
     """The session with all stages up to `last`; see `advance`.
 
-    InputError: the clip or anything else of the take cannot be used. ConversionError: no motion could be
-    computed.
+    Raises:
+        InputError: The clip or anything else of the take cannot be used.
+        ConversionError: No motion could be computed.
     """
     names = [stage.name for stage in STAGES]
     return advance(session, STAGES[: names.index(last) + 1], kept, keep)

@@ -127,8 +127,9 @@ KNOWN_FIELDS = (TAKE_FIELD, "clip", "frame_count", "keyframes", *SHARED_FIELDS, 
 def read_take_list(path: Path) -> Shoot:
     """Read a list of takes; the values of their fields are checked where each take uses them.
 
-    InputError: the list cannot be read, is too large or holds no take; or a line is no object, or has an
-    unknown field, a path outside the folder or the name of another take.
+    Raises:
+        InputError: The list cannot be read, is too large or holds no take; or a line is no object, or has
+            an unknown field, a path outside the folder or the name of another take.
     """
     valid = "a list of takes in UTF-8, one JSON object a line"
     regular_file_size(path, valid)

@@ -144,8 +144,10 @@ def chosen_subject(
 ) -> tuple[int, tuple[str, ...]]:
     """The index of the wanted subject, or else of the most complete, the first of equals; and notes.
 
-    `kind` is what they are, and the option of `mend` that names one. InputError: nobody is called so; the
-    sentence lists all.
+    `kind` is what they are, and the option of `mend` that names one.
+
+    Raises:
+        InputError: Nobody is called so; the sentence lists all.
     """
     every = listed([shown(name) for name in names], 10)
     if wanted is not None:

@@ -92,7 +92,8 @@ def performer_keypoints(take: Take, tracks: RegionTracks | None = None) -> Keypo
 def people_of(people: People, number: int, fps: float) -> People:
     """The people without all but one, counted from 1 at the left where most are seen for the first time.
 
-    InputError: there are fewer.
+    Raises:
+        InputError: There are fewer.
     """
     most = people.most_people
     if people.by_hand:

@@ -54,8 +54,10 @@ def read_points(path: Path, subject: str | None = None) -> tuple[Array, float | 
     """The 13 points (F, 13, 3) [m], Z up, NaN where absent, frames a second where the file tells, and notes.
 
     Where names have prefixes, as in Anna:LKnee, the points are those of one: the subject's, or else of the
-    prefix that has all of them in the most frames. InputError: the file is damaged, lacks points, has no such
-    subject, or no size of a person.
+    prefix that has all of them in the most frames.
+
+    Raises:
+        InputError: The file is damaged, lacks points, has no such subject, or no size of a person.
     """
     if regular_file_size(path, "a file of points") > LARGEST_BYTES:
         raise InputError(f"{path}: is larger than a gigabyte; a motion must be smaller")
@@ -304,8 +306,11 @@ class _Root:
 def read_bvh(path: Path, subject: str | None = None) -> tuple[str, tuple[str, ...]]:
     """The text of a BVH with one ROOT alone, and notes.
 
-    Of several ROOTs it is that of the subject, or else the one with the most joints. InputError: it is no
-    BVH, its header lies about its rate or frames, which Blender would believe, or it has no such subject.
+    Of several ROOTs it is that of the subject, or else the one with the most joints.
+
+    Raises:
+        InputError: It is no BVH, its header lies about its rate or frames, which Blender would believe,
+            or it has no such subject.
     """
     if regular_file_size(path, "a BVH") > LARGEST_BVH_BYTES:
         raise InputError(f"{path}: is larger than {LARGEST_BVH_BYTES // 2**20} MB; a motion must be smaller")

@@ -29,8 +29,10 @@ def shot_of(take: Take, reading: Reading, named: tuple[int, int] | None = None) 
     """First frame of the shot that is animated and the one after its last; None where the clip is not cut.
 
     It is the one that is `named` by its first and last frame, or that is posed, else the one in which
-    somebody is seen longest. Who has posed several says that they are one: None, too. InputError: the named
-    frames are not those of the clip.
+    somebody is seen longest. Who has posed several says that they are one: None, too.
+
+    Raises:
+        InputError: The named frames are not those of the clip.
     """
     count, cuts, start = reading.tracks.frame_count, reading.frame_findings.cuts, take.frame_start
     if named is not None:

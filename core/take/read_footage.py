@@ -27,8 +27,9 @@ LONGEST_FRAMES = 40_000
 def open_clip(take: Take) -> Clip:
     """Open a take's clip and check `take.json` against it.
 
-    InputError: the clip is missing or unreadable, or its size, its number of frames, the camera's poses or a
-    keyframe do not fit.
+    Raises:
+        InputError: The clip is missing or unreadable, or its size, its number of frames, the camera's
+            poses or a keyframe do not fit.
     """
     clip = open_footage(take.clip, take.fps, take.camera.resolution)
     check_size(take, clip)
@@ -44,7 +45,8 @@ def open_clip(take: Take) -> Clip:
 def open_footage(path: Path, fps: float | None, size: tuple[int, int] | None = None) -> Clip:
     """Open a clip without its take; `fps` is the rate of an image sequence, `size` as in `Clip.open`.
 
-    InputError: the clip is missing, unreadable or too long.
+    Raises:
+        InputError: The clip is missing, unreadable or too long.
     """
     try:
         clip = Clip.open(path, fps, size)
@@ -96,8 +98,9 @@ def check_size(take: Take, clip: Clip) -> None:
 def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
     """Check the true number of a clip's frames against the take.
 
-    InputError: there are too many, `frame_count` or the number of frames with keypoints differs, or a
-    keyframe or the camera's poses lie outside the clip.
+    Raises:
+        InputError: There are too many, `frame_count` or the number of frames with keypoints differs, or a
+            keyframe or the camera's poses lie outside the clip.
     """
     path = take.file
     if count > LONGEST_FRAMES:

@@ -75,8 +75,9 @@ def seen_reference(
 def read_reference(path: Path, subject: str | None = None) -> ReferenceMotion:
     """Read a reference motion: points by name, as MHR-70's csv and FreeMoCap have them, or a motion.json.
 
-    InputError: the file is none of these or damaged, has no such subject, or fewer than two of its frames
-    have a performer.
+    Raises:
+        InputError: The file is none of these or damaged, has no such subject, or fewer than two of its
+            frames have a performer.
     """
     ending = path.suffix.lower()
     if ending not in REFERENCE_ENDINGS:

@@ -49,8 +49,10 @@ class Clip:
 
         Patterns are `img_####.png` and `img_%04d.png`. Images follow their numbers (img_2 before img_10);
         `fps` is theirs, a video has its own. Pixels that are not square are scaled to such, unless `size`
-        says that the clip is known with the pixels that it stores, as in Blender. InputError: the path does
-        not exist, or cannot be decoded.
+        says that the clip is known with the pixels that it stores, as in Blender.
+
+        Raises:
+            InputError: The path does not exist, or cannot be decoded.
         """
         path = Path(path)
         images = find_images(path)
@@ -91,8 +93,10 @@ class Clip:
         """Yield (index, time in seconds, image) of every frame in order, in one pass and constant memory.
 
         Images are (height, width, 3) uint8 in the order blue, green, red. Time counts from the first frame
-        and is the file's own stamp, so it is right for variable frame rates too. InputError: an image of a
-        sequence cannot be read or has another size than the first.
+        and is the file's own stamp, so it is right for variable frame rates too.
+
+        Raises:
+            InputError: An image of a sequence cannot be read or has another size than the first.
         """
         return self.source.frames()
 
@@ -168,7 +172,8 @@ class ClipSamples:
 def sample_clip(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
     """Sample up to `count` frames evenly over a clip; yields the fraction done.
 
-    InputError: none of them can be read.
+    Raises:
+        InputError: None of them can be read.
     """
     return _kept(clip, clip.sample(count), min(count, clip.frame_count))
 

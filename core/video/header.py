@@ -182,7 +182,8 @@ def can_turn(path: Path) -> bool:
 def write_turned(path: Path, turn_deg: int, copy: Path) -> None:
     """Write a copy of an MP4 or QuickTime file that is shown turned clockwise, 90, 180 or 270 degrees more.
 
-    InputError: it is no such file, or its header cannot be read.
+    Raises:
+        InputError: It is no such file, or its header cannot be read.
     """
     places = _matrices(path) if can_turn(path) else []
     if not places:

@@ -28,7 +28,10 @@ def read_image(path: Path) -> Image:
     """Read an image as (height, width, 3) uint8 blue, green, red.
 
     Sixteen-bit and floating images are brought to eight bits, gray ones to three channels, and alpha is
-    dropped. InputError: the file is missing, too large, or no image that OpenCV can read.
+    dropped.
+
+    Raises:
+        InputError: The file is missing, too large, or no image that OpenCV can read.
     """
     if regular_file_size(path, "an image") > LARGEST_BYTES:
         raise InputError(f"{path}: has more than {LARGEST_BYTES / 2**20:g} MiB; it must be a smaller image")
@@ -160,7 +163,8 @@ def _placed(paths: Sequence[Path]) -> tuple[tuple[Path | None, ...], tuple[str, 
 def find_images(path: Path) -> list[Path] | None:
     """The images of a folder, a pattern or a numbered image, in natural order; None of anything else.
 
-    InputError: a folder or pattern without an image, or a folder with several sequences.
+    Raises:
+        InputError: A folder or pattern without an image, or a folder with several sequences.
     """
     if path.is_dir():
         found = sorted(_limited(path, (f for f in path.iterdir() if is_image(f))), key=_natural_key)

@@ -69,7 +69,11 @@ rigify = of_take(
 
 
 def add_rigify_character(context: Context) -> PropertyGroup:
-    """Add a Rigify rig of the performer's size; enables Rigify. InputError: it cannot make one."""
+    """Add a Rigify rig of the performer's size; enables Rigify.
+
+    Raises:
+        InputError: It cannot make one.
+    """
     from ..actor.take_actor import leave_mode
 
     leave_mode(context)

@@ -54,7 +54,11 @@ def candidates(scene: Scene, view_layer: ViewLayer) -> list[Object]:
 
 
 def active_character(scene: Scene) -> PropertyGroup:
-    """Return the character that is chosen in the active take's list. InputError: there is none."""
+    """Return the character that is chosen in the active take's list.
+
+    Raises:
+        InputError: There is none.
+    """
     character = find_character(scene)
     if character is None:
         raise InputError(f"scene '{scene.name}' has no character; add one to the take first")
@@ -117,7 +121,11 @@ class SourceMotion:
 
 
 def source_of(take: PropertyGroup, character: PropertyGroup) -> SourceMotion:
-    """The motion that a character is to perform. InputError: there is none; the sentence says what to do."""
+    """The motion that a character is to perform.
+
+    Raises:
+        InputError: There is none; the sentence says what to do.
+    """
     kind, action, actor = _source(take, character)
     if (problem := missing_source(take, character)) is not None:
         raise InputError(problem)

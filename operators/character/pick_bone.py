@@ -176,7 +176,11 @@ class KEYMARK_OT_remove_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Ope
 
 
 def chain_of(character: PropertyGroup, role: str) -> PropertyGroup:
-    """The properties of a role that several bones may share. InputError: it is one bone's."""
+    """The properties of a role that several bones may share.
+
+    Raises:
+        InputError: It is one bone's.
+    """
     if role not in CHAINS:
         raise InputError(f"'{role}' is no chain of bones; spine, neck and fingers are")
     return role_named(character.character_map, role)

@@ -32,7 +32,11 @@ class RoleBoneOperator:
 
 
 def give_bone(character: PropertyGroup, role: str, index: int, bone: str) -> None:
-    """Give a role a bone, which makes it the person's. InputError: no such role, place or bone."""
+    """Give a role a bone, which makes it the person's.
+
+    Raises:
+        InputError: No such role, place or bone.
+    """
     if role not in ROLES:
         raise InputError(f"there is no role '{role}'; roles are {', '.join(ROLES)}")
     if bone not in character.armature.data.bones:
@@ -70,7 +74,11 @@ def told(context: Context, role: str) -> str:
 
 
 def recognize_bones(character: PropertyGroup) -> None:
-    """Recognize a character's bones and show them. InputError: it is none; properties stay."""
+    """Recognize a character's bones and show them.
+
+    Raises:
+        InputError: It is none; properties stay.
+    """
     from ...core.retarget.recognition.recognize import recognize
     from ..bridge.character.read_character import read_character
 

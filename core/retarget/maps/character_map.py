@@ -366,12 +366,21 @@ class CharacterMap(Record):
 
 
 def read_character_map(path: Path) -> CharacterMap:
-    """Read a character map file. InputError: the file is missing, no character map, or invalid."""
+    """Read a character map file.
+
+    Raises:
+        InputError: The file is missing, no character map, or invalid.
+    """
     return CharacterMap.from_json(read_json(path, LARGEST_BYTES), str(path))
 
 
 def write_character_map(path: Path, character_map: CharacterMap) -> None:
-    """Write a map's file, whole or not at all. InputError, ConversionError: it is invalid, unwritable."""
+    """Write a map's file, whole or not at all.
+
+    Raises:
+        InputError: It is invalid.
+        ConversionError: It cannot be written.
+    """
     value = character_map.to_json()
     CharacterMap.from_json(value, f"character map {shown(character_map.title)}")
     write_readable_json(path, value)

@@ -34,7 +34,8 @@ def missing_bones(character_map: CharacterMap, character: Character) -> tuple[st
 def check_map(character_map: CharacterMap, character: Character, where: str = "") -> None:
     """Refuse a map for another character, or one without the roles that every character has.
 
-    InputError: a bone or a role is missing; the sentence begins with `where`, by default the map's title.
+    Raises:
+        InputError: A bone or a role is missing; the sentence begins with `where`, or else the map's title.
     """
     name = where or f"character map {shown(character_map.title)}"
     missing = missing_bones(character_map, character)
@@ -59,7 +60,8 @@ def registered_maps(folders: Sequence[Path]) -> tuple[Registered[CharacterMap], 
 def find_map(name_or_path: str | Path, folders: Sequence[Path]) -> Registered[CharacterMap]:
     """Find a map by its title, its file's name without `.json`, or its path.
 
-    InputError: there is no such map, or it is invalid.
+    Raises:
+        InputError: There is no such map, or it is invalid.
     """
     if is_path(name_or_path):
         path = Path(name_or_path)
@@ -110,7 +112,9 @@ def choose_map(character: Character, wanted: str, folders: Sequence[Path]) -> Ch
     """The map of a character: the one with the wanted title or path, or the one found.
 
     `auto` takes a saved one that knows the character's bones, else recognition; `none` recognition alone.
-    InputError: there is no such map, it is for another character, or the bones are no character's.
+
+    Raises:
+        InputError: There is no such map, it is for another character, or the bones are no character's.
     """
     if wanted in (AUTO, NO_MAP):
         saved = map_for(character, folders) if wanted == AUTO else None
@@ -124,7 +128,11 @@ def choose_map(character: Character, wanted: str, folders: Sequence[Path]) -> Ch
 
 
 def map_digests(wanted: str, folders: Sequence[Path]) -> tuple[str, ...]:
-    """Digests of the maps that `choose_map` may take. InputError: there is no such map."""
+    """Digests of the maps that `choose_map` may take.
+
+    Raises:
+        InputError: There is no such map.
+    """
     if wanted == NO_MAP:
         return ()
     if wanted != AUTO:

@@ -44,7 +44,8 @@ class Preset:
 def preset_from_json(value: Any, where: str, identifier: str) -> Preset:
     """Read a preset from JSON that is not trusted: a character map's fields, and `requires` and `lacks`.
 
-    InputError: the JSON is no valid preset; the sentence begins with `where`.
+    Raises:
+        InputError: The JSON is no valid preset; the sentence begins with `where`.
     """
     read = _PresetFields.from_json(value, where)
     given = {name: getattr(read, name) for name in declared(CharacterMap)}

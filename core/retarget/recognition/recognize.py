@@ -112,8 +112,9 @@ class Recognition:
 def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -> Recognition:
     """Recognize a character's bones, by the shipped conventions of names or other ones, and by their places.
 
-    InputError: it is no character: too few bones, an animal, a prop, an actor of Keymark, a half-built rig,
-    or numbers that cannot be used.
+    Raises:
+        InputError: It is no character: too few bones, an animal, a prop, an actor of Keymark, a rig
+            half built, or numbers that cannot be used.
     """
     _check_character(character)
     preset = find_preset(character, presets)

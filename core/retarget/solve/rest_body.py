@@ -51,8 +51,8 @@ class RestBody:
     def of(cls, character: Character, character_map: CharacterMap) -> "RestBody":
         """The rest pose by a map.
 
-        InputError: a required role is missing, a bone is not there or plays two roles, or a limb has no
-        length.
+        Raises:
+            InputError: A role or a bone is missing, a bone plays two roles, or a limb has no length.
         """
         check_map(character_map, character)
         stance = find_stance(character, character_map)

@@ -178,8 +178,10 @@ def solve_motion(
 ) -> Job[CharacterMotion]:
     """Solve a performer's motion for a character; `object_space` stays with `Placement.CHARACTER`.
 
-    `lifts` (F,) by leg are how much higher its foot goes than its sole at rest demands [m]. InputError: the
-    map does not fit the character.
+    `lifts` (F,) by leg are how much higher its foot goes than its sole at rest demands [m].
+
+    Raises:
+        InputError: The map does not fit the character.
     """
     yield Progress("Aligning rest poses", 0.0)
     body = RestBody.of(character, character_map)
