@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from scipy.special import ndtr
+from scipy.special import ndtr, stdtr
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
@@ -49,6 +49,8 @@ FACTORS = 0.7, 3.0  # least and largest factor on the usual error
 KEYFRAME_WIDTH = 4.0  # error of its keyframes, in a usual difference between performers
 LEAST_GAIN = 0.29  # right motions cost .1 to .3 of what they cost at other times, others more than .7
 OTHER_TIMES = 21
+STRETCH_S = 0.5  # in which errors are alike
+MIRRORED_BY_CHANCE = 0.05  # probability, by Student's t, up to which a motion is said to have near for far
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +105,7 @@ def reference_evidence(seen_take: SeenTake) -> ReferenceEvidence | NoReference:
             f"other times ({gain:.2f}); it must be of this clip"
         )
         return NoReference((other,))
-    off_m, mirrored = _off_hints_m(take, keypoints, aligned, seen)
+    off_m, mirrored = _off_hints_m(take, keypoints, aligned, seen, tracks.time_s)
     if mirrored:
         turned = (
             f"{name}: is set aside, since it has near for far: its mirror image is nearer in depth to "
@@ -289,11 +291,11 @@ def error_factor(aligned: AlignedReference, seen: SeenPoints, time_s: Array) -> 
 
 
 def _off_hints_m(
-    take: Take, keypoints: Keypoints, aligned: AlignedReference, seen: SeenPoints
+    take: Take, keypoints: Keypoints, aligned: AlignedReference, seen: SeenPoints, time_s: Array
 ) -> tuple[float, bool]:
     """How far it is from what the keypoints' own network guesses in depth [m], and whether it mirrors that.
 
-    0 where nothing is guessed.
+    0 where nothing is guessed. Errors of both last, so that stretches of time count, not frames.
     """
     hint = principal_keypoints(keypoints).hint_m if keypoints.names else np.full(aligned.points.shape, np.nan)
     known = aligned.known & np.isfinite(hint).all(axis=(1, 2))
@@ -301,7 +303,11 @@ def _off_hints_m(
         return 0.0, False
     away = -np.einsum("fj,fpj->fp", seen.rotation[known, :, 2], aligned.points[known])
     guess = of_performer(take.body, about_hips(hint[known]))[..., 2]
-    return float(np.sqrt(np.mean((away - guess) ** 2))), bool((away * guess).sum() < 0.0)
+    _, stretch = np.unique(time_s[known] // STRETCH_S, return_inverse=True)
+    alike = np.bincount(stretch, (away * guess).sum(axis=1)) / np.bincount(stretch)
+    doubt_m2 = np.std(alike, ddof=1) / np.sqrt(len(alike)) if len(alike) > 1 else np.inf
+    mirrored = stdtr(len(alike) - 1, np.mean(alike) / max(doubt_m2, 1e-9)) < MIRRORED_BY_CHANCE
+    return float(np.sqrt(np.mean((away - guess) ** 2))), bool(mirrored)
 
 
 # --- Its jitter
