@@ -280,6 +280,7 @@ def made_up_review(frames: int = 13, first: float = 1.0) -> Review:
         weak_frames=(WeakFrame(frames // 2, Reason.HIDDEN, 1.0, 1), WeakFrame(3, Reason.FAR, 0.25)),
         contours=rng.uniform(20.0, 100.0, size=(frames, 6, 4, 2)),
         keypoints=made_up_keypoints(frames),
+        unsure=np.arange(frames)[:, None] == [1, 2, 3],
     )
 
 

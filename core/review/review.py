@@ -6,12 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, IndexArray
+from ..arrays import Array, BoolArray, IndexArray
+from ..body.fingers import SURE
 from ..body.kinematics import Pose
 from ..estimate.reconstruct import Reconstruction
 from ..markers.regions import CORNERS, ellipse_outline
 from ..progress import Job, Part, within
 from ..take.take import Take
+from ..terms.head import POINTS_STD_RAD
 from ..terms.region_model import RegionModel
 from ..terms.regions import NOISE, limb_widths
 from .compared_keypoints import Arrays, ComparedKeypoints, from_arrays, to_arrays
@@ -24,7 +26,7 @@ from .frame_evidence import (
     contour_sight,
     frame_evidence,
 )
-from .weak_frames import Reason, WeakFrame, find_weak_frames
+from .weak_frames import TURNED, Reason, WeakFrame, find_weak_frames
 
 __all__ = ["Reason", "Review", "WeakFrame", "review"]
 
@@ -52,6 +54,7 @@ class Review:
     weak_frames: tuple[WeakFrame, ...]  # frames worth another keyframe, the worst first
     contours: Array  # (F, L, S, 2) predicted contour lines [px], where no marker shows the fit
     keypoints: ComparedKeypoints  # N of the performer; none in a review kept before there were any
+    unsure: BoolArray  # (F, 3) where the turn of a hand, or of the head, as `TURNED`, is hardly seen
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """All fields as plain arrays for `from_arrays`."""
@@ -76,6 +79,7 @@ class Review:
         """
         frames, weak = len(arrays["frames"]), len(arrays["weak_index"])
         new = {"contours": ContourSight.none(frames).lines, "weak_point": np.full(weak, "")}
+        new["unsure"] = np.zeros((frames, len(TURNED)), dtype=bool)
         plain = from_arrays(cls, {**new, **arrays})
         columns = [{**new, **arrays}[f"weak_{name}"].tolist() for name in WEAK]
         weak_frames = tuple(
@@ -130,7 +134,19 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
         weak_frames=find_weak_frames(evidence, index),
         contours=contours.lines,
         keypoints=keypoints,
+        unsure=_unsure(reconstruction),
     )
+
+
+def _unsure(reconstruction: Reconstruction) -> BoolArray:
+    """(F, 3) as in `Review`; False where nobody looked."""
+    motion, solution = reconstruction.motion, reconstruction.solution
+    unsure = np.zeros((len(motion.time_s), len(TURNED)), dtype=bool)
+    if motion.hands is not None:
+        unsure[:, :-1] = motion.hands.sure < SURE
+    if solution is not None and solution.problem.data.heads is not None:
+        unsure[:, -1] = solution.problem.data.heads.std_rad > POINTS_STD_RAD
+    return np.asarray(unsure & motion.there[:, None])
 
 
 def _predictions(model: RegionModel, pose: Pose, centroid: Array) -> Part[tuple[Array, Array]]:

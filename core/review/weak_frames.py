@@ -18,6 +18,8 @@ WEAK_CONFIDENCE = 0.75  # frames of a higher confidence need no keyframe
 FRAMES_PER_NAMED = 20  # frames of the clip for each one that is named
 NEAREST_FRAMES = 4  # least distance of a named frame from a keyframe [frames]
 
+TURNED = ("left hand", "right hand", "head")  # whose turn is seen by looks of their own
+
 
 class Reason(StrEnum):
     """Why a frame is worth another keyframe."""

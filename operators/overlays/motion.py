@@ -14,6 +14,7 @@ from bpy.types import Context, PropertyGroup, Scene
 
 from ...core.arrays import Array, BoolArray, IndexArray
 from ...core.detect.keypoints import mirrored_point
+from ...core.review.weak_frames import TURNED
 from ..bridge.actor_bones import joint_places
 from ..follow.evidence import FrameKeypoints, keypoints_at
 from ..shell.footage_view import FootageView, footage_view
@@ -251,6 +252,8 @@ def _skeleton(what: Shown, view: MotionView, style: Style) -> Part:
         positions = view.project(joint_places(state.actor))  # of what is stored, not of the earlier motion
     rows = [(Sample.LEFT, "Performer's left"), (Sample.RIGHT, "Performer's right")]
     rows += [(Sample.RING, "Uncertain point")] if (review.sigma_m[index] > drawing.UNCERTAIN_M).any() else []
+    unsure = [name for name, is_unsure in zip(TURNED, review.unsure[index], strict=True) if is_unsure]
+    rows += [(Sample.NONE, f"Turn hardly seen: {', '.join(unsure)}")] if unsure else []
     return skeleton(review, index, positions, view.pixels_per_meter(review, index), style), rows
 
 

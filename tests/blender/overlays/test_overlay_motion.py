@@ -70,6 +70,7 @@ def review() -> Review:
         weak_frames=(),
         contours=np.zeros((FRAMES, 0, 4, 2)),
         keypoints=made_up_keypoints(FRAMES),
+        unsure=np.arange(FRAMES)[:, None] == [9, 9, 10],
     )
 
 
@@ -145,6 +146,14 @@ def test_without_the_footage_there_are_no_outlines(scene: bpy.types.Scene) -> No
     scene.frame_set(20)
     lines = words(drawn(scene, world_view(region, looking, None)))
     assert lines == ["Uncertain point", "Performer's right", "Performer's left"]  # from the bottom up
+
+
+def test_hands_and_heads_whose_turn_is_hardly_seen_are_named_in_their_frames(scene: bpy.types.Scene) -> None:
+    switch(scene, "skeleton", "legend")
+    for frame, named in ((13, []), (14, ["left hand, right hand"]), (15, ["head"])):
+        scene.frame_set(frame)
+        said = [line for line in words(drawn(scene)) if "hardly" in line]
+        assert said == [f"Turn hardly seen: {one}" for one in named]
 
 
 def test_what_is_switched_off_is_not_drawn(scene: bpy.types.Scene) -> None:

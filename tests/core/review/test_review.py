@@ -7,6 +7,7 @@ import pytest
 from _performances import made_up_review
 from _synthetic_take import write_synthetic_take
 from keymark.core.api import reconstruct
+from keymark.core.body.fingers import Hands
 from keymark.core.detect.keypoints import Keypoints, People, SeenPeople
 from keymark.core.estimate.reconstruct import METHODS
 from keymark.core.progress import run
@@ -16,6 +17,7 @@ from keymark.core.review.review import Review, review
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take, with_evidence
 from keymark.core.take.take_file import read_take
+from keymark.core.terms.head import ObservedHeads
 
 ASIDE = 0.04 * np.eye(34)[0]
 """A step of the posture that moves the performer by four centimeters."""
@@ -48,7 +50,7 @@ def test_a_review_comes_back_from_its_arrays() -> None:
 
 def test_a_review_that_was_kept_before_there_were_keypoints_has_none() -> None:
     arrays = made_up_review().to_arrays()
-    new = ("weak_point", "contours")
+    new = ("weak_point", "contours", "unsure")
     old = {name: value for name, value in arrays.items() if name[:9] != "keypoint_" and name not in new}
     again = Review.from_arrays(old)
     assert again.keypoints.names == () and again.keypoints.seen.shape == (13, 0, 2)
@@ -82,6 +84,20 @@ def test_the_motion_that_was_found_is_the_one_that_is_shown(take: Take) -> None:
     seen = run(review(take, result, np.arange(24) + 1.0))
     pixels, _ = result.model.camera.project(seen.points)
     assert seen.image_points == pytest.approx(pixels)
+
+
+def test_hands_and_heads_whose_turn_is_hardly_seen_are_told_frame_by_frame(take: Take) -> None:
+    result = run(reconstruct(take))
+    assert not run(review(take, result, np.arange(24))).unsure.any()  # nobody looked
+    sure, std_rad = np.full((24, 2), 0.8), np.full(24, 0.1)
+    sure[5, 1], std_rad[[7, 8]] = 0.6, (np.inf, 0.4)
+    hands = Hands(np.zeros((24, 2, 5)), np.zeros((24, 2, 3)), sure)
+    heads = ObservedHeads(np.broadcast_to(np.eye(3), (24, 3, 3)), std_rad)
+    solution = result.solution
+    data = replace(solution.problem.data, heads=heads)
+    solution = replace(solution, problem=replace(solution.problem, data=data))
+    looked = replace(result, motion=replace(result.motion, hands=hands), solution=solution)
+    assert np.argwhere(run(review(take, looked, np.arange(24))).unsure).tolist() == [[5, 1], [7, 2], [8, 2]]
 
 
 def keypoints_of(take: Take, motion: Motion, names: tuple[str, ...]) -> Keypoints:
