@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
 
+from ..body.human import HUMAN
 from ..body.skeleton import SIDES
 from .keypoints import BODY_POINTS
 
@@ -123,6 +124,7 @@ SYNONYMS = {
     "little finger": "pinky",
 }
 """Other words for a body point, sides left out; hips without a side are the middle between both."""
+PAIRED = {name.partition(".")[0] for name in HUMAN.point_names if "." in name}
 WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 """Words of a name, whatever separates them, as in `LeftWrist`, `left_wrist` and `wrist.L`; no numbers."""
 
@@ -131,6 +133,8 @@ WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 def named_point(name: str) -> str | None:
     """Body point that a track is named after, as `wrist.L`, `Left Wrist` or `l_wrist.001`; None if none."""
     words = [word.lower() for word in WORDS.findall(name)]
+    if len(words) == 1 and words[0][1:] in PAIRED:  # as in LKNEE
+        words = [words[0][:1], words[0][1:]]
     sides = {SIDE_WORDS[word] for word in words if word in SIDE_WORDS}
     part = " ".join(word for word in words if word not in SIDE_WORDS)
     if len(sides) > 1 or not part:

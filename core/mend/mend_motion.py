@@ -55,6 +55,14 @@ class Mended:
     notes: tuple[str, ...]  # what a person should know, in sentences without a full stop
 
 
+def named_frames(text: str, where: str) -> tuple[int, ...]:
+    """Frames in a text with commas between them; `where` is its name for messages."""
+    try:
+        return tuple(sorted({int(word) for word in text.split(",") if word.strip()}))
+    except ValueError as error:
+        raise InputError(f"{where} is {text}; frames with commas between them are valid") from error
+
+
 def mend_motion(points: Array, rate: float, options: MendOptions, frame_start: int = 1) -> Job[Mended]:
     """Mend points (F, 13, 3) [m], Z up, NaN where one is missing, at a rate [1/s].
 

@@ -1,6 +1,5 @@
 """Named points, and which of them are the principal ones of one person."""
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,13 +8,13 @@ import numpy as np
 
 from ..arrays import Array
 from ..body.human import HUMAN
+from ..detect.layouts import WORDS, named_point
 from ..errors import InputError, shown
 from ..files.fields import listed
 
-HEADS = (("ear.L", "ear.R"), ("head", "nose"), ("head",), ("skull",), ("nose",))
+HEADS = (("ear.L", "ear.R"), ("head", "nose"), ("head",), ("nose",))
 """Points whose middle is the head's, the best first: a head alone may be its top."""
 IDLE_WORDS = {"joint", "center", "study", "body", "mediapipe", "marker", "jc"}
-_WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")
 MHR_UP = (1, -1)
 
 
@@ -84,7 +83,7 @@ def _missing(table: PointTable) -> list[str]:
 
 def _columns(table: PointTable) -> dict[str, list[int]]:
     """The columns whose mean is a principal point, by its name; none where it is missing."""
-    known: dict[str, int] = {}
+    known: dict[str | None, int] = {}
     for exact in (True, False):  # a name without further words comes first
         for index, name in enumerate(table.names):
             point, idle = _point_of(name)
@@ -119,17 +118,11 @@ def principal_points(table: PointTable, path: Path) -> Array:
     return np.stack([table.values[:, own].mean(axis=1) for own in _columns(table).values()], axis=1)
 
 
-def _point_of(name: str) -> tuple[str, bool]:
-    """The name as `elbow.L`, without its subject, and whether words were left out."""
-    words = [word.lower() for word in _WORD.findall(name.rpartition(":")[2])]
-    sides = {"l": "L", "left": "L", "r": "R", "right": "R"}
-    side = next((sides[word] for word in words if word in sides), "")
-    rest = [word for word in words if word not in sides]
-    kept = [word for word in rest if word not in IDLE_WORDS] or rest
-    stem = "".join(kept)
-    if not side and stem[:1] in "lr" and stem[1:] in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle"):
-        side, stem = sides[stem[0]], stem[1:]
-    return (f"{stem}.{side}" if side else stem), kept != rest
+def _point_of(name: str) -> tuple[str | None, bool]:
+    """The body point of a name without its subject, and whether words were left out."""
+    words = WORDS.findall(name.rpartition(":")[2])
+    kept = [word for word in words if word.lower() not in IDLE_WORDS]
+    return named_point(" ".join(kept)), kept != words
 
 
 # --- Which of the people in one motion file is meant: one of them whole, never parts of two

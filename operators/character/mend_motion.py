@@ -109,16 +109,12 @@ class KEYMARK_OT_mend_motion(JobOperator, bpy.types.Operator):
     floor: Switch("On the Floor", "Bring the height on which the feet stand to zero", default=True)
 
     def start(self, scene: Scene) -> "Job[tuple[int, MendedAction]]":
+        from ...core.mend.mend_motion import named_frames
         from ..bridge.motions.mend_action import mend_action
         from ..bridge.motions.read_poses import motion_map
 
         active = bpy.context.view_layer.objects.active
-        try:
-            frames = tuple(int(word) for word in self.posed.split(",") if word.strip())
-        except ValueError as error:
-            raise InputError(
-                f"Posed Frames is {self.posed}; frames with commas between them are valid"
-            ) from error
+        frames = named_frames(self.posed, "Posed Frames")
         known = with_map(active)
         if known is not None:
             character_map = map_of(known.character_map)

@@ -8,7 +8,7 @@ from ....core.errors import InputError
 from ....core.files.kinds import Number
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import absolute_path, real_path
-from ....core.mend.mend_motion import Mended, MendOptions, mend_motion
+from ....core.mend.mend_motion import Mended, MendOptions, mend_motion, named_frames
 from ....core.progress import run
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.session.result import AS_MADE, changed_files, kept_note, write_made_digests
@@ -56,7 +56,8 @@ USUAL_RATE = 30.0
         "--posed FRAMES",
         "frames that you have posed, with commas between them; those with keys of their own are "
         "found. They stay, and the motion beside them follows",
-        default="",
+        type=lambda text: named_frames(text, "--posed"),
+        default=(),
     ),
     argument(
         "--fps RATE",
@@ -77,7 +78,7 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
     require_blender("mending a motion needs")
     settings = character_settings(arguments)
     formats = export_formats(arguments.format)
-    posed = _posed(arguments.posed)
+    posed: tuple[int, ...] = arguments.posed
     file = CharacterFile.parse(arguments.motion, (*ARMATURE_ENDINGS, *REFERENCE_ENDINGS), "is no motion")
     file = replace(file, object=arguments.subject or file.object)
     folder: Path = arguments.output
@@ -185,12 +186,3 @@ def _mend_armature(
                 action = write_mended(imported.armature, found)
                 write_character(scene, imported, action, own[:2], own[2])
     return found.mended, (*imported.notes, *chosen.doubts)
-
-
-def _posed(text: str) -> tuple[int, ...]:
-    try:
-        return tuple(sorted({int(word) for word in text.split(",") if word.strip()}))
-    except ValueError as error:
-        raise UsageError(
-            f"--posed is {text}; frames with commas between them are valid, as in 12,40,88"
-        ) from error

@@ -69,6 +69,7 @@ def test_the_schema_knows_all_names(repository: Path) -> None:
         ("LWrist", "wrist.L"),
         ("rightKnee", "knee.R"),
         ("R-ANKLE", "ankle.R"),
+        ("LKNEE", "knee.L"),
         ("RIGHT_ELBOW_2", "elbow.R"),
         ("hips", "pelvis"),
         ("hip.R", "hip.R"),
