@@ -14,9 +14,9 @@ from ...core.body.posture import Posture
 from ...core.prior.keyframes import Keyframe, Matched
 from . import keys
 from .actions import channelbag_for, curves_of, existing_channelbag
-from .armature import BoneModel, read_bones
+from .armature import BoneModel, read_bones, skeleton_bones
 from .fcurves import moved_paths, posture_columns
-from .pose import read_posture
+from .pose import nearest_postures, shown_bones
 from .rotation_modes import bone_path, rotation_path
 from .scene_frames import at_scene_frame, showing_action
 
@@ -124,31 +124,35 @@ def read_keyframes(
     Each is the whole pose as Blender evaluates it there, also of bones without a key on that frame. Keys
     beside `clip_frames` (F,), the scene frames of the clip's, are left out with a note.
     """
+    keyed = np.array(keyed_frames(armature_object, action))
+    index = np.abs(clip_frames - keyed[:, None]).argmin(axis=1)
+    apart = np.abs(clip_frames[index] - keyed)
+    within = apart <= NEAREST + 1e-6
     notes: list[str] = []
     found: dict[int, tuple[float, Keyframe]] = {}
-    outside: list[str] = []
     pictured = set(unchanged_keyframes(armature_object, action, keys.PICTURED))
+    models, shown = skeleton_bones(armature_object), []
     with showing_action(armature_object, action), at_scene_frame(scene) as go_to:
-        for frame in keyed_frames(armature_object, action):
-            index = int(np.argmin(np.abs(clip_frames - frame)))
-            apart = abs(float(clip_frames[index]) - frame)
-            if apart > NEAREST + 1e-6:
-                outside.append(f"{frame:g}")
-                continue
+        for frame in keyed[within]:
             go_to(frame)
-            reading = read_posture(armature_object, body)
-            if reading.furthest_m > NOTICEABLE_M:
+            shown.append(shown_bones(armature_object, models))
+    if shown:
+        read = nearest_postures(models, body, *map(np.stack, zip(*shown, strict=True)))
+        rows = zip(keyed[within].tolist(), index[within].tolist(), apart[within].tolist(), strict=True)
+        for row, (frame, at, away) in enumerate(rows):
+            if read.furthest_m[row] > NOTICEABLE_M:
                 notes.append(
-                    f"Keyframe {frame:g}: the pose goes {1000 * reading.furthest_m:.0f} mm beyond "
+                    f"Keyframe {frame:g}: the pose goes {1000 * read.furthest_m[row]:.0f} mm beyond "
                     "what the skeleton can do; the nearest posture is used"
                 )
-            if index not in found or apart < found[index][0]:
-                matched = matches.get(frame)
+            if at not in found or away < found[at][0]:
+                matched, error_m = matches.get(frame), float(read.mean_m[row])
                 depth_found = matched is None and frame in pictured
-                found[index] = (apart, Keyframe(index, reading.posture, reading.mean_m, matched, depth_found))
-    if outside:
-        notes.append(f"Keys at {', '.join(outside)} lie outside the footage and are not used")
-    return PosedKeyframes(tuple(found[index][1] for index in sorted(found)), tuple(notes))
+                found[at] = (away, Keyframe(at, read.posture[row], error_m, matched, depth_found))
+    if not within.all():
+        outside = ", ".join(f"{frame:g}" for frame in keyed[~within])
+        notes.append(f"Keys at {outside} lie outside the footage and are not used")
+    return PosedKeyframes(tuple(found[at][1] for at in sorted(found)), tuple(notes))
 
 
 def store_pose(armature_object: Object, action: Action, frame: float, depth_found: bool = False) -> None:

@@ -21,35 +21,45 @@ from .rotation_modes import bone_path, posture_from_frames, rotation_path
 
 @dataclass(frozen=True, eq=False)
 class PoseReading:
-    """An armature's pose as the nearest posture, and distances of the principal points between both [m]."""
+    """Poses of an armature as the nearest postures (...), and distances of the principal points of both."""
 
     posture: Posture
-    mean_m: float
-    furthest_m: float  # rounding only, where the pose keeps to the skeleton
+    mean_m: Array  # (...)
+    furthest_m: Array  # (...) rounding only, where the pose keeps to the skeleton
+
+
+def shown_bones(armature_object: Object, models: tuple[BoneModel, ...]) -> tuple[Array, Array]:
+    """Where an armature shows B bones now, parents and constraints included, in the world's axes.
+
+    Their heads (B, 3) [m], and the orientations (B, 3, 3) of their joints' frames.
+    """
+    space, bones = object_space(armature_object), evaluated(armature_object).pose.bones
+    matrix = np.array([bones[model.name].matrix for model in models], dtype=np.float64)
+    turn = matrix[:, :3, :3] / np.linalg.norm(matrix[:, :3, :3], axis=1, keepdims=True)
+    axes = np.stack([model.axes.T for model in models])
+    return space.to_world(matrix[:, :3, 3]), space.rotation @ turn @ axes
 
 
 def read_posture(armature_object: Object, body: Body) -> PoseReading:
-    """The posture nearest to what an armature of that body shows now, parents and constraints included."""
+    """The posture nearest to what an armature of that body shows now."""
     models = skeleton_bones(armature_object)
-    space = object_space(armature_object)
-    pose_bones = evaluated(armature_object).pose.bones
-    frames: dict[str, Array] = {}
-    heads: dict[str, Array] = {}
-    for model in models:
-        matrix = np.array(pose_bones[model.name].matrix, dtype=np.float64)
-        turn = matrix[:3, :3] / np.linalg.norm(matrix[:3, :3], axis=0)
-        frames[model.name] = space.rotation @ turn @ model.axes.T
-        heads[model.name] = space.to_world(matrix[:3, 3])
-    hips = heads[models[0].name] - frames[models[0].name] @ models[0].start  # parents are first
-    posture = posture_from_frames(models, frames, hips)
-    shown = np.empty((len(body.skeleton.points), 3))
-    bone_of_joint = {joint: model for model in reversed(models) for joint in (model.joint, *model.chain)}
-    for row, (point, local) in enumerate(zip(body.skeleton.points, body.point_places, strict=True)):
-        model = bone_of_joint[point.joint]
-        start = body.local(body.skeleton.segment(model.name).start)
-        shown[row] = heads[model.name] + frames[model.name] @ (local - start)
-    distance_m = np.linalg.norm(body.points(body.pose(posture)) - shown, axis=-1)
-    return PoseReading(posture, float(distance_m.mean()), float(distance_m.max()))
+    return nearest_postures(models, body, *shown_bones(armature_object, models))
+
+
+def nearest_postures(models: tuple[BoneModel, ...], body: Body, heads: Array, turns: Array) -> PoseReading:
+    """The postures nearest to bones (..., B) as `shown_bones` has them, of an armature of that body."""
+    head = {model.name: heads[..., row, :] for row, model in enumerate(models)}
+    frame = {model.name: turns[..., row, :, :] for row, model in enumerate(models)}
+    root = models[0]  # parents are first
+    posture = posture_from_frames(models, frame, head[root.name] - frame[root.name] @ root.start)
+    bone_of_joint = {joint: model.name for model in reversed(models) for joint in (model.joint, *model.chain)}
+    shown = []
+    for point, local in zip(body.skeleton.points, body.point_places, strict=True):
+        name = bone_of_joint[point.joint]
+        start = body.local(body.skeleton.segment(name).start)
+        shown.append(head[name] + frame[name] @ (local - start))
+    away_m = np.linalg.norm(body.points(body.pose(posture)) - np.stack(shown, axis=-2), axis=-1)
+    return PoseReading(posture, away_m.mean(axis=-1), away_m.max(axis=-1))
 
 
 def write_posture(armature_object: Object, posture: Posture) -> None:
