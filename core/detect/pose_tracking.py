@@ -15,7 +15,6 @@ from functools import cached_property
 from itertools import chain
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from ..arrays import Array, BoolArray, Image, IndexArray
 from ..body.skeleton import SIDES
@@ -329,7 +328,13 @@ def _fill(
     seen = np.stack([np.column_stack([one.pixel / scale, one.score, one.hint_m]) for one in poses])
     if len(at) > 1:
         between = np.arange(at[0], at[-1] + 1)
-        seen, at = CubicHermiteSpline(at, seen, np.gradient(seen, at, axis=0))(between), between
+        left = np.clip(np.searchsorted(at, between, side="right") - 1, 0, len(at) - 2)
+        gap, slope = np.diff(at)[left, None, None], np.gradient(seen, at, axis=0)
+        share = (between - at[left])[:, None, None] / gap
+        rest = 1.0 - share
+        begun = rest**2 * ((1.0 + 2.0 * share) * seen[left] + share * gap * slope[left])
+        ended = share**2 * ((1.0 + 2.0 * rest) * seen[left + 1] - rest * gap * slope[left + 1])
+        seen, at = begun + ended, between
     pixel, score = seen[..., :2], np.clip(seen[..., 2], 0.0, 1.0)
     there = ((pixel >= 0.0) & (pixel <= np.array(size))).all(axis=-1)
     pixel, score = np.where(there[..., None], pixel, np.nan), np.where(there, score, 0.0)

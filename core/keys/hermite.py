@@ -8,7 +8,7 @@ section 7.5). The handles' heights are then `value + slope * length / 3` and `va
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dpbsv
+import scipy
 
 from ..arrays import Array, IndexArray
 
@@ -82,7 +82,7 @@ def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exac
     band[BAND, fixed] = 1.0
     right[fixed] = values[fixed]
     # A fit is solved thousands of times: the plain LAPACK call costs a tenth of `solveh_banded`.
-    _, solved, failed = dpbsv(band, right)
+    _, solved, failed = scipy.linalg.lapack.dpbsv(band, right)
     if failed:
         raise np.linalg.LinAlgError("the keys' values and slopes are not determined by the frames")
     values, slopes = spline.values.copy(), spline.slopes.copy()

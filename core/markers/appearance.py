@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import correlate1d, gaussian_filter1d
 
 from ..arrays import Array, BoolArray, Image, IndexArray
 
@@ -120,7 +120,7 @@ def histogram_cells(pixels: Image, bits: int) -> IndexArray:
 def _log_densities(counts: IndexArray) -> Array:
     """Log densities per level³ of smoothed histograms (rows, cells)."""
     smoothed = counts.astype(np.float64).reshape(-1, LEVELS, LEVELS, LEVELS)
-    blur = gaussian_filter1d(np.eye(LEVELS), 1.0, axis=0, truncate=3.0)
+    blur = scipy.ndimage.gaussian_filter1d(np.eye(LEVELS), 1.0, axis=0, truncate=3.0)
     for _ in range(3):  # each time along the last axis, which then becomes the second
         smoothed = np.moveaxis(smoothed @ blur, -1, 1)
     smoothed = smoothed.reshape(counts.shape)
@@ -185,7 +185,7 @@ def _densities(counts: Array) -> Array:
     grid = counts.reshape(*counts.shape[:-1], BAND_LEVELS, BAND_LEVELS, BAND_LEVELS)
     for axis in (-3, -2, -1):
         # Noise of a few levels.
-        grid = correlate1d(grid, np.array([0.16, 0.68, 0.16]), axis=axis, mode="nearest")
+        grid = scipy.ndimage.correlate1d(grid, np.array([0.16, 0.68, 0.16]), axis=axis, mode="nearest")
     smoothed = grid.reshape(counts.shape)
     total = smoothed.sum(axis=-1, keepdims=True)
     share = np.where(total > 0.0, smoothed / np.maximum(total, 1.0), 1.0 / BAND_CELLS)

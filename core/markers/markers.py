@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.ndimage import percentile_filter
+import scipy
 
 from ..arrays import Array, BoolArray, Image, IndexArray, IntArray
 from ..errors import InputError
@@ -202,7 +202,9 @@ def region_quality(own: MarkerRegion) -> Array:
     seen = area > 0.0
     full = np.zeros(len(area))
     # Frames; a marker turns more slowly.
-    full[seen] = percentile_filter(area[seen], 80, size=min(31, int(seen.sum())), mode="nearest")
+    full[seen] = scipy.ndimage.percentile_filter(
+        area[seen], 80, size=min(31, int(seen.sum())), mode="nearest"
+    )
     ratio = np.where(seen, area, 1.0) / np.where(seen, full, 1.0)
     whole = np.minimum(np.minimum(ratio, 1.5 / ratio), 1.0)
     quality = whole * own.certainty * (0.5 + 0.5 * own.share) * np.where(own.clipped, 0.4, 1.0)

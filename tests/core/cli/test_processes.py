@@ -53,6 +53,9 @@ def test_it_runs_as_a_module(tmp_path: Path, repository: Path) -> None:
     assert process.returncode == 2 and "nowhere" in one_line(wrong) and "Reading the take" in said
 
 
+PARTS = {f"scipy.{part}" for part in ("interpolate", "linalg", "ndimage", "optimize", "spatial", "special")}
+
+
 @pytest.mark.parametrize("words", [("--help",), ("conver",), ("library", "show", "--help")])
 def test_help_and_mistakes_wait_for_no_library(
     words: tuple[str, ...], tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch
@@ -64,8 +67,13 @@ def test_help_and_mistakes_wait_for_no_library(
     assert not loaded & {"numpy", "scipy", "cv2", "bpy", "tqdm", "asyncio", "keymark.core.files.json_file"}
 
 
-def test_a_batch_leaves_estimating_to_its_workers(repository: Path) -> None:
-    words = "import _boot, sys; _boot.load_package(); import keymark.operators.cli.commands.batch"
+@pytest.mark.parametrize(
+    ("command", "spared"),
+    [("batch", {"scipy", "bpy", "keymark.core.estimate.reconstruct"}), ("detect", {*PARTS, "bpy"})],
+)
+def test_a_command_loads_nothing_that_it_needs_not(command: str, spared: set[str], repository: Path) -> None:
+    """A batch leaves estimating to its workers; looking at a clip needs nothing of what solves."""
+    words = f"import _boot, sys; _boot.load_package(); import keymark.operators.cli.commands.{command}"
     done = subprocess.run(
         [sys.executable, "-c", f"{words}; print(*sys.modules)"],
         cwd=repository / "tests",
@@ -74,8 +82,8 @@ def test_a_batch_leaves_estimating_to_its_workers(repository: Path) -> None:
         text=True,
     )
     loaded = set(done.stdout.split())
-    assert "keymark.operators.cli.commands.batch" in loaded
-    assert not loaded & {"scipy", "bpy", "keymark.core.estimate.reconstruct"}
+    assert f"keymark.operators.cli.commands.{command}" in loaded
+    assert not loaded & spared
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends processes without asking them")
