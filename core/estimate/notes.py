@@ -13,6 +13,7 @@ from .clip_problem import KeyframeEvidence
 MOST_NAMED = 3  # largest number of frames that a note names
 
 LEFT_OUT = r"the keypoints of (?P<of>.+?) are .* left out"
+UNFOLLOWED = r"does not follow its control (?P<of>.+) rigidly"
 CAUSES = {
     r"the clip is cut at": (
         r"the whole picture changes at",
@@ -50,6 +51,8 @@ CAUSES = {
         r"(?P<of>.+): .* somebody else than the performer",
     ),
     r"method ekf .* leaves keypoints aside": (r": up to .* people in", r": jumps to somebody else"),
+    r"Drivers win over the keys of bone (?P<of>.+);": (UNFOLLOWED,),
+    r"Bone (?P<of>.+) hangs on something that moves by itself": (UNFOLLOWED,),
     r"the hands.* hardly ever seen, as beyond": (
         r"hand is surely seen in 0 % of the frames, the right in 0 %",
     ),

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ..errors import InputError
 
+VIDEOS = (".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".mts", ".mxf", ".webm", ".wmv")
 CATEGORIES = ("Cc", "Cf", "Cs", "Zl", "Zp")
 """Unicode categories: control, formatting (also what turns the direction of writing), surrogates, line
 breaks."""

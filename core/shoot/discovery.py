@@ -13,7 +13,7 @@ from ..errors import InputError, shown
 from ..files.fields import COMMENT_PREFIX, Fields
 from ..files.json_file import parse_json
 from ..files.kinds import safe_path
-from ..files.paths import check_symlinks, regular_file_size
+from ..files.paths import VIDEOS, check_symlinks, regular_file_size
 from ..take.conversion_record import RECORD_FILE, find_record
 from ..take.description import (
     SETTING_FIELDS,
@@ -170,9 +170,6 @@ def _listed_take(path: Path, where: str, line: str) -> ShootTake:
 def _shoot(path: Path, takes: Sequence[ShootTake]) -> Shoot:
     check_names(path, takes)
     return Shoot(path, tuple(sorted(takes, key=lambda take: take.name)))
-
-
-VIDEOS = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".mts", ".mxf", ".webm", ".wmv"})
 
 
 def open_shoot(path: Path, excluded: Path | None = None) -> Shoot:

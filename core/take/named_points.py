@@ -1,5 +1,6 @@
 """Named points, and which of them are the principal ones of one person."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from ..files.fields import listed
 
 HEADS = (("ear.L", "ear.R"), ("head", "nose"), ("head",), ("nose",))
 """Points whose middle is the head's, the best first: a head alone may be its top."""
+POINTS = {*HUMAN.point_names, *(name for head in HEADS for name in head)}
 IDLE_WORDS = {"joint", "center", "study", "body", "mediapipe", "marker", "jc"}
 MHR_UP = (1, -1)
 
@@ -31,12 +33,10 @@ class PointTable:
 
 def one_subject(table: PointTable, path: Path, subject: str | None) -> tuple[PointTable, tuple[str, ...]]:
     """The points of one prefix alone, and notes; where some have a prefix, those without are another's."""
-    if _missing(table) and not any(":" in name for name in table.names):
-        for sign in "_.|/- ":  # behind prefixes, as in Anna_LKnee
-            named = replace(table, names=tuple(name.replace(sign, ":", 1) for name in table.names))
-            if not all(_missing(part) for prefix, part in _by_prefix(named).items() if prefix):
-                table = named
-                break
+    if _missing(table):  # any sign may stand behind prefixes, as in Anna_LKnee
+        named = replace(table, names=tuple(map(_with_colon, table.names)))
+        if not all(_missing(part) for prefix, part in _by_prefix(named).items() if prefix):
+            table = named
     parts = _by_prefix(table)
     if len(parts) == 1 and subject is None:
         return table, ()
@@ -52,6 +52,7 @@ def one_subject(table: PointTable, path: Path, subject: str | None) -> tuple[Poi
         there = np.isfinite(points).all(axis=(1, 2)) & (points != 0.0).any(axis=2).all(axis=1)
         frames.append(float(whole + there.sum()))
     names = [prefix or "(no prefix)" for prefix in people]
+    subject = next((name for name in names if _alike(name) == _alike(subject or "")), subject)
     index, notes = chosen_subject(path, names, frames, subject)
     if subject is None and not any(frames):
         lacking = [
@@ -65,11 +66,26 @@ def one_subject(table: PointTable, path: Path, subject: str | None) -> tuple[Poi
     return list(people.values())[index], notes
 
 
+def _with_colon(name: str) -> str:
+    """A name with a colon behind its prefix, where the rest names a point."""
+    places = () if ":" in name else (found.start() for found in re.finditer(r"[-_.|/ ]", name))
+    ends = (at for at in places if _point_of(name[at + 1 :])[0] in POINTS)
+    at = next(ends, None)
+    return name if at is None else f"{name[:at]}:{name[at + 1 :]}"
+
+
+def _alike(prefix: str) -> str:
+    """A prefix as all spellings of it have it: Anna B is anna_b."""
+    return re.sub(r"[\W_]", "", prefix).casefold()
+
+
 def _by_prefix(table: PointTable) -> dict[str, PointTable]:
-    """The points of each prefix; an empty one where names have none."""
+    """The points of each prefix as it is first spelled; an empty one where names have none."""
     columns: dict[str, list[int]] = {}
+    spelled: dict[str, str] = {}
     for index, name in enumerate(table.names):
-        columns.setdefault(name.rpartition(":")[0], []).append(index)
+        prefix = name.rpartition(":")[0]
+        columns.setdefault(spelled.setdefault(_alike(prefix), prefix), []).append(index)
     return {
         prefix: replace(table, names=tuple(table.names[i] for i in own), values=table.values[:, own])
         for prefix, own in columns.items()

@@ -8,7 +8,8 @@ from typing import Protocol
 import numpy as np
 
 from ..arrays import Image
-from ..errors import InputError
+from ..errors import InputError, shown
+from ..files.paths import VIDEOS
 from .container import quickly_found
 from .image_sequence import ImageSequence, find_images, left_out
 from .video_file import VideoFile
@@ -60,7 +61,12 @@ class Clip:
             sequence = ImageSequence(images, fps or 24.0)  # that of a new Blender scene
             return cls(path, sequence, left_out(path, images) + sequence.notes)
         if not path.exists():
-            raise InputError(f"{path}: no such file; name a video, a folder of images or a numbered image")
+            folder = path.parent.iterdir() if path.parent.is_dir() else ()
+            beside = [file.name for file in folder if file.suffix.lower() in VIDEOS]
+            only = f"; the only video beside it is {shown(beside[0])}" if len(beside) == 1 else ""
+            raise InputError(
+                f"{path}: no such file; name a video, a folder of images or a numbered image{only}"
+            )
         video = VideoFile(path, size)
         return cls(path, video, video.notes)
 

@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 import cv2
 import numpy as np
@@ -61,10 +62,8 @@ class FrameFindings:
             )
         if self.repeated:
             repeat = "repeats" if len(self.repeated) == 1 else "repeat"
-            span = self.repeated[-1] - self.repeated[0] + 2
-            own = (
-                "" if fps is None else f" of {fps * (1.0 - len(self.repeated) / span):.0f} pictures a second"
-            )
+            share = None if fps is None else _share_of_own(self.repeated)
+            own = "" if fps is None or share is None else f" of {fps * share:.0f} pictures a second"
             notes.append(
                 f"{len(self.repeated)} of {self.frames} pictures {repeat} the one before "
                 f"({self._named(self.repeated, first)}), as where a clip{own} was saved at a "
@@ -198,6 +197,28 @@ def _repeated(moved: Mapping[int, float]) -> tuple[int, ...]:
         else:
             run, before = [], change
     return tuple(found)
+
+
+FEWEST_REPEATS = 3  # of which a pattern is told
+LONGEST_PATTERN = 25  # frames after which repeats recur: 24 of 25
+FITTING, NOTICED = 0.95, 0.75  # least shares of the repeats that are in the pattern, and of those in it
+
+
+def _share_of_own(repeated: Sequence[int]) -> Fraction | None:
+    """The share of a clip's pictures that are its own: the largest whose even pattern has the repeats.
+
+    None where they have no pattern, as where single pictures were lost.
+    """
+    pairs = ((own, length) for length in range(2, LONGEST_PATTERN + 1) for own in range(1, length))
+    for share in sorted({Fraction(*pair) for pair in pairs}, reverse=True):
+        own, length = share.as_integer_ratio()
+        pattern = np.diff(np.arange(-1, length) * own // length) == 0
+        place = np.bincount(np.mod(repeated, length), minlength=length)
+        fitting = max(place @ np.roll(pattern, phase) for phase in range(length))
+        expected = (1 - share) * (repeated[-1] - repeated[0] + 1)
+        if fitting >= FITTING * len(repeated) and len(repeated) >= max(NOTICED * expected, FEWEST_REPEATS):
+            return share
+    return None
 
 
 def is_blank(image: Image) -> bool:

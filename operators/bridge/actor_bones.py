@@ -74,9 +74,14 @@ def object_space(armature_object: Object) -> Similarity:
     uneven = np.abs(squared - scale**2 * np.eye(3)).max() > 1e-4 * scale**2
     if scale <= 0.0 or uneven or np.linalg.det(linear) < 0.0:
         scales = ", ".join(f"{value:.4g}" for value in np.sqrt(np.diag(squared)))
+        how = (
+            f"scaled by {scales} along its axes"
+            if uneven
+            else "mirrored by a negative scale, maybe a parent's"
+        )
         raise InputError(
-            f"armature '{armature_object.name}' is scaled by {scales} along its axes or mirrored; give "
-            "it one positive scale, or apply the scale (Ctrl+A)"
+            f"armature '{armature_object.name}' is {how}; give it one positive scale, or apply the scale "
+            "(Ctrl+A)"
         )
     return Similarity(linear / scale, matrix[:3, 3], scale)
 

@@ -8,6 +8,7 @@ import bpy
 from bpy.types import Context, Event, MovieClip, Object, PropertyGroup
 
 from ...core.errors import InputError
+from ...core.files.paths import VIDEOS
 from ...core.markers.region_tracks import is_variable_frame_rate
 from ..bridge.footage import attach_footage, clip_path, is_guess
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
@@ -20,7 +21,6 @@ from .camera_view import fit_beside_sidebar, look_through
 from .properties import confirm_placement
 
 GENERIC_STEM = "clip"  # File name, without its extension, of the clip in every saved take's folder
-VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mts")
 IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")  # Extensions of the files that footage is loaded from
 
 

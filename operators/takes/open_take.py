@@ -7,7 +7,8 @@ from bpy.types import Context, Event, Menu, OperatorProperties
 
 from ...core.errors import InputError
 from ...core.files.json_file import read_json_value
-from ..footage.load_footage import IMAGES, VIDEOS
+from ...core.files.paths import VIDEOS
+from ..footage.load_footage import IMAGES
 from ..shell.base_operator import (
     BaseOperator,
     browse,

@@ -12,6 +12,7 @@ from ....core.arrays import Array
 from ....core.body.fingers import finger_flexions
 from ....core.body.kinematics import Extremities, SegmentMotion, segment_motion
 from ....core.errors import InputError
+from ....core.estimate.notes import of_true_causes
 from ....core.feet.ground import IN_FLOOR_M, floor_notes
 from ....core.feet.natural_extremities import natural_extremities
 from ....core.files.paths import absolute_path, real_path
@@ -262,6 +263,7 @@ def retarget(
     count, dense = sum(one.size for one in keyed), sum(one.shape[1] for one in keyed) * len(scene_frames)
     quality = replace(found.quality, keys=count, dense_keys=dense)
     uid = armature_object.session_uid
+    notes = of_true_causes(notes)
     return Retargeted(uid, character, character_map, options, motion, keys, quality, notes)
 
 

@@ -16,8 +16,9 @@ from ....core.detect.pose_tracking import find_people
 from ....core.errors import ConversionError, InputError, KeymarkError, describe_unexpected, pluralize
 from ....core.files.fields import listed
 from ....core.files.kinds import read_field
+from ....core.files.paths import VIDEOS
 from ....core.progress import run, stretch
-from ....core.shoot.discovery import VIDEOS, ShootTake, find_takes, open_shoot
+from ....core.shoot.discovery import ShootTake, find_takes, open_shoot
 from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, find_shoot_files, sidecar_file
 from ....core.take.read_footage import open_footage
 from ....core.take.take_file import FRAME_RATE, FRAME_START

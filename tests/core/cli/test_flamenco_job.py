@@ -8,7 +8,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from keymark.core.shoot.discovery import VIDEOS, find_takes
+from keymark.core.files.paths import VIDEOS
+from keymark.core.shoot.discovery import find_takes
 from keymark.operators.cli.main import build_parser
 
 NODE = shutil.which("node")

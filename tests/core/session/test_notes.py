@@ -73,7 +73,8 @@ def test_no_two_notes_exclude_each_other_both_ways() -> None:
 
 def test_every_pattern_is_of_a_sentence_that_is_said() -> None:
     patterns, said = {each for pair in PAIRS for each in pair}, set[str]()
-    for file in (Path(keymark.__file__).parent / "core").rglob("*.py"):
+    package = Path(keymark.__file__).parent
+    for file in (*package.glob("core/**/*.py"), *package.glob("operators/bridge/**/*.py")):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             parts = node.values if isinstance(node, ast.JoinedStr) else [node]
             words = [part.value for part in parts if isinstance(part, ast.Constant)]

@@ -54,6 +54,9 @@ def write_people(
         ({"": {"head"}, "B:": set()}, (), None, 1),
         ({"Anna_": set(), "Ben_": set()}, (), None, 0),
         ({"Anna_": {"knee.R"}, "Ben_": set()}, (), None, 1),
+        ({"Anna_": {"knee.R"}, "Ben-": set()}, (), None, 1),
+        ({"Anna/": set(), "Ben:": set()}, (), "ben", 1),
+        ({"Anna b ": set(), "Ben|": set()}, (), None, 0),
     ],
 )
 def test_one_subject_is_taken_whole(
@@ -72,10 +75,21 @@ def test_one_subject_is_taken_whole(
     if list(people)[taken] in gaps:
         expected[5] = np.nan
     np.testing.assert_allclose(found, expected, atol=1e-5)
-    names = [prefix.rstrip(":_") or "(no prefix)" for prefix in people]
+    names = [prefix.rstrip(":_-/| ") or "(no prefix)" for prefix in people]
     said = f"2 subjects, '{names[0]}', '{names[1]}'; the motion is that of '{names[taken]}'"
     assert (notes == ()) if wanted else (said in notes[0])
     assert read_reference(file, wanted).notes == notes
+
+
+def test_two_spellings_of_a_prefix_are_one_person(tmp_path: Path, points: Array) -> None:
+    arms = {name for name in HUMAN.point_names if name[:2] in ("sh", "el", "wr", "he")}
+    people = {"Anna b:": arms, "Anna_b:": {*HUMAN.point_names} - arms}
+    file = write_people(write_trc, tmp_path / "spelled.trc", points, people)
+    file.write_text(file.read_text().replace("Anna_b", "ANNA_B "))
+    found, _, notes = read_points(file)
+    moved = np.array([[0.0] * 3 if name not in arms else APART for name in HUMAN.point_names])
+    np.testing.assert_allclose(found, points + moved, atol=1e-5)
+    assert notes == ()
 
 
 def test_no_whole_subject_and_a_wrong_name_are_one_sentence(tmp_path: Path, points: Array) -> None:

@@ -122,6 +122,15 @@ def test_unusable_files_are_named_in_one_sentence_and_the_decoder_is_silent(
     assert capfd.readouterr().err == ""
 
 
+def test_the_only_video_beside_a_missing_one_is_named(tmp_path: Path) -> None:
+    (tmp_path / "renamed.MOV").touch()
+    with pytest.raises(InputError, match=r"image; the only video beside it is 'renamed\.MOV'$"):
+        Clip.open(tmp_path / "clip.mp4")
+    (tmp_path / "other.mp4").touch()
+    with pytest.raises(InputError, match="or a numbered image$"):
+        Clip.open(tmp_path / "clip.mp4")
+
+
 def test_an_image_of_another_size_is_named_when_it_comes(tmp_path: Path) -> None:
     cv2.imwrite(str(tmp_path / "a1.png"), picture(5))
     cv2.imwrite(str(tmp_path / "a2.png"), picture(5, (32, 48)))
