@@ -1,7 +1,7 @@
-"""Check of one take before it is converted: description, clip, keyframes, evidence, cost; and outliers."""
+"""Check of one take before it is converted: description, clip, keyframes, evidence; and outliers."""
 
 from collections import Counter
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ...detect.pose_network import PoseNetwork
@@ -12,7 +12,7 @@ from ...poses.clip_input import check_followed
 from ...session.described import described, is_detected
 from ...take.conversion_settings import METHODS, NO_SETTINGS, CharacterSettings, ConversionSettings
 from ...take.description import Description, effective_settings
-from ...take.evidence import CONTOURS, KEYPOINTS, MARKERS, in_order
+from ...take.evidence import CONTOURS, KEYPOINTS, in_order
 from ...take.read_footage import open_footage
 from ...take.take import Take, evidence_of
 from ...take.take_file import read_described
@@ -66,34 +66,6 @@ def _child(fields: Fields, name: str) -> Fields:
     return Fields(value if isinstance(value, Mapping) else {}, location)
 
 
-@dataclass(frozen=True)
-class CostEstimate:
-    """Cost of one conversion."""
-
-    seconds: float
-    size_bytes: int
-
-
-def estimate_cost(
-    frames: int,
-    size: tuple[int, int],
-    method: str,
-    library: str | None,
-    evidence: Collection[str] = (MARKERS, CONTOURS),
-    detects: bool = False,
-) -> CostEstimate:
-    """Estimate the cost of converting a take, whose conversion may have to detect keypoints."""
-    a_frame = 0.012 * size[0] * size[1] / 1e6  # decoding and following the markers
-    a_frame += 0.002 if method == "interpolation" else 0.004
-    if method == "map":
-        a_frame += 0.001 * (KEYPOINTS in evidence)
-        # Without markers contours are searched far and wide.
-        a_frame += (0.006 if MARKERS in evidence else 0.009) * (CONTOURS in evidence)
-    a_frame += 0.1 * (library is not None) + 0.1 * detects
-    # Beside what grows with the frames, writing Blender's files and drawing pictures.
-    return CostEstimate(0.9 + frames * a_frame, 1_800_000 + frames * 5_000)
-
-
 READY, LOOK, FAILS = "ready", "look", "fails"
 
 
@@ -116,8 +88,6 @@ class TakeCheck:
     keyframes: int = 0
     library: str | None = None
     """Setting by which the others are found; None where all are posed."""
-    cost: CostEstimate | None = None
-    """Cost of its conversion; None where it would not convert."""
 
     @property
     def status(self) -> str:
@@ -175,10 +145,6 @@ def check_take(
                 "the motion is held against contours alone, which tell least of all evidence; keypoints of a "
                 "detector, as of keymark detect, or markers in strong colors tell more"
             )
-    cost = None
-    if clip is not None and frames is not None and not findings.problems:
-        detects = take is not None and KEYPOINTS in evidence and not take.keypoints
-        cost = estimate_cost(frames, clip.size, method, settings.library, evidence, detects)
     return TakeCheck(
         name=found.name,
         problems=tuple(findings.problems),
@@ -191,7 +157,6 @@ def check_take(
         keypoints=keypoints,
         keyframes=0 if take is None else len(take.keyframes),
         library=settings.library,
-        cost=cost,
     )
 
 

@@ -85,12 +85,9 @@ def _check_takes(
 def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
     """The checks as an object for `--json`."""
     counts = Counter(check.status for check in checks)
-    costs = [check.cost for check in checks if check.cost is not None]
     return {
         "takes": [_take(check) for check in checks],
         "counts": {word: counts[word] for word in (READY, LOOK, FAILS)},
-        "estimated_seconds": round(sum(cost.seconds for cost in costs), 1),
-        "estimated_bytes": sum(cost.size_bytes for cost in costs),
     }
 
 
@@ -122,13 +119,6 @@ def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = 
     counts = Counter(check.status for check in checks)
     why = f" ({STOPS} says why)" if counts[FAILS] else ""
     last = f"{counts[READY]} ready, {counts[LOOK]} to look at, {counts[FAILS]} that would not convert{why}."
-    costs = [check.cost for check in checks if check.cost is not None]
-    if costs:
-        seconds, size = sum(one.seconds for one in costs), sum(one.size_bytes for one in costs)
-        time = f"{seconds:.0f} s" if seconds < 90.0 else f"{seconds / 60.0:.0f} min"
-        time = time if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
-        room = f"{size / 1e6:.0f} MB" if size < 1e9 else f"{size / 1e9:.1f} GB"
-        last += f" Roughly {time} of one processor and {room} for those that convert."
     return "\n".join([*lines, *wrapped(f"{pluralize(len(checks), 'take')}: {last}", 0, columns)])
 
 
@@ -215,6 +205,4 @@ def _take(check: TakeCheck) -> dict[str, Any]:
             }
             for readout in check.markers
         },
-        "estimated_seconds": None if check.cost is None else round(check.cost.seconds, 1),
-        "estimated_bytes": None if check.cost is None else check.cost.size_bytes,
     }

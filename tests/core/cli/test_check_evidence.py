@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from _synthetic_take import BODY, SIZE, edit_json, true_postures, write_json, write_keypoints, write_shoot
 from keymark.core.detect.keypoints import mirrored_point
-from keymark.core.shoot.check.take_check import estimate_cost
 from keymark.operators.cli.main import main
 
 FRAMES = 10
@@ -175,15 +174,3 @@ def test_an_option_that_is_none_is_one_line(
     said = capsys.readouterr().err
     assert said.count("\n") == 1 and words[1] in said
     assert main(["check", str(pristine), f"{words[0]}=", "--quiet"]) == 0
-
-
-def test_evidence_costs_time() -> None:
-    seconds = [
-        estimate_cost(1000, (320, 240), "map", None, kinds).seconds
-        for kinds in (
-            ("markers", "contours"),
-            ("markers", "keypoints", "contours"),
-            ("keypoints", "contours"),
-        )
-    ]
-    assert seconds == sorted(seconds) and len(set(seconds)) == 3

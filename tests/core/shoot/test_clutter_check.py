@@ -9,7 +9,7 @@ import pytest
 from _synthetic_take import PANEL, SLEEVE, panelled_take
 from keymark.core.progress import run
 from keymark.core.shoot.check.evidence_check import Findings, check_footage
-from keymark.core.shoot.check.take_check import TakeCheck, estimate_cost, flag_outliers
+from keymark.core.shoot.check.take_check import TakeCheck, flag_outliers
 from keymark.core.take.read_footage import open_clip, read_footage
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
@@ -73,15 +73,3 @@ def test_an_outlier_among_many_is_flagged() -> None:
 @pytest.mark.parametrize("widths", [(320, 320, 320, 640), (320, 320, 320, 640, 640, 640)])
 def test_without_a_usual_value_there_is_no_outlier(widths: tuple[int, ...]) -> None:
     assert all(one.warnings == () for one in flag_outliers([check(width) for width in widths]))
-
-
-def test_longer_and_larger_clips_cost_more() -> None:
-    small = estimate_cost(100, (320, 240), "map", None)
-    assert estimate_cost(200, (320, 240), "map", None).seconds > small.seconds
-    assert estimate_cost(100, (1920, 1080), "map", None).seconds > small.seconds
-    named, every = (
-        estimate_cost(100, (320, 240), "map", "walking"),
-        estimate_cost(100, (320, 240), "map", "auto"),
-    )
-    assert small.seconds < named.seconds == every.seconds
-    assert estimate_cost(200, (320, 240), "map", None).size_bytes > small.size_bytes
