@@ -117,7 +117,7 @@ def _text(lines: tuple[str, ...]) -> NDArray[Any]:
     return np.array(lines, dtype=np.str_) if lines else np.zeros(0, dtype="<U1")
 
 
-FORMAT = 3  # version of the reading's algorithm and arrays; raised whenever either changes
+FORMAT = 4  # version of the reading's algorithm and arrays; raised whenever either changes
 
 
 def reading_key(
@@ -207,7 +207,7 @@ def read_clip(
         raise
     findings = checks.findings()
     if album is not None:
-        album.without(findings.repeated)
+        album = album.excluding(findings.repeated)
     if seen is None:
         tracks = RegionTracks.unmarked(np.array(time_s), clip.size)
     else:  # repeated pictures show no other moment

@@ -6,7 +6,7 @@ Compressed pictures of that grid take some kilobytes each: ten minutes fit in me
 
 from collections.abc import Callable, Collection, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Self
 
 import cv2
 import numpy as np
@@ -18,12 +18,47 @@ from .frame_checks import FrameChecks
 from .working_image import halvings, learning_image, measuring_image, smooth
 
 
+def compressed(image: NDArray[Any]) -> Image:
+    """A picture as bytes (N,); they err less than the video's compression."""
+    return np.asarray(cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, 90])[1].ravel(), dtype=np.uint8)
+
+
 @dataclass(eq=False)
-class Album:
+class Pictures:
+    """Small compressed pictures of some frames of a clip."""
+
+    factor: float = 1.0  # pixels of the clip to a pixel of the pictures, along either axis
+    _pictures: dict[int, Image] = field(default_factory=dict)
+
+    def _decoded(self, index: int) -> Image:
+        return np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8)
+
+    def excluding(self, indices: Collection[int]) -> Self:
+        """Those but of some frames."""
+        return type(self)(self.factor, {at: own for at, own in self._pictures.items() if at not in indices})
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """The concatenated compressed pictures, with their frames and end offsets, and the factor."""
+        frames = sorted(self._pictures)
+        pictures = [self._pictures[frame] for frame in frames]
+        return {
+            "factor": np.array(self.factor),
+            "frame": np.array(frames, dtype=np.int64),
+            "end": np.cumsum([len(picture) for picture in pictures], dtype=np.int64),
+            "picture": np.concatenate([np.zeros(0, dtype=np.uint8), *pictures]),
+        }
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> Self:
+        """The pictures that `to_arrays` gave."""
+        pictures = np.split(arrays["picture"], arrays["end"])  # after the last end is nothing
+        return cls(arrays["factor"].item(), dict(zip(arrays["frame"].tolist(), pictures, strict=False)))
+
+
+@dataclass(eq=False)
+class Album(Pictures):
     """Small pictures of the frames read so far, on the grid that colors are learned on."""
 
-    factor: int = 1  # pixels of the clip to a pixel of the pictures, along either axis
-    _pictures: dict[int, Image] = field(default_factory=dict)
     _room: int = 0  # bytes of pictures that may be kept as they are
     _opened: dict[int, Image] = field(default_factory=dict)
 
@@ -32,17 +67,6 @@ class Album:
         small = learning_image(measuring_image(image, halvings((image.shape[1], image.shape[0]))))
         self.factor = image.shape[1] // small.shape[1]
         self._pictures[index] = compressed(small)
-
-    def without(self, indices: Collection[int]) -> None:
-        """Drop the pictures of some frames."""
-        for index in indices:
-            self._pictures.pop(index, None)
-
-    def excluding(self, indices: Collection[int]) -> "Album":
-        """The album without the pictures of some frames."""
-        own = Album(self.factor, dict(self._pictures))
-        own.without(indices)
-        return own
 
     def every(self, step: int) -> "Album":
         """The album of a clip that consists of every `step`-th frame, with indices of its own."""
@@ -53,8 +77,8 @@ class Album:
         """The album with each picture mapped by one of the clip's homographies (F, 3, 3), edges repeated."""
         scale = np.diag([self.factor, self.factor, 1.0])
         kept = {}
-        for index, packed in self._pictures.items():
-            image = cv2.imdecode(packed, cv2.IMREAD_COLOR)
+        for index in self._pictures:
+            image = self._decoded(index)
             own = np.linalg.inv(scale) @ homography[index] @ scale
             size = image.shape[1], image.shape[0]
             kept[index] = compressed(cv2.warpPerspective(image, own, size, borderMode=cv2.BORDER_REPLICATE))
@@ -63,15 +87,6 @@ class Album:
     def opened(self, room: int) -> "Album":
         """The same album for many looks at the same frames: it keeps `room` bytes of what it has unpacked."""
         return Album(self.factor, self._pictures, room)
-
-    def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """See `packed`."""
-        return packed(self._pictures, factor=self.factor)
-
-    @classmethod
-    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Album":
-        """The album that `to_arrays` gave."""
-        return cls(int(arrays["factor"]), unpacked(arrays))
 
     def __contains__(self, index: int) -> bool:
         return index in self._pictures
@@ -91,8 +106,7 @@ class Album:
         """A frame's small picture (rows, columns, 3), smoothed like all images that colors are read from."""
         if index in self._opened:
             return self._opened[index]
-        packed = self._pictures[index]
-        image = smooth(np.asarray(cv2.imdecode(packed, cv2.IMREAD_COLOR), dtype=np.uint8))
+        image = smooth(self._decoded(index))
         if image.nbytes <= self._room:
             self._room -= image.nbytes
             self._opened[index] = image
@@ -106,18 +120,14 @@ GLIMPSES, GLIMPSE_SIDE_PX = 8, 640
 """Pictures that are kept, and their longer side: the pose network sees 256 pixels of a person."""
 
 
-@dataclass(eq=False)
-class Glimpses:
+class Glimpses(Pictures):
     """Some pictures of a clip, evenly spread, in which people are to be recognized."""
-
-    width: int  # of the clip's pictures [px]
-    _pictures: dict[int, Image]
 
     @classmethod
     def of(cls, clip: Clip) -> "Glimpses":
         """Those of a clip that is about to be read."""
         frames = spread_frames(clip.frame_count, min(GLIMPSES, clip.frame_count))
-        return cls(clip.size[0], {frame: np.zeros(0, dtype=np.uint8) for frame in frames})
+        return cls(1.0, {frame: np.zeros(0, dtype=np.uint8) for frame in frames})
 
     def add(self, index: int, image: Image) -> None:
         """Keep a frame (rows, columns, 3) if it is one of them."""
@@ -125,13 +135,8 @@ class Glimpses:
             return
         scale = min(1.0, GLIMPSE_SIDE_PX / max(image.shape[:2]))
         small = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+        self.factor = image.shape[1] / small.shape[1]
         self._pictures[index] = compressed(small)
-
-    def excluding(self, indices: Collection[int]) -> "Glimpses | None":
-        """Those but of some frames; None where none are left."""
-        kept = {index: packed for index, packed in self._pictures.items() if index not in indices}
-        own = Glimpses(self.width, kept)
-        return own if own.frames else None
 
     @property
     def frames(self) -> list[int]:
@@ -140,47 +145,14 @@ class Glimpses:
 
     def picture(self, index: int) -> tuple[Image, float]:
         """A picture (rows, columns, 3), and how many pixels of the clip one of its is along either axis."""
-        image = np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8)
-        return image, self.width / image.shape[1]
+        return self._decoded(index), self.factor
 
     def median(self) -> tuple[Image, float] | None:
         """What stands behind whatever moves, and pixels of the clip to one of it; None without pictures."""
-        pictures = [self.picture(index)[0] for index in self.frames]
+        pictures = [self._decoded(index) for index in self.frames]
         if not pictures:  # all blank, or of other shots
             return None
-        image = np.asarray(np.median(np.stack(pictures), axis=0), dtype=np.uint8)
-        return image, self.width / image.shape[1]
-
-    def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """See `packed`."""
-        return packed(self._pictures, width=self.width)
-
-    @classmethod
-    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Glimpses":
-        """Those that `to_arrays` gave."""
-        return cls(int(arrays["width"]), unpacked(arrays))
-
-
-def compressed(image: NDArray[Any]) -> Image:
-    """A picture as bytes (N,); they err less than the video's compression."""
-    return np.asarray(cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, 90])[1].ravel(), dtype=np.uint8)
-
-
-def packed(pictures: Mapping[int, Image], **more: int) -> dict[str, NDArray[Any]]:
-    """The concatenated compressed pictures, with their frames and end offsets, and `more` numbers."""
-    frames = sorted(pictures)
-    return {
-        **{name: np.array(number) for name, number in more.items()},
-        "frame": np.array(frames, dtype=np.int64),
-        "end": np.cumsum([len(pictures[frame]) for frame in frames], dtype=np.int64),
-        "picture": np.concatenate([np.zeros(0, dtype=np.uint8), *(pictures[frame] for frame in frames)]),
-    }
-
-
-def unpacked(arrays: Mapping[str, NDArray[Any]]) -> dict[int, Image]:
-    """The pictures that `packed` gave."""
-    pictures = np.split(arrays["picture"], arrays["end"])
-    return dict(zip(arrays["frame"].tolist(), pictures, strict=False))  # after the last end is nothing
+        return np.asarray(np.median(np.stack(pictures), axis=0), dtype=np.uint8), self.factor
 
 
 @dataclass(frozen=True, kw_only=True)

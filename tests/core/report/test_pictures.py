@@ -91,7 +91,7 @@ def test_large_frames_are_kept_no_larger_than_drawn(
 def test_what_was_kept_of_the_clip_is_shown_without_decoding_it_again(
     take: Take, motion: Motion, tracks: RegionTracks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    glimpses = Glimpses(2 * SIZE[0], {frame: np.zeros(0, dtype=np.uint8) for frame in (3, 9)})
+    glimpses = Glimpses(1.0, {frame: np.zeros(0, dtype=np.uint8) for frame in (3, 9)})
     picture = np.zeros((2 * SIZE[1], 2 * SIZE[0], 3), dtype=np.uint8)
     picture[:, 200:] = 250
     for frame in (3, 9):

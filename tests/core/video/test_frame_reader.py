@@ -82,7 +82,7 @@ GRADIENTS = [
 def watched(album: Album) -> Clip:
     """A clip of them that fills an album."""
     drawn = Drawn(GRADIENTS, fps=25.0, size=(640, 480))
-    return WatchedClip(Path(), drawn, checks=FrameChecks(), album=album, glimpses=Glimpses(640, {}))
+    return WatchedClip(Path(), drawn, checks=FrameChecks(), album=album, glimpses=Glimpses(1.0, {}))
 
 
 def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
@@ -99,7 +99,7 @@ def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
 
 
 def test_what_stands_behind_whatever_moves_is_the_median_of_what_was_kept() -> None:
-    glimpses = Glimpses(1280, {index: np.zeros(0, dtype=np.uint8) for index in range(3)})
+    glimpses = Glimpses(1.0, {index: np.zeros(0, dtype=np.uint8) for index in range(3)})
     assert glimpses.median() is None  # as of a shot that none of the pictures shows
     for index in range(3):
         picture = np.full((720, 1280, 3), 40, dtype=np.uint8)
