@@ -25,7 +25,8 @@ from keymark.core.estimate.clip_problem import uncalibrated  # noqa: E402
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence  # noqa: E402
 from keymark.core.markers.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.poses.frame import find_frame_poses  # noqa: E402
-from keymark.core.poses.frame_search import FrameShown, knowledge  # noqa: E402
+from keymark.core.poses.frame_search import FrameShown  # noqa: E402
+from keymark.core.poses.part_pools import part_pools  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
 from keymark.core.prior.registry import SHIPPED, find_libraries  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
@@ -70,7 +71,7 @@ def measure(folder: Path, libraries: tuple[Library, ...], step: int) -> dict[str
         keypoints = performer_keypoints(replace(take, keypoints=(people,)), tracks)
     bare = RegionTracks.unmarked(tracks.time_s, tracks.size)
     kinds = {MARKERS: (tracks, nothing), KEYPOINTS: (bare, keypoints), BOTH: (tracks, keypoints)}
-    knowledge(take.body, libraries)
+    part_pools(libraries, take.body)
     found: dict[str, list[Found]] = {}
     for kind, (seen, points) in kinds.items():
         if (kind != KEYPOINTS and not take.markers) or (kind != MARKERS and file is None):

@@ -13,7 +13,6 @@ from threadpoolctl import threadpool_limits
 from ..arrays import Array
 from ..body.body_volume import rested
 from ..body.posture import Posture
-from ..errors import InputError
 from ..estimate.belief import Belief
 from ..estimate.performer_placement import found_ankle_m
 from ..estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
@@ -31,6 +30,7 @@ from .found_poses import FoundPoses, MatchedFrame, composed_candidates
 from .frame_likelihood import frame_likelihood
 from .match_evidence import marker_moments
 from .part_features import HEADINGS
+from .part_pools import usable_libraries
 
 
 def pose_clip(
@@ -57,9 +57,7 @@ def pose_clip(
     Raises:
         InputError: There is no library, none has a posture, or neither a marker nor a keypoint is seen.
     """
-    usable = [library for library in libraries if library.postures]
-    if not usable:
-        raise InputError("no keyframe library with a posture is given; at least one is needed to find poses")
+    usable = usable_libraries(libraries)
     take = seen.take
     with threadpool_limits(limits=1, user_api="blas"):
         given = posing_input(seen, keyframe_count)

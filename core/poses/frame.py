@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array
-from ..body.human import TRUNK, limb_of
 from ..body.posture import Posture
 from ..errors import InputError
 from ..estimate.single_frame import fit_frame, frame_residuals
@@ -18,13 +17,11 @@ from .frame_search import (
     FrameSearch,
     FrameShown,
     Hypotheses,
-    Knowledge,
     agreeing,
-    knowledge,
     mean_posture,
     points_from_hips,
 )
-from .plausibility import PARTS, part_shapes
+from .part_pools import part_pools, usable_libraries
 
 
 def belief_costs(belief: FramePrior, posture: Posture) -> Array:
@@ -41,40 +38,12 @@ def belief_costs(belief: FramePrior, posture: Posture) -> Array:
 # --- What contradicts a frame's plausible postures
 
 
-UNWORN_COST = 12.0  # one marker in twenty is worn by nobody, at one of ten thousand places and sizes
-
-
-def unworn_marker(search: FrameSearch, found: Hypotheses) -> int | None:
-    """The marker without which the rest of the frame is explained far better; None where there is none."""
-    shown, least = search.shown, float(found.cost.min())
-    visible, points = np.flatnonzero(shown.tracks.visible[0]), int(shown.points.seen.sum())
-    # Nothing is left to gain where all is well explained. What a keypoint costs where the posture is right,
-    # its guessed depth included, is no gain of leaving a marker out.
-    if least < UNWORN_COST + 0.5 * points or len(visible) + points < 2 or not len(visible):
-        return None
-    gains = {
-        # Starts of a search without a marker, which only asks how well the rest can be explained.
-        int(marker): least
-        - float(replace(search, shown=shown.without(int(marker))).hypotheses(24).cost.min())
-        for marker in visible
-    }
-    best = max(gains, key=lambda marker: gains[marker])
-    return best if gains[best] >= UNWORN_COST else None
-
-
-def unexplained(known: Knowledge, shown: FrameShown, posture: Posture) -> tuple[str, ...]:
-    """Names of what a posture does not explain, and of what is seen on limbs that it contorts."""
+def unexplained(shown: FrameShown, posture: Posture) -> tuple[str, ...]:
+    """Names of what a posture does not explain."""
     off = frame_residuals(shown.evidence, shown.regions, shown.points, posture, shown.frame)
     names = [shown.tracks.names[marker] for marker in off.markers]
     # Hands and feet turn about wrists and ankles, of which a posture knows nothing.
     names += [name for name in off.points if USUAL_PLACES[name].error_std_m <= JOINT_ERROR_STD_M]
-    bent = known.postures.contorted(known.pools.body.pose(Posture.stack([posture])))[0]
-    parts = [part for part, is_bent in zip(PARTS, bent, strict=True) if is_bent]
-    worn = zip(shown.tracks.names, shown.segments, shown.tracks.visible[0], strict=True)
-    names += [name for name, segment, seen in worn if seen and limb_of(segment) in parts]
-    if not shown.segments:
-        seen = zip(shown.keypoints.names, shown.points.seen[0], strict=True)
-        names += [name for name, is_seen in seen if is_seen and limb_of(name) in parts]
     return tuple(dict.fromkeys(names))
 
 
@@ -109,16 +78,9 @@ def find_frame_poses(
     """
     if shown.is_empty:
         raise InputError("neither a marker nor a keypoint is seen in the frame, so no posture can be found")
-    search = FrameSearch(knowledge(shown.body, libraries), shown, floor_m)
-    found = _hypotheses(search, belief)
-    unworn = unworn_marker(search, found)
-    left_out: tuple[str, ...] = ()
-    if unworn is not None:
-        search, left_out = replace(search, shown=shown.without(unworn)), (shown.tracks.names[unworn],)
-        found = _hypotheses(search, belief)
-    candidates = _candidates(search, found, has_believed=belief is not None)
-    named = (*left_out, *unexplained(search.known, search.shown, candidates[0].posture))
-    return FramePoses(candidates, tuple(dict.fromkeys(named)))
+    search = FrameSearch(part_pools(usable_libraries(libraries), shown.body), shown, floor_m)
+    candidates = _candidates(search, _hypotheses(search, belief), has_believed=belief is not None)
+    return FramePoses(candidates, unexplained(shown, candidates[0].posture))
 
 
 def near_pose(shown: FrameShown, belief: FramePrior) -> FramePoses:
@@ -148,7 +110,7 @@ def _hypotheses(search: FrameSearch, belief: FramePrior | None) -> Hypotheses:
 
 def _candidates(search: FrameSearch, found: Hypotheses, has_believed: bool) -> tuple[Candidate, ...]:
     """Distinct candidates, each the mean of the hypotheses near it; what keyframes tell stays if it leads."""
-    body = search.known.pools.body
+    body = search.pools.body
     points = points_from_hips(body, found.posture)
     weight, near = agreeing(points, found.cost)
     share = near @ weight
@@ -165,12 +127,8 @@ def _candidates(search: FrameSearch, found: Hypotheses, has_believed: bool) -> t
         rest = final.posture[np.arange(1, len(chosen))]
         final = replace(final, posture=Posture.concatenate([found.posture[chosen[:1]], rest]))
     made = []
-    own = search.known.postures
     for rank in distinct_rows(points_from_hips(body, final.posture), np.arange(len(chosen)), DISTINCT_M, 4):
         posture = final.posture[int(rank)]
-        # The known posture whose trunk is nearest gives the name.
-        shape = part_shapes(own.body, own.body.pose(Posture.stack([posture])))[TRUNK]
-        nearest = int(np.linalg.norm(own.parts[TRUNK] - shape, axis=-1).argmin())
         sure = confidence(RIGHT, log_odds(float(share[chosen[rank]])), float(final.cost[rank]))
-        made.append(Candidate(posture, own.names[nearest], own.mirrored[nearest], sure))
+        made.append(Candidate(posture, *search.pools.nearest(posture), sure))
     return by_confidence(made)

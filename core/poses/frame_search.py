@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -18,7 +17,6 @@ from ..estimate.performer_placement import place_standing
 from ..estimate.single_frame import exchanged
 from ..markers.region_tracks import RegionTracks
 from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
-from ..prior.library import Library
 from ..terms.keypoints import EXCHANGED_COST, ObservedKeypoints
 from ..terms.regions import FEATURES, ObservedRegions, limb_widths
 from ..terms.solver import descend
@@ -29,8 +27,7 @@ from .composed_states import NO_CONTACT_COST
 from .found_poses import ABOUT_RIGHT_M, distinct_rows
 from .match_evidence import MatchEvidence
 from .part_features import StanceFeatures, stance_features
-from .part_pools import PartPools, kept, part_pools
-from .plausibility import KnownPostures, known_postures
+from .part_pools import PartPools
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,15 +78,6 @@ class FrameShown:
         known = self.evidence.keypoints
         return exchanged(self.points, known.model.names, known.sources) if is_exchanged else self.points
 
-    def without(self, marker: int) -> "FrameShown":
-        """The same with a marker hidden."""
-        hidden: dict[str, Any] = {}
-        for name in ("centroid", "second_moment", "area", "quality"):
-            values = np.array(getattr(self.tracks, name))
-            values[:, marker] = 0.0 if name == "quality" else np.nan
-            hidden[name] = values
-        return replace(self, tracks=replace(self.tracks, **hidden))
-
 
 # --- A search for the postures that one frame may show, from nothing but what is seen in it
 
@@ -97,14 +85,6 @@ class FrameShown:
 FROM_START = (16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(6)))  # factors of the image noise, one a step
 FROM_NEAR = FROM_START[-4:]
 ALIKE = 3.0  # costs count for so many times less: what is seen of one body errs together, and so do its parts
-
-
-@dataclass(frozen=True, eq=False)
-class Knowledge:
-    """What is known of postures on one body."""
-
-    pools: PartPools
-    postures: KnownPostures
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,32 +109,17 @@ class Hypotheses:
         return Hypotheses(self.posture[rows], self.cost[rows], self.exchanged[rows])
 
 
-def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
-    """What some libraries tell of postures on a body; that of the last few bodies is kept.
-
-    Raises:
-        InputError: No library has a posture.
-    """
-    usable = [each for each in libraries if each.postures]
-
-    def learn() -> Knowledge:
-        postures = known_postures(body, usable)
-        return Knowledge(part_pools(usable, body), postures)
-
-    return kept(Knowledge, usable, body, learn)
-
-
 @dataclass(frozen=True, eq=False)
 class FrameSearch:
     """Hypotheses of the postures that one frame may show."""
 
-    known: Knowledge
+    pools: PartPools
     shown: FrameShown
     floor_m: float | None  # height of the floor [m]; None where it is not known, when z = 0 may be it
 
     def hypotheses(self, count: int = 80) -> Hypotheses:
         """Hypotheses, in no order, at the end of the descents from `count` starts."""
-        stances = stance_features(self.known.pools, self.shown.compared)
+        stances = stance_features(self.pools, self.shown.compared)
         floor_m = self.floor_m
         if floor_m is None:
             least = [self._screened(stances, height).cost.min() for height in (0.0, None)]
@@ -162,7 +127,7 @@ class FrameSearch:
         sides = (False, True) if self.shown.compared.keypoints.names else (False,)
         every = Hypotheses.concatenate([self._screened(stances, floor_m, side) for side in sides])
         # Starts whose points, hips aligned, are nearer than this lead to the same posture.
-        points = points_from_hips(self.known.pools.body, every.posture)
+        points = points_from_hips(self.pools.body, every.posture)
         starts = every.chosen(distinct_rows(points, np.argsort(every.cost), 0.05, count))
         found = replace(self, floor_m=floor_m).descended(starts, FROM_START)
         # Weight of a start's cost in screening, in which the many compositions around it count: a posture
@@ -180,13 +145,12 @@ class FrameSearch:
         place = np.argsort(order)
         posture = Posture.concatenate([postures for postures, _ in found])[place]
         cost = np.concatenate([costs for _, costs in found])[place] + EXCHANGED_COST * starts.exchanged
-        cost = cost + self.known.postures.costs(self.known.pools.body.pose(posture)).sum(axis=-1)
         # Cost of a body part of which lies behind the camera, where nothing can be compared.
         return replace(starts, posture=posture, cost=np.where(np.isfinite(cost), cost, 1e3))
 
     def likeliest_mean(self, found: Hypotheses) -> Posture:
         """The mean of the hypotheses around the one that most agree with, brought to what is seen."""
-        weight, near = agreeing(points_from_hips(self.known.pools.body, found.posture), found.cost)
+        weight, near = agreeing(points_from_hips(self.pools.body, found.posture), found.cost)
         row = int((near @ weight).argmax())
         mean = mean_posture(found.posture, row, near[row] * weight)
         return self.descended(replace(found.chosen(np.array([row])), posture=mean)).posture[0]
@@ -195,7 +159,7 @@ class FrameSearch:
         self, stances: StanceFeatures, floor_m: float | None, is_exchanged: bool = False
     ) -> Hypotheses:
         """The likeliest compositions of parts."""
-        shown, pools = self.shown, self.known.pools
+        shown, pools = self.shown, self.pools
         evidence = shown.compared.exchanged() if is_exchanged else shown.compared
         (costs,) = frame_costs(shown.camera, evidence, stances, np.zeros(1, dtype=np.intp), floor_m)
         placed = place_standing(pools.body, shown.camera, 0, shown.tracks, shown.segments, evidence.keypoints)

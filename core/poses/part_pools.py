@@ -5,10 +5,9 @@ postures that no library has. Left and right limbs share one pool, mirrored.
 """
 
 from collections import OrderedDict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, TypeVar
 
 import numpy as np
 from scipy.spatial.distance import cdist
@@ -20,10 +19,10 @@ from ..body.mirror import mirrored
 from ..body.posture import Posture, headings_rad, yawed_at
 from ..body.posture_spline import cubic_spline
 from ..body.skeleton import Skeleton
+from ..errors import InputError
 from ..numerics.robust import multivariate_cost
 from ..prior.library import Library, LibraryMotion
 
-Learned = TypeVar("Learned")
 ARM, LEG, TORSO = "arm", "leg", "torso"
 JOINTS = {
     TORSO: ("pelvis", "waist", "neck"),
@@ -81,6 +80,12 @@ class PartPools:
         whole = Posture(chosen.skeleton, np.zeros((len(torso), 3)), rotations, angles)
         return yawed_at(whole, heading_rad, hips)
 
+    def nearest(self, posture: Posture) -> tuple[str, bool]:
+        """The posture whose torso is most like a single one's, and whether it is mirrored."""
+        ahead = yawed_at(Posture.stack([posture]), -headings_rad(Posture.stack([posture])), np.zeros((1, 3)))
+        own, known = (part_points(self.body, TORSO, each) for each in (ahead, self.torsos.posture))
+        return self.names[self.torsos.source[_distances(own, known).argmin()]]
+
 
 @lru_cache(maxsize=16)
 def part_columns(kind: str, side: str = "") -> tuple[list[int], list[int]]:
@@ -97,29 +102,36 @@ def part_dofs(skeleton: Skeleton, kind: str, side: str = "") -> list[int]:
     return [*map(int, skeleton.ball_dofs[balls].ravel()), *map(int, skeleton.hinge_dofs[hinges])]
 
 
-_KEPT: OrderedDict[tuple[object, ...], Any] = OrderedDict()
+_KEPT: OrderedDict[tuple[object, ...], PartPools] = OrderedDict()
+
+
+def usable_libraries(libraries: Sequence[Library]) -> list[Library]:
+    """Those that have a posture.
+
+    Raises:
+        InputError: None has.
+    """
+    usable = [library for library in libraries if library.postures]
+    if not usable:
+        raise InputError("no keyframe library with a posture is given; at least one is needed to find poses")
+    return usable
 
 
 def part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
-    """The parts of all libraries' postures and their mirror images on a body, with samples beside them."""
-    return kept(PartPools, libraries, body, lambda: _part_pools(libraries, body))
+    """The parts of all libraries' postures and their mirror images on a body, with samples beside them.
 
-
-def kept(
-    kind: type[Learned], libraries: Sequence[Library], body: Body, learn: Callable[[], Learned]
-) -> Learned:
-    """What is learned from libraries for a body: once for their content, however often files are read."""
+    They are made once for the libraries' content, however often files are read.
+    """
     postures = [each.posture for one in libraries for each in one.postures]
     shapes = [(one.translation.tobytes(), one.rotations.tobytes(), one.angles.tobytes()) for one in postures]
     named = tuple((tuple(each.name for each in one.postures), one.motions) for one in libraries)
-    key = (kind, *sorted(body.actor.segments_m.items()), *map(hash, shapes), *named)
+    key = (*sorted(body.actor.segments_m.items()), *map(hash, shapes), *named)
     if key not in _KEPT:
-        _KEPT[key] = learn()
-        # What is learned from libraries is kept for so many questions about other performers.
+        _KEPT[key] = _part_pools(libraries, body)
+        # They are kept for so many questions about other performers.
         while len(_KEPT) > 8:
             _KEPT.popitem(last=False)
-    found: Learned = _KEPT[key]
-    return found
+    return _KEPT[key]
 
 
 def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:

@@ -24,8 +24,9 @@ from ..markers.region_tracks import RegionTracks
 from ..prior.library import Library
 from ..terms.keypoints import ObservedKeypoints
 from ..terms.region_model import RegionModel
-from .frame_search import ALIKE, FrameSearch, FrameShown, Hypotheses, knowledge
+from .frame_search import ALIKE, FrameSearch, FrameShown, Hypotheses
 from .inverse_kinematics import Pull, SightLine, pulled
+from .part_pools import part_pools
 
 EVIDENT = "person"  # source of points that a person vouches for
 
@@ -61,7 +62,7 @@ def put_right(
     pixels, depth = camera.project(seen, frame)
     if body.actor.is_average or not usable or not (np.isfinite(pixels).all() and (depth > 0.0).all()):
         return own
-    search = FrameSearch(knowledge(body, usable), _shown(body, camera, frame, pixels, std_m), floor_m)
+    search = FrameSearch(part_pools(usable, body), _shown(body, camera, frame, pixels, std_m), floor_m)
     first = search.descended(Hypotheses(Posture.stack([own]), np.zeros(1), np.array([False])))
     found_anew = search.hypotheses()
     sided = found_anew.chosen(np.flatnonzero(~found_anew.exchanged))  # a person's left and right are right

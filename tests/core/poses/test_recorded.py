@@ -1,23 +1,14 @@
-"""Known postures and corrected poses, number by number; what is found for clips is so in their own tests."""
+"""Corrected poses, number by number; what is found for clips is so in their own tests."""
 
 import numpy as np
 import pytest
 from _performances import BODY as CORRECTED
 from _performances import camera_around, natural_posture, points
-from _performed import BODY
 from _recorded import assert_recorded
 from keymark.core.body.human import LIMBS, TRUNK
 from keymark.core.poses.depth_flip import flipped
 from keymark.core.poses.dragged import dragged
-from keymark.core.poses.plausibility import known_postures, part_shapes
 from keymark.core.poses.turned import Facing, Sides, turned
-from keymark.core.prior.library import Library
-
-
-def test_shapes_of_known_postures(walking: Library) -> None:
-    known = known_postures(BODY, [walking])
-    shapes = part_shapes(BODY, known.pose)
-    assert_recorded("shapes of parts", *(shapes[name] for name in sorted(shapes)))
 
 
 @pytest.mark.parametrize("seed", [3])
