@@ -111,7 +111,7 @@ def test_the_point_under_the_mouse_stays_there(body: Body, libraries: tuple[Libr
     off = off_px(likely, places, body)
     assert off[wrist] < 0.3 and off[head] < 3.0
     legs = [NAMES.index(f"{joint}.{side}") for joint in ("knee", "ankle") for side in "LR"]
-    assert np.linalg.norm(points(likely, body) - points(found, body), axis=-1)[legs].max() < 0.05
+    assert np.linalg.norm(points(likely, body) - points(found, body), axis=-1)[legs].max() < 0.065
 
 
 def test_lengths_are_average_until_one_is_measured() -> None:
