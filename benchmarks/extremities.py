@@ -21,6 +21,7 @@ from keymark.core.body.posture_fit import nearest_rotation  # noqa: E402
 from keymark.core.body.rotations import logarithm  # noqa: E402
 from keymark.core.detect.closer_look import CloserLook  # noqa: E402
 from keymark.core.detect.keypoint_file import write_keypoints  # noqa: E402
+from keymark.core.detect.keypoints import no_face, no_hands  # noqa: E402
 from keymark.core.detect.pose_network import PoseNetwork  # noqa: E402
 from keymark.core.detect.pose_tracking import find_people  # noqa: E402
 from keymark.core.estimate.reconstruct import Reconstruction  # noqa: E402
@@ -90,7 +91,7 @@ def detected(folder: Path) -> tuple[Path, Path]:
         values = describe(folder).fields.values
         clip = open_footage(folder / "clip.mp4", values["fps"], tuple(values["camera"]["resolution"]))
         people = run(find_people(clip, PoseNetwork(), CloserLook()))
-        frames = tuple(replace(one, face=None, hands=None) for one in people.frames)
+        frames = tuple(replace(one, face=no_face(), hands=no_hands()) for one in people.frames)
         kept.parent.mkdir(parents=True, exist_ok=True)
         write_keypoints(kept, people, 1, values["fps"])
         write_keypoints(plain, replace(people, frames=frames), 1, values["fps"])

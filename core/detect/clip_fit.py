@@ -3,7 +3,6 @@
 Nothing is shifted without a word.
 """
 
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -15,8 +14,6 @@ from .. import MOST_FRAMES
 from ..arrays import Array, BoolArray
 from ..errors import InputError, pluralize
 from .detected_frames import DetectedFrames
-from .face import no_faces
-from .hands import no_hands
 from .keypoints import People, SeenPeople, confidences
 from .performer import repeated_results
 
@@ -112,17 +109,9 @@ def _everyone(
     # What a network guesses of a motion beyond the picture is none of a point that is seen.
     beyond = len(numbers) - (len(detected.second.names) if detected.second and detected.second.motion else 0)
     hint[:, :beyond][~seen[:, :beyond]] = np.nan
-    face = _looks([person.face for person in persons], no_faces)
-    hands = _looks([person.hands for person in persons], no_hands)
+    face, hands = np.stack([one.face for one in persons]), np.stack([one.hands for one in persons])
     looks = SeenPeople(place, score, hint, face, hands).moved(partial(np.multiply, scale))
     return replace(looks, pixel=place), notes + score_notes
-
-
-def _looks(own: Sequence[Array | None], none: Callable[[int], Array]) -> Array | None:
-    """Looks at the face or the hands of each person; `none` of those who were not looked at."""
-    if all(look is None for look in own):
-        return None
-    return np.stack([none(1)[0] if look is None else look for look in own])
 
 
 def _scale(

@@ -9,7 +9,8 @@ from ..errors import InputError
 from .face import FaceNetwork
 from .families.beside import Beside
 from .families.network import Network
-from .hands import HandNetwork, no_hands
+from .hands import HandNetwork
+from .keypoints import no_hands
 from .pose_network import Pose, in_parallel
 
 Part = TypeVar("Part")
@@ -33,14 +34,16 @@ class CloserLook:
         poses = in_parallel(lambda look: self._seen(*look), looks)
         if self.beside is not None:
             poses = self.beside([picture for picture, *_ in looks], poses)
+            wanted = [self._looks_at_hands and hands for *_, hands in looks]
+            pairs = zip(poses, wanted, strict=True)
+            poses = [pose if hands else replace(pose, hands=no_hands()) for pose, hands in pairs]
         return poses
 
     def _seen(self, picture: Image, pose: Pose, wanted: bool) -> Pose:
         if self._face is not None:
             pose = replace(pose, face=self._face(picture, pose))
-        if self._looks_at_hands and wanted:
-            hands = no_hands(1)[0] if self._hands is None else self._hands(picture, pose)
-            pose = replace(pose, hands=hands)
+        if self._hands is not None and wanted:
+            pose = replace(pose, hands=self._hands(picture, pose))
         return pose
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InputError, shown
 from ..files.kinds import number_array
-from .keypoints import SecondSource
+from .keypoints import SecondSource, no_face, no_hands
 from .layouts import LAYOUTS, Layout, layout_of
 
 MOST_PEOPLE = 100  # people of one frame; the performer among more is nobody's take
@@ -27,8 +27,8 @@ class DetectedPerson:
     score: Array  # (N,) the detector's own
     hint_m: Array | None = None  # (N, 3) as in `Keypoints`, where the detector guesses it
     body: int = 0  # number of the body's points, which hands follow; 0 where all are the body's
-    face: Array | None = None  # (6,) as in `Keypoints`, where it was looked at
-    hands: Array | None = None  # (2, 12) likewise
+    face: Array = field(default_factory=no_face)  # (6,) as in `Keypoints`, NaN where not looked at
+    hands: Array = field(default_factory=no_hands)  # (2, 22) likewise
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array, Image
 from ..body.rotations import exponential, logarithm
 from ..numerics.vectors import unit
-from .keypoints import FACE_NUMBERS
+from .keypoints import no_face
 from .network_file import FOLDER, network_input, network_session
 from .pose_network import LAYOUT, Crop, Pose
 
@@ -26,11 +26,6 @@ OUTPUTS = ("conv2d_21", "conv2d_31")
 AROUND = [LAYOUT.names.index(name) for name in ("nose", "eye.L", "eye.R", "ear.L", "ear.R")]
 
 
-def no_faces(people: int) -> Array:
-    """(H, 6) of people whose faces were not looked at."""
-    return np.full((people, FACE_NUMBERS), np.nan)
-
-
 class FaceNetwork:
     """The network with its weights."""
 
@@ -41,7 +36,7 @@ class FaceNetwork:
         """(6,) a person's face in a picture (height, width, 3), blue first; NaN where it is too small."""
         crop = _first_crop(pose)
         if crop.side < SMALLEST_PX:
-            return no_faces(1)[0]
+            return no_face()
         # The first look finds the face, the second sees it as the network has learned it: upright, all of it.
         for _ in range(2):
             points, presence = self._look(picture, crop)

@@ -16,7 +16,7 @@ from ..body.fingers import MIDDLE, RESTING, WRIST, curls_of, palm_of
 from ..body.rotations import exponential, logarithm
 from ..body.skeleton import SIDES
 from ..numerics.vectors import unit
-from .keypoints import FACING, HAND_NUMBERS
+from .keypoints import FACING, HAND_NUMBERS, no_hands
 from .network_file import FOLDER, network_input, network_session
 from .pose_network import LAYOUT, Crop, Pose
 
@@ -28,11 +28,6 @@ SMALLEST_PX = 35.0  # length of a hand that shows nothing
 OUTPUTS = ("Identity", "Identity_1", "Identity_2", "Identity_3")
 
 
-def no_hands(people: int) -> Array:
-    """(H, 2, 22) of people whose hands were not looked at."""
-    return np.full((people, len(SIDES), HAND_NUMBERS), np.nan)
-
-
 class HandNetwork:
     """The network with its weights."""
 
@@ -41,7 +36,7 @@ class HandNetwork:
 
     def __call__(self, picture: Image, pose: Pose) -> Array:
         """(2, 22) a person's hands in a picture (height, width, 3), blue first; NaN where too small."""
-        hands = no_hands(1)[0]
+        hands = no_hands()
         for row, side in enumerate(SIDES):
             crop = _first_crop(pose, side)
             if crop.side < CROP_HANDS * SMALLEST_PX:

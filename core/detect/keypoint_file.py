@@ -27,8 +27,6 @@ from .detected_frames import (
     placed,
 )
 from .detector_formats import FORMATS, is_instances, is_openpose_frame, read_frame_folder
-from .face import no_faces
-from .hands import no_hands
 from .keypoints import (
     FACE_NUMBERS,
     HAND_NUMBERS,
@@ -150,8 +148,8 @@ def read_own(fields: Fields, name_of_source: str) -> DetectedFrames:
     )
 
 
-MORE = ("world", "face", "hands")
-"""Fields with more about the people of frames or people."""
+MORE = {"world": "hint_m", "face": "face", "hands": "hands"}
+"""Fields with more about the people of frames or people, and what it is of a person."""
 
 
 def _person(layout: Layout) -> Callable[[tuple[Any, dict[str, tuple[Any, str]]], str], DetectedPerson]:
@@ -169,13 +167,12 @@ def _person(layout: Layout) -> Callable[[tuple[Any, dict[str, tuple[Any, str]]],
             "face": ((FACE_NUMBERS,), FARTHEST_PX),
             "hands": ((len(SIDES), HAND_NUMBERS), FARTHEST_PX),
         }
-        hint_m, face, hands = (
-            person_array(more[name][0], *shapes[name], more[name][1])
-            if name in more and more[name][0] is not None
-            else None
-            for name in MORE
-        )
-        return DetectedPerson(points[:, :2], points[:, 2], hint_m, face=face, hands=hands)
+        known = {
+            MORE[name]: person_array(own, *shapes[name], spot)
+            for name, (own, spot) in more.items()
+            if own is not None
+        }
+        return DetectedPerson(points[:, :2], points[:, 2], **known)
 
     return read
 
@@ -219,10 +216,8 @@ def _written_more(frame: SeenPeople) -> Iterator[list[Any]]:
     yield [
         _numbers(np.round(hint, 4)) if np.isfinite(hint).any() else None for hint in frame.hint_m
     ]  # 0.1 mm
-    faces = no_faces(len(frame.pixel)) if frame.face is None else frame.face
-    yield [np.round(face, 4).tolist() if np.isfinite(face).all() else None for face in faces]
-    hands = no_hands(len(frame.pixel)) if frame.hands is None else frame.hands
-    yield [_numbers(np.round(own, 4)) if np.isfinite(own).any() else None for own in hands]
+    yield [np.round(face, 4).tolist() if np.isfinite(face).all() else None for face in frame.face]
+    yield [_numbers(np.round(own, 4)) if np.isfinite(own).any() else None for own in frame.hands]
 
 
 def _numbers(rows: Array) -> list[list[float | None]]:

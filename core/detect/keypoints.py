@@ -71,6 +71,16 @@ FACE_NUMBERS = 6  # of a face, as `face` explains them
 HAND_NUMBERS = 22  # of a hand, as `hands` does
 
 
+def no_face() -> Array:
+    """(6,) what is known of a face that was not looked at."""
+    return np.full(FACE_NUMBERS, np.nan)
+
+
+def no_hands() -> Array:
+    """(2, 22) what is known of hands that were not looked at."""
+    return np.full((len(SIDES), HAND_NUMBERS), np.nan)
+
+
 @dataclass(frozen=True, eq=False)
 class Keypoints:
     """N keypoints of one person in F frames; NaN where one is not seen."""
@@ -84,17 +94,14 @@ class Keypoints:
     between the hips; NaN where there is none."""
     notes: tuple[str, ...] = ()
     """Sentences on who of several people was taken, and on what the sources' files leave open."""
-    face: Array | None = None  # (F, 6) faces as in `face`, NaN where not looked at; None where nowhere
-    hands: Array | None = None  # (F, 2, 22) hands, left and right, as in `hands`, likewise
+    face: Array = field(default_factory=no_face)  # (F, 6) faces as in `face`, NaN where not looked at
+    hands: Array = field(default_factory=no_hands)  # (F, 2, 22) left and right as in `hands`, likewise
 
     def __post_init__(self) -> None:
         frames, count = len(self.pixel), len(self.names)
+        _with_looks(self, frames)
         shapes = {"pixel": (frames, count, 2), "score": (frames, count), "hint_m": (frames, count, 3)}
-        if self.face is not None:
-            shapes["face"] = (frames, FACE_NUMBERS)
-        if self.hands is not None:
-            shapes["hands"] = (frames, len(SIDES), HAND_NUMBERS)
-        freeze(self, shapes)
+        freeze(self, shapes | {"face": self.face.shape, "hands": self.hands.shape})
 
     @classmethod
     def none(cls, frames: int) -> "Keypoints":
@@ -114,22 +121,13 @@ class Keypoints:
             np.concatenate([part.score for part in parts], axis=1),
             np.concatenate([part.hint_m for part in parts], axis=1),
             tuple(note for part in parts for note in part.notes),
-            next((part.face for part in parts if part.face is not None), None),
-            next((part.hands for part in parts if part.hands is not None), None),
+            next((part.face for part in parts if np.isfinite(part.face).any()), no_face()),
+            next((part.hands for part in parts if np.isfinite(part.hands).any()), no_hands()),
         )
 
     def frames(self, own: slice) -> "Keypoints":
         """The keypoints of some frames."""
-        face = None if self.face is None else self.face[own]
-        hands = None if self.hands is None else self.hands[own]
-        return replace(
-            self,
-            pixel=self.pixel[own],
-            score=self.score[own],
-            hint_m=self.hint_m[own],
-            face=face,
-            hands=hands,
-        )
+        return replace(self, **{name: getattr(self, name)[own] for name in OF_FRAMES})
 
     def frame(self, index: int) -> "Keypoints":
         """The keypoints of one frame."""
@@ -161,6 +159,15 @@ class Keypoints:
         return replace(self, hint_m=np.full(self.hint_m.shape, np.nan))
 
 
+OF_FRAMES = ("pixel", "score", "hint_m", "face", "hands")
+
+
+def _with_looks(owner: "Keypoints | SeenPeople", count: int) -> None:
+    """Give looks at faces and hands, of so many or the same of all, to each."""
+    object.__setattr__(owner, "face", np.broadcast_to(owner.face, (count, FACE_NUMBERS)))
+    object.__setattr__(owner, "hands", np.broadcast_to(owner.hands, (count, len(SIDES), HAND_NUMBERS)))
+
+
 @dataclass(frozen=True, eq=False)
 class SeenPeople:
     """One source's people of one frame, H of them; a person may be missing in any frame."""
@@ -168,8 +175,11 @@ class SeenPeople:
     pixel: Array  # (H, N, 2) [px] of the clip, NaN where not seen
     score: Array  # (H, N) 0 to 1, 0 where not seen
     hint_m: Array  # (H, N, 3) as in `Keypoints`
-    face: Array | None = None  # (H, 6) as in `Keypoints`
-    hands: Array | None = None  # (H, 2, 22) likewise
+    face: Array = field(default_factory=no_face)  # (H, 6) as in `Keypoints`
+    hands: Array = field(default_factory=no_hands)  # (H, 2, 22) likewise
+
+    def __post_init__(self) -> None:
+        _with_looks(self, len(self.pixel))
 
     @classmethod
     def nobody(cls, points: int) -> "SeenPeople":
@@ -179,8 +189,7 @@ class SeenPeople:
     def moved(self, place: Callable[[Array], Array]) -> "SeenPeople":
         """The same with all places (..., 2) [px] as a function has them; faces and hands go along."""
         looks = (
-            None if own is None else np.concatenate([place(own[..., :2]), own[..., 2:]], axis=-1)
-            for own in (self.face, self.hands)
+            np.concatenate([place(own[..., :2]), own[..., 2:]], axis=-1) for own in (self.face, self.hands)
         )
         return SeenPeople(place(self.pixel), self.score, self.hint_m, *looks)
 
@@ -188,18 +197,15 @@ class SeenPeople:
         """The same in the mirror image of a picture so wide [px]; points keep their columns, hands do not."""
         flipped = self.moved(lambda place: np.array([width, 0.0]) + place * [-1.0, 1.0])
         # A turn's axis is a pseudovector. A hand's second look was at the mirror image.
-        face = None if flipped.face is None else flipped.face * [1.0, 1.0, 1.0, -1.0, -1.0, 1.0]
-        hands = None if flipped.hands is None else flipped.hands[:, ::-1].copy()
-        if hands is not None:
-            looks = hands[..., 2:].reshape(*hands.shape[:-1], 2, -1)[..., ::-1, :].copy()
-            looks[..., 1:3] *= -1.0
-            hands[..., 2:] = looks.reshape(*hands.shape[:-1], -1)
+        face, hands = flipped.face * [1.0, 1.0, 1.0, -1.0, -1.0, 1.0], flipped.hands[:, ::-1].copy()
+        looks = hands[..., 2:].reshape(*hands.shape[:-1], 2, -1)[..., ::-1, :].copy()
+        looks[..., 1:3] *= -1.0
+        hands[..., 2:] = looks.reshape(*hands.shape[:-1], -1)
         return replace(flipped, hint_m=flipped.hint_m * [-1.0, 1.0, 1.0], face=face, hands=hands)
 
     def only(self, rows: Sequence[int] | IndexArray) -> "SeenPeople":
         """Some of them alone."""
-        face, hands = (None if own is None else own[rows] for own in (self.face, self.hands))
-        return SeenPeople(self.pixel[rows], self.score[rows], self.hint_m[rows], face, hands)
+        return SeenPeople(*(getattr(self, name)[rows] for name in OF_FRAMES))
 
 
 NAMES = Items("body points", 1, len(BODY_POINTS), unique="point", item=Choice(BODY_POINTS))

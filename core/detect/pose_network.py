@@ -6,7 +6,7 @@ crop must move and turn with the person: `Pose.crop` is where to look next.
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
 
@@ -14,6 +14,7 @@ import cv2
 import numpy as np
 
 from ..arrays import Array, Image, SingleArray
+from .keypoints import no_face, no_hands
 from .layouts import LAYOUTS
 from .network_file import FOLDER, network_input, network_session
 
@@ -113,8 +114,8 @@ class Pose:
     hint_m: Array  # (N, 3) as in `Keypoints`
     presence: float  # how sure it is that the crop shows anybody, 0 to 1
     crop: Crop  # about this person
-    face: Array | None = None  # (6,) as in `face`, where it was looked at
-    hands: Array | None = None  # (2, 22) as in `hands`, likewise
+    face: Array = field(default_factory=no_face)  # (6,) as in `face`, NaN where not looked at
+    hands: Array = field(default_factory=no_hands)  # (2, 22) as in `hands`, likewise
 
     def pixels_per_meter(self, points: Sequence[int] | slice = slice(None)) -> float:
         """Size of some points in the picture over that of the guess of them in space, across the view."""

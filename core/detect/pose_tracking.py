@@ -23,9 +23,7 @@ from ..progress import Job, Progress
 from ..video.clip import Clip
 from ..video.working_image import measuring_image
 from .closer_look import CloserLook
-from .face import no_faces
-from .hands import no_hands
-from .keypoints import People, SeenPeople
+from .keypoints import People, SeenPeople, no_face, no_hands
 from .pose_network import LAYOUT, NAME, Crop, Pose, PoseNetwork
 
 DETECTING = "Detecting keypoints"
@@ -317,14 +315,10 @@ def _fill(
     """
     at = looked[sorted(track)]
     poses = [track[index] for index in sorted(track)]
-    face, hands = no_faces(int(at[-1] - at[0]) + 1), no_hands(int(at[-1] - at[0]) + 1)
-    if any(one.face is not None for one in poses):
-        known = [no_faces(1)[0] if one.face is None else one.face for one in poses]
-        face[at - at[0]] = known
-        face[:, :2] /= scale
-    if any(one.hands is not None for one in poses):
-        hands[at - at[0]] = [no_hands(1)[0] if one.hands is None else one.hands for one in poses]
-        hands[..., :2] /= scale
+    face, hands = (np.stack([none()] * int(at[-1] - at[0] + 1)) for none in (no_face, no_hands))
+    face[at - at[0]], hands[at - at[0]] = [one.face for one in poses], [one.hands for one in poses]
+    face[:, :2] /= scale
+    hands[..., :2] /= scale
     seen = np.stack([np.column_stack([one.pixel / scale, one.score, one.hint_m]) for one in poses])
     if len(at) > 1:
         between = np.arange(at[0], at[-1] + 1)
@@ -344,6 +338,6 @@ def _fill(
             np.concatenate([others.pixel, pixel[row][None]]),
             np.concatenate([others.score, score[row][None]]),
             np.concatenate([others.hint_m, seen[row, None, :, 3:]]),
-            np.concatenate([*([] if others.face is None else [others.face]), face[row, None]]),
-            np.concatenate([*([] if others.hands is None else [others.hands]), hands[row, None]]),
+            np.concatenate([others.face, face[row][None]]),
+            np.concatenate([others.hands, hands[row][None]]),
         )

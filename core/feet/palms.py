@@ -45,7 +45,7 @@ def seen_hands(
 
     `posed` are frames of keyframes that a person posed.
     """
-    if keypoints.hands is None or not np.isfinite(keypoints.hands).any():
+    if not np.isfinite(keypoints.hands).any():
         return posture, None
     angles, apart_s = np.array(posture.angles), np.full(len(time_s), np.inf)
     for index in posed:
@@ -59,7 +59,7 @@ def seen_hands(
         joint = skeleton.joint_index(f"forearm.{side}")
         column = skeleton.hinge_joints.index(joint)
         forearm, axis = pose.rotation[:, skeleton.joints[joint].parent], skeleton.hinge_axes[column]
-        hands = np.asarray(keypoints.hands)[:, row]
+        hands = keypoints.hands[:, row]
         seen = np.flatnonzero(np.isfinite(hands).all(axis=-1))
         if not len(seen):
             continue

@@ -11,9 +11,7 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..body.mirror import other_side
 from ..body.posture import Posture
-from ..detect.face import no_faces
-from ..detect.hands import no_hands
-from ..detect.keypoints import FACE, Keypoints, People, SeenPeople
+from ..detect.keypoints import FACE, Keypoints, People, SeenPeople, no_face, no_hands
 from ..detect.performer import Expected, Sightings, choose_performer, person_size, same_person
 from ..errors import InputError, pluralize
 from ..markers.region_tracks import RegionTracks
@@ -124,16 +122,12 @@ def people_of(people: People, number: int, fps: float) -> People:
 def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: int) -> Keypoints:
     pixel = np.full((frames, len(people.names), 2), np.nan)
     score, hint = np.zeros(pixel.shape[:2]), np.full((*pixel.shape[:2], 3), np.nan)
-    face = no_faces(frames) if any(seen.face is not None for seen in people.frames) else None
-    hands = no_hands(frames) if any(seen.hands is not None for seen in people.frames) else None
+    face, hands = (np.stack([none()] * frames) for none in (no_face, no_hands))
     for index, seen in enumerate(people.frames[:frames]):
         row = chosen[index]
         if row != NOBODY and len(seen.pixel):
             pixel[index], score[index], hint[index] = seen.pixel[row], seen.score[row], seen.hint_m[row]
-            if face is not None and seen.face is not None:
-                face[index] = seen.face[row]
-            if hands is not None and seen.hands is not None:
-                hands[index] = seen.hands[row]
+            face[index], hands[index] = seen.face[row], seen.hands[row]
     return Keypoints(people.names, people.sources, pixel, score, hint, notes, face, hands)
 
 

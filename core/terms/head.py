@@ -41,7 +41,7 @@ class ObservedHeads:
     @classmethod
     def of(cls, keypoints: Keypoints, camera: Camera) -> "ObservedHeads | None":
         """Those of a clip's keypoints; None where no head was looked at."""
-        if keypoints.face is None or not np.isfinite(keypoints.face).any():
+        if not np.isfinite(keypoints.face).any():
             return None
         looked = np.isfinite(keypoints.face).all(axis=-1)
         face = np.where(looked[:, None], keypoints.face, 0.0)

@@ -82,7 +82,7 @@ class Beside:
                 ]
             )
         large = pose.pixels_per_meter() * LENGTH_M >= SMALLEST_PX
-        if hands is not None and others is not None and large:
+        if others is not None and large:
             hands = np.where(np.isfinite(hands), hands, others)
         return replace(
             pose,
@@ -117,7 +117,7 @@ def believed(people: People) -> People:
                 pixel=one.pixel[:, kept],
                 score=one.score[:, kept],
                 hint_m=one.hint_m[:, kept],
-                hands=None if one.hands is None else np.where(alike(one.hands)[..., None], np.nan, one.hands),
+                hands=np.where(alike(one.hands)[..., None], np.nan, one.hands),
             )
             for one in people.frames
         ]

@@ -140,7 +140,6 @@ def test_hands_that_keymarks_own_network_has_not_seen_are_the_others(tmp_path: P
             size_px * hint[:, :2], np.ones(len(hint)), hint, 0.9, Crop(np.zeros(2), size_px), hands=own
         )
         joined = beside._joined(pose, Look(np.zeros((17, 2)), np.ones(17), hands=other))
-        assert joined.hands is not None
         np.testing.assert_array_equal(joined.hands, wanted)
         assert alike(joined.hands).tolist() == [False, size_px > 200.0]
 

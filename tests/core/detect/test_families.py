@@ -16,7 +16,7 @@ from keymark.core.detect.families.instant_hmr import FROM_WRIST, LEFT
 from keymark.core.detect.families.instant_hmr import LAYOUT as MHR
 from keymark.core.detect.families.network import Box, Window
 from keymark.core.detect.families.table import open_network
-from keymark.core.detect.hands import alike, no_hands
+from keymark.core.detect.hands import alike
 from keymark.core.detect.keypoints import FACING, HAND_NUMBERS
 from keymark.core.detect.layouts import LAYOUTS
 from keymark.core.detect.onnx_file import LARGEST_BYTES, read_onnx
@@ -138,7 +138,6 @@ def test_points_of_hands_in_space_are_hands(side: str, tmp_path: Path) -> None:
     outputs = [np.zeros(1)] * 5
     outputs[network._flat], outputs[network._deep] = flat, space
     hands = network.read(outputs, Window(np.zeros(2), 1.0)).hands
-    assert hands is not None
     hand = hands["LR".index(side)]
     np.testing.assert_allclose(hand[:2], (168.0, 112.0))
     assert_bent(hand, side, 1e-6)
@@ -161,10 +160,10 @@ def test_whole_bodies_with_depths_have_hands_where_these_are_seen(side: str, tmp
         for at, bins in zip(columns, (384, 512, 576), strict=True)
     ]
     hint = np.random.default_rng(3).normal(size=(len(OWN.names), 3)) * 0.3
-    crop, none = Crop(np.zeros(2), 300.0), no_hands(1)[0]
-    pose = Pose(per_m * hint[:, :2], np.ones(len(hint)), hint, 0.9, crop, hands=none)
+    crop = Crop(np.zeros(2), 300.0)
+    pose = Pose(per_m * hint[:, :2], np.ones(len(hint)), hint, 0.9, crop)
     hands = Beside(network)._joined(pose, network.read(outputs, Window(np.zeros(2), 1.0))).hands
-    assert hands is not None and np.isnan(hands["RL".index(side)]).all()
+    assert np.isnan(hands["RL".index(side)]).all()
     hand = hands["LR".index(side)]
     np.testing.assert_allclose(hand[:2], (96.5, 128.5), atol=0.1)
     assert_bent(hand, side, 0.02)

@@ -10,8 +10,8 @@ import pytest
 from _drawn_clip import SHAPE, Drawn, FakeNetwork, MiddleNetwork, draw_people
 from keymark.core.arrays import Array
 from keymark.core.body.rotations import exponential, logarithm
-from keymark.core.detect.hands import hand_of, no_hands
-from keymark.core.detect.keypoints import People, SeenPeople, mirrored_point
+from keymark.core.detect.hands import hand_of
+from keymark.core.detect.keypoints import People, SeenPeople, mirrored_point, no_hands
 from keymark.core.detect.picture_check import PictureFinding, applied, check_by_pictures
 from keymark.core.detect.pose_network import LAYOUT, NAME
 from keymark.core.errors import InputError
@@ -126,14 +126,13 @@ def test_faces_and_hands_change_sides_with_a_mirrored_copy(side: str) -> None:
     rng, middle = np.random.default_rng(7), np.array([200.0, 90.0])
     points, flip = rng.normal(size=(21, 3)), np.array([-1.0, 1.0, 1.0])
     turn = exponential(np.array([0.3, -0.5, 0.2]))
-    hands, row = no_hands(1), "LR".index(side)
+    hands, row = no_hands()[None], "LR".index(side)
     hands[0, row] = hand_of(points, middle, side)
     hands[0, row, 5] = 0.4  # presence in the first look, which is the second one of a mirrored picture
     face = np.array([[*middle, *logarithm(turn), 0.9]])
     frames = tuple(replace(frame, face=face, hands=hands) for frame in people().frames)
     mended = applied(replace(people(), frames=frames), PictureFinding(mirrored=True)).frames[5]
     place = [SIZE[0] - middle[0], middle[1]]
-    assert mended.face is not None and mended.hands is not None
     turned = logarithm(np.outer(flip, flip) * turn)
     np.testing.assert_allclose(mended.face[0], [*place, *turned, 0.9], atol=1e-12)
     expected = hand_of(points * flip, np.array(place), "RL"[row])
@@ -149,7 +148,6 @@ def test_faces_and_hands_go_along_with_what_is_scaled_and_shifted() -> None:
     )
     mended = applied(replace(people(), frames=frames), PictureFinding((2.0, 3.0), shift=4)).frames[5]
     np.testing.assert_array_equal(mended.face, (face + 9) * [2.0, 3.0, 1.0, 1.0, 1.0, 1.0])
-    assert mended.hands is not None
     np.testing.assert_array_equal(mended.hands[..., :2], hands[..., :2] * [2.0, 3.0])
     np.testing.assert_array_equal(mended.hands[..., 2:], hands[..., 2:])
 
