@@ -11,6 +11,7 @@ from ...core.body.fingers import FINGER_BONES, finger_turns
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import RIGID, Extremities, extremity_names
 from ...core.body.posture import Posture
+from ...core.body.skeleton import SIDES
 from ...core.feet.natural_extremities import natural_extremities
 from ...core.take.motion import Motion
 from .actions import assign_action, channelbag_for, curves_of
@@ -24,12 +25,14 @@ from .keys import (
     unchanged_frames,
     write_keys,
 )
+from .posed_hands import put_right
 from .rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
 
 AT_REST = {"rotation_quaternion": (None, 0.0, 0.0, 0.0), "rotation_axis_angle": (0.0, None, None, None)}
 """Values of channels that do not turn a bone, None for any; Euler angles are all zero."""
 EXTREMITIES = (*extremity_names(HUMAN), *FINGER_BONES)
 SAME_VALUE = 1e-4  # channels that differ by less [rad, m] are the same
+FEET = tuple(f"foot.{side}" for side in SIDES)
 EXTREMITY_PATHS = {
     bone_path(name, channel): name for name in EXTREMITIES for channel in (*ALL_PATHS, "location")
 }
@@ -49,17 +52,21 @@ def turned_extremities(
 ) -> dict[str, Array]:
     """Frames of the unchanged keys by which a motion has turned hands and feet by itself, by name.
 
-    What is posed in the keyframe Action, the motion only copies. A frame has such a key in every curve.
+    What is posed in the keyframe Action, the motion only copies, but for hands that are seen. A frame has
+    such a key in every curve.
     """
     posed = posed_extremities(armature_object, keyframe_action)
+    own = {} if keyframe_action is None else _shown_curves(armature_object, keyframe_action)
     found = {}
     for name, curves in _shown_curves(armature_object, action).items():
         turns = [curve for curve in curves if not curve.data_path.endswith(".location")]
-        if name not in posed and turns:
+        if turns:
             frames, *others = (unchanged_frames(curve, MOTION) for curve in turns)
             for other in others:
                 frames = frames[np.isin(np.round(frames, 3), np.round(other, 3))]
-            found[name] = frames
+            copied = [key.co[0] for curve in own.get(name, ()) for key in curve.keyframe_points]
+            if name not in posed or not np.isin(np.round(frames, 3), np.round(copied, 3)).all():
+                found[name] = frames
     return {name: frames for name, frames in found.items() if len(frames)}
 
 
@@ -169,16 +176,23 @@ def write_motion(
 
     It has a GENERATED key for each frame and channel, in the bone's own rotation mode. Written again, it
     replaces only such keys; the animator's stay and win their frames. Hands, fingers and feet that are posed
-    in `keyframe_action` move as their curves there say, the others as they are seen or naturally. `frames`
-    (F,) are scene frames.
+    in `keyframe_action` move as their curves there say, the others as they are seen or naturally; those that
+    are seen and posed are put right. `frames` (F,) are scene frames.
     """
     posed = posed_extremities(armature_object, keyframe_action)
     frames = (motion.scene_frames if frames is None else frames)[motion.there]
     shown = motion.without_absence()  # no keys where the performer is not there
-    turns = natural_extremities(shown.body, shown.posture, shown.time_s, hands=shown.hands).turns
+    turns = {**natural_extremities(shown.body, shown.posture, shown.time_s, hands=shown.hands).turns}
     if shown.hands is not None:
         add_fingers(armature_object, shown.body)
-        turns = {**turns, **finger_turns(shown.hands)}
+        turns |= finger_turns(shown.hands)
+    if shown.hands is not None and keyframe_action is not None:
+        models = {model.name: model for model in read_bones(armature_object).models}
+        curves = _shown_curves(armature_object, keyframe_action)
+        for name in [name for name in posed if name not in FEET]:
+            bone = armature_object.pose.bones[name]
+            turns[name] = put_right(turns[name], shown.time_s, frames, bone, models[name], curves[name])
+        posed = posed.intersection(FEET)
     extremities = Extremities(turns).without(posed)
     columns = posture_columns(read_bones(armature_object), shown.posture, extremities)
     action = action or bpy.data.actions.new(f"{armature_object.name} Motion")

@@ -1,8 +1,11 @@
 """Feet and hands of motions in Blender: as computed on any actor, replaced anew, the animator's kept."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
+from keymark.core.body.fingers import Hands
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body, extremity_names, segment_motion
 from keymark.core.body.posture import Posture
@@ -170,3 +173,40 @@ def test_a_copied_hand_is_finished_as_it_was_keyed(actor: bpy.types.Object) -> N
     _, final = final_action(actor, action, FinishOptions(0.01, False, 0.03), keyframes)
     points = curve(actor, final, "hand.L").keyframe_points
     assert [(point.co.x, round(point.co.y, 5)) for point in points] == [(7.0, 0.6)]
+
+
+@pytest.mark.parametrize("mode", ["QUATERNION", "XYZ", "AXIS_ANGLE"])
+def test_a_hand_that_is_seen_is_put_right_where_it_is_posed(actor: bpy.types.Object, mode: str) -> None:
+    bend = np.zeros((FRAMES, 2, 3))
+    bend[:, 0, 2] = 0.4 * np.cos(np.arange(FRAMES) / 9.0)
+    hands = Hands(np.full((FRAMES, 2, 5), 0.8), bend, np.full((FRAMES, 2), 0.9))
+    motion = replace(swaying(actor), hands=hands)
+    hand = actor.pose.bones["hand.L"]
+    hand.rotation_mode = mode
+    seen = tips(actor) if write_motion(actor, motion) else None
+    action = bpy.data.actions.new("Keyframes")
+    assign_action(actor, action)
+    turns = {frame: Euler((0.0, 0.0, 0.0)) for frame in (1, 15, 22, 44)}
+    turns |= {15: Euler((0.9, 0.0, 0.0)), 22: Euler((0.5, 0.0, -0.4))}
+    posed = {}
+    for frame, turn in turns.items():
+        bpy.context.scene.frame_set(frame)
+        for bone in actor.pose.bones:
+            bone.matrix_basis = Matrix.Identity(4)
+        hand.matrix_basis = turn.to_matrix().to_4x4()
+        store_pose(actor, action, float(frame))
+        bpy.context.view_layer.update()
+        posed[frame] = np.array(hand.matrix_basis.to_quaternion())
+    made = write_motion(actor, motion, keyframe_action=action)
+    now = tips(actor)
+    for frame, wanted in posed.items():
+        bpy.context.scene.frame_set(frame)
+        shown = np.array(hand.matrix_basis.to_quaternion())
+        assert (abs(shown @ wanted) == pytest.approx(1.0, abs=1e-6)) == (frame in (15, 22))
+    left = extremity_names(HUMAN).index("hand.L")
+    moved = np.linalg.norm(now - seen, axis=-1)
+    assert np.delete(moved, left, axis=1).max() < 1e-5
+    assert moved[[0, 4, 32, 43], left].max() < 1e-5 and moved[10:25, left].min() > 5e-3
+    _, final = final_action(actor, made, FinishOptions(0.01, False, None), action)
+    assign_action(actor, final)
+    assert np.linalg.norm(tips(actor) - now, axis=-1).max() < 0.011
