@@ -96,6 +96,8 @@ class Keypoints:
     """Sentences on who of several people was taken, and on what the sources' files leave open."""
     face: Array = field(default_factory=no_face)  # (F, 6) faces as in `face`, NaN where not looked at
     hands: Array = field(default_factory=no_hands)  # (F, 2, 22) left and right as in `hands`, likewise
+    beside: Mapping[str, str] = field(default_factory=dict)
+    """Sources that looked at whom another one follows, and that one."""
 
     def __post_init__(self) -> None:
         frames, count = len(self.pixel), len(self.names)
@@ -123,6 +125,7 @@ class Keypoints:
             tuple(note for part in parts for note in part.notes),
             next((part.face for part in parts if np.isfinite(part.face).any()), no_face()),
             next((part.hands for part in parts if np.isfinite(part.hands).any()), no_hands()),
+            {other: source for part in parts for other, source in part.beside.items()},
         )
 
     def frames(self, own: slice) -> "Keypoints":

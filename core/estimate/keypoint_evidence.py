@@ -6,6 +6,7 @@ nothing gets a gain near zero, or an error so large that it does not matter.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,6 +106,7 @@ def read_depths(
 # Correlation of the places of a point and its mirror image: what one detector calls a hip it does on both
 # sides.
 MIRRORED = 0.7
+NOBODY: Mapping[str, str] = MappingProxyType({})
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,22 +119,29 @@ class KeypointEvidence:
     trust: Array  # (N,) 1 for points that are believed, 0 for those left out
     lag: Mapping[str, int]  # by source left out for it: frames late, or early where negative
     depths: DepthEvidence  # what the hints of depth are worth
-
+    together: tuple[tuple[str, str], ...]  # (N,) alike for those that err together
     memory_s: float = 0.15  # time in which an error fades to a third [s]
 
     @classmethod
     def usual(
-        cls, body: Body, camera: Camera, names: tuple[str, ...], sources: tuple[str, ...]
+        cls,
+        body: Body,
+        camera: Camera,
+        names: tuple[str, ...],
+        sources: tuple[str, ...],
+        beside: Mapping[str, str] = NOBODY,
     ) -> "KeypointEvidence":
-        """Keypoints before any keyframe is posed: usual places and errors."""
+        """Keypoints before any keyframe is posed: usual places and errors; `beside` as in `Keypoints`."""
         model = KeypointModel.usual(body, camera, names)
         depths = DepthEvidence.usual(DepthLinks.between(names, sources), model)
         # Points of one source on one segment, wrist and knuckles, err together: they weigh as much as one.
+        # So do those of a network beside it: the same pictures mislead both, and depths would be outvoted.
         places = [USUAL_PLACES[name] for name in names]
-        together = [(place.joint, source) for place, source in zip(places, sources, strict=True)]
+        first = [beside.get(source, source) for source in sources]
+        together = tuple(zip([place.joint for place in places], first, strict=True))
         count = [together.count(one) for one in together]
         std_m = np.array([place.error_std_m for place in places]) * np.sqrt(count)
-        return cls(model, sources, std_m, np.ones(len(names)), {}, depths)
+        return cls(model, sources, std_m, np.ones(len(names)), {}, depths, together)
 
     @property
     def error_m(self) -> Array:
@@ -149,19 +158,18 @@ class KeypointEvidence:
         Posed keyframes know the motion better than single points do. Found ones (F,) came from these points,
         which are followed then.
         """
-        followed_m = np.where(self.trust > 0.0, _followed_std_m(self.model.names, self.sources), np.inf)
+        followed_m = np.where(self.trust > 0.0, _followed_std_m(self.model.names, self.together), np.inf)
         error_m = self.error_m ** (1.0 - found_share[:, None]) * followed_m ** found_share[:, None]
         return error_m, self.memory_s ** (1.0 - found_share) * 0.08**found_share
 
 
-def _followed_std_m(names: tuple[str, ...], sources: tuple[str, ...]) -> Array:
+def _followed_std_m(names: tuple[str, ...], together: tuple[tuple[str, str], ...]) -> Array:
     """(N,) error of sure detections where no keyframe is posed, so that a point's place is open too [m].
 
-    Points of one source on one segment weigh together as much as the surest of them.
+    Points that err together weigh as much as the surest of them.
     """
     usual = [USUAL_PLACES[name] for name in names]
     own = np.array([np.hypot(one.error_std_m, one.place_std_m) for one in usual])
-    together = list(zip([one.joint for one in usual], sources, strict=True))
     for group in set(together):
         same = np.array([one == group for one in together])
         own[same] *= np.sqrt(((own[same].min() / own[same]) ** 2).sum())

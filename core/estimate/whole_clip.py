@@ -87,7 +87,7 @@ def estimate_whole_clip(
     model = RegionModel(body, camera, tuple(MarkerPlacement.usual(name) for name in segments))
     width_px = limb_widths(model, prior.translation, np.arange(tracks.frame_count))
     keypoints = Keypoints.none(tracks.frame_count) if seen.keypoints is None else seen.keypoints
-    usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
+    usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources, keypoints.beside)
     every = np.arange(tracks.frame_count)
     scale = camera.pixels_per_meter(camera.depth(prior.translation, every))
     predicted = usual.model.pixels(body.pose(prior), every)

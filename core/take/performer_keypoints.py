@@ -128,7 +128,8 @@ def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: 
         if row != NOBODY and len(seen.pixel):
             pixel[index], score[index], hint[index] = seen.pixel[row], seen.score[row], seen.hint_m[row]
             face[index], hands[index] = seen.face[row], seen.hands[row]
-    return Keypoints(people.names, people.sources, pixel, score, hint, notes, face, hands)
+    beside = {} if people.second is None else {people.second.detector: people.source}
+    return Keypoints(people.names, people.sources, pixel, score, hint, notes, face, hands, beside)
 
 
 def _with_middles(

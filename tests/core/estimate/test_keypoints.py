@@ -26,6 +26,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera
 from keymark.core.detect.keypoints import Keypoints, People, mirror_images
 from keymark.core.detect.performer import person_size
+from keymark.core.estimate.keypoint_evidence import KeypointEvidence
 from keymark.core.estimate.keypoint_fit import keypoint_notes, observed_joints
 from keymark.core.estimate.keypoint_trust import (
     HINTS_SHARE,
@@ -327,3 +328,15 @@ def test_a_joint_is_carried_by_the_one_above_and_an_ankle_by_its_shin() -> None:
     assert (named["hip.L"], named["shoulder.R"], named["knee.R"]) == ("pelvis", "girdle.R", "hip.R")
     assert named["ankle.L"] == "shin.L"
     assert seen.mean() > 0.95
+
+
+def test_two_networks_that_look_at_the_same_pictures_weigh_as_much_as_one() -> None:
+    names, other = (*LAYOUT, *LAYOUT), (SOURCE,) * len(LAYOUT) + ("another",) * len(LAYOUT)
+    one = KeypointEvidence.usual(BODY, CAMERA, LAYOUT, other[: len(LAYOUT)])
+    apart = KeypointEvidence.usual(BODY, CAMERA, names, other)
+    both = KeypointEvidence.usual(BODY, CAMERA, names, other, {"another": SOURCE})
+    for found in (0.0, 1.0):
+        once, alone, beside = (
+            (evidence.errors(np.array([found]))[0] ** -2.0).sum() for evidence in (one, apart, both)
+        )
+        assert beside == pytest.approx(once) and alone == pytest.approx(2.0 * once)
