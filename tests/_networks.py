@@ -1,7 +1,7 @@
 """Networks in ONNX files for tests: they find colored dots by soft-argmax, and say so as a family does."""
 
 from collections.abc import Callable, Sequence
-from itertools import product
+from itertools import islice, product
 from pathlib import Path
 
 import cv2
@@ -10,8 +10,10 @@ import onnx
 from _synthetic_take import BODY, CAMERA, true_postures
 from keymark.core.arrays import Array, Image
 from keymark.core.camera.camera import Camera
-from keymark.core.detect.layouts import Layout
+from keymark.core.detect.layouts import LAYOUTS, Layout
 from keymark.core.detect.pose_network import CIRCLE, LAYOUT, Crop, Pose
+from keymark.core.files.json_file import read_json
+from keymark.core.video.clip import Clip
 from onnx import TensorProto, helper, numpy_helper
 
 MEAN, STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
@@ -204,6 +206,20 @@ def dotted_clip(file: Path, layout: Layout, frames: int = 24) -> None:
         points = np.array([principal[at(beside)] + [x, y] for beside, x, y in places])
         video.write(draw_dots(DOTTED_SIZE, [points], 4.0))
     video.release()
+
+
+def dotted_performer(take: Path, file: Path, frames: int = 60) -> Path:
+    """Write the dim beginning of a take's clip, with COCO's points of its keypoints as bright dots in it."""
+    known, clip = read_json(take / "keypoints.json"), Clip.open(take / "clip.mp4")
+    video = cv2.VideoWriter(str(file), cv2.VideoWriter.fourcc(*"FFV1"), 30.0, clip.size)
+    for index, _, picture in islice(clip.frames(), frames):
+        place = dict(zip(known["names"], np.array(known["frames"][index])[:, :2], strict=True))
+        place |= {f"eye.{side}": 0.5 * (place["nose"] + place[f"ear.{side}"]) for side in "LR"}
+        dots = draw_dots(clip.size, [np.array([place[name] for name in LAYOUTS["coco17"].names])], 2.0)
+        shown = 0.28 * picture * (1.0 - dots.max(axis=2, keepdims=True) / 255.0) + dots
+        video.write(shown.clip(0.0, 255.0).astype(np.uint8))  # too dim for a dot's own color
+    video.release()
+    return file
 
 
 class DotNetwork:

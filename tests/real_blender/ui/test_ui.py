@@ -10,6 +10,7 @@ from _profile_take import profile_take
 from _synthetic_take import PANEL, panelled_take
 from installed_blender import Blender
 from keymark.core.body.human import HUMAN
+from keymark.core.detect.layouts import LAYOUTS
 from keymark.core.review.score import Score, read_truth, score_points
 from keymark.core.take.take_file import read_take
 
@@ -105,6 +106,16 @@ def test_a_clip_and_a_height_lead_to_a_moving_character(
     for file, most in (("summary.txt", ANIMATE_MOST), ("corrections.txt", CORRECTED_MOST)):
         clicks, _, _, keys = (folder / file).read_text(encoding="utf-8").split()[:4]
         assert int(clicks) <= most[0] and int(keys) <= most[1], file
+
+
+def test_a_network_of_ones_own_is_chosen_and_followed(
+    blender_on_screen: Blender, repository: Path, tmp_path: Path
+) -> None:
+    networks = pytest.importorskip("_networks", reason="onnx", exc_type=ImportError)
+    clip = networks.dotted_performer(repository / "presets" / "demo" / "greeting", tmp_path / "dots.avi")
+    network = networks.simcc(tmp_path / "body.onnx", 17, LAYOUTS["coco17"].numbers)
+    folder = repository / "build" / "screenshots" / "network"
+    run_script(blender_on_screen, "network_session.py", ("dialog", "animated"), clip, folder, str(network))
 
 
 def test_a_session_leads_to_the_command_lines_motion(
