@@ -167,7 +167,7 @@ def _person(layout: Layout) -> Callable[[tuple[Any, dict[str, tuple[Any, str]]],
             "face": ((FACE_NUMBERS,), FARTHEST_PX),
             "hands": ((len(SIDES), HAND_NUMBERS), FARTHEST_PX),
         }
-        known = {
+        known: dict[str, Any] = {
             MORE[name]: person_array(own, *shapes[name], spot)
             for name, (own, spot) in more.items()
             if own is not None
