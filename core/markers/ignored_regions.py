@@ -6,7 +6,7 @@ markers, nor learned from, nor counted as background: a wall of a marker's very 
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Annotated, Any
 
@@ -20,19 +20,47 @@ from ..files.records import Record
 
 IGNORED = 255  # value of ignored pixels in a mask; of one made smaller, pixels from half of it on are ignored
 
-Point = tuple[float, float]
 PixelBox = tuple[float, float, float, float]  # left, top, right, bottom in pixels of the footage
 
 
-@dataclass(frozen=True)
-class IgnoredRegion:
-    """One region of the picture that is never a marker, in pixels of the footage."""
+IGNORED_REGIONS = "ignored_regions"
+MOST_REGIONS = 200
+MOST_POINTS = 1000  # points of one stroke
+VALID_BOX = "[left, top, right, bottom] in pixels of the footage, as in [10, 20, 60, 90]"
+VALID_STROKE = f"a list of 1 to {MOST_POINTS} points [x, y] in pixels of the footage"
+VALID_FRAMES = "[first, last], scene frames in order"
 
-    box: PixelBox | None = None  # A box; None for a stroke
-    stroke: tuple[Point, ...] = ()
-    """Points of a brush's path, all pixels within the radius of which are ignored."""
-    radius_px: float = 0.0  # the brush's radius
-    frames: tuple[int, int] | None = None  # index of the first frame and of the last one; None for all
+SceneFrame = Annotated[int, Whole(-(10**7), 10**7)]
+Coordinate = Annotated[float, Number(-LARGEST_SIDE_PX, 2 * LARGEST_SIDE_PX)]
+PixelPoint = Annotated[tuple[Coordinate, ...], Items("numbers", 2, 2)]
+
+
+@dataclass(frozen=True)
+class IgnoredRegion(Record):
+    """A region of the picture that is never a marker: a box, or the stroke of a brush."""
+
+    STRICT = True
+
+    box: Annotated[tuple[Coordinate, ...], Items("numbers", 4, 4, VALID_BOX)] | None = None
+    """Left, top, right, bottom [px]."""
+    stroke: Annotated[tuple[PixelPoint, ...], Items("points", 1, MOST_POINTS, VALID_STROKE)] | None = None
+    """Points [x, y] of a brush's path [px]."""
+    radius_px: Annotated[float, Number(0.5, LARGEST_SIDE_PX, "pixels of the footage")] | None = None
+    """Radius of the brush [px]."""
+    frames: Annotated[tuple[SceneFrame, ...], Items("frames", 2, 2, VALID_FRAMES)] | None = None
+    """First and last scene frame in which it is ignored; the default is all. Indices once it is read."""
+
+    def mistake(self) -> str:
+        """See `Record`."""
+        if self.frames is not None and self.frames[0] > self.frames[1]:
+            return f"frames is {shown(list(self.frames))}; it must be {VALID_FRAMES}"
+        if self.stroke is not None and self.box is not None:
+            return "has a box and a stroke; each region has one of them"
+        if self.stroke is not None and self.radius_px is None:
+            return "radius_px is missing; it must be a number of pixels of the footage, from 0.5"
+        if self.stroke is None and self.radius_px is not None:
+            return f"has a radius_px without a stroke, {VALID_STROKE}"
+        return "" if self.box or self.stroke else f"box is missing; it must be {VALID_BOX}"
 
 
 @dataclass(frozen=True)
@@ -82,7 +110,7 @@ def _mask(regions: tuple[IgnoredRegion, ...], size: tuple[int, int]) -> Image:
         # OpenCV counts from the center of the first pixel, Keymark from its corner. It draws with sixteenths
         # of a pixel (shift=4).
         path = np.round((np.array(region.stroke) / step_px - 0.5) * 16).astype(np.int32)
-        radius = max(round(region.radius_px / step_px * 16), 8)
+        radius = max(round((region.radius_px or 0.0) / step_px * 16), 8)
         for x, y in path.tolist():
             cv2.circle(mask, (x, y), radius, ignored, -1, shift=4)
         for one, other in itertools.pairwise(path.astype(np.float64)):  # what the disc sweeps in between
@@ -96,59 +124,14 @@ def _mask(regions: tuple[IgnoredRegion, ...], size: tuple[int, int]) -> Image:
     return mask
 
 
-IGNORED_REGIONS = "ignored_regions"
-MOST_REGIONS = 200
-MOST_POINTS = 1000  # points of one stroke
-VALID_BOX = "[left, top, right, bottom] in pixels of the footage, as in [10, 20, 60, 90]"
-VALID_STROKE = f"a list of 1 to {MOST_POINTS} points [x, y] in pixels of the footage"
-VALID_FRAMES = "[first, last], scene frames in order"
-
-SceneFrame = Annotated[int, Whole(-(10**7), 10**7)]
-Coordinate = Annotated[float, Number(-LARGEST_SIDE_PX, 2 * LARGEST_SIDE_PX)]
-PixelPoint = Annotated[tuple[Coordinate, ...], Items("numbers", 2, 2)]
-
-
-@dataclass(frozen=True)
-class RegionFields(Record):
-    """A region of the picture that is never a marker: a box, or the stroke of a brush."""
-
-    STRICT = True
-
-    box: Annotated[tuple[Coordinate, ...], Items("numbers", 4, 4, VALID_BOX)] | None = None
-    """Left, top, right, bottom [px]."""
-    stroke: Annotated[tuple[PixelPoint, ...], Items("points", 1, MOST_POINTS, VALID_STROKE)] | None = None
-    """Points [x, y] of a brush's path [px]."""
-    radius_px: Annotated[float, Number(0.5, LARGEST_SIDE_PX, "pixels of the footage")] | None = None
-    """Radius of the brush [px]."""
-    frames: Annotated[tuple[SceneFrame, ...], Items("frames", 2, 2, VALID_FRAMES)] | None = None
-    """First and last scene frame in which it is ignored; the default is all."""
-
-    def mistake(self) -> str:
-        """See `Record`."""
-        if self.frames is not None and self.frames[0] > self.frames[1]:
-            return f"frames is {shown(list(self.frames))}; it must be {VALID_FRAMES}"
-        if self.stroke is not None and self.box is not None:
-            return "has a box and a stroke; each region has one of them"
-        if self.stroke is not None and self.radius_px is None:
-            return "radius_px is missing; it must be a number of pixels of the footage, from 0.5"
-        if self.stroke is None and self.radius_px is not None:
-            return f"has a radius_px without a stroke, {VALID_STROKE}"
-        return "" if self.box or self.stroke else f"box is missing; it must be {VALID_BOX}"
-
-
 def ignored_regions(
-    regions: Sequence[RegionFields], size: tuple[int, int], frame_start: int, source: str
+    regions: Sequence[IgnoredRegion], size: tuple[int, int], frame_start: int, source: str
 ) -> tuple[IgnoredRegion, ...]:
-    """Regions of a take, from the fields that `source` gives, for footage of (width, height)."""
-    made = []
+    """Regions of a take, as `source` gives them, for footage of (width, height)."""
     for number, region in enumerate(regions):
-        where = f"{source}: {IGNORED_REGIONS}[{number}]"
-        first, last = region.frames or (frame_start, frame_start)
-        frames = None if region.frames is None else (first - frame_start, last - frame_start)
-        stroke = tuple((x, y) for x, y in region.stroke or ())
         if region.box is None:
-            made.append(IgnoredRegion(stroke=stroke, radius_px=region.radius_px or 0.0, frames=frames))
             continue
+        where = f"{source}: {IGNORED_REGIONS}[{number}]"
         left, top, right, bottom = region.box
         sides = shown([int(part) if part.is_integer() else part for part in region.box])
         if left >= right or top >= bottom:
@@ -156,16 +139,14 @@ def ignored_regions(
         if left >= size[0] or top >= size[1] or right <= 0.0 or bottom <= 0.0:
             picture = f"the picture of {size[0]} x {size[1]} pixels"
             raise InputError(f"{where}: box is {sides}, which lies beside {picture}")
-        made.append(IgnoredRegion(box=(left, top, right, bottom), frames=frames))
-    return tuple(made)
+    return tuple(_later(region, -frame_start) for region in regions)
 
 
 def ignored_region_fields(regions: Sequence[IgnoredRegion], frame_start: int) -> list[dict[str, Any]]:
     """Regions as the field `ignored_regions` of `take.json`."""
-    listed: list[dict[str, Any]] = []
-    for one in regions:
-        stroke = {"stroke": [list(point) for point in one.stroke], "radius_px": one.radius_px}
-        listed.append(stroke if one.box is None else {"box": list(one.box)})
-        if one.frames is not None:
-            listed[-1]["frames"] = [index + frame_start for index in one.frames]
-    return listed
+    return [_later(region, frame_start).to_json() for region in regions]
+
+
+def _later(region: IgnoredRegion, by: int) -> IgnoredRegion:
+    """A region whose frames have numbers larger by so many."""
+    return region if region.frames is None else replace(region, frames=tuple(at + by for at in region.frames))

@@ -26,7 +26,7 @@ from ..files.records import Object, Record, read_record
 from ..markers.ignored_regions import (
     IGNORED_REGIONS,
     MOST_REGIONS,
-    RegionFields,
+    IgnoredRegion,
     ignored_region_fields,
     ignored_regions,
 )
@@ -132,7 +132,7 @@ class TakeFields(Record):
         Annotated[Mapping[str, MarkerFields], ByName("markers", MOST_MARKERS, key=MARKER_NAME)] | None
     ) = None
     """The performer's colored markers, by name; none where any clothes are worn."""
-    ignored_regions: Annotated[tuple[RegionFields, ...], Items("regions", 0, MOST_REGIONS)] | None = None
+    ignored_regions: Annotated[tuple[IgnoredRegion, ...], Items("regions", 0, MOST_REGIONS)] | None = None
     """Regions of the picture that are never a marker, as a wall panel of a marker's color: boxes and strokes
     of a brush, in pixels of the footage from its top left corner, in all frames or some."""
     frame_count: Annotated[int, Whole(2, MOST_FRAMES)] | None = None

@@ -27,6 +27,8 @@ HDR_TRANSFERS = {16: "PQ", 18: "HLG"}  # transfer characteristics of ITU-T H.273
 MP4 = re.compile(rb"colrncl[xc].{2}\x00(.)", re.DOTALL)
 """The color box of MP4 and QuickTime: primaries, then transfer characteristics, two bytes each."""
 MATROSKA = re.compile(rb"\x55\xba\x81(.)", re.DOTALL)
+Content = memoryview
+NOTHING = Content(b"")
 DAMAGED = (OSError, struct.error, ValueError, LookupError, ZeroDivisionError)
 FOCAL_LENGTH = b"com.apple.quicktime.camera.focal_length.35mm_equivalent"
 SHORTEST_MM, LONGEST_MM = 5.0, 1000.0
@@ -49,7 +51,7 @@ def dynamic_range_note(path: Path) -> str | None:
     with suppress(*DAMAGED), path.open("rb") as file:
         start = file.read(2**16)  # Matroska describes its tracks within these
         is_matroska = start.startswith(b"\x1a\x45\xdf\xa3")
-        found = MATROSKA.search(start) if is_matroska else MP4.search(_movie(path))
+        found = MATROSKA.search(start) if is_matroska else MP4.search(_movie(file)[1])
         transfer = HDR_TRANSFERS.get(found[1][0]) if found else None
     if transfer is None:
         return None
@@ -66,16 +68,13 @@ def trimmed_s(path: Path) -> float | None:
     Phones trim MP4 and QuickTime by an edit list alone (ISO/IEC 14496-12, 8.6.6): the pictures before and
     after stay in the file, are counted by it, and are never shown.
     """
-    with suppress(*DAMAGED):
-        movie = list(_boxes(_movie(path)))
-        clock, _ = _timing(dict(movie)[b"mvhd"])
-        for track in (dict(_boxes(content)) for kind, content in movie if kind == b"trak"):
-            media = dict(_boxes(track[b"mdia"]))
-            if media[b"hdlr"][8:12] != b"vide":
-                continue
-            edits = dict(_boxes(track.get(b"edts", b""))).get(b"elst", b"")
+    with suppress(*DAMAGED), path.open("rb") as file:
+        _, movie = _movie(file)
+        clock, _ = _timing(dict(_boxes(movie))[b"mvhd"])
+        for track, media in _video_tracks(movie):
+            edits = dict(_boxes(track.get(b"edts", NOTHING))).get(b"elst", NOTHING)
             rate, whole = _timing(media[b"mdhd"])
-            form = ">QqI" if edits[:1] == b"\x01" else ">IiI"  # duration, where it begins, rate
+            form = ">QqI" if bytes(edits[:1]) == b"\x01" else ">IiI"  # duration, where it begins, rate
             count = struct.unpack_from(">I", edits, 4)[0] if edits else 0
             starts = [8 + number * struct.calcsize(form) for number in range(min(count, 1000))]
             parts = [struct.unpack_from(form, edits, start) for start in starts]
@@ -85,17 +84,17 @@ def trimmed_s(path: Path) -> float | None:
     return None
 
 
-def _timing(header: bytes) -> tuple[int, int]:
+def _timing(header: Content) -> tuple[int, int]:
     """Time scale and duration in a header of a movie or a track's media."""
-    form, at = (">IQ", 20) if header[:1] == b"\x01" else (">II", 12)
+    form, at = (">IQ", 20) if bytes(header[:1]) == b"\x01" else (">II", 12)
     scale, duration = struct.unpack_from(form, header, at)
     return int(scale), int(duration)
 
 
 def stated_lens_mm(path: Path) -> float | None:
     """The full-frame equivalent of the lens by the picture's diagonal [mm]; None where nothing states it."""
-    with suppress(*DAMAGED):
-        movie = _movie(path)
+    with suppress(*DAMAGED), path.open("rb") as file:
+        _, movie = _movie(file)
         metas = [movie, *(inside for kind, inside in _boxes(movie) if kind == b"trak")]
         for holder in metas:
             for kind, inside in _boxes(holder):
@@ -105,39 +104,27 @@ def stated_lens_mm(path: Path) -> float | None:
     return None
 
 
-def _movie(path: Path) -> bytes:
-    """The content of the box `moov`; empty where the file has none."""
-    if not path.is_file():
-        return b""
-    with path.open("rb") as file:
-        for begin, end in boxes_at(file, b"moov"):
-            file.seek(begin)
-            return file.read(min(end - begin, LARGEST_MOVIE_BYTES))
-    return b""
-
-
-def boxes_at(
-    file: BinaryIO, kind: bytes, *inside: bytes, within: tuple[int, int] | None = None
-) -> Iterator[tuple[int, int]]:
-    """Where the contents of boxes of a kind begin and end, or of those inside them."""
-    at, stop = within or (0, file.seek(0, os.SEEK_END))
+def _movie(file: BinaryIO) -> tuple[int, Content]:
+    """Where the content of the box `moov` begins, and a copy of it; empty where the file has none."""
+    at, stop = 0, file.seek(0, os.SEEK_END)
     while at + 8 <= stop:
         file.seek(at)
         head = file.read(16)
-        length, found = struct.unpack(">I4s", head[:8])
+        length, kind = struct.unpack(">I4s", head[:8])
         begin = 8
         if length == 1:
             length, begin = struct.unpack(">Q", head[8:16])[0], 16
         length = stop - at if length == 0 else length
         if length < begin:
-            return
-        if found == kind:
-            own = (at + begin, min(at + length, stop))
-            yield from boxes_at(file, *inside, within=own) if inside else [own]
+            break
+        if kind == b"moov":
+            file.seek(at + begin)
+            return at + begin, memoryview(bytearray(file.read(min(length - begin, LARGEST_MOVIE_BYTES))))
         at += length
+    return 0, NOTHING
 
 
-def _boxes(data: bytes) -> Iterator[tuple[bytes, bytes]]:
+def _boxes(data: Content) -> Iterator[tuple[bytes, Content]]:
     """The boxes in a box, by type and content."""
     at = 0
     while at + 8 <= len(data):
@@ -148,17 +135,25 @@ def _boxes(data: bytes) -> Iterator[tuple[bytes, bytes]]:
         at += length
 
 
-def _value(meta: bytes) -> float | None:
-    inside = dict(_boxes(meta)) or {}
+def _video_tracks(movie: Content) -> Iterator[tuple[dict[bytes, Content], dict[bytes, Content]]]:
+    """The boxes of each track of pictures, and those of its media."""
+    for track in (dict(_boxes(content)) for kind, content in _boxes(movie) if kind == b"trak"):
+        media = dict(_boxes(track.get(b"mdia", NOTHING)))
+        if bytes(media.get(b"hdlr", NOTHING)[8:12]) == b"vide":
+            yield track, media
+
+
+def _value(meta: Content) -> float | None:
+    inside = dict(_boxes(meta))
     if b"keys" not in inside:
         inside = dict(_boxes(meta[4:]))  # in MP4 version and flags come first
-    keys, values = inside.get(b"keys", b""), inside.get(b"ilst", b"")
-    names = [name for _, name in _boxes(keys[8:])]  # after version, flags and count
+    keys, values = inside.get(b"keys", NOTHING), inside.get(b"ilst", NOTHING)
+    names = [bytes(name) for _, name in _boxes(keys[8:])]  # after version, flags and count
     if FOCAL_LENGTH not in names:
         return None
     wanted = struct.pack(">I", names.index(FOCAL_LENGTH) + 1)
-    item = dict(_boxes(values)).get(wanted, b"")
-    data = dict(_boxes(item)).get(b"data", b"")
+    item = dict(_boxes(values)).get(wanted, NOTHING)
+    data = bytes(dict(_boxes(item)).get(b"data", NOTHING))
     kind, raw = struct.unpack_from(">I", data)[0], data[8:]
     if kind == TEXT:
         return float(raw.decode("ascii").lower().removesuffix("mm").strip())
@@ -171,12 +166,15 @@ TURNS = (0, 90, 180, 270)  # degrees clockwise
 ENDINGS = (".mp4", ".mov", ".m4v")
 MATRIX = {0: 40, 1: 52}
 """Where a track's header has its matrix, by the version of the box (ISO/IEC 14496-12, 8.3.2)."""
+MATRIX_AND_SIZE = ">9i2I"
 ONE, SMALL_ONE = 2.0**16, 2.0**30  # fixed point of the matrix: 16.16, its last column 2.30
 
 
 def can_turn(path: Path) -> bool:
     """Whether a file is one whose header may turn it."""
-    return path.suffix.lower() in ENDINGS and bool(_matrices(path))
+    with suppress(*DAMAGED), path.open("rb") as file:
+        return path.suffix.lower() in ENDINGS and bool(_matrices(_movie(file)[1]))
+    return False
 
 
 def write_turned(path: Path, turn_deg: int, copy: Path) -> None:
@@ -185,8 +183,7 @@ def write_turned(path: Path, turn_deg: int, copy: Path) -> None:
     Raises:
         InputError: It is no such file, or its header cannot be read.
     """
-    places = _matrices(path) if can_turn(path) else []
-    if not places:
+    if not can_turn(path):
         turn = {90: "transpose=1", 180: "hflip,vflip", 270: "transpose=2"}[turn_deg]
         raise InputError(
             f"{path}: is no MP4 or QuickTime file, whose header can turn it; turn it first, as with "
@@ -195,31 +192,22 @@ def write_turned(path: Path, turn_deg: int, copy: Path) -> None:
     shutil.copyfile(path, copy)
     os.chmod(copy, 0o644)
     with copy.open("r+b") as file:
-        for at, matrix, (width, height) in places:
+        begin, movie = _movie(file)
+        for place in _matrices(movie):
+            *matrix, width, height = struct.unpack(MATRIX_AND_SIZE, place)
             before_deg = math.degrees(math.atan2(matrix[1], matrix[0]))
             turned_deg = round((before_deg + turn_deg) / 90.0) * 90 % 360
             cos, sin = (round(part(math.radians(turned_deg))) for part in (math.cos, math.sin))
             moved = {0: (0, 0), 90: (height, 0), 180: (width, height), 270: (0, width)}[turned_deg]
             values = (cos * ONE, sin * ONE, 0, -sin * ONE, cos * ONE, 0, moved[0], moved[1], SMALL_ONE)
-            file.seek(at)
-            file.write(struct.pack(">9i", *map(int, values)))
+            struct.pack_into(">9i", place, 0, *map(int, values))
+        file.seek(begin)
+        file.write(movie)
 
 
-def _matrices(path: Path) -> list[tuple[int, tuple[int, ...], tuple[int, int]]]:
-    """Place, matrix and fixed point size of the pictures of each video track."""
-    found = []
-    with suppress(*DAMAGED), path.open("rb") as file:
-        for track, track_end in boxes_at(file, b"moov", b"trak"):
-            media = next(boxes_at(file, b"mdia", b"hdlr", within=(track, track_end)), None)
-            header = next(boxes_at(file, b"tkhd", within=(track, track_end)), None)
-            if media is None or header is None:
-                continue
-            file.seek(media[0] + 8)
-            if file.read(4) != b"vide":
-                continue
-            file.seek(header[0])
-            content = file.read(header[1] - header[0])
-            at = MATRIX[content[0]]
-            *matrix, width, height = struct.unpack_from(">9i2I", content, at)
-            found.append((header[0] + at, tuple(matrix), (width, height)))
-    return found
+def _matrices(movie: Content) -> list[Content]:
+    """Where the header of each track of pictures has their matrix and fixed point size."""
+    headers = [track[b"tkhd"] for track, _ in _video_tracks(movie) if b"tkhd" in track]
+    length = struct.calcsize(MATRIX_AND_SIZE)
+    places = [header[(at := MATRIX[header[0]]) : at + length] for header in headers]
+    return [place for place in places if len(place) == length]

@@ -107,9 +107,9 @@ def add_ignored_regions(take: PropertyGroup, regions: Iterable[IgnoredRegion]) -
         made.name = unique_name(name, [each.name for each in take.ignored_regions if each != made])
         if region.box is not None:
             made.box = region.box
-        for pixel in region.stroke:
+        for pixel in region.stroke or ():
             made.stroke.add().pixel = pixel
-        made.radius = region.radius_px
+        made.radius = region.radius_px or 0.0
         made.first, made.last = region.frames or (0, max(length - 1, 0))
         made.some_frames = region.frames is not None
         take.active_ignored = len(take.ignored_regions) - 1

@@ -15,7 +15,7 @@ from keymark.core.detect.layouts import OWN
 from keymark.core.files import kinds, records
 from keymark.core.files.kinds import Kind, NumberArray
 from keymark.core.files.records import Record, declared, descriptions
-from keymark.core.markers.ignored_regions import RegionFields
+from keymark.core.markers.ignored_regions import IgnoredRegion
 from keymark.core.prior.library import LibraryMotion, TravelKind
 from keymark.core.retarget.maps.character_map import PropertyValue, Turn
 from keymark.core.take.conversion_settings import (
@@ -81,7 +81,7 @@ RULES: dict[type[Record], dict[str, Any]] = {
         "if": {"properties": {"layout": {"const": OWN}}},
         "then": {"required": ["names"], "properties": {"names": {"$ref": "#/$defs/names"}}},
     },
-    RegionFields: {
+    IgnoredRegion: {
         "oneOf": [
             {
                 **filled("box", "array"),
