@@ -217,10 +217,8 @@ def stick_figure(motion: Motion) -> StickFigure:
     return StickFigure(tuple(limbs), by_name["head"], 0.055 * body.actor.stature_m)
 
 
-def draw_figure(
-    canvas: Canvas, figure: StickFigure, frame: int, project: Projection, width: float, *, outlined: bool
-) -> None:
-    """Draw the figure of one frame."""
+def draw_figure(canvas: Canvas, figure: StickFigure, frame: int, project: Projection, width: float) -> None:
+    """Draw the figure of one frame, outlined in white."""
     parts: list[tuple[float, Limb | None]] = []
     for limb in figure.limbs:
         _, depth = project(limb.points[frame])
@@ -232,18 +230,16 @@ def draw_figure(
     for _, part in sorted(parts, key=lambda pair: -pair[0]):
         if part is not None:
             points, _ = project(part.points[frame])
-            _draw_limb(canvas, points, part.side, width, outlined)
+            _draw_limb(canvas, points, part.side, width)
         elif np.isfinite(radius):
-            if outlined:
-                canvas.circle(rim[0], radius, WHITE, 0.8 * width + 2.0)
+            canvas.circle(rim[0], radius, WHITE, 0.8 * width + 2.0)
             canvas.circle(rim[0], radius, INK, 0.8 * width)
 
 
-def _draw_limb(canvas: Canvas, points: Array, side: str, width: float, outlined: bool) -> None:
+def _draw_limb(canvas: Canvas, points: Array, side: str, width: float) -> None:
     color = {"L": LEFT, "R": RIGHT}.get(side, INK)
     thickness = width if side else 0.8 * width
-    if outlined:
-        canvas.line(points, WHITE, thickness + 2.0)
+    canvas.line(points, WHITE, thickness + 2.0)
     canvas.line(points, color, thickness)
     if side == "R":
         canvas.line(points, WHITE, 0.4 * thickness)
@@ -260,7 +256,7 @@ def legend(canvas: Canvas, right: float, y: float) -> None:
         text = f"performer's {word}"
         canvas.text(text, right, y, 9.0, color, "right")
         right -= canvas.text_width(text) + 8.0
-        _draw_limb(canvas, np.array([[right - 26.0, y - 4.5], [right, y - 4.5]]), side, 4.0, False)
+        _draw_limb(canvas, np.array([[right - 26.0, y - 4.5], [right, y - 4.5]]), side, 4.0)
         right -= 26.0 + 18.0
 
 
@@ -296,28 +292,3 @@ def square_of(image: Image, corner: Array, side: float, resolution: tuple[int, i
     below, behind = across - above - inside.shape[0], across - before - inside.shape[1]
     filled = cv2.copyMakeBorder(inside, above, below, before, behind, cv2.BORDER_CONSTANT, value=PALE)
     return np.asarray(filled, dtype=np.uint8)
-
-
-def thumbnail(motion: Motion) -> Image:
-    """Draw three poses of a motion, the earliest at the left, in parallel projection."""
-    side_px, edge, poses = 256, 14, 3
-    frames = np.round(np.linspace(0, len(motion.time_s) - 1, 2 * poses + 1)[1::2]).astype(np.intp)
-    figure = stick_figure(motion)
-    names = motion.body.skeleton.point_names
-    side = np.nanmean(motion.points[:, names.index("hip.L")] - motion.points[:, names.index("hip.R")], axis=0)
-    # The performer's left is on the right of the view.
-    axes = view_axes(float(np.arctan2(side[1], side[0])) + 0.5, 0.0)
-    seen = np.concatenate([limb.points for limb in figure.limbs], axis=1)[frames] @ axes.T  # (K, N, 3)
-    middle = 0.5 * (seen[..., 0].max(axis=1) + seen[..., 0].min(axis=1))  # (K,)
-    floor, top = seen[..., 1].min(), seen[..., 1].max() + figure.head_radius_m
-    column = (side_px - 2 * edge) / poses
-    wide = float(np.ptp(seen[..., 0], axis=1).max())
-    scale = min((side_px - 2 * edge) / (top - floor), 1.25 * column / wide)
-    ground = 0.5 * (side_px + scale * (top - floor))
-    canvas = Canvas(side_px, side_px, PAPER)
-    canvas.line([[edge, ground], [side_px - edge, ground]], GRAY, 1.5)
-    for number, frame in enumerate(frames):
-        center = edge + column * (number + 0.5) - scale * middle[number]
-        view = View(axes, scale, (center, ground + scale * floor))
-        draw_figure(canvas, figure, int(frame), view.project, 5.0, outlined=True)
-    return canvas.image()

@@ -197,7 +197,7 @@ def overlay_sheet(
             pixels, depth = take.camera.project(points, frame)
             return scale * pixels, depth
 
-        draw_figure(tile, figure, frame, project, 3.5, outlined=True)
+        draw_figure(tile, figure, frame, project, 3.5)
         for style, center, moment in zip(
             take.markers, tracks.centroid[frame], tracks.second_moment[frame], strict=False
         ):
@@ -261,7 +261,7 @@ def side_sheet(motion: Motion, camera: Camera, frames: Sequence[int]) -> Image:
         tile = Canvas(*size, PAPER)
         draw_grid(tile, scale, free - scale * (floor - foot))
         view = View(axes, scale, (0.5 * size[0], free + scale * foot), origin[frame])
-        draw_figure(tile, figure, frame, view.project, 4.0, outlined=False)
+        draw_figure(tile, figure, frame, view.project, 4.0)
         return [tile.image()]
 
     canvas = sheet(title, footer, frames, 6, size, draw, motion.frame_start, motion.keyframe_indices)

@@ -12,7 +12,7 @@ from bpy.types import ID, Action, Object, Scene
 from ...core.arrays import Image
 from ...core.errors import InputError
 from ...core.feet.natural_extremities import natural_extremities
-from ...core.report.canvas import thumbnail
+from ...core.report.mannequin import posture_picture
 from ...core.take.motion import Motion
 from .actions import action_digest, assign_action, channelbag_for
 from .armature import bones_at_rest, build_armature
@@ -95,7 +95,8 @@ def _motion_assets(scene: Scene, assets: Iterable[MotionAsset]) -> Iterator[tupl
     """The Action and the actor of each motion, with their catalogs; motions of one body share an armature."""
     actors: dict[tuple[tuple[str, float], ...], Object] = {}
     for asset in assets:
-        picture, motion = thumbnail(asset.motion), asset.motion.without_absence()
+        motion = asset.motion.without_absence()
+        picture = posture_picture(motion.body, motion.posture[len(motion.time_s) // 2])
         details = AssetDetails("", asset.tags, author="", license="", description=asset.description)
         action = asset.action or bpy.data.actions.new(asset.name)
         mark_asset(action, details, picture)

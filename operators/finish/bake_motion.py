@@ -51,14 +51,15 @@ def mark_motion_asset(
         InputError: The catalog is unusable, or the pictured Action is not the actor's.
         ConversionError: The catalog cannot be written.
     """
-    from ...core.report.canvas import thumbnail
+    from ...core.report.mannequin import posture_picture
     from ..bridge.assets import AssetDetails, mark_asset
     from ..bridge.rig import shown_motion
 
     settings, performer = take.finish, actor or take.armature
     picture = None
     if pictured is not None and performer is not None:
-        picture = thumbnail(shown_motion(context.scene, performer, pictured, most_frames=25))
+        motion = shown_motion(context.scene, performer, pictured, most_frames=3)
+        picture = posture_picture(motion.body, motion.posture[len(motion.time_s) // 2])
     catalog = ensure_catalog(catalog_file(), settings.catalog) if settings.catalog.strip() else ""
     tags = [tag.strip() for tag in settings.tags.split(",") if tag.strip()]
     details = AssetDetails(catalog, tags, settings.author, settings.license, settings.description)

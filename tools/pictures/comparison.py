@@ -38,7 +38,7 @@ def draw_rows(canvas: Canvas, top: int, clip: Clip, camera: Camera, motion: Moti
             pixels, depth = camera.project(points)
             return scale * pixels, depth
 
-        draw_figure(tile, figure, frame, project, 2.5, outlined=True)
+        draw_figure(tile, figure, frame, project, 2.5)
         canvas.paste(tile.image(), GAP + column * (CELL[0] + GAP), top + TITLE, *CELL)
 
 

@@ -104,7 +104,7 @@ def draw_featured(take: Take, motion: Motion, speed: Array) -> Image:
             pixels, depth = take.camera.project(points)
             return CARD[0] / take.camera.resolution[0] * pixels, depth
 
-        draw_figure(tile, figure, frame, project, 4.5, outlined=True)
+        draw_figure(tile, figure, frame, project, 4.5)
         canvas.paste(tile.image(), left, CARDS_TOP, *CARD)
     draw_timeline(canvas, motion, speed)
     return canvas.image()

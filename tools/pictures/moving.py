@@ -177,7 +177,7 @@ def _overlay(seen: _Seen, frame: int, plain: Image) -> Image:
         pixels, depth = seen.take.camera.project(points, frame)
         return shown(pixels), depth
 
-    draw_figure(tile, seen.figure, frame, project, 3.2, outlined=True)
+    draw_figure(tile, seen.figure, frame, project, 3.2)
     near = np.abs(seen.judged.keyframe_indices - frame).min()
     if near <= STEP // 2:
         _badge(tile)
