@@ -140,26 +140,19 @@ def floor_grid(camera: Camera, frame: int | None = None) -> FloorGrid:
     pieces = np.stack([pixel[:, :, :-1], pixel[:, :, 1:]], axis=-2).reshape(-1, 2, 2)
     nearer = np.minimum(depth[:, :, :-1], depth[:, :, 1:]).ravel()
     shown = _in_picture(camera, pieces)
-    return FloorGrid(pieces[shown], nearer[shown], _horizon(camera, frame))
+    x, y = _level(rotation)
+    angles = np.radians(np.linspace(-HORIZON_DEGREES, HORIZON_DEGREES, 48 + 1))
+    cos, sin = np.cos(angles), np.sin(angles)
+    far = np.stack([x * cos - y * sin, x * sin + y * cos, 0.0 * angles], axis=-1)
+    edge, _ = camera.project(location + 1e5 * far, frame)
+    horizon = np.stack([edge[:-1], edge[1:]], axis=-2)
+    return FloorGrid(pieces[shown], nearer[shown], horizon[_in_picture(camera, horizon)])
 
 
 def _level(rotation: Array) -> Array:
     """(2,) unit direction over the floor in which a camera looks."""
     heading = heading_rad(rotation)
     return np.array([-np.sin(heading), np.cos(heading)])
-
-
-def _horizon(camera: Camera, frame: int | None) -> Array:
-    rotation, location = camera.pose(frame)
-    x, y = _level(rotation)
-    angles = np.radians(np.linspace(-HORIZON_DEGREES, HORIZON_DEGREES, 48 + 1))
-    far = np.stack(
-        [x * np.cos(angles) - y * np.sin(angles), x * np.sin(angles) + y * np.cos(angles), 0.0 * angles],
-        axis=-1,
-    )
-    pixel, _ = camera.project(location + 1e5 * far, frame)
-    pieces = np.stack([pixel[:-1], pixel[1:]], axis=-2)
-    return np.asarray(pieces[_in_picture(camera, pieces)])
 
 
 def _in_picture(camera: Camera, pieces: Array) -> Array:

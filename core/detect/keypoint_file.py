@@ -193,7 +193,7 @@ def write_keypoints(path: Path, people: People, frame_start: int, fps: float | N
     if people.second is not None:
         fields["names"] = list(people.names[: -len(people.second.names)])
         fields["second"] = people.second.to_json()
-    rows = [[_written_points(frame), *_written_more(frame)] for frame in people.frames]
+    rows = [list(_written(frame)) for frame in people.frames]
     for name, column in zip(("people" if several else "frames", *MORE), zip(*rows, strict=True), strict=True):
         if name in MORE and not any(own for row in column for own in row):
             continue
@@ -201,21 +201,15 @@ def write_keypoints(path: Path, people: People, frame_start: int, fps: float | N
     write_json(path, fields)
 
 
-def _written_points(frame: SeenPeople) -> list[Any]:
-    """A frame's people as JSON."""
+def _written(frame: SeenPeople) -> Iterator[list[Any]]:
+    """A frame's people as JSON: their points, and what there is more of them by field, None where none."""
     seen = np.isfinite(frame.pixel).all(axis=-1) & (frame.score > 0.0)
     # A score that is rounded to 0 would say that the point is not seen.
     score = np.where(seen, np.maximum(np.round(frame.score, 4), 1e-4), 0.0)
     pixel = np.round(np.where(seen[..., None], frame.pixel, 0.0), 3)  # a thousandth of a pixel
-    rows: list[Any] = np.concatenate([pixel, score[..., None]], axis=-1).tolist()
-    return rows
-
-
-def _written_more(frame: SeenPeople) -> Iterator[list[Any]]:
-    """What there is more of a frame's people, by field, None where there is none."""
-    yield [
-        _numbers(np.round(hint, 4)) if np.isfinite(hint).any() else None for hint in frame.hint_m
-    ]  # 0.1 mm
+    yield np.concatenate([pixel, score[..., None]], axis=-1).tolist()
+    # Tenths of a millimeter.
+    yield [_numbers(np.round(hint, 4)) if np.isfinite(hint).any() else None for hint in frame.hint_m]
     yield [np.round(face, 4).tolist() if np.isfinite(face).all() else None for face in frame.face]
     yield [_numbers(np.round(own, 4)) if np.isfinite(own).any() else None for own in frame.hands]
 

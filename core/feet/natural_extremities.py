@@ -33,7 +33,12 @@ def foot_turns(shins: Shins, soles: Soles, ground: Ground, time_s: Array) -> dic
     """(F, 3, 3) turn of each foot in its shin's frame, by name of segment."""
     # Leans between which the ground lets go of feet whose shins lie on their sides.
     upright = 1.0 - ease(np.abs(shins.roll), *LEANING_RAD)
-    flat, on_toes = _resting(ground, time_s)
+    # How far each foot rests flat, and how far on its toes, 0 to 1.
+    flat, on_toes = np.zeros_like(ground.height_m), np.zeros_like(ground.height_m)
+    for rest, tiptoe in zip(ground.rests, ground.on_toes, strict=True):
+        since = np.minimum(time_s - time_s[rest.first], time_s[rest.last] - time_s)[rest.frames]
+        # Time from the beginning of a rest until the foot lies, and from when it begins to roll off.
+        (on_toes if tiptoe else flat)[rest.frames, rest.point] = ease(since, 0.0, 0.1)
     beneath = shins.ankle[..., 2] - soles.clearance_m(shins)
     # A rest's own height is that of its ankle in every frame: what the ankle errs by, the ground has.
     under = np.minimum((1.0 - flat) * ground.height_m + flat * beneath, beneath)
@@ -71,16 +76,6 @@ def feet_on_floor(shins: Shins, soles: Soles, floor_m: float) -> dict[str, Array
     return _by_side(shins, pitch, nothing, nothing)
 
 
-def _resting(ground: Ground, time_s: Array) -> tuple[Array, Array]:
-    """(F, 2) how far each foot rests flat, and how far on its toes, 0 to 1."""
-    flat, on_toes = np.zeros_like(ground.height_m), np.zeros_like(ground.height_m)
-    for rest, tiptoe in zip(ground.rests, ground.on_toes, strict=True):
-        since = np.minimum(time_s - time_s[rest.first], time_s[rest.last] - time_s)[rest.frames]
-        # Time from the beginning of a rest until the foot lies, and from when it begins to roll off.
-        (on_toes if tiptoe else flat)[rest.frames, rest.point] = ease(since, 0.0, 0.1)
-    return flat, on_toes
-
-
 def _held_heading(shins: Shins, contacts: Sequence[Contact], time_s: Array) -> Array:
     """(F, 2) turns about the vertical that keep resting feet's headings."""
     turned, weight = np.zeros_like(shins.heading), np.zeros_like(shins.heading)
@@ -106,19 +101,14 @@ def _by_side(shins: Shins, pitch: Array, leveling: Array, turned: Array) -> dict
 
 
 def _steadied(angles: Array, time_s: Array) -> Array:
-    """Angles (F, ...) [rad] no faster than a joint, smoothed a little."""
+    """Angles (F, ...) [rad] no faster than a joint, smoothed a little.
+
+    They are the mean of the lowest such curve above them and the highest below.
+    """
     if len(time_s) < 2:
         return angles
     # Angular speed of an ankle in a sprinter's push-off.
-    slow = _slowed(angles, np.radians(700.0) * np.diff(time_s))
-    return gaussian(slow, 0.03 / usual_step(time_s), truncate=3.0)
-
-
-def _slowed(angles: Array, steps: Array) -> Array:
-    """Angles that change by no more than given steps (F - 1,); those that do not anyway stay as they are.
-
-    The mean of the lowest such curve above them and the highest below.
-    """
+    steps = np.radians(700.0) * np.diff(time_s)
     above, below = angles.copy(), angles.copy()
     for frame, step in enumerate(steps):
         above[frame + 1] = np.maximum(above[frame + 1], above[frame] - step)
@@ -126,7 +116,7 @@ def _slowed(angles: Array, steps: Array) -> Array:
     for frame in range(len(steps) - 1, -1, -1):
         above[frame] = np.maximum(above[frame], above[frame + 1] - steps[frame])
         below[frame] = np.minimum(below[frame], below[frame + 1] + steps[frame])
-    return np.asarray(0.5 * (above + below))
+    return gaussian(0.5 * (above + below), 0.03 / usual_step(time_s), truncate=3.0)
 
 
 # --- Hands that hang relaxed

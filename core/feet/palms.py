@@ -63,8 +63,12 @@ def seen_hands(
         seen = np.flatnonzero(np.isfinite(hands).all(axis=-1))
         if not len(seen):
             continue
-        turn, looks = _looks(hands[seen], camera, seen, forearm[seen])
-        twist = _twists(turn, axis)
+        looks = hands[seen, 2:].reshape(len(seen), LOOKS, -1)
+        shown = viewer_axes(camera, hands[seen, :2], seen)[:, None] @ exponential(looks[..., :3]) @ FACING
+        # In a forearm without pronation, by each look; and about its axis alone.
+        turn = np.swapaxes(forearm[seen], -1, -2)[:, None] @ shown
+        own = to_quaternions(turn)
+        twist = np.angle(np.exp(2j * np.arctan2(own[..., 1:] @ axis, own[..., 0])))
         swing = logarithm(hinge(-axis, twist) @ turn)
         path = _path(twist, np.linalg.norm(swing, axis=-1), looks, time_s[seen])
         kept = np.flatnonzero(path < LOOKS)
@@ -81,20 +85,6 @@ def seen_hands(
         bend[:, row] = mean @ swing[believed]
         curls[:, row] += full[:, None] * (mean @ (looks[believed][:, 5:] - RELAXED_RAD))
     return replace(posture, angles=angles), Hands(curls, bend, sure)
-
-
-def _looks(hands: Array, camera: Camera, frame: IndexArray, forearm: Array) -> tuple[Array, Array]:
-    """(S, 2, 3, 3) turn of the hand in a forearm without pronation by each look, and the looks (S, 2, 10)."""
-    looks = hands[:, 2:].reshape(len(hands), LOOKS, -1)
-    turn = viewer_axes(camera, hands[:, :2], frame)[:, None] @ exponential(looks[..., :3]) @ FACING
-    return np.swapaxes(forearm, -1, -2)[:, None] @ turn, looks
-
-
-def _twists(turn: Array, axis: Array) -> Array:
-    """(...) turns (..., 3, 3) about an axis alone [rad]."""
-    own = to_quaternions(turn)
-    twist = 2.0 * np.arctan2(own[..., 1:] @ axis, own[..., 0])
-    return np.asarray(np.angle(np.exp(1j * twist)))
 
 
 def _path(twist: Array, swing: Array, looks: Array, time_s: Array) -> IndexArray:

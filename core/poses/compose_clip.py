@@ -99,8 +99,10 @@ def compose_frames(
     sampled, time_s = given.sampled, given.time_s
     # Distances tried about the first path.
     rounds: tuple[tuple[float, ...], ...] = (WIDE, (1.0, 0.96, 1.04, 0.92, 1.08))
-    if _posed_throughout(given):  # the place is known, then, and what lies between is soon found
-        known = given.posed
+    known = given.posed
+    # Between posed frames that are no farther apart nobody goes far away and comes back: the place is known.
+    ends_posed = {int(sampled[0]), int(sampled[-1])} <= set(map(int, known.frames))
+    if ends_posed and (np.diff(evidence.tracks.time_s[known.frames]) <= 2.0).all():
         depths = [camera.depth(hips, int(f)) for f, hips in zip(known.frames, known.hips, strict=True)]
         rough = np.interp(sampled, known.frames, depths)
         rounds = ((1.0, 0.96, 1.04),)  # distances tried between two posed frames, which tell the place
@@ -198,15 +200,6 @@ def _on_floor(given: PosingInput, posture: Posture, floor_m: float) -> Posture:
     share = _smoothed(np.interp(time_s, time_s[usable], share[usable]), time_s)
     hips = posture.translation + share[:, None] * (posture.translation - eye)
     return Posture(posture.skeleton, hips, posture.rotations, posture.angles)
-
-
-def _posed_throughout(given: PosingInput) -> bool:
-    """Whether the first and the last frame are posed, and others so often that the place is known."""
-    frames = given.posed.frames
-    if not {int(given.sampled[0]), int(given.sampled[-1])} <= set(map(int, frames)):
-        return False
-    # Between posed frames that are no farther apart nobody goes far away and comes back.
-    return bool((np.diff(given.evidence.tracks.time_s[frames]) <= 2.0).all())
 
 
 def frame_costs(

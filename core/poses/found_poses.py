@@ -159,9 +159,12 @@ def with_found(take: Take, found: FoundPoses) -> Take:
     kept = {key.index: key for key in take.keyframes if key.matched is None or not found.sought(key.index)}
     keyframes: dict[int, Keyframe] = {}
     for frame in found.frames:
-        index = _free_frame(frame.index, posed, found.postures.batch[0])
-        if index is not None and index not in keyframes:
-            keyframes[index] = found.keyframe(frame, index)
+        # The frame itself or, near a posed keyframe, the nearest one that is far enough.
+        reach = sorted(range(-NEAR_FRAMES - 1, NEAR_FRAMES + 2), key=abs)
+        inside = [frame.index + step for step in reach if 0 <= frame.index + step < found.postures.batch[0]]
+        free = [at for at in inside if all(abs(at - other) > NEAR_FRAMES for other in posed)]
+        if free and free[0] not in keyframes:
+            keyframes[free[0]] = found.keyframe(frame, free[0])
     return replace(take, keyframes=tuple(each for _, each in sorted((keyframes | kept).items())))
 
 
@@ -180,17 +183,6 @@ def referred_poses(take: Take, said: ReferenceEvidence) -> FoundPoses:
         f"the found poses are those of {said.name}, which fits the footage {said.gain:.0%} better than chance"
     )
     return FoundPoses(frames, postures, said.gain, floor_m, reason, library=REFERENCE)
-
-
-def _free_frame(index: int, posed: Sequence[int], frames: int) -> int | None:
-    """The frame itself or, near a posed keyframe, the nearest one that is far enough; None without one."""
-    reach = range(-NEAR_FRAMES - 1, NEAR_FRAMES + 2)
-    free = [
-        index + step
-        for step in sorted(reach, key=abs)
-        if 0 <= index + step < frames and all(abs(index + step - other) > NEAR_FRAMES for other in posed)
-    ]
-    return free[0] if free else None
 
 
 # --- Notes on evidence that no plausible posture explains, one sentence each

@@ -118,6 +118,12 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
         contours,
         keypoints,
     )
+    # Which turns are unsure, as in `Review`; none where nobody looked.
+    unsure, solution = np.zeros((len(frame), len(TURNED)), dtype=bool), reconstruction.solution
+    if motion.hands is not None:
+        unsure[:, :-1] = motion.hands.sure < SURE
+    if solution is not None and solution.problem.data.heads is not None:
+        unsure[:, -1] = solution.problem.data.heads.std_rad > POINTS_STD_RAD
     return Review(
         frames=np.asarray(scene_frames, dtype=np.float64),
         size=tracks.size,
@@ -134,19 +140,8 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
         weak_frames=find_weak_frames(evidence, index),
         contours=contours.lines,
         keypoints=keypoints,
-        unsure=_unsure(reconstruction),
+        unsure=unsure & there[:, None],
     )
-
-
-def _unsure(reconstruction: Reconstruction) -> BoolArray:
-    """(F, 3) as in `Review`; False where nobody looked."""
-    motion, solution = reconstruction.motion, reconstruction.solution
-    unsure = np.zeros((len(motion.time_s), len(TURNED)), dtype=bool)
-    if motion.hands is not None:
-        unsure[:, :-1] = motion.hands.sure < SURE
-    if solution is not None and solution.problem.data.heads is not None:
-        unsure[:, -1] = solution.problem.data.heads.std_rad > POINTS_STD_RAD
-    return np.asarray(unsure & motion.there[:, None])
 
 
 def _predictions(model: RegionModel, pose: Pose, centroid: Array) -> Part[tuple[Array, Array]]:

@@ -43,8 +43,11 @@ class VideoFile:
             step = next(_steps(capture), None)
             decoded, image = (False, None) if step is None else capture.retrieve()
             if not decoded or image is None:
+                code = int(capture.get(cv2.CAP_PROP_FOURCC)) & 0xFFFFFFFF
+                name = code.to_bytes(4, "little").decode("ascii", "replace").strip("\0 ")
+                codec = name if name.isalnum() and name.isascii() else "unknown"
                 raise InputError(
-                    f"{path}: not one frame of this {_codec(capture)} video can be decoded; it is damaged, "
+                    f"{path}: not one frame of this {codec} video can be decoded; it is damaged, "
                     f"cut off or coded in a way that OpenCV cannot read here; {CONVERT}"
                 )
             width, height = self.stored_size = (int(image.shape[1]), int(image.shape[0]))
@@ -214,9 +217,3 @@ def _pixel_note(path: Path, shape: float, stored: tuple[int, int], size: tuple[i
         f"{what}, and its size is given as if they were square: the motion is out of shape; convert the clip "
         "first, as with ffmpeg -i CLIP -vf scale=iw*sar:ih,setsar=1"
     )
-
-
-def _codec(capture: cv2.VideoCapture) -> str:
-    code = int(capture.get(cv2.CAP_PROP_FOURCC)) & 0xFFFFFFFF
-    name = code.to_bytes(4, "little").decode("ascii", "replace").strip("\0 ")
-    return name if name.isalnum() and name.isascii() else "unknown"

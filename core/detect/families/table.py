@@ -8,7 +8,7 @@ import numpy as np
 from ...errors import InputError, describe_unexpected
 from ...files.fields import listed
 from ..network_file import open_session
-from ..onnx_file import OnnxFile, Tensor, read_onnx
+from ..onnx_file import Tensor, read_onnx
 from .heat_maps import HeatMaps
 from .instant_hmr import InstantHMR
 from .network import Network, Signature, refuse_inputs, run
@@ -43,10 +43,6 @@ def open_network(path: Path) -> Network:
         if network is not None:
             network.session = session
             return network
-    raise InputError(f"{path}: {_unknown(file, outputs)}")
-
-
-def _unknown(file: OnnxFile, outputs: tuple[Tensor, ...]) -> str:
     known = listed([family.KNOWN for family in FAMILIES])
     takes, gives = (listed([one.words for one in part[:6]]) for part in (file.inputs, outputs))
-    return f"takes {takes} and gives {gives}, as no known network does; known are {known}"
+    raise InputError(f"{path}: takes {takes} and gives {gives}, as no known network does; known are {known}")
