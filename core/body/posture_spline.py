@@ -17,7 +17,15 @@ def cubic_spline(posed: Posture, knots: Array, times: Array) -> Posture:
     """T postures of a monotone cubic through K ≥ 2, held before the first knot (K,) and after the last."""
     step = posed[1:].minus(posed[:-1])  # (K-1, D), in the earlier posture's tangent space
     gap = np.diff(knots)[:, None]
-    tangent = _tangents(step / gap, gap)  # (K, D) per unit of time
+    # Limited three-point tangents (K, D) per unit of time.
+    slope = step / gap
+    tangent = np.zeros((len(slope) + 1, slope.shape[1]))
+    tangent[0], tangent[-1] = slope[0], slope[-1]
+    before, after = slope[:-1], slope[1:]
+    parabolic = (gap[1:] * before + gap[:-1] * after) / (gap[1:] + gap[:-1])
+    # Largest slope, in units of the smaller neighboring slope, that keeps a cubic monotone.
+    limit = 3.0 * np.minimum(np.abs(before), np.abs(after))
+    tangent[1:-1] = np.where(before * after > 0.0, np.clip(parabolic, -limit, limit), 0.0)
     interval, elapsed = find_intervals(knots, times)
     return posed[interval].plus(_hermite(posed, step, gap, tangent, interval, elapsed))
 
@@ -27,19 +35,6 @@ def find_intervals(knots: Array, times: Array) -> tuple[IndexArray, Array]:
     held = np.clip(times, knots[0], knots[-1])
     interval = np.clip(np.searchsorted(knots, held, side="right") - 1, 0, len(knots) - 2)
     return interval, held - knots[interval]
-
-
-def _tangents(slope: Array, gap: Array) -> Array:
-    """Limited three-point tangents (K, D) from slopes (K-1, D) and gaps (K-1, 1)."""
-    tangent = np.zeros((len(slope) + 1, slope.shape[1]))
-    tangent[0], tangent[-1] = slope[0], slope[-1]
-    before, after = slope[:-1], slope[1:]
-    parabolic = (gap[1:] * before + gap[:-1] * after) / (gap[1:] + gap[:-1])
-    # Largest slope, in units of the smaller neighboring slope, that keeps a cubic monotone.
-    limit = 3.0 * np.minimum(np.abs(before), np.abs(after))
-    agree = before * after > 0.0
-    tangent[1:-1] = np.where(agree, np.clip(parabolic, -limit, limit), 0.0)
-    return tangent
 
 
 def _hermite(

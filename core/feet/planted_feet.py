@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, BoolArray, IndexArray
+from ..arrays import Array
 from ..body.human import ANKLES
 from ..body.kinematics import Body
 from ..body.posture import Posture
@@ -58,46 +58,30 @@ def plant_feet(
     names, kinds = body.skeleton.dof_names, CHANGE_STD.items()
     changed = {dof: std for dof, name in enumerate(names) for kind, std in kinds if name.startswith(kind)}
     dofs, std = np.array(list(changed), dtype=np.intp), np.array(list(changed.values()))
-    delta = np.zeros((len(time_s), len(dofs)))
+    frames, size = len(time_s), len(dofs)
+    # Factor of `CHANGE_STD` in frames without a correction.
+    unchanged = (std * np.where(touched, 1.0, 1e-6)[:, None]) ** -2
+    # Changes that change little from frame to frame: knees do not flicker.
+    steady = (std * 2.0 * np.maximum(np.diff(time_s), 1e-3)[:, None]) ** -2
+    prior = BlockBanded(frames, size)
+    prior.add_combination(slice(None), (1.0,), unchanged)
+    prior.add_combination(slice(None), (-1.0, 1.0), steady)
+    delta = np.zeros((frames, size))
     planted = posture
-    for number in range(8):
-        step = _gauss_newton_step(body, planted, target, touched, dofs, std, delta, time_s)
+    for number in range(8):  # steps of Gauss and Newton
+        moved = body.pose(planted)
+        residual = (body.points(moved)[:, ANKLES] - target).reshape(frames, -1) / ANKLE_STD_M
+        jacobian = body.points_jacobian(moved)[:, ANKLES][..., dofs].reshape(frames, -1, size) / ANKLE_STD_M
+        equations = BlockBanded(frames, size)
+        equations.add_rows((jacobian,))
+        equations.add(prior)
+        gradient = (residual[:, None] @ jacobian)[:, 0] + prior.multiply(delta)
+        step = equations.factorize().solve(-gradient)
         delta += step
-        full = np.zeros((len(time_s), body.skeleton.dof_count))
+        full = np.zeros((frames, body.skeleton.dof_count))
         full[:, dofs] = delta
         planted = Posture.where(touched, posture.plus(full), posture)
         yield 0.1 + 0.9 * (number + 1) / 8
         if np.abs(step).max() < 1e-5:
             break
     return PlantedFeet(planted, contacts)
-
-
-def _gauss_newton_step(
-    body: Body,
-    posture: Posture,
-    target: Array,
-    touched: BoolArray,
-    dofs: IndexArray,
-    std: Array,
-    delta: Array,
-    time_s: Array,
-) -> Array:
-    """A Gauss-Newton step (F, n) of the changes `delta`."""
-    frames, size = delta.shape
-    pose = body.pose(posture)
-    residual = (body.points(pose)[:, ANKLES] - target).reshape(frames, -1) / ANKLE_STD_M
-    jacobian = body.points_jacobian(pose)[:, ANKLES][..., dofs].reshape(frames, -1, size) / ANKLE_STD_M
-    equations = BlockBanded(frames, size)
-    equations.add_rows((jacobian,))
-    gradient = (residual[:, None] @ jacobian)[:, 0]
-    every = slice(None)
-    # Factor of `CHANGE_STD` in frames without a correction.
-    unchanged = (std * np.where(touched, 1.0, 1e-6)[:, None]) ** -2
-    # Changes that change little from frame to frame: knees do not flicker.
-    steady = (std * 2.0 * np.maximum(np.diff(time_s), 1e-3)[:, None]) ** -2
-    prior = BlockBanded(frames, size)
-    prior.add_combination(every, (1.0,), unchanged)
-    prior.add_combination(every, (-1.0, 1.0), steady)
-    equations.add(prior)
-    gradient += prior.multiply(delta)
-    return equations.factorize().solve(-gradient)

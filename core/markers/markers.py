@@ -112,34 +112,32 @@ def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IndexArray:
 
 
 def region_costs(
-    found: Candidates, clutter: BoolArray, usual_area: float, expected: ExpectedRegions | None, marker: int
+    found: Candidates,
+    clutter: BoolArray,
+    usual_area: float,
+    expected: ExpectedRegions | None,
+    marker: int,
+    taken: BoolArray,
+    rivals: Sequence[int],
 ) -> Array:
-    """Unary cost (N,) of each region as the marker, by area [px], color, clutter and position."""
+    """Unary cost (N,) of each region as the marker, by area [px], color, clutter, position and rivals.
+
+    `taken` says (N,) whether a region is a rival's already; `rivals` are the other markers of its color.
+    """
     if not len(found.frame):
         return np.zeros(0)
     # Foreshortening and occlusion change areas by a factor of three.
     cost = 0.5 * (np.log(found.area / usual_area) / 1.2) ** 2
     cost -= 3.0 * np.log(np.clip(found.certainty, 1e-3, 1.0))  # as many pixels err independently
     cost += np.where(clutter, 20.0, 0.0)
-    far = 0.5 * (2.0 * _relative_offset(found, expected, marker)) ** 2
-    return np.asarray(cost + np.nan_to_num(np.minimum(far, 2.0 * RESTART_COST)))
-
-
-def rival_costs(
-    found: Candidates, taken: BoolArray, expected: ExpectedRegions | None, marker: int, rivals: Sequence[int]
-) -> Array:
-    """Additional cost (N,) of each region because it may be another marker of the same color.
-
-    `taken` says (N,) whether a region is a rival's already; `rivals` are the other markers of its color.
-    """
-    most = 20.0
-    cost = np.where(taken, most, 0.0)
-    own = _relative_offset(found, expected, marker)
+    own, most = _relative_offset(found, expected, marker), 20.0
+    cost += np.nan_to_num(np.minimum(0.5 * (2.0 * own) ** 2, 2.0 * RESTART_COST))
+    cost += np.where(taken, most, 0.0)
     for rival in rivals:
         nearer = own**2 - _relative_offset(found, expected, rival) ** 2
         # In units of the generous radius.
         cost += np.clip(np.nan_to_num(0.5 * nearer / 0.2**2), 0.0, most)
-    return np.asarray(cost)
+    return cost
 
 
 def _relative_offset(found: Candidates, expected: ExpectedRegions | None, marker: int) -> Array:
@@ -243,8 +241,8 @@ def assign_regions(
             length = float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))
         taken = np.zeros(len(one.frame), dtype=np.bool_)
         for marker in group:
-            cost = region_costs(one, clutter[color], usual[color], expected, marker)
-            cost += rival_costs(one, taken, expected, marker, [other for other in group if other != marker])
+            rivals = [other for other in group if other != marker]
+            cost = region_costs(one, clutter[color], usual[color], expected, marker, taken, rivals)
             path = choose(one, cost, length)
             own[marker] = join_fragments(one, path, cost, reach, HIGHEST_FRAGMENT_COST)
             taken[path[path >= 0]] = True

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array
 from ..body.posture import Posture
 from ..errors import InputError
 from ..estimate.single_frame import fit_frame, frame_residuals
@@ -23,28 +22,7 @@ from .frame_search import (
 )
 from .part_pools import part_pools, usable_libraries
 
-
-def belief_costs(belief: FramePrior, posture: Posture) -> Array:
-    """(S,) cost of postures beside keyframes: Gaussian near them, bounded by what tells them from others.
-
-    Far from all keyframes their belief is as wide as that of unrelated postures, and the cost vanishes.
-    """
-    deviation = posture.minus(Posture.stack([belief.posture])) / belief.std
-    told = np.log(np.maximum(unrelated_std(posture.skeleton) / belief.std, 1.0)).sum()
-    # Share of the degrees of freedom that vary on their own: a body's change together.
-    return np.asarray(0.5 * np.minimum(0.5 * (deviation**2).sum(axis=-1), told))
-
-
 # --- What contradicts a frame's plausible postures
-
-
-def unexplained(shown: FrameShown, posture: Posture) -> tuple[str, ...]:
-    """Names of what a posture does not explain."""
-    off = frame_residuals(shown.evidence, shown.regions, shown.points, posture, shown.frame)
-    names = [shown.tracks.names[marker] for marker in off.markers]
-    # Hands and feet turn about wrists and ankles, of which a posture knows nothing.
-    names += [name for name in off.points if USUAL_PLACES[name].error_std_m <= JOINT_ERROR_STD_M]
-    return tuple(dict.fromkeys(names))
 
 
 # --- The postures of one frame, with no keyframe at all
@@ -80,7 +58,11 @@ def find_frame_poses(
         raise InputError("neither a marker nor a keypoint is seen in the frame, so no posture can be found")
     search = FrameSearch(part_pools(usable_libraries(libraries), shown.body), shown, floor_m)
     candidates = _candidates(search, _hypotheses(search, belief), has_believed=belief is not None)
-    return FramePoses(candidates, unexplained(shown, candidates[0].posture))
+    off = frame_residuals(shown.evidence, shown.regions, shown.points, candidates[0].posture, shown.frame)
+    unexplained = [shown.tracks.names[marker] for marker in off.markers]
+    # Hands and feet turn about wrists and ankles, of which a posture knows nothing.
+    unexplained += [name for name in off.points if USUAL_PLACES[name].error_std_m <= JOINT_ERROR_STD_M]
+    return FramePoses(candidates, tuple(dict.fromkeys(unexplained)))
 
 
 def near_pose(shown: FrameShown, belief: FramePrior) -> FramePoses:
@@ -105,7 +87,12 @@ def _hypotheses(search: FrameSearch, belief: FramePrior | None) -> Hypotheses:
     least = search.descended(own).cost.min(keepdims=True)
     first = replace(own.chosen(np.zeros(1, dtype=np.intp)), cost=least)
     every = Hypotheses.concatenate([first, found])
-    return replace(every, cost=every.cost + belief_costs(belief, every.posture))
+    # Gaussian near what keyframes tell, bounded by what tells that from others: far from all keyframes their
+    # belief is as wide as that of unrelated postures, and the cost vanishes.
+    deviation = every.posture.minus(Posture.stack([belief.posture])) / belief.std
+    most = np.log(np.maximum(unrelated_std(every.posture.skeleton) / belief.std, 1.0)).sum()
+    # Share of the degrees of freedom that vary on their own: a body's change together.
+    return replace(every, cost=every.cost + 0.5 * np.minimum(0.5 * (deviation**2).sum(axis=-1), most))
 
 
 def _candidates(search: FrameSearch, found: Hypotheses, has_believed: bool) -> tuple[Candidate, ...]:

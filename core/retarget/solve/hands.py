@@ -94,7 +94,12 @@ def hand_goals(
         lengths = source.body.actor.segments_m
         longer = sum(body.length_m(*ends) for ends in bones) / sum(lengths[start] for start, _ in bones)
         apart = longer * between @ stage.turn.T
-        goals = _brought_together(goals, arms, apart, together)
+        alone = dict(goals)
+        # Rounds in which two hands find a place that both reach.
+        for _ in range(4):
+            middle = np.mean([_reachable(arms[side], goals[side]) for side in SIDES], axis=0)
+            for side, sign in (("L", -0.5), ("R", 0.5)):
+                goals[side] = alone[side] + together[:, None] * (middle + sign * apart - alone[side])
         shares = {side: 1.0 - (1.0 - share) * (1.0 - together) for side, share in shares.items()}
     return {
         side: HandGoal(
@@ -136,20 +141,6 @@ def above_floor(turn: Array, wrist_m: Array, along: Array) -> Array:
     level = unit(level) * np.sqrt(1.0 - least**2)[:, None] + least[:, None] * UP
     bent = rotations.smallest(fingers, unit(level)) @ turn
     return np.where((fingers[:, 2] < least)[:, None, None], bent, turn)
-
-
-def _brought_together(
-    goals: Mapping[str, Array], arms: Mapping[str, LimbPose], apart: Array, share: Array
-) -> dict[str, Array]:
-    """Goals of two hands at their distance from each other, about a point that both reach."""
-    found = dict(goals)
-    # Rounds in which two hands find a place that both reach.
-    for _ in range(4):
-        reached = {side: _reachable(arms[side], found[side]) for side in SIDES}
-        middle = 0.5 * (reached["L"] + reached["R"])
-        for side, sign in (("L", -0.5), ("R", 0.5)):
-            found[side] = goals[side] + share[:, None] * (middle + sign * apart - goals[side])
-    return found
 
 
 def _reachable(arm: LimbPose, goal: Array) -> Array:
