@@ -48,7 +48,7 @@ class IgnoredRegion(Record):
     radius_px: Annotated[float, Number(0.5, LARGEST_SIDE_PX, "pixels of the footage")] | None = None
     """Radius of the brush [px]."""
     frames: Annotated[tuple[SceneFrame, ...], Items("frames", 2, 2, VALID_FRAMES)] | None = None
-    """First and last scene frame in which it is ignored; the default is all. Indices once it is read."""
+    """First and last scene frame in which it is ignored; the default is all."""  # indices once read
 
     def mistake(self) -> str:
         """See `Record`."""
