@@ -36,6 +36,7 @@ from keymark.core.retarget.quality import Quality  # noqa: E402
 from keymark.core.retarget.recognition.recognize import recognize  # noqa: E402
 from keymark.core.take.conversion_settings import RetargetOptions  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
+from keymark.operators.bridge.actions import curves_of  # noqa: E402
 from keymark.operators.bridge.armature import build_armature  # noqa: E402
 from keymark.operators.bridge.character.measure import measure  # noqa: E402
 from keymark.operators.bridge.character.read_character import read_character  # noqa: E402
@@ -55,6 +56,7 @@ COLUMNS = {
     "hands_floor_mm": ("hands at floor", 1),
     "ik_fk_mm": ("IK to FK", 2),
     "keys_share": ("keys", 0),
+    "curve_share": ("keys a curve", 0),
     "ms_a_frame": ("ms a frame", 1),
 }
 MEASURING = "Measuring the character"
@@ -124,8 +126,10 @@ def _retargeted(make: Maker, source: SegmentMotion, frames: np.ndarray) -> tuple
 
     job = retarget(armature, source, frames, character_map, RetargetOptions())
     result = run(job, report)
-    result.write(scene, "Motion")
-    return _row(result.quality, seconds, len(frames)), result
+    curves = curves_of(result.write(scene, "Motion"), armature).values()
+    median = float(np.median([len(curve.keyframe_points) for curve in curves]))
+    row = _row(result.quality, seconds, len(frames)) | {"curve_share": 100.0 * median / len(frames)}
+    return row, result
 
 
 def _copied(make: Maker, motion: Motion, source: SegmentMotion, frames: np.ndarray, own: Retargeted) -> Row:
@@ -198,7 +202,8 @@ def main(arguments: list[str]) -> int:
     lines = [
         f"Means of {', '.join(by_take)} (below floor, hands at floor, IK to FK: the worst). Directions "
         "against the performer's [degrees]; way of resting feet [mm a frame]; soles below the floor, hands "
-        "from where they belong, IK from FK [mm]; keys [% of one on every frame]; processor time.",
+        "from where they belong, IK from FK [mm]; keys, and those of the median curve [% of one on every "
+        "frame]; processor time.",
         "",
         *table(results),
         *(f"\nRefused: {name}: {why}" for name, why in refused.items()),

@@ -52,7 +52,6 @@ def one_subject(table: PointTable, path: Path, subject: str | None) -> tuple[Poi
         there = np.isfinite(points).all(axis=(1, 2)) & (points != 0.0).any(axis=2).all(axis=1)
         frames.append(float(whole + there.sum()))
     names = [prefix or "(no prefix)" for prefix in people]
-    subject = next((name for name in names if _alike(name) == _alike(subject or "")), subject)
     index, notes = chosen_subject(path, names, frames, subject)
     if subject is None and not any(frames):
         lacking = [
@@ -153,16 +152,21 @@ def chosen_subject(
 ) -> tuple[int, tuple[str, ...]]:
     """The index of the wanted subject, or else of the most complete, the first of equals; and notes.
 
-    `kind` is what they are, and the option of `mend` that names one.
+    Of those with one name the second is NAME 2. `kind` is what they are, and the option of `mend` for it.
 
     Raises:
         InputError: Nobody is called so; the sentence lists all.
     """
+    names = [
+        f"{name} {names[:at].count(name) + 1}" if name in names[:at] else name
+        for at, name in enumerate(names)
+    ]
     every = listed([shown(name) for name in names], 10)
     if wanted is not None:
-        if wanted not in names:
+        found = [index for index, name in enumerate(names) if _alike(name) == _alike(wanted)]
+        if not found:
             raise InputError(f"{path}: has no {kind} {shown(wanted)}; its {kind}s are {every}")
-        return names.index(wanted), ()
+        return (names.index(wanted) if wanted in names else found[0]), ()
     index = int(np.argmax(completeness))
     note = (
         f"{path.name} has {len(names)} {kind}s, {every}; the motion is that of {shown(names[index])}, and "

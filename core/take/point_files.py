@@ -115,7 +115,7 @@ def _upright(points: Array) -> Array:
 
 def _read_csv(path: Path) -> PointTable:
     try:
-        text = read_saved_text(path)
+        text = re.sub(r"\Asep=.\s+", "", read_saved_text(path))  # which spreadsheets write
         separator = max(",;\t", key=text.partition("\n")[0].count)
         rows = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
         header = [name.strip() for name in next(rows, [])]

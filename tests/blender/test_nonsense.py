@@ -6,7 +6,13 @@ from pathlib import Path
 
 import bpy
 import pytest
+from _armatures import build_character
+from _characters import plain_character
+from _performances import made_up_review
+from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
+from keymark.operators.bridge.fcurves import write_motion
+from keymark.operators.reconstruct.live_preview import show_review
 from keymark.operators.shell.takes import active_take
 
 TEXTS = ("", "nowhere/none.xyz", "\u00e4:,;\n")
@@ -14,6 +20,24 @@ SOURCES = Path(__file__).parents[2].joinpath("operators").rglob("*.py")
 FOUND = (re.findall(r"class KEYMARK_OT_(\w+)", file.read_text("utf-8")) for file in SOURCES)
 NAMES = sorted({*chain(*FOUND)} - {"add_rigify_human"})  # which has a process of its own, see `_own_process`
 NUMBERS = (-1e9, 1e9)
+
+
+WINDOW = {"click_performer", "pick_bone"}  # which act where the mouse is
+OTHERWISE: dict[str, str] = {}
+"""Operators that nothing is there for in a file with all that one can have at once, and why."""
+
+
+@pytest.fixture
+def ready(opened: bpy.types.Scene, wave_motion: Motion) -> bpy.types.Scene:
+    """The tiny take with a motion, its review, proposals, a region to ignore, and two characters."""
+    take = active_take(opened)
+    take.motion_action = write_motion(take.armature, wave_motion)
+    show_review(take, made_up_review())
+    bpy.ops.keymark.propose_keyframes()
+    bpy.ops.keymark.ignore_region(path=[{"name": "", "loc": (4.0, 4.0), "time": 0.0}] * 2, radius=3.0)
+    for _ in range(2):
+        bpy.ops.keymark.add_character(armature=build_character(plain_character()).name)
+    return opened
 
 
 def nonsense(operator: bpy.types.Operator) -> list[dict[str, object]]:
@@ -26,15 +50,18 @@ def nonsense(operator: bpy.types.Operator) -> list[dict[str, object]]:
             found += [{each.identifier: text} for text in TEXTS]
         elif each.type in ("INT", "FLOAT") and not each.is_array:
             found += [{each.identifier: (int if each.type == "INT" else float)(value)} for value in NUMBERS]
+        elif each.type == "ENUM":
+            found += [{each.identifier: item.identifier} for item in each.enum_items_static]
     return found
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_what_cannot_be_is_a_sentence(
-    registered: None, opened: bpy.types.Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+    ready: bpy.types.Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
     operator = getattr(bpy.ops.keymark, name)
+    print("POLL", name, operator.poll(), len(nonsense(operator)))
     for settings in nonsense(operator):
         try:
             assert operator(**settings) <= {"FINISHED", "CANCELLED", "RUNNING_MODAL"}

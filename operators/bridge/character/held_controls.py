@@ -1,4 +1,4 @@
-"""Data paths of custom properties of pose bones."""
+"""What holds a character's controls, and custom properties of it and its bones that may let go of them."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -20,12 +20,16 @@ from ..scene_frames import CHANNELS, showing_action
 
 
 def property_path(bone: str, name: str) -> str:
-    """Data path of a pose bone's custom property."""
+    """Data path of a custom property of a pose bone, or of the object itself where that has no name."""
     bone, name = bpy.utils.escape_identifier(bone), bpy.utils.escape_identifier(name)
-    return f'pose.bones["{bone}"]["{name}"]'
+    return f'pose.bones["{bone}"]["{name}"]' if bone else f'["{name}"]'
 
 
-Property = tuple[str, str]  # name of a pose bone, and of one of its custom properties
+def _owner(armature_object: Object, bone: str) -> PoseBone | Object:
+    return armature_object.pose.bones[bone] if bone else armature_object
+
+
+Property = tuple[str, str]  # name of a pose bone, empty for the object, and of a custom property
 Value = float | int | bool
 
 
@@ -36,7 +40,7 @@ def posing(
     """Let a pose and properties be changed, or an Action be shown; afterwards all is as before."""
     had_data, data = armature_object.animation_data is not None, armature_object.animation_data_create()
     with_strips, bones = data.use_nla, armature_object.pose.bones
-    values = {(bone, name): bones[bone][name] for bone, name in properties}
+    values = {(bone, name): _owner(armature_object, bone)[name] for bone, name in properties}
     channels = {name: tuple(getattr(armature_object, name)) for name in CHANNELS}
     influences = [(each, each.influence) for bone in bones for each in bone.constraints]
     try:
@@ -45,7 +49,7 @@ def posing(
             yield
     finally:
         for (bone, name), value in values.items():
-            bones[bone][name] = value
+            _owner(armature_object, bone)[name] = value
         for name, channel in channels.items():
             setattr(armature_object, name, channel)
         for constraint, influence in influences:
@@ -59,9 +63,9 @@ def posing(
 
 
 def set_properties(armature_object: Object, values: Mapping[Property, Value]) -> None:
-    """Set custom properties of pose bones, each in the type that it has."""
+    """Set custom properties, each in the type that it has."""
     for (bone, name), value in values.items():
-        held = armature_object.pose.bones[bone]
+        held = _owner(armature_object, bone)
         held[name] = type(held[name])(value)
     armature_object.update_tag()  # what only drivers read is not evaluated again otherwise
 
@@ -126,7 +130,7 @@ BESIDE_KEYS = (
     *("MAINTAIN_VOLUME", "TRANSFORM", "ACTION", "FLOOR", "SHRINKWRAP"),
 )
 """Constraints that leave a bone the turn and place of its keys within bounds, or add to them."""
-PROPERTY_PATH = BONE_PATH.pattern + r'\["((?:[^"\\]|\\.)*)"\]$'
+PROPERTY_PATH = r'(?:pose\.bones\["((?:[^"\\]|\\.)*)"\])?\["((?:[^"\\]|\\.)*)"\]$'
 
 Held = tuple[str, str]  # name of a pose bone, and of one of its constraints
 
@@ -223,18 +227,20 @@ def _influence(armature_object: Object, held: Held) -> float:
 
 
 def _switch(armature_object: Object, driver: FCurve, held: Held) -> tuple[Property, Value] | None:
-    """The custom property of a pose bone, and its value, at which a driven influence is zero."""
-    bones = armature_object.pose.bones
+    """The custom property, and its value, at which a driven influence is zero."""
     for variable in driver.driver.variables:
         for target in variable.targets:
             found = re.match(PROPERTY_PATH, target.data_path) if target.id == armature_object else None
             if variable.type != "SINGLE_PROP" or found is None:
                 continue
-            bone, name = map(bpy.utils.unescape_identifier, found.groups())
-            if bone not in bones or not isinstance(bones[bone].get(name), int | float):
+            bone, name = map(bpy.utils.unescape_identifier, found.groups(""))
+            if bone and bone not in armature_object.pose.bones:
                 continue
-            before = bones[bone][name]
-            limits = bones[bone].id_properties_ui(name).as_dict()
+            owner = _owner(armature_object, bone)
+            before = owner.get(name)
+            if not isinstance(before, int | float):
+                continue
+            limits = owner.id_properties_ui(name).as_dict()
             for value in dict.fromkeys((0.0, 1.0, limits.get("min", 0.0), limits.get("max", 1.0))):
                 set_properties(armature_object, {(bone, name): value})
                 off = _influence(armature_object, held) == 0.0

@@ -227,7 +227,7 @@ def write_keys(keys: RetargetedKeys, armature_object: Object, action: Action) ->
                     write_column(fcurve, frames, held, index)
                     made.append((path, index))
     for (bone, name), value in keys.properties.items():
-        write(property_path(bone, name), 0, bone, np.array([float(value)]))
+        write(property_path(bone, name), 0, bone or "Properties", np.array([float(value)]))
     for name in keys.scaled:
         path = bone_path(name, "scale")
         for index, value in enumerate(ONE):

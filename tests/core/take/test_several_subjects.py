@@ -119,7 +119,7 @@ def test_texts_of_other_systems_are_read(tmp_path: Path, points: Array, encoding
         write_mhr70(file, points)
         header, *rows = file.read_text().splitlines()
         text = "\n".join(
-            [header.replace(",", ";"), *(row.replace(",", ";").replace(".", ",") for row in rows)]
+            ["sep=;", header.replace(",", ";"), *(row.replace(",", ";").replace(".", ",") for row in rows)]
         )
     file.write_bytes(text.encode(encoding))
     np.testing.assert_allclose(read_points(file)[0], points, atol=2e-6)
@@ -171,6 +171,13 @@ def test_one_root_of_a_bvh_is_taken_with_its_own_channels(
     assert all(f"the motion is that of '{name}'" in note for note in notes)
     with pytest.raises(InputError, match="has no subject 'Nobody'; its subjects are 'A'"):
         read_bvh(tmp_path / "two.bvh", "Nobody")
+
+
+def test_the_second_of_two_roots_with_one_name_can_be_named(tmp_path: Path) -> None:
+    (tmp_path / "two.bvh").write_text(bvh(2, 3).replace("ROOT B", "ROOT A"))
+    assert "2 subjects, 'A', 'A 2'; the motion is that of 'A 2'" in read_bvh(tmp_path / "two.bvh")[1][0]
+    for name, joints in (("A", 2), ("A 2", 3), ("a_2", 3)):
+        assert read_bvh(tmp_path / "two.bvh", name)[0].count("JOINT") == joints
 
 
 @pytest.mark.parametrize(

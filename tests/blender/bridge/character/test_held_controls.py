@@ -20,7 +20,7 @@ FRAMES = 40
 Made = tuple[bpy.types.Object, CharacterMap]
 
 
-def in_ik(driver: str = "") -> Made:
+def in_ik(driver: str = "", path: str = 'pose.bones["root"]["legs"]') -> Made:
     """Legs that follow targets, knees with limits, feet that copy their target's turn."""
     plain = plain_character(root="root")
     goals = [
@@ -29,7 +29,8 @@ def in_ik(driver: str = "") -> Made:
     ]
     made = build_character(Character("Game", (*plain.bones, *goals)))
     bones = made.pose.bones
-    bones["root"]["legs"] = 0.0 if driver.startswith("1 -") else 1.0
+    for owner in (bones["root"], made):
+        owner["legs"] = 0.0 if driver.startswith("1 -") else 1.0
     for side in "LR":
         constraint = bones[f"shin.{side}"].constraints.new("IK")
         constraint.target, constraint.subtarget, constraint.chain_count = made, f"goal.{side}", 2
@@ -42,7 +43,7 @@ def in_ik(driver: str = "") -> Made:
             curve = one.driver_add("influence")
             variable = curve.driver.variables.new()
             variable.name, variable.targets[0].id = "legs", made
-            variable.targets[0].data_path = 'pose.bones["root"]["legs"]'
+            variable.targets[0].data_path = path
             curve.driver.expression = driver
     bpy.context.view_layer.update()
     return made, plain_map(plain)
@@ -93,6 +94,7 @@ def held_by(kind: str, bone: str) -> Made:
         (in_ik, "Constraints hold bone 'shin.L', 'foot.L', 'shin.R' and 1 more"),
         (lambda: in_ik("legs"), "Constraints hold bone 'shin.L'"),
         (lambda: in_ik("1 - legs"), "Constraints hold bone 'shin.L'"),
+        (lambda: in_ik("1 - legs", '["legs"]'), "Constraints hold bone 'shin.L'"),
         (on_cart, "hangs on 'Cart', which moves: its place is keyed against it"),
         (on_bone, "which moves"),
         (lambda: held_by("CHILD_OF", "root"), "Constraints hold bone 'root'"),

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 from _armatures import build_character, retargeted
-from _characters import plain_character, plain_map
+from _characters import plain_character, plain_map, shared_characters
 from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.errors import InputError
 from keymark.core.keys.hermite import Spline
@@ -16,7 +16,7 @@ from keymark.core.retarget.character import Character
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.recognition.recognize import recognize
 from keymark.core.take.conversion_settings import LimbKeys, Placement, RetargetOptions, RootMotion
-from keymark.operators.bridge.actions import existing_channelbag
+from keymark.operators.bridge.actions import curves_of, existing_channelbag
 from keymark.operators.bridge.character.read_character import read_character
 from keymark.operators.bridge.character.retarget import Retargeted, retarget
 from scipy.spatial.transform import Rotation
@@ -235,6 +235,24 @@ def test_a_control_rig_performs_in_ik_and_in_fk(
     assert [tuple(key.co) for key in switch.keyframe_points] == [(11.0, 0.0)]
     rigify.animation_data.action = None
     assert before["IK_FK"] == 0.0
+
+
+@pytest.mark.parametrize("kind", ["Rigify", "mixamo"])
+def test_the_median_curve_has_a_key_in_a_fifth_of_the_frames(
+    rigify: bpy.types.Object, source: SegmentMotion, kind: str
+) -> None:
+    others = shared_characters()
+    if kind not in {"Rigify", *others}:
+        pytest.skip("no shared characters")
+    character = rigify if kind == "Rigify" else build_character(others[kind])
+    made = retargeted(
+        character, recognize(read_character(character)).character_map, source, RetargetOptions()
+    )
+    curves = curves_of(character.animation_data.action, character).values()
+    keys = np.median([len(curve.keyframe_points) for curve in curves])
+    print(kind, keys / len(made.keys.frames), made.quality)
+    assert 2 < keys <= 0.2 * len(made.keys.frames)
+    assert made.quality.skate_mm is not None and made.quality.skate_mm < 0.1
 
 
 @pytest.mark.parametrize("keys", [LimbKeys.FK, LimbKeys.IK])
