@@ -13,10 +13,11 @@ from keymark.core.body.body_volume import (
     standing_height_m,
     standing_posture,
 )
+from keymark.core.body.fingers import RESTING, finger_weights
 from keymark.core.body.human import HUMAN, mass_weights
 from keymark.core.body.human_mesh import HumanMesh
 from keymark.core.body.mirror import mirrored
-from keymark.core.body.posture import Posture, headings_rad
+from keymark.core.body.posture import Posture, headings_rad, posture_to_json
 from keymark.core.body.posture_fit import fit_posture, guess_posture
 from keymark.core.body.posture_spline import cubic_spline
 from keymark.core.body.rotations import right_jacobian, right_jacobian_inverse
@@ -42,6 +43,9 @@ def test_kinematics() -> None:
     assert_recorded("soles", sole_places(BODY, pose), sole_heights_m(BODY, pose))
     assert_recorded("lower sole", lower_sole_m(BODY, POSTURES))
     assert_recorded("headings", headings_rad(POSTURES))
+    assert_recorded("in files", *posture_to_json(POSTURES.lowered(0.1)).values(), share=2e-8)
+    turned = Posture.rest(HUMAN, (6,)).plus(np.pi * np.eye(HUMAN.dof_count)[HUMAN.ball_dofs[:6, 0]])
+    assert_recorded("half turns", *posture_to_json(turned, 3).values())
     assert_recorded("rested", rested(BODY, POSTURES, ("leg.L", "arm.R")).to_vector())
     for lowered in (0.0, 1.3):
         standing = standing_posture(BODY, np.array([0.2, 0.1, 0.0]), 0.4, lowered)
@@ -63,5 +67,8 @@ def test_postures_between_and_of_points() -> None:
 
 def test_the_skin() -> None:
     mesh = HumanMesh.read()
+    places = np.stack(np.meshgrid(*3 * [np.linspace(-1.2, 1.2, 9)]), axis=-1).reshape(-1, 3)
+    weights = [finger_weights(places, side) for side in RESTING]
+    assert_recorded("finger weights", *(each[name] for each in weights for name in sorted(each)))
     longer = {name: place * [1.1, 1.0, 1.05] for name, place in mesh.joints.items()}
     assert_recorded("skin", mesh.vertices, mesh.fitted(longer))

@@ -12,7 +12,7 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera, default_camera_pose, guess_lens
 from keymark.core.camera.camera_evidence import floor_grid
-from keymark.core.camera.camera_fields import CameraPlacement, heading_rad
+from keymark.core.camera.camera_fields import MOST_DISTORTION, CameraPlacement, heading_rad
 from keymark.core.errors import InputError
 
 DISTORTIONS = [(0.0, 0.0, 0.0), (-0.12, 0.03, -0.004), (0.2, 0.05, 0.01)]
@@ -111,8 +111,8 @@ def test_a_camera_survives_its_own_fields(angle: float, scale: float, shift: flo
     """Writing and reading gives the same camera; a scaled matrix gives the same view as the plain one."""
     matrix = turned(angle)
     matrix[:3, :3] *= scale
-    read = Camera.from_dict(fields(matrix_world=matrix.tolist(), shift_x=shift, distortion=[0.1, 0.2]))
-    assert read.distortion == (0.1, 0.2, 0.0)
+    read = Camera.from_dict(fields(matrix_world=matrix.tolist(), shift_x=shift, distortion=[0.1, -MOST_DISTORTION]))
+    assert read.distortion == (0.1, -MOST_DISTORTION, 0.0)
     np.testing.assert_allclose(read.matrix_world, turned(angle), atol=1e-12)
     again = Camera.from_dict(read.to_dict())
     np.testing.assert_allclose(again.matrix_world, read.matrix_world, atol=1e-15)
