@@ -75,24 +75,6 @@ def test_a_library_file_comes_back_from_assets_to_the_last_byte(library: Library
     assert file_bytes(back, tmp_path) == first
 
 
-def test_a_library_file_comes_back_from_a_blend(library: Library, tmp_path: Path) -> None:
-    first = file_bytes(library, tmp_path)
-    mine = bpy.data.actions.new("Midstance")
-    before = set(bpy.data.user_map())
-    folder = tmp_path / "assets"
-    write_library_blend(folder / "gait-1.blend", library)
-    assert sorted(file.name for file in folder.iterdir()) == ["blender_assets.cats.txt", "gait-1.blend"]
-    (back,) = read_library_blend(folder / "gait-1.blend")
-    assert file_bytes(back, tmp_path) == first
-    assert set(bpy.data.user_map()) == before and mine.name == "Midstance"
-    with bpy.data.libraries.load(str(folder / "gait-1.blend")) as (found, _):
-        kinds = {kind: list(getattr(found, kind)) for kind in dir(found) if kind != "version"}
-    assert [kind for kind, names in kinds.items() if names] == ["actions"]
-    lines = (folder / "blender_assets.cats.txt").read_text().splitlines()
-    paths = [line.split(":")[1] for line in lines if line.count(":") == 2 and not line.startswith("#")]
-    assert paths == ["Keymark", "Keymark/Gait- slow-fast", "Keymark/Gait- slow-fast/Cycle"]
-
-
 def test_what_the_animator_changes_in_an_asset_counts(library: Library) -> None:
     actions = add_assets(library)
     stored = PoseAsset.of(actions[0]).posture().posture

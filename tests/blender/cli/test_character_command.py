@@ -96,32 +96,3 @@ def test_bad_characters_are_one_sentence(
     assert out == "" or text == "damaged.glb"  # whose importer prints into pytest's own stream
     assert "unexpectedly" not in sentence and len(sentence) < 700
     assert tree(tmp_path) == before and tree(cast) == inputs
-
-
-@pytest.mark.parametrize(
-    ("change", "expected"),
-    [
-        (
-            lambda plain: replace(plain, root="c_traj"),
-            "is for another character: 'Anna' has no bone 'c_traj'",
-        ),
-        (
-            lambda plain: replace(plain, roles={k: v for k, v in plain.roles.items() if k != "shin.L"}),
-            "gives no bones for shin.L of 'Anna'",
-        ),
-    ],
-)
-def test_a_map_for_other_bones_is_refused(
-    cast: Path, result: Path, tmp_path: Path, capfd: Out, change: object, expected: str
-) -> None:
-    assert callable(change)
-    write_character_map(tmp_path / "other.json", change(plain_map(plain_character())))
-    character, given = str(cast / "anna.blend"), str(tmp_path / "other.json")
-    assert main(["character", character, "--map", given]) == 2
-    assert expected in one_line(said(capfd)[1])
-    output = tmp_path / "out"
-    words = ["retarget", str(result), "--character", character, "--map", given, "--output", str(output)]
-    assert main([*words, "--quiet"]) == 2
-    sentence = one_line(said(capfd)[1])
-    assert f"keymark: {given} " in sentence and expected in sentence
-    assert not output.exists()

@@ -1,7 +1,6 @@
 """`keymark mend`: motion.json, motion.bvh and the character, complete or not at all."""
 
 import json
-import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -101,93 +100,6 @@ def test_a_mistake_is_one_sentence_and_nothing_changes(
     assert mend(*words) == 2
     assert said in one_line(capfd.readouterr().err)
     assert list(tree(output)) == ["mine.txt"]
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "said"),
-    [
-        ("motion.txt", "", "is no motion; it must be a file that ends in"),
-        ("motion.csv", "a,b\n1,2\n", "has no points"),
-        ("motion.trc", "PathFileType\n", "is no TRC"),
-        ("motion.bvh", "HIERARCHY\n", "is no BVH"),
-        ("motion.json", "{}", "schema_version is missing"),
-        ("motion.fbx", "x", "Blender cannot read it"),
-    ],
-)
-def test_a_file_that_is_no_motion_is_refused(
-    mend: Mend,
-    tmp_path: Path,
-    output: Path,
-    capfd: pytest.CaptureFixture[str],
-    name: str,
-    content: str,
-    said: str,
-) -> None:
-    (tmp_path / name).write_text(content)
-    assert mend(file=tmp_path / name) == 2
-    assert said in one_line(capfd.readouterr().err)
-    assert not output.exists()
-
-
-def two_roots(file: Path, text: str) -> None:
-    """A BVH of the same body twice, the second called Ben's and one meter aside."""
-    hierarchy, _, motion = text.partition("MOTION\n")
-    _, body = hierarchy.split("\n", 1)
-    other = re.sub(r"(ROOT|JOINT) ", r"\1 Ben_", body)
-    frames, step, *rows = motion.splitlines()
-    both = [f"{row} {float(row.split()[0]) + 1.0:.6f} {row.split(' ', 1)[1]}" for row in rows]
-    file.write_text("\n".join([f"HIERARCHY\n{body}{other}MOTION", frames, step, *both, ""]))
-
-
-def test_one_of_two_people_in_a_bvh_is_mended_and_named(
-    mend: Mend, output: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    assert mend() == 0
-    given = tmp_path / "given.bvh"
-    (output / "motion.bvh").rename(given)
-    two_roots(tmp_path / "two.bvh", given.read_text())
-    found = {}
-    for name, words in (
-        ("alone", [given]),
-        ("first", [tmp_path / "two.bvh"]),
-        ("Ben", [tmp_path / "two.bvh"]),
-    ):
-        more = ["--subject", "Ben_pelvis"] if name == "Ben" else []
-        capfd.readouterr()
-        assert mend("--json", *more, file=words[0]) == 0
-        notes = json.loads(capfd.readouterr().out.splitlines()[-1])["notes"]
-        assert any("2 subjects, 'pelvis', 'Ben_pelvis'" in note for note in notes) == (name == "first")
-        found[name] = read_motion(output / "motion.json").points
-    np.testing.assert_allclose(found["first"], found["alone"], atol=1e-5)
-    np.testing.assert_allclose(found["Ben"], found["alone"] + [1.0, 0.0, 0.0], atol=1e-3)
-    assert mend("--subject", "Cleo", file=tmp_path / "two.bvh") == 2
-    assert "its subjects are 'pelvis', 'Ben_pelvis'" in one_line(capfd.readouterr().err)
-
-
-@pytest.mark.parametrize("name", ["bom.bvh", "japanese_sjis.bvh", "comma_decimals.bvh"])
-def test_a_bvh_of_another_system_is_the_same_motion(
-    mend: Mend, output: Path, repository: Path, name: str
-) -> None:
-    folder = repository.parent / "shared" / "failing"
-    if not folder.is_dir():
-        pytest.skip("no shared/failing")
-    found = []
-    for file in ("turn4_bvh_saved_on_another_system/" + name, "turn4_two_people_in_one_bvh/two_roots.bvh"):
-        assert mend(file=folder / file) == 0
-        found.append(read_motion(output / "motion.json").points)
-    np.testing.assert_allclose(found[0], found[1], atol=1e-4)
-
-
-def test_of_a_file_of_several_actions_one_is_named(
-    mend: Mend, output: Path, repository: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    file = repository.parent / "shared" / "failing" / "turn4_several_actions_in_one_file" / "two_actions.glb"
-    if not file.exists():
-        pytest.skip("no shared/failing")
-    assert mend("--json", file=file) == 0
-    assert "2 Actions, 'A_Idle', 'Walk'; the motion is that of 'A_Idle'" in capfd.readouterr().out
-    assert mend("--action", "Walk", file=file) == 0
-    assert len(read_motion(output / "motion.json").time_s) == 86
 
 
 def test_a_motion_that_mend_did_not_make_is_kept(mend: Mend, output: Path, network: Path) -> None:

@@ -13,8 +13,6 @@ from keymark.core.files.digest import content_digest
 from keymark.core.shoot.outcomes import Failure, write_failure
 from keymark.core.take.conversion_record import ConversionRecord, write_record
 from keymark.core.take.motion import Motion, write_motion
-from keymark.operators.bridge.actions import assign_action
-from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.asset_catalogs import NAME as CATALOGS
 from keymark.operators.cli.main import main
 
@@ -106,23 +104,6 @@ def test_every_motion_becomes_an_asset_that_says_what_it_is(
     assert (first.asset_data.author, first.asset_data.license) == ("", "")
     assert tuple(first.preview.image_size) == (256, 256)
     assert (first.use_frame_range, first.frame_start, first.frame_end) == (True, 1.0, 13.0)
-
-
-def test_an_actor_given_the_action_moves_as_the_motion_says(
-    add_result: AddResult,
-    results: Path,
-    tmp_path: Path,
-    wave_motion: Motion,
-    shown_points: Callable[[bpy.types.Object], np.ndarray],
-) -> None:
-    add_result("clip")
-    assert merge(results, tmp_path / "library.blend") == 0
-    (action,) = loaded(tmp_path / "library.blend")
-    actor = build_armature(bpy.context.scene, wave_motion.body, "Anna")
-    assign_action(actor, action)
-    for frame in (1, 8, 13):
-        bpy.context.scene.frame_set(frame)
-        np.testing.assert_allclose(shown_points(actor), wave_motion.points[frame - 1], atol=1e-5)
 
 
 def test_curves_are_those_of_the_converted_scene(results: Path, tmp_path: Path) -> None:

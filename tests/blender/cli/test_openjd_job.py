@@ -3,7 +3,6 @@
 import json
 import os
 import shlex
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -113,22 +112,6 @@ def test_a_task_converts_its_share_and_nothing_else(
     done = openjd("run", template, *words, *parameters(keymark, shoot, output, tasks=5))
     assert done.returncode == 0, done.stdout + done.stderr
     assert [name for name in NAMES if (output / name).exists()] == ["day1/take02"]
-
-
-def test_a_character_goes_along(template: Path, keymark: Path, cast: Path, tmp_path: Path) -> None:
-    shoot, output = write_shoot(tmp_path / "shoot", 1), tmp_path / "out"
-    shutil.copyfile(cast / "anna.blend", shoot / "anna.blend")
-    said = json.loads((shoot / "shoot.json").read_text("utf-8")) | {"character": {"file": "anna.blend"}}
-    (shoot / "shoot.json").write_text(json.dumps(said), "utf-8")
-    step = ("--step", "Merge", "--run-dependencies")
-    done = openjd("run", template, *step, *parameters(keymark, shoot, output, 1))
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert (output / NAMES[0] / "character.blend").is_file()
-    with bpy.data.libraries.load(str(output / "asset_library" / "Walk.blend"), assets_only=True) as (
-        found,
-        _,
-    ):
-        assert sorted(found.actions) == ["day1 take01", "day1 take01 Anna"]
 
 
 def test_a_failed_take_stops_the_others_only_if_that_is_wanted(

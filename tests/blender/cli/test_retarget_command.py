@@ -140,24 +140,6 @@ def test_a_motion_needs_no_footage(retarget: Retarget, result: Path, output: Pat
         assert read_retarget_record(output).take == "lone"
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["--tolerance", "2000"], "--tolerance is 2000.0; it must be a number from 0 to 1000 mm"),
-        (["--tolerance", "few"], "--tolerance is 'few'"),
-        (["--tolerance", "nan"], "--tolerance is nan"),
-        (["--format", "obj"], "--format is obj; bvh, fbx, glb, usd, trc, c3d are valid"),
-        (["--legs", "wheels"], "--legs"),
-        (["--root-motion", "backwards"], "--root-motion"),
-    ],
-)
-def test_unusable_options_are_refused(
-    retarget: Retarget, output: Path, capfd: pytest.CaptureFixture[str], words: list[str], said: str
-) -> None:
-    assert retarget(*words) == 2
-    assert said in one_line(capfd.readouterr().err) and not output.parent.exists()
-
-
 def test_what_is_no_motion_is_refused(
     retarget: Retarget,
     result: Path,
@@ -190,25 +172,6 @@ def test_results_of_a_take_are_no_place_for_it(
     assert main([*words, "--quiet"]) == 2
     assert "holds the result of a conversion; name another folder" in one_line(capfd.readouterr().err)
     assert tree(result) == before
-
-
-def test_a_failure_leaves_the_folder_as_it_was(
-    retarget: Retarget, output: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
-    from keymark.core.errors import ConversionError
-    from keymark.operators.bridge.character import import_character as character_files
-
-    assert retarget() == 0
-    before = tree(output.parent)
-
-    def fail(path: Path, _blocks: object, **_options: object) -> None:
-        path.write_bytes(b"half")
-        raise ConversionError("the disk is full")
-
-    monkeypatch.setattr(character_files, "write_blend", fail)
-    assert retarget() == 1
-    assert "the disk is full" in one_line(capfd.readouterr().err)
-    assert tree(output.parent) == before
 
 
 def test_nothing_stays_in_the_open_file(retarget: Retarget) -> None:

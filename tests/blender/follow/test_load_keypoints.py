@@ -23,7 +23,6 @@ from keymark.operators.follow.evidence import (
     keypoints_at,
     keypoints_label,
 )
-from keymark.operators.follow.load_keypoints import KEYMARK_OT_detect_keypoints
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 
@@ -68,14 +67,6 @@ def test_a_plain_take_is_reconstructed_from_keypoints(
         away = shown_points(active_take(plain).armature) - wave_motion.points[frame - 1]
         errors.append(np.linalg.norm(away, axis=1))
     assert np.mean(errors) < 0.02
-
-
-def test_keyframes_are_proposed_from_keypoints(plain: bpy.types.Scene, keypoint_file: Path) -> None:
-    take = load(keypoint_file)
-    take.keyframe_count = 4
-    assert bpy.ops.keymark.propose_keyframes() == {"FINISHED"}
-    frames = [proposal.frame for proposal in active_take(plain).proposals]
-    assert len(frames) == 4 and (frames[0], frames[-1]) == (1, FRAMES)
 
 
 def test_what_is_seen_is_said(plain: bpy.types.Scene, keypoint_file: Path) -> None:
@@ -268,14 +259,6 @@ def test_a_clip_without_anybody_changes_nothing(
     with pytest.raises(RuntimeError, match="nobody is seen"):
         bpy.ops.keymark.detect_keypoints()
     assert sorted(plain_take.folder.iterdir()) == before and len(active_take(plain).follow.files) == 0
-
-
-def test_a_job_that_is_closed_leaves_nothing_behind(plain: bpy.types.Scene, plain_take: Take) -> None:
-    job = KEYMARK_OT_detect_keypoints.start(KEYMARK_OT_detect_keypoints, plain)
-    for _ in range(3):
-        assert next(job).stage == "Detecting keypoints"
-    job.close()
-    assert not list(plain_take.folder.glob("*keypoints*")) and len(active_take(plain).follow.files) == 0
 
 
 SWITCHES = ("use_markers", "use_keypoints", "use_depth_hints", "use_contours")

@@ -134,24 +134,6 @@ def faster(shoot: Path) -> None:
     no_markers(shoot)
 
 
-@pytest.mark.parametrize(
-    ("change", "sentence"),
-    [
-        (lambda value: value.update(size=[120, 160]), "size"),
-        (lambda value: value["frames"].extend(value["frames"]), f"has {2 * FRAMES} frames"),
-        (lambda value: value.update(frames=[None] * FRAMES), "nobody is seen"),
-        (lambda value: value.pop("layout"), "no known format has"),
-    ],
-)
-def test_keypoints_that_stop_a_take_are_said(
-    shoot: Path, check: Callable[..., Any], change: Callable[[dict[str, Any]], object], sentence: str
-) -> None:
-    edit_json(shoot / KEYPOINTS, change)
-    status, take = check(shoot)
-    assert status == 1 and len(take["problems"]) == 1 and sentence in take["problems"][0]
-    assert "take01.keypoints.json" in take["problems"][0] and len(take["markers"]) == 5
-
-
 def test_two_people_need_a_keyframe(shoot: Path, check: Callable[..., Any]) -> None:
     def doubled(value: dict[str, Any]) -> None:
         other = [[[x / 2, y, score] for x, y, score in frame] for frame in value["frames"]]

@@ -48,14 +48,6 @@ def test_markers_may_be_missing(folder: Path, markers: object) -> None:
     assert evidence_of(read_take(folder)) == (CONTOURS,)
 
 
-def test_keypoints_beside_are_found(folder: Path) -> None:
-    hinted(folder)
-    take = read_take(folder)
-    assert evidence_of(take) == EVIDENCE
-    (people,) = take.keypoints
-    assert len(people.frames) == FRAMES and people.source == "drawn"
-
-
 def test_a_missing_clip_that_keypoints_need_is_told_with_the_takes_file(folder: Path) -> None:
     hinted(folder)
     edit_json(folder / "take.json", frame_count=None, clip="elsewhere.mp4")
@@ -63,16 +55,6 @@ def test_a_missing_clip_that_keypoints_need_is_told_with_the_takes_file(folder: 
         InputError, match=r"take.json: frame_count is not given, and .*elsewhere.mp4: no such"
     ):
         read_take(folder)
-
-
-def test_keypoints_may_be_several_files(folder: Path) -> None:
-    write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
-    for name in ("one", "two"):
-        write_keypoints(folder / f"{name}.json", true_postures(FRAMES), detector=name)
-    edit_json(folder / "take.json", keypoints="two.json")
-    assert [people.source for people in read_take(folder).keypoints] == ["two"]
-    edit_json(folder / "take.json", keypoints=["two.json", "one.json"])
-    assert [people.source for people in read_take(folder).keypoints] == ["two", "one"]
 
 
 def test_evidence_names_what_is_used(folder: Path) -> None:

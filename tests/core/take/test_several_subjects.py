@@ -201,14 +201,3 @@ def test_other_commas_in_a_bvh_are_named(tmp_path: Path) -> None:
     (tmp_path / "commas.bvh").write_text(bvh(2).replace(".25 ", ".25, "))
     with pytest.raises(InputError, match=r"has '0\.25,' among its numbers; they must have a decimal point"):
         read_bvh(tmp_path / "commas.bvh")
-
-
-@pytest.mark.parametrize("name", ["two_subjects.trc", "two_subjects_near.trc"])
-def test_the_files_of_two_people_give_one_of_them(repository: Path, name: str) -> None:
-    folder = repository.parent / "shared" / "failing" / "turn4_two_subjects_in_one_trc"
-    if not folder.is_dir():
-        pytest.skip("no shared/failing")
-    found, _, notes = read_points(folder / name)
-    assert "the motion is that of 'Anna'" in notes[0]
-    shins = np.linalg.norm(found[:, [9, 10]] - found[:, [11, 12]], axis=2)
-    assert np.ptp(shins) < 0.08 and 0.3 < shins.mean() < 0.5
