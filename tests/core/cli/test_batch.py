@@ -93,14 +93,6 @@ def test_failures_stop_nothing_and_are_said_kept_and_forgotten(
     assert studio.summary["wrong"]["status"] == "failed"
 
 
-def test_quiet_is_errors_alone(studio: Studio, capsys: pytest.CaptureFixture[str]) -> None:
-    studio.takes("a", "wrong")
-    assert studio.batch("--quiet") == 1
-    said = capsys.readouterr()
-    first, last = said.err.splitlines()
-    assert said.out == "" and "wrong: " in first and "upside down" in first and "1 of 2" in last
-
-
 def test_a_lost_worker_costs_its_take_one_retry(studio: Studio, capsys: pytest.CaptureFixture[str]) -> None:
     studio.takes("a", "crash", "stumble", "z", *(["killed"] if os.name == "posix" else []))
     assert studio.batch() == 1

@@ -178,29 +178,3 @@ def test_the_libraries_to_choose_from_are_those_that_come_with_keymark(
         for file in (repository / "presets" / "keyframes").glob("*.json")
     )
     assert settings["library"]["choices"] == ["as the takes say", *shipped]
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "sentence"),
-    [
-        ('"exec"', '"shell"', "no worker knows the command shell"),
-        ("exe: settings.program", "program: settings.program", "command exec has no program"),
-        ('subtype: "dir_path"', 'subtype: "folder"', "unknown subtype folder"),
-        ('type: "int32"', 'type: "integer"', "unknown type integer"),
-        ('name, "blender"', 'name, "keymark"', "tasks of type keymark"),
-        ('default: "map"', 'default: "best"', "none of its choices"),
-        ('visible: "web"', 'visible: "farm"', "is visible to farm"),
-        ("job.addTask(merge);", "job.addTask(merge); job.addTask(merge);", "added twice"),
-        ('"--jobs", "1"', '"--jobs", 1', "it must be: strings"),
-        ("const settings = job.settings;", "settings = job.settings;", "settings is not defined"),
-    ],
-)
-def test_the_stand_in_refuses_what_flamenco_would(
-    script: Path, tmp_path: Path, old: str, new: str, sentence: str
-) -> None:
-    source = script.read_text(encoding="utf-8")
-    assert old in source
-    wrong = tmp_path / "wrong.js"
-    wrong.write_text(source.replace(old, new), encoding="utf-8")
-    with pytest.raises(ValueError, match=sentence):
-        compiled(wrong, SETTINGS)

@@ -14,7 +14,6 @@ from keymark.core.prior.learning import LibraryMetadata, learn_library
 from keymark.core.prior.library import library_digest, read_library, write_library
 from keymark.core.session import pose as pose_stage
 from keymark.core.take.conversion_record import read_record
-from keymark.core.take.motion import read_motion
 from keymark.operators.cli.conversion import blender_files
 from keymark.operators.cli.main import main
 
@@ -44,24 +43,6 @@ def convert(take: Path, out: Path, *more: object) -> int:
 
 def said_as_json(capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
     return dict(json.loads(capsys.readouterr().out))
-
-
-def test_a_take_without_keyframes_is_matched(
-    take: Path, library: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out = tmp_path / "out"
-    assert convert(take, out, "--library", library, "--json") == 0
-    said = said_as_json(capsys)
-    assert said["library"] == "swaying" and 0.0 <= said["fit"] <= 1.0
-    rows = json.loads((out / "keyframes.json").read_text(encoding="utf-8"))["keyframes"]
-    assert (
-        [row["frame"] for row in rows] == [match["frame"] for match in said["matches"]] == said["keyframes"]
-    )
-    assert {row["matched"]["library"] for row in rows} == {"composed"}
-    assert all(0.0 <= match["confidence"] <= 1.0 for match in said["matches"])
-    assert said["reason"] in said["notes"] and not any("left aside" in note for note in said["notes"])
-    assert str(out / "keyframes.json") in said["files"]
-    assert len(read_motion(out / "motion.json").points) == FRAMES
 
 
 def test_matched_keyframes_can_be_given_back(

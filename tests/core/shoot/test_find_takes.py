@@ -91,16 +91,6 @@ def test_takes_that_cannot_be_told_apart_are_refused(paths: list[str], sentence:
         find_takes(make(tmp_path / "shoot", *paths))
 
 
-@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="nothing is closed to root")
-def test_a_folder_that_cannot_be_read_is_a_take_that_will_fail(tmp_path: Path) -> None:
-    shoot = make(tmp_path / "shoot", "a/take.json", "closed/take.json")
-    (shoot / "closed").chmod(0)
-    try:
-        assert names(shoot) == ["a", "closed"]
-    finally:
-        (shoot / "closed").chmod(0o700)
-
-
 def test_an_error_of_reading_names_the_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shoot = make(tmp_path / "shoot", "a/take.json", "closed/take.json")
     listing = Path.iterdir
