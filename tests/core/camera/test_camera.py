@@ -111,8 +111,9 @@ def test_a_camera_survives_its_own_fields(angle: float, scale: float, shift: flo
     """Writing and reading gives the same camera; a scaled matrix gives the same view as the plain one."""
     matrix = turned(angle)
     matrix[:3, :3] *= scale
-    read = Camera.from_dict(fields(matrix_world=matrix.tolist(), shift_x=shift, distortion=[0.1, -MOST_DISTORTION]))
-    assert read.distortion == (0.1, -MOST_DISTORTION, 0.0)
+    distortion = [0.1, -MOST_DISTORTION]
+    read = Camera.from_dict(fields(matrix_world=matrix.tolist(), shift_x=shift, distortion=distortion))
+    assert read.distortion == (*distortion, 0.0)
     np.testing.assert_allclose(read.matrix_world, turned(angle), atol=1e-12)
     again = Camera.from_dict(read.to_dict())
     np.testing.assert_allclose(again.matrix_world, read.matrix_world, atol=1e-15)
