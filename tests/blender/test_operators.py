@@ -1,17 +1,14 @@
 """The operators, scripted as an animator would press them."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
 from keymark.core.body.body_volume import MARKER_SEGMENTS
-from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 from keymark.operators.bridge.armature import read_body
-from keymark.operators.bridge.pose import write_posture
 from keymark.operators.follow.properties import SEGMENTS
 from keymark.operators.shell.takes import active_take
 
@@ -50,35 +47,6 @@ def test_a_take_goes_out_and_comes_back(opened: bpy.types.Scene, tiny_take: Take
     for was, now in zip(tiny_take.keyframes, saved.keyframes, strict=True):
         assert now.index == was.index
         assert now.posture.minus(was.posture) == pytest.approx(0.0, abs=1e-4)
-
-
-def test_from_an_empty_scene_to_a_motion(
-    tiny_take: Take, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
-) -> None:
-    scene = bpy.context.scene
-    bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
-    settings = active_take(scene)
-    camera = scene.camera
-    camera.matrix_world = np.array(tiny_take.camera.matrix_world).T.tolist()
-    camera.data.lens, camera.data.sensor_width = 35.0, 36.0
-    bpy.ops.keymark.build_actor(stature=1.72)
-    for style in tiny_take.markers:
-        bpy.ops.keymark.add_marker()
-        assert settings.markers[-1].segment == style.segment
-        settings.markers[-1].color = [value / 255.0 for value in style.color_srgb]
-    for index in wave_motion.keyframe_indices:
-        scene.frame_set(index + 1)
-        write_posture(settings.armature, wave_motion.posture[index])
-        assert bpy.ops.keymark.store_keyframe() == {"FINISHED"}
-    assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
-    assert settings.armature.animation_data.action == settings.motion_action != settings.keyframe_action
-    errors = []
-    for frame in range(1, 14):
-        scene.frame_set(frame)
-        errors.append(np.linalg.norm(shown_points(settings.armature) - wave_motion.points[frame - 1], axis=1))
-    assert np.mean(errors) < 0.04
-    bpy.ops.keymark.show_action(which="KEYFRAMES")
-    assert settings.armature.animation_data.action == settings.keyframe_action
 
 
 def test_proposals_can_be_jumped_to(opened: bpy.types.Scene) -> None:

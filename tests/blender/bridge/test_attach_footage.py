@@ -8,7 +8,7 @@ import pytest
 from keymark.core.camera.camera import Camera
 from keymark.core.take.take import Take
 from keymark.operators.bridge.footage import Footage, attach_footage, read_camera
-from keymark.operators.bridge.footage_camera import clip_lens, is_startup_camera, set_clip_lens, solved_camera
+from keymark.operators.bridge.footage_camera import clip_lens, set_clip_lens, solved_camera
 from keymark.operators.bridge.result_files import load_footage
 
 
@@ -88,14 +88,6 @@ def test_an_animated_camera_is_used_as_it_moves(clip: bpy.types.MovieClip) -> No
     seen = read(mine, clip, 13)
     assert seen.is_moving
     assert seen.matrix_world[[0, -1], 0, 3] == pytest.approx([0.0, 1.2], abs=1e-5)
-
-
-def test_the_startup_files_camera_is_recognized() -> None:
-    bpy.ops.wm.read_homefile(use_factory_startup=True)
-    camera = bpy.context.scene.camera
-    assert is_startup_camera(camera)
-    camera.location.x += 0.1
-    assert not is_startup_camera(camera)
 
 
 def test_a_clip_without_its_file_leaves_rate_and_range(clip: bpy.types.MovieClip, tiny_take: Take) -> None:

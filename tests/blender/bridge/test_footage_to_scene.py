@@ -11,7 +11,7 @@ from keymark.core.camera.camera import Camera
 from keymark.core.errors import InputError
 from keymark.core.take.take import Take
 from keymark.operators.bridge.footage import Footage, footage_color, read_camera
-from keymark.operators.bridge.result_files import load_footage, show_footage
+from keymark.operators.bridge.result_files import show_footage
 from mathutils import Vector
 
 FRAMES = np.arange(1.0, 14.0)
@@ -96,14 +96,6 @@ def test_the_scene_takes_size_rate_and_range(tiny_take: Take, camera: Camera) ->
     background = scene.camera.data.background_images[0]
     assert background.clip == scene.active_clip
     assert scene.camera.data.show_background_images
-
-
-def test_a_file_that_is_no_clip_is_refused(tmp_path) -> None:  # noqa: ANN001
-    broken = tmp_path / "broken.mp4"
-    broken.write_bytes(b"not a video")
-    with pytest.raises(InputError, match=r"broken\.mp4"):
-        load_footage(broken)
-    assert len(bpy.data.movieclips) == 0
 
 
 @pytest.mark.parametrize(

@@ -253,7 +253,6 @@ def chain(count: int) -> Character:
     return Character("Rope", tuple(bones))
 
 
-ACTOR_NAMES = ("pelvis", "chest", "head")
 PLAIN = plain_character()
 REFUSED = {
     "no bones": (replace(PLAIN, bones=()), "no bones"),
