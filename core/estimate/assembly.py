@@ -21,8 +21,7 @@ from ..terms.keypoints import LEAST_CONFIDENCE, KeypointModel, KeypointTerm, Obs
 from ..terms.motion import LimitTerm, SmoothnessTerm, belief_term
 from ..terms.reference import ReferenceTerm
 from ..terms.regions import NOISE, ObservedRegions, RegionTerm
-from ..terms.state import ClipState
-from ..terms.term import QuadraticTerm, Term
+from ..terms.term import ClipState, QuadraticTerm, Term
 from .belief import picture_std_m
 from .clip_problem import ClipData, ClipProblem, KeyframeEvidence
 from .keypoint_evidence import KeypointEvidence

@@ -38,7 +38,7 @@ def learn_along(
     model: ContourModel,
     pose: Pose,
     frame: IndexArray,
-    factor: int,
+    factor: float,
     images: list[Image],
     labels: list[NDArray[np.int8]],
 ) -> BandColors:
@@ -63,7 +63,7 @@ def find_shifts(
     pose: Pose,
     frame: IndexArray,
     pictures: Image,
-    factor: int,
+    factor: float,
     appearance: Appearance,
     colors: BandColors,
     search: SearchRange,
@@ -113,7 +113,7 @@ def _measure(
     offset: Array,
     length: Array,
     search: SearchRange,
-    factor: int,
+    factor: float,
 ) -> None:
     """Fill in one part's shifts by the log likelihoods (U, Q, BANDS + 2) of pixels at shares (U, Q)."""
     place = (
@@ -170,7 +170,7 @@ class _Lines:
     half_width: Array
 
     @classmethod
-    def of(cls, outlines: PartOutlines, factor: int) -> "_Lines":
+    def of(cls, outlines: PartOutlines, factor: float) -> "_Lines":
         axis = (outlines.end - outlines.start) / factor
         length = np.linalg.norm(axis, axis=-1)
         direction = axis / np.maximum(length, 1e-6)[..., None]

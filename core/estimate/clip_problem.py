@@ -1,4 +1,4 @@
-"""The estimation problem of a whole clip, without its pictures."""
+"""The estimation problem of a whole clip: what is given, what was calibrated, and what has been learned."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -11,13 +11,15 @@ from ..body.posture import Posture
 from ..body.skeleton import Skeleton
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
+from ..markers.region_tracks import RegionTracks
 from ..prior.frame_prior import REFERENCE_STEP_S, process_noise_factor
 from ..prior.keyframes import with_turns
 from ..terms.head import ObservedHeads
 from ..terms.keypoints import ObservedKeypoints
-from ..terms.region_model import RegionModel
-from ..terms.regions import FEATURES, ObservedRegions
-from ..terms.state import ClipState
+from ..terms.region_model import MarkerPlacement, RegionModel
+from ..terms.regions import FEATURES, ObservedRegions, limb_widths
+from ..terms.term import ClipState
+from ..video.album import Album
 from .belief import Belief
 from .keypoint_evidence import KeypointEvidence
 from .windows import Window
@@ -59,20 +61,62 @@ def uncalibrated(model: RegionModel, keypoints: KeypointEvidence | None = None) 
 
 
 @dataclass(frozen=True, eq=False)
+class Seen:
+    """What was seen in the F frames of a clip."""
+
+    tracks: RegionTracks  # regions of M markers
+    segments: tuple[str, ...]  # the segment each marker is bound to
+    keypoints: Keypoints | None = None  # the performer's; None for none
+    album: Album | None = None  # pictures of all frames, in which contours are measured; None leaves them out
+    there: BoolArray | None = None  # (F,) frames in which the performer is there; all where None
+
+
+@dataclass(frozen=True, eq=False)
 class ClipData:
-    """What is known of a clip of F frames before anything is estimated, except its pictures."""
+    """What is known of a clip of F frames before anything is estimated."""
 
     body: Body
     camera: Camera  # as stated; the calibration has the lens found
     belief: Belief  # in the motion, with its keyframes
-    observed: ObservedRegions  # the markers' regions
-    width_px: Array  # (F, M) half-width of each marker's limb [px]
+    seen: Seen
     keypoints: Keypoints  # of the performer, N of them; left and right exchanged back where they were swapped
-    points: ObservedKeypoints  # the same, as they are compared
     swapped: BoolArray  # (F, N) which of them were exchanged
-    time_s: Array  # (F,)
-    there: BoolArray  # (F,) whether the performer is there; nothing is solved elsewhere
-    heads: ObservedHeads | None = None  # how the head turns; None where nobody looked
+
+    @property
+    def time_s(self) -> Array:
+        """(F,) of the frames [s]."""
+        return self.seen.tracks.time_s
+
+    @cached_property
+    def there(self) -> BoolArray:
+        """(F,) whether the performer is there; nothing is solved elsewhere."""
+        return np.ones(len(self.time_s), dtype=bool) if self.seen.there is None else self.seen.there
+
+    @cached_property
+    def average(self) -> RegionModel:
+        """The model of the markers' regions before anything is calibrated."""
+        placements = tuple(MarkerPlacement.usual(name) for name in self.seen.segments)
+        return RegionModel(self.body, self.camera, placements)
+
+    @cached_property
+    def observed(self) -> ObservedRegions:
+        """The markers' regions."""
+        return ObservedRegions.from_tracks(self.seen.tracks)
+
+    @cached_property
+    def width_px(self) -> Array:
+        """(F, M) half-width of each marker's limb [px]."""
+        return limb_widths(self.average, self.belief.prior.translation, np.arange(len(self.time_s)))
+
+    @cached_property
+    def points(self) -> ObservedKeypoints:
+        """The keypoints as they are compared."""
+        return ObservedKeypoints.of(self.keypoints)
+
+    @cached_property
+    def heads(self) -> ObservedHeads | None:
+        """How the head turns; None where nobody looked."""
+        return ObservedHeads.of(self.keypoints, self.camera)
 
     @cached_property
     def step_s(self) -> Array:
@@ -94,12 +138,10 @@ class ClipData:
 
 @dataclass(frozen=True, eq=False)
 class ClipProblem:
-    """The estimation problem of a clip: what is known, what was calibrated, and what has been learned."""
+    """The estimation problem of a clip: what is given, what was calibrated, and what was learned."""
 
     data: ClipData
     evidence: KeyframeEvidence
-
-    # What the footage has taught.
     prior: Posture  # the interpolated postures with the turns
     turns: IndexArray  # (K - 1,) whole turns about the vertical that the prior adds in each gap
     limb_size: Array  # (D,) factor on the accelerations of each degree of freedom's limb

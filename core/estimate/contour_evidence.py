@@ -180,7 +180,7 @@ def _fit_shapes(
     return model
 
 
-def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edges]], factor: int) -> Array:
+def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edges]], factor: float) -> Array:
     """(O, SHAPE) corrections that best explain the edges at known postures."""
     rate = np.concatenate([predicted.shape_rate for predicted, _ in known])
     width = np.concatenate([predicted.half_width for predicted, _ in known])

@@ -50,7 +50,7 @@ def find_edges(
     pose: Pose,
     frame: IndexArray,
     pictures: Image,
-    factor: int,
+    factor: float,
     appearance: Appearance,
     search: SearchRange = NARROW,
 ) -> Edges:
@@ -123,7 +123,7 @@ def measured(
 
 
 def _occlusion(
-    model: ContourModel, predicted: ContourPrediction, parts: PartOutlines, factor: int
+    model: ContourModel, predicted: ContourPrediction, parts: PartOutlines, factor: float
 ) -> tuple[IndexArray, BoolArray]:
     """Index of the part behind each contour sample, -1 for none, and whether its edge is visible."""
     normal = factor * predicted.normal
@@ -181,7 +181,7 @@ BY_MARKERS = Schedule((NARROW, NARROW))  # where markers locate every limb
 def contour_schedule(
     body: Body,
     camera: Camera,
-    factor: int,
+    factor: float,
     marked: tuple[str, ...],
     prior: Posture,
     keypoints: Keypoints | None = None,

@@ -18,13 +18,13 @@ from ..markers.region_tracks import RegionTracks
 from ..prior.keyframe_proposals import evidence_speed
 from ..prior.keyframes import found_doubt, interpolate
 from ..progress import Job, Progress, within
-from ..take.conversion_settings import METHODS
 from ..take.motion import Motion
 from ..take.presence import SeenTake, absence_notes, unseen_notes, within_shot
 from ..take.read_footage import average_model, check_frame_count, check_in_front
-from ..take.take import Take
+from ..take.take import Take, check_method
 from ..terms.region_model import RegionModel
 from .belief import Belief
+from .clip_problem import Seen
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
@@ -32,7 +32,7 @@ from .notes import contour_notes, evidence_notes, filter_notes, found_notes, mar
 from .performer_placement import feet_over_floor_m, found_ankle_m
 from .reference_evidence import KEYFRAME_WIDTH, NoReference, ReferenceEvidence, with_reference
 from .sigma import LIMB_STD_RAD, place_depth_std_m, undetermined_covariance, unobserved_variance
-from .whole_clip import Seen, WholeClipResult, estimate_whole_clip
+from .whole_clip import WholeClipResult, estimate_whole_clip
 
 CHUNK_FRAMES = 500
 
@@ -88,21 +88,6 @@ def check_reconstructible(take: Take, method: str) -> None:
     check_method(take, method)
     if len(take.keyframes) < 2 and (take.reference is None or method != "map"):
         raise InputError(f"{take.name} has {len(take.keyframes)} keyframes; at least 2 are needed")
-
-
-def check_method(take: Take, method: str) -> None:
-    """Check that a take can be reconstructed by a method, once it has keyframes.
-
-    Raises:
-        InputError: The method is unknown, or needs markers that the take has not got.
-    """
-    if method not in METHODS:
-        raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")
-    if method == "ekf" and not take.markers:
-        raise InputError(
-            f"{take.name}: method is ekf, the paper's filter, which follows markers alone, and this take is "
-            "held against none; map is valid, which uses keypoints and contours too"
-        )
 
 
 def _reconstruct(

@@ -21,8 +21,7 @@ from ..prior.frame_prior import REFERENCE_STEP_S
 from ..prior.keyframes import FULL_TURN, heading_steps_rad
 from ..progress import Part, scaled
 from ..terms.depths import DEPTH_STD_M
-from ..terms.state import ClipState
-from ..video.album import Album
+from ..terms.term import ClipState
 from .assembly import stillness_term
 from .belief import found_covariance
 from .clip_problem import ClipData, ClipProblem
@@ -227,16 +226,12 @@ def refine(
     problem: ClipProblem,
     spans: list[Window],
     states: list[ClipState],
-    album: Album | None,
     contours: ContourEvidence | None,
 ) -> Part[tuple[ClipProblem, list[ClipState], ContourEvidence | None]]:
-    """Learn from the footage what the keyframes could not tell.
-
-    `album` and `contours` None leave contours out, or to be learned.
-    """
+    """Learn from the footage what the keyframes could not tell; `contours` None: to be learned with it."""
     problem, states = yield from scaled(choose_turns(problem, states), 0.0, 0.3)
     problem, states = yield from scaled(adapted(problem, spans, states), 0.3, 0.4)
-    camera = problem.evidence.model.camera  # with the lens that was found
+    album, camera = problem.data.seen.album, problem.evidence.model.camera  # with the lens that was found
     solved = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
     posture = spliced(problem.prior, spans, solved)
     if contours is not None:

@@ -15,7 +15,7 @@ from ..terms.keypoints import EXCHANGED_COST, ObservedKeypoints
 from ..terms.region_model import RegionModel
 from ..terms.regions import FEATURES, ObservedRegions, limb_widths
 from ..terms.solver import descend
-from ..terms.state import ClipState
+from ..terms.term import ClipState
 from .assembly import frame_terms
 from .clip_problem import KeyframeEvidence, uncalibrated
 from .keyframe_evidence import SeenAtKeyframes, read_keyframes

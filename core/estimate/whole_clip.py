@@ -17,17 +17,11 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
-from ..markers.region_tracks import RegionTracks
 from ..numerics.vectors import runs
 from ..prior.frame_prior import REFERENCE_STEP_S
 from ..progress import Part, scaled
-from ..terms.head import ObservedHeads
-from ..terms.keypoints import ObservedKeypoints
-from ..terms.region_model import MarkerPlacement, RegionModel
-from ..terms.regions import ObservedRegions, limb_widths
-from ..video.album import Album
 from .belief import FEWEST_POSED, Belief
-from .clip_problem import LOOSE_NECK, ClipData, ClipProblem, KeyframeEvidence, of_neck
+from .clip_problem import LOOSE_NECK, ClipData, ClipProblem, KeyframeEvidence, Seen, of_neck
 from .contour_evidence import ContourEvidence, contour_rows, learn_contours
 from .contour_search import all_located, contour_schedule
 from .keyframe_evidence import SeenAtKeyframes, read_belief
@@ -39,17 +33,6 @@ from .window_problem import WindowProblem
 from .windows import spliced, windows
 
 MARKERS_SHARE, REFINED_SHARE = 0.35, 0.6  # of the work: following markers, all before contours
-
-
-@dataclass(frozen=True, eq=False)
-class Seen:
-    """What was seen in the F frames of a clip."""
-
-    tracks: RegionTracks  # regions of M markers
-    segments: tuple[str, ...]  # the segment each marker is bound to
-    keypoints: Keypoints | None = None  # the performer's; None for none
-    album: Album | None = None  # pictures of all frames, in which contours are measured; None leaves them out
-    there: BoolArray | None = None  # (F,) frames in which the performer is there; all where None
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,70 +65,48 @@ def estimate_whole_clip(
 
     `hold_rests`: where keyframes are found, feet that rest are held. Yields the fraction done and previews.
     """
-    tracks, segments, album, prior = seen.tracks, seen.segments, seen.album, belief.prior
-    observed = ObservedRegions.from_tracks(tracks)
-    model = RegionModel(body, camera, tuple(MarkerPlacement.usual(name) for name in segments))
-    width_px = limb_widths(model, prior.translation, np.arange(tracks.frame_count))
-    keypoints = Keypoints.none(tracks.frame_count) if seen.keypoints is None else seen.keypoints
+    data, usual = _given(body, camera, seen, belief)
+    album, keypoints, known = seen.album, data.keypoints, belief.frame[belief.calibrating]
+    contours = None  # where markers judge keyframes, contours would add nothing
+    if album is not None and not all_located(body, seen.segments) and len(known) >= FEWEST_POSED:
+        schedule = contour_schedule(body, camera, album.factor, seen.segments, belief.prior)
+        learning = learn_contours(body, camera, album, belief.prior, known, schedule)
+        contours = yield from scaled(learning, 0.0, 0.0)
+    outlines = None if contours is None else partial(contour_rows, contours)
+    every = np.arange(len(data.time_s))
+    at = SeenAtKeyframes(every, belief.prior, data.observed, data.width_px, usual, data.points, outlines)
+    evidence = yield from scaled(read_belief(data.average, at[belief.frame], belief), 0.0, 0.0)
+    if data.heads is not None:
+        # How found keyframes turn heads that are seen is trusted less.
+        loose = of_neck(body.skeleton, 1.0 / LOOSE_NECK)
+        trust = np.where((~belief.posed & data.heads.seen[belief.frame])[:, None], loose, 1.0)
+        evidence = replace(evidence, information=evidence.information * trust[:, :, None] * trust[:, None])
+    # Nothing but contours moves the postures away from the prior that they were learned from.
+    kept = contours if not (seen.segments or keypoints.names or belief.doubt.any()) else None
+    return (yield from _solve(ClipProblem.begun(data, evidence), hold_rests, kept))
+
+
+def _given(body: Body, camera: Camera, seen: Seen, belief: Belief) -> tuple[ClipData, KeypointEvidence]:
+    """What is known, with the keypoints' sides set right, and what is usual of these keypoints."""
+    every, prior, time_s = np.arange(seen.tracks.frame_count), belief.prior, seen.tracks.time_s
+    keypoints = Keypoints.none(len(every)) if seen.keypoints is None else seen.keypoints
     usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources, keypoints.beside)
-    every = np.arange(tracks.frame_count)
     scale = camera.pixels_per_meter(camera.depth(prior.translation, every))
     predicted = usual.model.pixels(body.pose(prior), every)
-    swapped = find_swaps(keypoints, predicted, scale, belief.frame, tracks.time_s)
-    keypoints = doubted_at_changes(keypoints.exchanged(swapped), swapped, tracks.time_s)
-    known = belief.frame[belief.calibrating]
+    swapped = find_swaps(keypoints, predicted, scale, belief.frame, time_s)
+    keypoints = doubted_at_changes(keypoints.exchanged(swapped), swapped, time_s)
     if keypoints.names and not belief.posed.any():  # keyframes posed in space tell how hints err
         keypoints = upright(keypoints, camera)
         usual = replace(usual, depths=usual.depths.unposed())
-    points = ObservedKeypoints.of(keypoints)
+    data, known = ClipData(body, camera, belief, seen, keypoints, swapped), belief.frame[belief.calibrating]
     if keypoints.names and len(known):
-        trusted = keypoint_trust(usual.model, usual.sources, points, body.pose(prior[known]), known)
+        trusted = keypoint_trust(usual.model, usual.sources, data.points, body.pose(prior[known]), known)
         lag = {name: lag for name, lag in trusted.lag.items() if lag}
         usual = replace(usual, trust=trusted.trust, lag=lag)
-    contours = None  # where markers judge keyframes, contours would add nothing
-    if album is not None and not all_located(body, segments) and len(known) >= FEWEST_POSED:
-        schedule = contour_schedule(body, camera, album.factor, segments, prior)
-        learning = learn_contours(body, camera, album, prior, known, schedule)
-        contours = yield from scaled(learning, 0.0, 0.0)
-    outlines = None if contours is None else partial(contour_rows, contours)
-    heads = ObservedHeads.of(keypoints, camera)
-    at = SeenAtKeyframes(
-        belief.frame,
-        belief.postures,
-        observed[belief.frame],
-        width_px[belief.frame],
-        usual,
-        points[belief.frame],
-        outlines,
-    )
-    evidence = yield from scaled(read_belief(model, at, belief), 0.0, 0.0)
-    if heads is not None:
-        # How found keyframes turn heads that are seen is trusted less.
-        loose = of_neck(body.skeleton, 1.0 / LOOSE_NECK)
-        trust = np.where((~belief.posed & heads.seen[belief.frame])[:, None], loose, 1.0)
-        evidence = replace(evidence, information=evidence.information * trust[:, :, None] * trust[:, None])
-    there = np.ones(tracks.frame_count, dtype=bool) if seen.there is None else seen.there
-    data = ClipData(
-        body,
-        camera,
-        belief,
-        observed,
-        width_px,
-        keypoints,
-        points,
-        swapped,
-        tracks.time_s,
-        there,
-        heads,
-    )
-    # Nothing but contours moves the postures away from the prior that they were learned from.
-    kept = contours if not (segments or keypoints.names or belief.doubt.any()) else None
-    return (yield from _solve(ClipProblem.begun(data, evidence), hold_rests, album, kept))
+    return data, usual
 
 
-def _solve(
-    problem: ClipProblem, hold_rests: bool, album: Album | None, contours: ContourEvidence | None
-) -> Part[WholeClipResult]:
+def _solve(problem: ClipProblem, hold_rests: bool, contours: ContourEvidence | None) -> Part[WholeClipResult]:
     """Estimate all frames in windows; `contours` None: to be learned once the markers are followed."""
     data = problem.data
     # 20.0: longer clips are solved in windows of about this length ...
@@ -169,7 +130,7 @@ def _solve(
         states.append(part.state.without_cache())
     if hold_rests:
         problem = replace(problem, rests=rests_of(doubted, spans, states))
-    refining = refine(problem, spans, states, album, contours)
+    refining = refine(problem, spans, states, contours)
     problem, states, contours = yield from scaled(refining, MARKERS_SHARE, REFINED_SHARE)
     dofs = data.body.skeleton.dof_count
     # Half of what is kept of a frame, even in single precision.

@@ -12,8 +12,7 @@ from ..terms.contours import AxialTerm, ContourTerm
 from ..terms.keypoints import KeypointTerm
 from ..terms.regions import FEATURES, NOISE, RegionTerm
 from ..terms.solver import assembling, gauss_newton
-from ..terms.state import ClipState
-from ..terms.term import NormalEquations, total_cost
+from ..terms.term import ClipState, NormalEquations, total_cost
 from .assembly import window_terms
 from .clip_problem import ClipProblem
 from .contour_evidence import ContourEvidence

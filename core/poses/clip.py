@@ -14,8 +14,9 @@ from ..arrays import Array
 from ..body.body_volume import rested
 from ..body.posture import Posture
 from ..estimate.belief import Belief
+from ..estimate.clip_problem import Seen
 from ..estimate.performer_placement import found_ankle_m
-from ..estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
+from ..estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from ..numerics.robust import DEGREES, student_weight
 from ..prior.keyframes import Keyframe, interpolate
 from ..prior.library import Library

@@ -20,8 +20,7 @@ from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
 from ..terms.keypoints import EXCHANGED_COST, ObservedKeypoints
 from ..terms.regions import FEATURES, ObservedRegions, limb_widths
 from ..terms.solver import descend
-from ..terms.state import ClipState
-from ..terms.term import total_cost
+from ..terms.term import ClipState, total_cost
 from .compose_clip import WIDE, frame_costs
 from .composed_states import NO_CONTACT_COST
 from .found_poses import ABOUT_RIGHT_M, distinct_rows

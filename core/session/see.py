@@ -10,12 +10,11 @@ from ..detect.pose_network import NAME, PoseNetwork
 from ..detect.pose_tracking import DETECTING, PeopleFinder, find_people
 from ..detect.standing_moments import picture_turn, turned_note
 from ..errors import InputError, pluralize
-from ..estimate.reconstruct import check_method
 from ..markers.reading import Reading, reading_key
 from ..progress import Job, stretch, within
 from ..take.performer_keypoints import FEWEST_KEYFRAMES, people_of, performer_keypoints
 from ..take.read_footage import open_footage, read_footage
-from ..take.take import Take, with_evidence
+from ..take.take import Take, check_method, with_evidence
 from .session import Inputs, Session, Sight, Stage, WatchedReading
 
 

@@ -13,6 +13,7 @@ from ..files.fields import listed
 from ..markers.ignored_regions import IgnoredRegion
 from ..markers.region_tracks import MarkerStyle
 from ..prior.keyframes import Keyframe
+from .conversion_settings import METHODS
 from .description import TAKE_FILE
 from .evidence import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
 from .reference import ReferenceMotion
@@ -131,4 +132,19 @@ def check_evidence(take: Take, kinds: tuple[str, ...] | None, source: str) -> No
         raise InputError(
             f"{take.file}: has nothing to follow, neither markers nor keypoints, and contours need a camera "
             "that stands still; it must have one of them"
+        )
+
+
+def check_method(take: Take, method: str) -> None:
+    """Check that a take can be reconstructed by a method, once it has keyframes.
+
+    Raises:
+        InputError: The method is unknown, or needs markers that the take has not got.
+    """
+    if method not in METHODS:
+        raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")
+    if method == "ekf" and not take.markers:
+        raise InputError(
+            f"{take.name}: method is ekf, the paper's filter, which follows markers alone, and this take is "
+            "held against none; map is valid, which uses keypoints and contours too"
         )

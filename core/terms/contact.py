@@ -19,8 +19,7 @@ from ..body.human import mass_weights
 from ..body.kinematics import Body
 from ..body.skeleton import SIDES
 from ..camera.camera import Camera
-from .state import ClipState
-from .term import NormalEquations, Rows, Term
+from .term import ClipState, NormalEquations, Rows, Term
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,8 +19,7 @@ from ..body.body_volume import PieceStack, body_pieces
 from ..body.kinematics import Body, Pose
 from ..camera.camera import Camera
 from .occlusion import PartOutlines, View, part_outlines, view_pieces
-from .state import ClipState
-from .term import Rows, Term
+from .term import ClipState, Rows, Term
 
 SHARES = (0.2, 0.4, 0.6, 0.8)  # of the samples along a part, whose ends overlap with other parts
 SIDES = (-1.0, 1.0)

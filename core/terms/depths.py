@@ -13,8 +13,7 @@ from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..camera.camera import Camera
 from .keypoints import KeypointModel
-from .state import ClipState
-from .term import Rows, Term
+from .term import ClipState, Rows, Term
 
 # --- Links of the body whose depth a network guesses
 

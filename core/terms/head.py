@@ -17,8 +17,7 @@ from ..camera.camera import Camera
 from ..detect.keypoints import FACE as FACE_POINTS
 from ..detect.keypoints import FACING, Keypoints
 from .keypoints import FACE
-from .state import ClipState
-from .term import Rows, Term
+from .term import ClipState, Rows, Term
 
 _SIDED = [[-1.0 if name.endswith(".R") else 1.0, 1.0, 1.0] for name in FACE_POINTS]
 USUAL_FACE = np.array([FACE[name.partition(".")[0]] for name in FACE_POINTS]) * _SIDED

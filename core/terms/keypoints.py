@@ -21,8 +21,7 @@ from ..body.rotations import cross
 from ..body.skeleton import SIDES, Placement
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
-from .state import ClipState
-from .term import Rows, Term
+from .term import ClipState, Rows, Term
 
 
 @dataclass(frozen=True)

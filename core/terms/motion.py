@@ -13,8 +13,7 @@ import numpy as np
 from ..arrays import Array
 from ..numerics.block_banded import BlockBanded
 from ..numerics.robust import DEGREES, student_cost, student_weight
-from .state import ClipState
-from .term import NormalEquations, QuadraticTerm, Rows, Term
+from .term import ClipState, NormalEquations, QuadraticTerm, Rows, Term
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 

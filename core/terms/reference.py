@@ -7,8 +7,7 @@ import numpy as np
 
 from ..arrays import Array, BoolArray
 from ..body.human import HIPS
-from .state import ClipState
-from .term import Rows, Term
+from .term import ClipState, Rows, Term
 
 
 @dataclass(frozen=True, eq=False)

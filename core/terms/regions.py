@@ -14,8 +14,7 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..markers.region_tracks import RegionTracks
 from .region_model import MOMENTS, RegionModel, RegionPrediction
-from .state import ClipState
-from .term import Rows, Term
+from .term import ClipState, Rows, Term
 
 FEATURES = 5  # rows of one marker: centroid x, y and three of shape
 

@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import Array
-from .state import ClipState
-from .term import NormalEquations, Term, total_cost
+from .term import ClipState, NormalEquations, Term, total_cost
 
 
 def assembling(

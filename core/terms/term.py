@@ -1,19 +1,94 @@
-"""What a term is, how its rows are weighed and what they cost, and the normal equations that terms add to.
+"""Terms: the state they are asked at, how rows are weighed and what they cost, and the normal equations.
 
 A term gives rows: errors in standard deviations, their slopes, and which loss they have. Weighing outliers,
 widening image noise while annealing, errors that last and the sum of the cost are written here, once for all.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.kinematics import Body, Pose
+from ..body.posture import Posture
 from ..numerics.block_banded import BlockBanded
 from ..numerics.robust import DEGREES, student_cost, student_weight
-from .state import ClipState
+
+
+@dataclass(frozen=True, eq=False)
+class ClipState:
+    """Unknowns of a window or a frame, N = D + B in each of F frames.
+
+    The first D unknowns z describe the deviation δ = L z from the prior, `posture = prior.plus(deviation)`;
+    the factor L makes their accelerations independent and of unit size. The others are biases of image
+    features.
+    """
+
+    body: Body
+    prior: Posture  # a batch of F postures
+    frame: IndexArray  # (F,) their indices in the clip, which a moving camera's pose depends on
+    factor: Array  # (D, D) the matrix L [m, rad]
+    variation: Array  # (F, D) the unknowns z
+    bias: Array  # (F, B) [px]
+
+    @property
+    def frames(self) -> int:
+        """Number of frames F."""
+        return len(self.variation)
+
+    @property
+    def unknowns(self) -> Array:
+        """(F, N) variation and bias side by side."""
+        return np.concatenate([self.variation, self.bias], axis=1)
+
+    @cached_property
+    def deviation(self) -> Array:
+        """(F, D) deviation δ from the prior [m, rad]."""
+        return self.variation @ self.factor.T
+
+    @cached_property
+    def posture(self) -> Posture:
+        """The batch of F estimated postures."""
+        return self.prior.plus(self.deviation)
+
+    @cached_property
+    def pose(self) -> Pose:
+        """Forward kinematics of the postures."""
+        return self.body.pose(self.posture)
+
+    @cached_property
+    def tangent_jacobian(self) -> Array:
+        """(F, D, D) Jacobian of the posture's own tangent by the unknowns z."""
+        return np.asarray(self.prior.plus_jacobian(self.deviation) @ self.factor)
+
+    def without_cache(self) -> "ClipState":
+        """The same state without its cached properties, for which a long clip has no room."""
+        return replace(self)
+
+    def of_frames(self, frames: slice) -> "ClipState":
+        """The state of some of its frames."""
+        return replace(
+            self,
+            prior=self.prior[frames],
+            frame=self.frame[frames],
+            variation=self.variation[frames],
+            bias=self.bias[frames],
+        )
+
+    def stepped(self, step: Array, largest: float) -> tuple["ClipState", float]:
+        """The state a step (F, N) away, and the largest change of its postures.
+
+        A frame's step is shortened so that no component of its deviation changes by more than `largest`.
+        """
+        count = self.variation.shape[1]
+        moved = np.abs(step[:, :count] @ self.factor.T).max(axis=1)
+        shrink = np.minimum(1.0, largest / np.maximum(moved, 1e-12))
+        variation = self.variation + step[:, :count] * shrink[:, None]
+        bias = self.bias + step[:, count:]
+        return replace(self, variation=variation, bias=bias), float((moved * shrink).max())
 
 
 class NormalEquations:

@@ -42,25 +42,6 @@ from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
 
 
-def performers_keypoints(
-    footage: Footage,
-    evidence: SceneEvidence,
-    frames: Array,
-    body: Body,
-    keyframes: Sequence[Keyframe],
-    tracks: RegionTracks,
-) -> Keypoints:
-    """The performer's keypoints in scene frames (F,), told from other people's by keyframes, if any."""
-    if not evidence.has_keypoints:
-        return Keypoints.none(len(frames))
-    own = replace(evidence, markers=evidence.markers if tracks.names else (), reference=None)
-    take = scene_take(footage, own, frames, body, read_lens(footage))
-    known = tuple(keyframes) if any(people.most_people > 1 for people in take.keypoints) else ()
-    if known:  # a moving camera is evaluated in every frame, which takes a while
-        take = replace(take, camera=read_camera(footage, frames), keyframes=known)
-    return performer_keypoints(take, tracks)
-
-
 def clip_frames(footage: Footage, evidence: SceneEvidence, kept: Reading | None) -> Job[Array]:
     """Find the scene frames (F,) of the clip's, by a video's time stamps, which a kept reading may have."""
     times = clip_times(footage.open(), kept, evidence.markers, evidence.ignored_regions)
@@ -143,9 +124,16 @@ class FrameInFootage:
         return regions_of_frame(self.footage.open(), time_s, self.styles, expected, ignored, self.index)
 
     def keypoints(self, body: Body, keyframes: Sequence[Keyframe] = ()) -> Keypoints:
-        """The performer's keypoints in all frames, (F, N); none where no keypoints are followed."""
-        how = (self.footage, self.evidence, self.clip_frames)
-        return performers_keypoints(*how, body, keyframes, self.tracks)
+        """The performer's keypoints in all frames (F, N), told from other people's by keyframes, if any."""
+        if not self.evidence.has_keypoints:
+            return Keypoints.none(len(self.clip_frames))
+        tracks, footage = self.tracks, self.footage
+        own = replace(self.evidence, markers=self.styles if tracks.names else (), reference=None)
+        take = scene_take(footage, own, self.clip_frames, body, read_lens(footage))
+        known = tuple(keyframes) if any(people.most_people > 1 for people in take.keypoints) else ()
+        if known:  # a moving camera is evaluated in every frame, which takes a while
+            take = replace(take, camera=read_camera(footage, self.clip_frames), keyframes=known)
+        return performer_keypoints(take, tracks)
 
 
 def frame_in_footage(

@@ -12,8 +12,6 @@ from bpy.types import Context, Event, OperatorProperties, PropertyGroup
 from ...core.body.actor import Actor
 from ...core.camera.camera_evidence import Uprights
 from ...core.errors import InputError, KeymarkError
-from ...core.markers.region_tracks import RegionTracks
-from ..bridge.scene_frames import scene_frames
 from ..footage.found_camera import (
     CLICKED_PX,
     HEIGHT,
@@ -40,6 +38,7 @@ from ..shell.footage_view import (
     ui_scale,
     view_of_footage_under,
 )
+from ..shell.results import reading_of
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of, redraw_sidebars_soon
 from .evidence import scene_evidence
@@ -52,18 +51,15 @@ def standing_performer(take: PropertyGroup, stature_m: float) -> Uprights:
     """Moments in which somebody of that stature is upright; none without keypoints of this clip."""
     from ...core.body.kinematics import Body
     from ...core.detect.standing_moments import standing_keypoints
-    from ..bridge.take_from_scene import performers_keypoints
+    from ..bridge.take_from_scene import frame_in_footage
 
     if not TakeState(take).has_keypoints:
         return Uprights.none()
     body = Body(Actor.from_stature(stature_m))
     with suppress(InputError):
         source = footage_of(take.id_data, take)
-        time_s = np.arange(source.clip.frame_duration) / source.rate
-        tracks = RegionTracks.unmarked(time_s, (source.clip.size[0], source.clip.size[1]))
-        frames = scene_frames(time_s, source.first_frame, source.rate)
-        keypoints = performers_keypoints(source, scene_evidence(take), frames, body, (), tracks)
-        found = standing_keypoints(keypoints, body, source.rate)
+        seen = frame_in_footage(source, scene_evidence(take), reading_of(take))
+        found = standing_keypoints(seen.keypoints(body), body, source.rate)
         if len(found) >= 2:  # fewer tell nothing
             return found
     return Uprights.none()

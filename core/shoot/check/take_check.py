@@ -5,7 +5,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ...detect.pose_network import PoseNetwork
-from ...estimate.reconstruct import check_method
 from ...files.fields import PLACED, Fields, child_location
 from ...markers.marker_check import MarkerReadout
 from ...poses.clip_input import check_followed
@@ -14,7 +13,7 @@ from ...take.conversion_settings import METHODS, NO_SETTINGS, CharacterSettings,
 from ...take.description import Description, effective_settings
 from ...take.evidence import CONTOURS, KEYPOINTS, in_order
 from ...take.read_footage import open_footage
-from ...take.take import Take, evidence_of
+from ...take.take import Take, check_method, evidence_of
 from ...take.take_file import read_described
 from ..discovery import ShootTake
 from .evidence_check import (

@@ -22,9 +22,10 @@ from _scene import (
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.detect.keypoints import Keypoints
+from keymark.core.estimate.clip_problem import Seen
 from keymark.core.estimate.contour_evidence import ROWS, ContourEvidence, contour_rows, learn_contours
 from keymark.core.estimate.contour_search import BY_MARKERS, NARROW, all_located, contour_schedule
-from keymark.core.estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run

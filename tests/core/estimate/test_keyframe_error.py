@@ -14,7 +14,7 @@ from keymark.core.estimate.belief import (
     found_covariance,
     joint_std_rad,
 )
-from keymark.core.estimate.clip_problem import uncalibrated
+from keymark.core.estimate.clip_problem import Seen, uncalibrated
 from keymark.core.estimate.keyframe_evidence import (
     SeenAtKeyframes,
     placement_values,
@@ -34,7 +34,7 @@ from keymark.core.estimate.sigma import (
     undetermined_covariance,
     unobserved_variance,
 )
-from keymark.core.estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
 from keymark.core.terms.depths import DEPTH_STD_M

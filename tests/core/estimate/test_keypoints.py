@@ -26,6 +26,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.camera.camera import Camera
 from keymark.core.detect.keypoints import Keypoints, People, mirror_images
 from keymark.core.detect.performer import person_size
+from keymark.core.estimate.clip_problem import Seen
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence
 from keymark.core.estimate.keypoint_fit import keypoint_notes, observed_joints
 from keymark.core.estimate.keypoint_trust import (
@@ -35,7 +36,7 @@ from keymark.core.estimate.keypoint_trust import (
     sided_by_pictures,
     upright,
 )
-from keymark.core.estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run

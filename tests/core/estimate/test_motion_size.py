@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, SEGMENTS, belief_in, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.clip_problem import ClipProblem
+from keymark.core.estimate.clip_problem import ClipProblem, Seen
 from keymark.core.estimate.refinement import (
     LARGEST_OF_ALL,
     LARGEST_PER_GAP_S,
@@ -17,12 +17,12 @@ from keymark.core.estimate.refinement import (
     followed_markers,
     limb_sizes,
 )
-from keymark.core.estimate.whole_clip import Seen, estimate_whole_clip
+from keymark.core.estimate.whole_clip import estimate_whole_clip
 from keymark.core.estimate.window_problem import WindowProblem
 from keymark.core.estimate.windows import Window, windows
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
-from keymark.core.terms.state import ClipState
+from keymark.core.terms.term import ClipState
 
 FRAMES, EVERY = 61, 15
 WHOLE = [Window(0, FRAMES, 0, FRAMES)]
@@ -190,5 +190,6 @@ def test_a_marker_tells_where_its_limb_is_unless_it_is_lost_for_a_quarter_of_a_s
     seen[there] = True
     for marker, frames in lost.items():
         quality[frames, marker] = 0.0
-    data = replace(data, observed=replace(data.observed, quality=quality), there=seen)
+    tracks = replace(data.seen.tracks, quality=quality)
+    data = replace(data, seen=replace(data.seen, tracks=tracks, there=seen))
     assert followed_markers(data) == followed

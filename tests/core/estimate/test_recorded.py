@@ -24,13 +24,13 @@ from _scene import POSED as FILMED_POSED
 from _scene import TRUTH as FILMED
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.belief import posing_covariance
-from keymark.core.estimate.clip_problem import uncalibrated
+from keymark.core.estimate.clip_problem import Seen, uncalibrated
 from keymark.core.estimate.performer_placement import found_ankle_m, place_standing
 from keymark.core.estimate.reference_alignment import about_hips, align
 from keymark.core.estimate.reference_evidence import STD_M, error_factor, own_and_usual_cost
 from keymark.core.estimate.reference_placement import SeenPoints
 from keymark.core.estimate.single_frame import fit_frame, frame_residuals
-from keymark.core.estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.frame_prior import prior_from_keyframes
 from keymark.core.prior.keyframes import Keyframe, interpolate

@@ -9,7 +9,8 @@ import pytest
 from _scene import BODY, CAMERA, SEGMENTS, belief_in, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.belief import posing_covariance
-from keymark.core.estimate.whole_clip import Seen, WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.clip_problem import Seen
+from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import Preview, run

@@ -14,12 +14,11 @@ from _synthetic_take import (
     write_synthetic_take,
 )
 from keymark.core.errors import InputError
-from keymark.core.estimate.reconstruct import check_method
 from keymark.core.take.conversion_settings import MOST_KEYPOINT_FILES
 from keymark.core.take.description import describe
 from keymark.core.take.evidence import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
 from keymark.core.take.read_footage import check_frame_count, open_clip
-from keymark.core.take.take import Take, evidence_of
+from keymark.core.take.take import Take, check_method, evidence_of
 from keymark.core.take.take_file import read_take, write_take
 
 FRAMES = 16

@@ -25,8 +25,7 @@ from keymark.core.terms.regions import (
     RegionTerm,
 )
 from keymark.core.terms.solver import assembling, descend
-from keymark.core.terms.state import ClipState
-from keymark.core.terms.term import NormalEquations, QuadraticTerm, Rows, Term, total_cost
+from keymark.core.terms.term import ClipState, NormalEquations, QuadraticTerm, Rows, Term, total_cost
 
 FRAMES = 6
 DOFS = HUMAN.dof_count
