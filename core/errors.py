@@ -15,6 +15,9 @@ def pluralize(count: int, one: str, many: str | None = None) -> str:
     return f"{count} {one if count == 1 else many or one + 's'}"
 
 
+MOST_NAMED = 3  # frames, or other things, that a sentence names
+
+
 def frames_in_words(frames: Iterable[float], most: int = 12) -> str:
     """Rising frames for a sentence, `frame 5` or `frames 3 to 7, 12`; of more stretches the first ones."""
     runs: list[list[float]] = []

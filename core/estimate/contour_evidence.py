@@ -32,7 +32,7 @@ from ..terms.contours import (
 from ..video.album import Album
 from .axial_search import find_shifts, learn_along
 from .contour_search import BY_MARKERS, NARROW, Edges, Schedule, SearchRange, find_edges
-from .keyframe_rows import UNUSED, EvidenceRows
+from .keyframe_rows import LENS_DIFFERENCE, UNUSED, EvidenceRows
 from .windows import evenly_spread
 
 CHUNK_FRAMES = 50
@@ -135,7 +135,7 @@ def learn_contours(
         return None
     frame = np.flatnonzero(seen)
     model = ContourModel.average(body, camera)
-    known = keyframes[evenly_spread(keyframes, 60)]
+    known = keyframes[evenly_spread(keyframes)]
     count = min(32, len(frame))
     looked = frame[np.unique(np.round((np.arange(count) + 0.5) * len(frame) / count - 0.5).astype(np.intp))]
     shown = yield from _labeled(model, album, posture[looked], looked)
@@ -204,7 +204,6 @@ def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edge
     return shape
 
 
-LENS_DIFFERENCE = 1e-3
 HALVES = 2
 ROWS = HALVES * len(SIDES)  # rows of a part
 

@@ -23,7 +23,7 @@ from ..terms.region_model import MarkerPlacement, RegionModel
 from ..terms.regions import FEATURES, NOISE, ObservedRegions, feature_rows, missing_variance
 from .belief import FEWEST_POSED, POINT_STD_M, Belief, picture_information, posing_covariance
 from .clip_problem import KeyframeEvidence, uncalibrated
-from .keyframe_rows import UNUSED, EvidenceRows, KeyframeRows
+from .keyframe_rows import LENS_DIFFERENCE, UNUSED, EvidenceRows, KeyframeRows
 from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, learned_std, read_depths
 from .windows import evenly_spread
 
@@ -81,7 +81,6 @@ def placement_jacobian(body: Body, camera: Camera, known: KnownFrames, model: Re
 LEAST_TRUSTED = 0.3  # least visibility and quality of a region that judges a keyframe
 USUAL_SIZE = 0.7  # log-normal prior of the size
 SCALES = np.geomspace(0.1, 2.5, 17)  # sizes of the posing error tried, relative to a person's usual one
-LENS_DIFFERENCE = 1e-3
 
 
 ContourReader = Callable[[Posture, IndexArray], EvidenceRows]  # rows at postures in given frames
@@ -143,8 +142,7 @@ def read_keyframes(
     if not model.placements and not believed.seen.any() and contours is None:
         information = np.linalg.inv(posing) / USUAL_SIZE**2
         return replace(uncalibrated(model, keypoints), posing_scale=USUAL_SIZE, information=information)
-    # 60: Largest number of keyframes that are judged, evenly spread in time: enough for a few parameters.
-    judged = evenly_spread(frame, 60)
+    judged = evenly_spread(frame)
     pose = model.body.pose(posture[judged])
     known = KnownFrames(pose, frame[judged], at.observed[judged])
     # (J, M, 5); without the slow bias, which at the keyframes is mostly the placements'.

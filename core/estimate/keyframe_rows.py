@@ -9,6 +9,7 @@ from scipy.linalg import block_diag
 from ..arrays import Array, BoolArray, IndexArray
 
 UNUSED = 1e6  # variance of a row that does not count [px²]
+LENS_DIFFERENCE = 1e-3  # of the logarithm of the focal length, over which slopes by it are taken
 
 
 @dataclass(frozen=True, eq=False)

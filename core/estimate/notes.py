@@ -4,13 +4,11 @@ import re
 from collections.abc import Iterable
 
 from ..arrays import BoolArray
-from ..errors import frames_in_words
+from ..errors import MOST_NAMED, frames_in_words
 from ..markers.region_tracks import RegionTracks, is_variable_frame_rate
 from ..take.read_footage import VARIABLE_RATE
 from ..take.take import Take
 from .clip_problem import KeyframeEvidence
-
-MOST_NAMED = 3  # largest number of frames that a note names
 
 LEFT_OUT = r"the keypoints of (?P<of>.+?) are .* left out"
 UNFOLLOWED = r"does not follow its control (?P<of>.+) rigidly"

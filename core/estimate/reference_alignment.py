@@ -15,6 +15,7 @@ from ..body.mirror import OPPOSITE
 from ..numerics.markov_chain import exchanged_path
 from ..numerics.robust import DEGREES, multivariate_cost
 from ..take.reference import ReferenceMotion
+from .keypoint_trust import CHANGE
 from .reference_placement import POINTS, Placed, SeenPoints, place
 
 HEAD = POINTS.index("head")
@@ -25,7 +26,6 @@ UPRIGHT = Rotation.from_euler("x", -90.0, degrees=True)
 HEADINGS = 12
 LEANS_DEG = (-30.0, 0.0, 30.0)
 LONGEST_LAG = 8  # frames
-CHANGE = 1.0 / 60.0  # probability that a network begins or ceases to exchange sides, a frame
 
 
 # --- Size and sides

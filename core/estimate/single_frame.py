@@ -95,16 +95,14 @@ def fit_frame(
     fit = _fitted(evidence, observed, belief, frame, points)
     if not points.seen.any():
         return fit
-    mirrored = exchanged(points, evidence.keypoints.model.names, evidence.keypoints.sources)
+    mirrored = exchanged(points, evidence.keypoints)
     other = _fitted(evidence, observed, belief, frame, mirrored)
     return other if other.cost + EXCHANGED_COST < fit.cost else fit
 
 
-def exchanged(
-    points: ObservedKeypoints, names: tuple[str, ...], sources: tuple[str, ...]
-) -> ObservedKeypoints:
+def exchanged(points: ObservedKeypoints, evidence: KeypointEvidence) -> ObservedKeypoints:
     """The keypoints with left and right exchanged; a point without a mirror image stays."""
-    partner = mirror_images(names, sources)
+    partner = mirror_images(evidence.model.names, evidence.sources)
     return ObservedKeypoints(
         points.pixel[:, partner], points.confidence[:, partner], points.depth_m[:, partner]
     )

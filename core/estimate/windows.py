@@ -44,8 +44,9 @@ def windows(frames: int, length: int, margin: int) -> Iterator[Window]:
         yield Window(max(start - margin, 0), min(stop + margin, frames), start, stop)
 
 
-def evenly_spread(frame: IndexArray, most: int) -> IndexArray:
-    """Indices of at most `most` of the keyframes at increasing frames, evenly spread in time."""
+def evenly_spread(frame: IndexArray) -> IndexArray:
+    """Indices of at most 60 of the keyframes at increasing frames, evenly spread in time."""
+    most = 60  # enough for a few parameters
     if len(frame) <= most:
         return np.arange(len(frame))
     wanted = np.linspace(frame[0], frame[-1], most)

@@ -68,9 +68,9 @@ def foot_turns(shins: Shins, soles: Soles, ground: Ground, time_s: Array) -> dic
     return _by_side(shins, soles.above_ground(shins.pitch + flexion, height, level, shins), leveling, turned)
 
 
-def feet_on_floor(shins: Shins, soles: Soles, floor_m: float) -> dict[str, Array]:
-    """Turns as of `foot_turns`, of postures without time: rigid but where a sole would dip into the floor."""
-    height = np.maximum(shins.ankle[..., 2] - floor_m, soles.flat_m)
+def feet_on_floor(shins: Shins, soles: Soles) -> dict[str, Array]:
+    """Turns as of `foot_turns`, of postures without time: rigid but where a sole would dip below z = 0."""
+    height = np.maximum(shins.ankle[..., 2], soles.flat_m)
     nothing = np.zeros_like(height)
     pitch = soles.ahead(shins.pitch, height, np.cos(shins.roll))
     return _by_side(shins, pitch, nothing, nothing)

@@ -273,7 +273,7 @@ def _measure(
 CORNERS = 32
 
 
-def ellipse_outline(centroid: ArrayLike, second_moment: ArrayLike, corners: int = CORNERS) -> Array:
+def ellipse_outline(centroid: ArrayLike, second_moment: ArrayLike) -> Array:
     """Closed outlines (..., K, 2) [px] of the uniform ellipses with given moments; NaN where those are."""
     center = np.asarray(centroid, dtype=np.float64)
     moments = np.asarray(second_moment, dtype=np.float64)
@@ -281,7 +281,7 @@ def ellipse_outline(centroid: ArrayLike, second_moment: ArrayLike, corners: int 
     values, axes = np.linalg.eigh(np.where(known[..., None, None], moments, np.eye(2)))
     # The second moments of a uniform ellipse are a quarter of its squared half-axes.
     half_axes = 2.0 * np.sqrt(np.maximum(values, 0.0))
-    angle = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
+    angle = np.linspace(0.0, 2.0 * np.pi, CORNERS, endpoint=False)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     around = (circle * half_axes[..., None, :]) @ np.swapaxes(axes, -1, -2)
     return np.asarray(np.where(known[..., None, None], center[..., None, :] + around, np.nan))

@@ -8,7 +8,7 @@ from scipy.special import expit, logit
 
 from ..arrays import Array, IndexArray, SingleArray
 from ..body.posture import Posture
-from ..errors import frames_in_words
+from ..errors import MOST_NAMED, frames_in_words
 from ..estimate.performer_placement import found_ankle_m, standing_ankle_m
 from ..estimate.reference_evidence import ReferenceEvidence
 from ..prior.keyframes import Keyframe, Matched, interpolate
@@ -186,9 +186,6 @@ def referred_poses(take: Take, said: ReferenceEvidence) -> FoundPoses:
 
 
 # --- Notes on evidence that no plausible posture explains, one sentence each
-
-
-MOST_NAMED = 3  # largest number of frames that a note names, and of notes
 
 
 def contradiction_notes(take: Take, found: FoundPoses) -> tuple[str, ...]:

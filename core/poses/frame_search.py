@@ -74,8 +74,7 @@ class FrameShown:
 
     def points_of(self, is_exchanged: bool) -> ObservedKeypoints:
         """The keypoints, with left and right exchanged if so."""
-        known = self.evidence.keypoints
-        return exchanged(self.points, known.model.names, known.sources) if is_exchanged else self.points
+        return exchanged(self.points, self.evidence.keypoints) if is_exchanged else self.points
 
 
 # --- A search for the postures that one frame may show, from nothing but what is seen in it

@@ -14,6 +14,7 @@ from ..arrays import Array
 from ..body import rotations
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..body.posture_fit import LIMIT_STD_RAD
 from ..camera.camera import Camera
 
 
@@ -59,9 +60,6 @@ class SightLine:
 
 
 # --- Inverse kinematics
-
-
-LIMIT_STD_RAD = 0.02  # standard deviation of what is beyond a joint's limits, as in `body/posture_fit`
 
 
 @dataclass(frozen=True, eq=False)

@@ -84,7 +84,7 @@ def draw_mannequin(image: Image, figure: CharacterFigure, view: View) -> Image:
 def mannequin(body: Body, posture: Posture) -> CharacterFigure:
     """The body in a single posture, with feet turned where the rigid ones would go below the floor z = 0."""
     pose = body.pose(Posture.stack([posture]))
-    feet = Extremities(feet_on_floor(Shins.of(body, pose), Soles.of(body), 0.0))
+    feet = Extremities(feet_on_floor(Shins.of(body, pose), Soles.of(body)))
     points, triangles, colors = [], [], []
     quads = ring_quads(2 * BANDS_OF_CAP + BANDS_OF_SHAFT + 1, SIDES_OF_RING)
     pieces = body_pieces(body)

@@ -14,7 +14,7 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import LIMBS, limb_of
 from ..body.skeleton import SIDES
 from ..detect.keypoints import Keypoints, SeenPeople
-from ..errors import InputError, frames_in_words
+from ..errors import MOST_NAMED, InputError, frames_in_words
 from ..files.fields import listed
 from ..markers.reading import Reading, without_tracks
 from ..markers.region_tracks import RegionTracks
@@ -111,7 +111,6 @@ SELDOM = 0.05
 """Share of frames below which a limb is seldom seen: detectors take other things for one now and then."""
 HARDLY = 0.1
 """Share of frames up to which a wrist or ankle is named as hardly ever seen; it may still tell the floor."""
-MOST_NAMED = 3
 
 
 def presence(take: Take, reading: Reading, keypoints: Keypoints) -> BoolArray:

@@ -33,12 +33,13 @@ from ..markers.ignored_regions import (
 from ..markers.region_tracks import MarkerStyle
 from .conversion_settings import ConversionSettings
 from .description import KEYPOINT_FILE, Description, describe, keypoint_files
+from .evidence import MOST_MARKERS
 from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
 from .read_footage import open_footage, picture_count
 from .reference import ReadArmature, reference_of_take
 from .take import Take, check_evidence, with_evidence
 
-MOST_MARKERS, LONGEST_MARKER_NAME = 64, 200
+LONGEST_MARKER_NAME = 200
 MARKER_NAME = Text(
     LONGEST_MARKER_NAME, f"one line of at most {LONGEST_MARKER_NAME} visible characters", one_line=True
 )

@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 from bpy.types import Action, Context, Object, PropertyGroup, Scene, ViewLayer
 
-from ...core.errors import InputError
+from ...core.errors import MOST_NAMED, InputError
 from ...core.files.fields import listed
 from ...core.retarget.character import REQUIRED
 from ..bridge.actor_bones import is_actor
@@ -16,8 +16,6 @@ from ..shell.base_operator import capitalized, of_take
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, find_take
 from .map_properties import map_of, role_title
-
-MOST_NAMED = 3  # roles or bones that a sentence names
 
 
 def may_be_character(candidate: Object | None) -> bool:

@@ -6,14 +6,14 @@ from bpy.types import Context, Event, Object, OperatorProperties, PoseBone, Prop
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 from ...core.arrays import Array
-from ...core.errors import InputError
+from ...core.errors import MOST_NAMED, InputError
 from ...core.files.fields import listed
 from ...core.retarget.character import CHAINS
 from ..shell.base_operator import BaseOperator, idle, reported
 from ..shell.fields import SKIP_SAVE, Choice, Text
 from ..shell.footage_view import NAVIGATION, FootageRequest, ask, follow_mouse, stop_asking
 from ..shell.job_operator import cancel_click
-from .characters import MOST_NAMED, active_character, armature, find_character, full_title
+from .characters import active_character, armature, find_character, full_title
 from .map_properties import map_of, role_named, show_map
 from .recognition import RoleBoneOperator, active_bone_of, give_bone, told
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...detect.keypoints import Keypoints, People, mirrored_point
-from ...errors import KeymarkError
+from ...errors import MOST_NAMED, KeymarkError
 from ...files.fields import listed
 from ...markers.ignored_regions import IGNORED_REGIONS, IgnoredRegion, ignored_region_fields
 from ...markers.marker_check import MarkerCheck, MarkerReadout, check_markers
@@ -54,9 +54,6 @@ class Findings:
             yield
         except KeymarkError as error:
             self.problem(str(error))
-
-
-MOST_NAMED = 3
 
 
 def check_keyframes(take: Take, frames: int, others_found: bool, findings: Findings) -> None:

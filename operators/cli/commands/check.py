@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ....core.errors import ConversionError, describe_unexpected, pluralize
+from ....core.errors import MOST_NAMED, ConversionError, describe_unexpected, pluralize
 from ....core.files.fields import listed
 from ....core.files.paths import absolute_path
 from ....core.progress import Job, Progress, run
@@ -27,7 +27,6 @@ STOPS = "!"
 """Before a problem that stops the conversion."""
 FEWEST_IN_COMMON = 3
 """Number of takes from which on a sentence that they share is printed once."""
-MOST_NAMED = 3
 SEPARATOR = "  "
 NARROWEST_NAME = 12
 

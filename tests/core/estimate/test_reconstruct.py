@@ -17,9 +17,10 @@ from keymark.core.api import reconstruct
 from keymark.core.detect.keypoints import People
 from keymark.core.errors import InputError
 from keymark.core.estimate.notes import evidence_notes
-from keymark.core.estimate.reconstruct import METHODS, Reconstruction
+from keymark.core.estimate.reconstruct import Reconstruction
 from keymark.core.progress import Progress, run
 from keymark.core.review.score import read_truth, score_points
+from keymark.core.take.conversion_settings import METHODS
 from keymark.core.take.take import Take, with_evidence
 from keymark.core.take.take_file import read_take
 from threadpoolctl import threadpool_info, threadpool_limits

@@ -9,11 +9,11 @@ from _synthetic_take import write_synthetic_take
 from keymark.core.api import reconstruct
 from keymark.core.body.fingers import Hands
 from keymark.core.detect.keypoints import Keypoints, People, SeenPeople
-from keymark.core.estimate.reconstruct import METHODS
 from keymark.core.progress import run
 from keymark.core.review.compared_keypoints import ComparedKeypoints
 from keymark.core.review.frame_evidence import contour_sight, used_evidence
 from keymark.core.review.review import Review, review
+from keymark.core.take.conversion_settings import METHODS
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take, with_evidence
 from keymark.core.take.take_file import read_take
