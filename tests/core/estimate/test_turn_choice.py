@@ -71,6 +71,8 @@ def test_nobody_turns_faster_than_a_dancer() -> None:
     problem = problem.with_turns(np.zeros_like(problem.turns))
     cost, data = np.zeros(FRAMES), problem.data
     assert [doubt.gap for doubt in doubted_turns(problem, cost)] == [GAP]
-    assert doubted_turns(replace(problem, data=replace(data, time_s=0.2 * data.time_s)), cost) == []
+    tracks = replace(data.seen.tracks, time_s=0.2 * data.time_s)
+    fast = replace(data, seen=replace(data.seen, tracks=tracks))
+    assert doubted_turns(replace(problem, data=fast), cost) == []
     bad = np.where(np.arange(FRAMES) > 60, 3.0, 0.0)
     assert {doubt.gap: doubt.turns for doubt in doubted_turns(problem, bad)}[4] in ((-1, 1), (1, -1))
