@@ -75,9 +75,7 @@ class FrameFit:
     """The posture found for one frame."""
 
     posture: Posture  # a single posture
-    residual_px: Array  # (M,) predicted to observed centroids [px]; NaN where hidden
-    misplaced: tuple[int, ...]  # indices of the markers that the posture does not explain
-    misplaced_points: tuple[str, ...]  # body points of the keypoints that the posture does not explain
+    off: FrameResiduals  # from what is seen
     cost: float  # negative logarithm of its probability, up to a constant of the frame
 
 
@@ -153,8 +151,7 @@ def _fitted(
     best, least = descend(state, frame_terms(evidence, observed, belief, width_px, points))
     chosen = int(np.argmin(least))
     posture, cost = best.posture[chosen], float(least[chosen])
-    found = frame_residuals(evidence, observed, points, posture, frame)
-    return FrameFit(posture, found.marker_px, found.markers, found.points, cost)
+    return FrameFit(posture, frame_residuals(evidence, observed, points, posture, frame), cost)
 
 
 def _factor(model: RegionModel, belief: FramePrior, frame: int) -> Array:

@@ -71,9 +71,9 @@ def near_pose(shown: FrameShown, belief: FramePrior) -> FramePoses:
     `belief` is about that pose, which is not doubted as a whole: no library is asked.
     """
     fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, shown.points)
-    names = [shown.tracks.names[marker] for marker in fit.misplaced]
+    names = [shown.tracks.names[marker] for marker in fit.off.markers]
     only = Candidate(fit.posture, "", False, 1.0)
-    return FramePoses((only,), (*names, *fit.misplaced_points), fit.cost)
+    return FramePoses((only,), (*names, *fit.off.points), fit.cost)
 
 
 def _hypotheses(search: FrameSearch, belief: FramePrior | None) -> Hypotheses:

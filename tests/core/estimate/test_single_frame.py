@@ -64,11 +64,11 @@ def test_the_markers_are_never_seen_farther_off_than_before(seed: int) -> None:
     frame = int(rng.integers(10, 45))
     belief = prior_from_keyframes(keyframes(frame - 10), frame, 30.0)
     found = fit(belief, tracks, frame)
-    assert np.nansum(np.log1p(found.residual_px**2)) <= np.nansum(
+    assert np.nansum(np.log1p(found.off.marker_px**2)) <= np.nansum(
         np.log1p(before_px(belief, tracks, frame) ** 2)
     )
     hidden = ~np.isfinite(tracks.centroid[frame, :, 0])
-    np.testing.assert_array_equal(np.isnan(found.residual_px), hidden)
+    np.testing.assert_array_equal(np.isnan(found.off.marker_px), hidden)
 
 
 def test_what_is_believed_exactly_stays() -> None:
@@ -76,7 +76,7 @@ def test_what_is_believed_exactly_stays() -> None:
     tracks = replace(tracks, centroid=np.full_like(tracks.centroid, np.nan))
     found = fit(prior_from_keyframes(keyframes(5), 20, 30.0), tracks, 20)
     assert np.abs(found.posture.minus(TRUTH[5])).max() < 1e-9
-    assert found.misplaced == ()
+    assert found.off.markers == ()
 
 
 def test_a_marker_that_no_posture_explains_is_named() -> None:
@@ -84,8 +84,8 @@ def test_a_marker_that_no_posture_explains_is_named() -> None:
     centroid = np.array(tracks.centroid)
     centroid[20, 3] = (4.0, 4.0)
     found = fit(prior_from_keyframes(keyframes(15), 20, 30.0), replace(tracks, centroid=centroid), 20)
-    assert found.misplaced == (3,)
-    assert np.nanmax(np.delete(found.residual_px, 3)) < 3.0
+    assert found.off.markers == (3,)
+    assert np.nanmax(np.delete(found.off.marker_px, 3)) < 3.0
 
 
 def test_the_ground_tells_how_far_away_someone_stands() -> None:
@@ -125,7 +125,7 @@ def test_a_rough_pose_is_corrected() -> None:
     belief = prior_from_pose(TRUTH[20].plus(rough))
     found = fit(belief, tracks, 20)
     assert error_mm(found.posture, 20) < 0.8 * error_mm(belief.posture, 20)
-    assert np.nanmean(found.residual_px) < 0.3 * np.nanmean(before_px(belief, tracks, 20))
+    assert np.nanmean(found.off.marker_px) < 0.3 * np.nanmean(before_px(belief, tracks, 20))
 
 
 NAMES = (
@@ -206,7 +206,7 @@ def test_a_keypoint_on_another_thing_is_named_and_does_no_harm() -> None:
     pixel[:, NAMES.index("wrist.L")] += 80.0
     belief = prior_from_keyframes(keyframes(20), 26, 30.0)
     found = fit_points(belief, replace(keypoints, pixel=pixel), 26)
-    assert found.misplaced_points == ("wrist.L",)
+    assert found.off.points == ("wrist.L",)
     assert error_mm(found.posture, 26) < 1.3 * error_mm(fit_points(belief, keypoints, 26).posture, 26) + 5.0
 
 
