@@ -94,7 +94,8 @@ def test_hands_and_heads_whose_turn_is_hardly_seen_are_told_frame_by_frame(take:
     hands = Hands(np.zeros((24, 2, 5)), np.zeros((24, 2, 3)), sure)
     heads = ObservedHeads(np.broadcast_to(np.eye(3), (24, 3, 3)), std_rad)
     solution = result.solution
-    data = replace(solution.problem.data, heads=heads)
+    data = replace(solution.problem.data)
+    vars(data)["heads"] = heads
     solution = replace(solution, problem=replace(solution.problem, data=data))
     looked = replace(result, motion=replace(result.motion, hands=hands), solution=solution)
     assert np.argwhere(run(review(take, looked, np.arange(24))).unsure).tolist() == [[5, 1], [7, 2], [8, 2]]
