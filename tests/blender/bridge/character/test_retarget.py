@@ -250,7 +250,6 @@ def test_the_median_curve_has_a_key_in_a_fifth_of_the_frames(
     )
     curves = curves_of(character.animation_data.action, character).values()
     keys = np.median([len(curve.keyframe_points) for curve in curves])
-    print(kind, keys / len(made.keys.frames), made.quality)
     assert 2 < keys <= 0.2 * len(made.keys.frames)
     assert made.quality.skate_mm is not None and made.quality.skate_mm < 0.1
 
