@@ -74,9 +74,18 @@ class Footage:
         return Clip.open(self.path, self.rate, (self.clip.size[0], self.clip.size[1]))
 
 
+def _file(clip: MovieClip) -> Path:
+    return Path(bpy.path.abspath(clip.filepath, library=clip.library))
+
+
+def is_missing(clip: MovieClip | None) -> bool:
+    """Whether a clip's file is missing."""
+    return clip is not None and not _file(clip).exists()
+
+
 def clip_path(clip: MovieClip) -> Path:
     """The file of a movie clip; InputError where it is missing."""
-    path = Path(bpy.path.abspath(clip.filepath, library=clip.library))
+    path = _file(clip)
     if path.exists():
         return path
     raise InputError(f"{path}: the footage is not there; say where it is now with Find Clip in the step Clip")

@@ -10,7 +10,7 @@ from bpy.types import Context, Event, MovieClip, Object, PropertyGroup
 from ...core.errors import InputError
 from ...core.files.paths import VIDEOS
 from ...core.markers.region_tracks import is_variable_frame_rate
-from ..bridge.footage import attach_footage, clip_path, is_guess
+from ..bridge.footage import attach_footage, is_guess, is_missing
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
 from ..shell.base_operator import BaseOperator, browse, chosen_file, footage, idle, of_context, of_take, warn
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
@@ -89,17 +89,6 @@ def update_clip_digest(take: PropertyGroup) -> None:
         from ...core.markers.reading import footage_digest
 
         take.clip_state.contents = footage_digest(footage_of(take.id_data, take).path)
-
-
-def is_missing(clip: MovieClip | None) -> bool:
-    """Whether a clip's file is missing."""
-    if clip is None:
-        return False
-    try:
-        clip_path(clip)
-    except InputError:
-        return True
-    return False
 
 
 def take_name(path: Path) -> str:

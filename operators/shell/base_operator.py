@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import ClassVar
 
 import bpy
-from bpy.types import Context, Operator, PropertyGroup
+from bpy.types import Context, Operator, PropertyGroup, Scene
 
 from ...core.errors import InputError, KeymarkError
 from ..bridge.actor_bones import is_actor, missing_bones
+from ..bridge.footage import is_missing
 from ..bridge.keys import keys_changed
 from .job_progress import job_is_running
 from .take_state import TakeState
@@ -176,6 +177,13 @@ def capitalized(sentence: str) -> str:
     return sentence[:1].upper() + sentence[1:] if sentence.partition(" ")[0].isalpha() else sentence
 
 
+def _note_missing_clips(scene: Scene) -> None:
+    """Note which clips are not there: they may have been moved while the file is open."""
+    settings = getattr(scene, "keymark", None) if scene.library is None else None
+    for take in settings.takes if settings else ():
+        take.clip_state.missing = is_missing(take.clip)
+
+
 @contextmanager
 def reported(operator: Operator) -> Iterator[None]:
     """Turn expected failures into the operator's error report.
@@ -195,6 +203,7 @@ def reported(operator: Operator) -> Iterator[None]:
     except Unchanged as error:
         operator.report({"INFO"}, capitalized(str(error)))
     except KeymarkError as error:
+        _note_missing_clips(bpy.context.scene)
         operator.report({"ERROR"}, capitalized(str(error)))
     except ReferenceError:
         operator.report({"ERROR"}, "An object or a take of this job was removed while it ran; run it again")

@@ -9,10 +9,11 @@ from bpy.types import Context, PropertyGroup
 from ...core.errors import InputError
 from ..actor.properties import KEYMARK_PG_lengths, in_meters
 from ..bridge.actor_bones import is_actor
+from ..bridge.footage import is_missing
 from ..character.properties import KEYMARK_PG_character
 from ..finish.properties import KEYMARK_PG_finish
 from ..follow.properties import KEYMARK_PG_follow, KEYMARK_PG_ignored_region, KEYMARK_PG_marker
-from ..footage.load_footage import camera_chosen, clip_chosen, is_missing
+from ..footage.load_footage import camera_chosen, clip_chosen
 from ..footage.properties import (
     KEYMARK_PG_camera_line,
     KEYMARK_PG_clip_state,

@@ -9,7 +9,8 @@ from bpy.app.handlers import persistent
 from bpy.types import Scene
 
 from ..bridge.actor_bones import hips_at_rest, is_actor, recolor_earlier
-from ..footage.load_footage import is_missing, update_clip_digest
+from ..bridge.footage import is_missing
+from ..footage.load_footage import update_clip_digest
 from ..shell.take_state import TakeState, digest_of
 from ..shell.takes import VERSION
 

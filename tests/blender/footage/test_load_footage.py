@@ -8,6 +8,7 @@ import bpy
 import cv2
 import numpy as np
 import pytest
+from _panel import offered
 from keymark.core.take.take import Take
 from keymark.operators.footage.load_footage import KEYMARK_OT_load_footage, lens_is_guess
 from keymark.operators.shell.takes import active_take
@@ -135,6 +136,19 @@ def test_a_varying_rate_is_noticed(loaded: bpy.types.PropertyGroup, monkeypatch:
 def reopened(path: Path) -> bpy.types.PropertyGroup:
     bpy.ops.wm.open_mainfile(filepath=str(path))
     return active_take(bpy.context.scene)
+
+
+def test_a_clip_that_is_moved_while_the_file_is_open_can_be_found(
+    opened: bpy.types.Scene, tiny_take: Take
+) -> None:
+    tiny_take.folder.rename(tiny_take.folder.with_name("moved"))
+    assert "keymark.relocate_clip" not in offered()
+    with pytest.raises(RuntimeError, match="Find Clip in the step Clip"):
+        bpy.ops.keymark.reconstruct()
+    bpy.context.window_manager.keymark_steps.footage = True
+    assert "keymark.relocate_clip" in offered()
+    bpy.ops.keymark.relocate_clip(filepath=str(tiny_take.folder.with_name("moved") / tiny_take.clip.name))
+    assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
 
 
 def test_a_missing_clip_is_said_and_found_again(tiny_take: Take, tmp_path: Path) -> None:
