@@ -96,6 +96,7 @@ def tilted(character: Character, angle_deg: float) -> Character:
 
 
 def test_confidences_of_bodies_drawn_at_random() -> None:
+    carried: list[int] = []
     for seed in range(12):
         for words, character in (("named", varied(seed)), ("nameless", nameless(varied(seed)))):
             found = recognize(character.character).character_map
@@ -103,5 +104,7 @@ def test_confidences_of_bodies_drawn_at_random() -> None:
             body = [bones for role, bones in sorted(roles.items()) if role not in FINGER_ROLES]
             sure = [[bones.confidence, len(bones.bones), *bones.shares] for bones in body]
             assert_recorded(f"recognized {words} {seed}", *sure)
+            carried += [len(each) for each in character.character.children]
             stances = [find_stance(tilted(character.character, deg), found) for deg in (0.0, 2.5, 20.0)]
             assert_recorded(f"stance {words} {seed}", *stances)
+    assert_recorded("children", carried)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from _characters import plain_character, plain_map
 from _controls import with_ik
+from _recorded import assert_recorded
 from keymark.core.feet.contacts import Contact
 from keymark.core.keys.tolerances import RESTING_M
 from keymark.core.retarget.character import Similarity
@@ -174,6 +175,7 @@ def test_every_bone_has_points_that_show_its_place_and_turn() -> None:
     known = plain_map(character)
     soles = {"foot.L": np.array([[10.0, 5.0, 0.0]])}
     points = held_points(character, known, soles)
+    assert_recorded("held points", *(point.place for point in points))
     for role in known.roles:
         for bone in known.bones(role):
             places = np.array([point.place for point in points if point.bone == bone])

@@ -1,7 +1,8 @@
 """Names of bones as words: sides, parts, and what plays no role."""
 
 import pytest
-from keymark.core.retarget.recognition.names import CLEAR, read_name
+from _recorded import assert_recorded
+from keymark.core.retarget.recognition.names import CLEAR, LIMB_WORDS, TRUNK_WORDS, read_name
 
 
 @pytest.mark.parametrize(
@@ -47,6 +48,9 @@ def test_a_side_makes_a_hip_a_thigh() -> None:
     assert read_name("hip").scores["hips"] >= CLEAR
     assert read_name("LeftHip").clear_part == "thigh"
     assert read_name("pelvis.L").clear_part is None
+    for kind, words in (("trunk", TRUNK_WORDS), ("limbs", LIMB_WORDS)):
+        scores = [list(read_name(" ".join(each)).scores.values()) for each in sorted(words)]
+        assert_recorded(f"scores of {kind}", *scores)
 
 
 @pytest.mark.parametrize("name", ["bone_012", "Bone.003", "x", "", "кость", "_", "lip" * 60, "l" * 5000])
