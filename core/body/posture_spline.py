@@ -27,7 +27,15 @@ def cubic_spline(posed: Posture, knots: Array, times: Array) -> Posture:
     limit = 3.0 * np.minimum(np.abs(before), np.abs(after))
     tangent[1:-1] = np.where(before * after > 0.0, np.clip(parabolic, -limit, limit), 0.0)
     interval, elapsed = find_intervals(knots, times)
-    return posed[interval].plus(_hermite(posed, step, gap, tangent, interval, elapsed))
+    # The later tangent is a body velocity at the later posture; J_r⁻¹ turns it into the curve's own rate.
+    arrival, dofs = tangent[1:].copy(), posed.skeleton.ball_dofs
+    inverse = rotations.right_jacobian_inverse(step[:, dofs])
+    arrival[:, dofs] = np.einsum("kbij,kbj->kbi", inverse, tangent[1:][:, dofs])
+    h = gap[interval]
+    u = elapsed[:, None] / h
+    from_first = (u**3 - 2 * u**2 + u) * h * tangent[:-1][interval]
+    to_last = (3 * u**2 - 2 * u**3) * step[interval] + (u**3 - u**2) * h * arrival[interval]
+    return posed[interval].plus(from_first + to_last)
 
 
 def find_intervals(knots: Array, times: Array) -> tuple[IndexArray, Array]:
@@ -35,23 +43,3 @@ def find_intervals(knots: Array, times: Array) -> tuple[IndexArray, Array]:
     held = np.clip(times, knots[0], knots[-1])
     interval = np.clip(np.searchsorted(knots, held, side="right") - 1, 0, len(knots) - 2)
     return interval, held - knots[interval]
-
-
-def _hermite(
-    posed: Posture, step: Array, gap: Array, tangent: Array, interval: IndexArray, elapsed: Array
-) -> Array:
-    """Tangent steps (F, D) from the posture at the beginning of each time's interval."""
-    skeleton = posed.skeleton
-    # The later tangent is a body velocity at the later posture; J_r⁻¹ turns it into the curve's own rate.
-    arrival = tangent[1:].copy()
-    dofs = skeleton.ball_dofs
-    arrival[:, dofs] = np.einsum(
-        "kbij,kbj->kbi", rotations.right_jacobian_inverse(step[:, dofs]), tangent[1:][:, dofs]
-    )
-    u = (elapsed / gap[interval, 0])[:, None]
-    h = gap[interval]
-    return np.asarray(
-        (u**3 - 2 * u**2 + u) * h * tangent[:-1][interval]
-        + (3 * u**2 - 2 * u**3) * step[interval]
-        + (u**3 - u**2) * h * arrival[interval]
-    )

@@ -217,17 +217,17 @@ def same_person(pixel: Array, fps: float, looked: Mapping[int, bool] = NOTHING) 
     through one after the other and that have the most frames. Of the frames that were looked at, `looked`
     says whether the picture shows somebody there: a piece counts as much as it does.
     """
-    told = np.flatnonzero(np.isfinite(pixel).all(axis=-1).sum(axis=1) >= FEWEST)
+    shown = np.flatnonzero(np.isfinite(pixel).all(axis=-1).sum(axis=1) >= FEWEST)
     kept = np.ones(len(pixel), dtype=np.bool_)
-    if len(told) < 2:
+    if len(shown) < 2:
         return kept
-    own = pixel[told] / float(np.median(person_size(pixel[told])))
-    pieces = _pieces(told, own, fps, looked)
+    own = pixel[shown] / float(np.median(person_size(pixel[shown])))
+    pieces = _pieces(shown, own, fps, looked)
     if len(pieces) < 2:
         return kept
-    answers = [[looked[frame] for frame in map(int, told[piece]) if frame in looked] for piece in pieces]
+    answers = [[looked[frame] for frame in map(int, shown[piece]) if frame in looked] for piece in pieces]
     weight = [
-        len(piece) * float(np.mean(said or [True])) for piece, said in zip(pieces, answers, strict=True)
+        len(piece) * float(np.mean(answer or [True])) for piece, answer in zip(pieces, answers, strict=True)
     ]
     ends = np.array([(rows[0], rows[-1]) for rows in pieces])
 
@@ -235,14 +235,14 @@ def same_person(pixel: Array, fps: float, looked: Mapping[int, bool] = NOTHING) 
         """0 for pieces that a person can have gone through one after the other, else infinite."""
         last, now = ends[before, 1], int(ends[here[0], 0])
         moved = np.array([np.linalg.norm(_moved(own[row], own[now])) for row in last])
-        return np.where(moved < JUMP + RUN_PER_S * (told[now] - told[last]) / fps, 0.0, np.inf)[None]
+        return np.where(moved < JUMP + RUN_PER_S * (shown[now] - shown[last]) / fps, 0.0, np.inf)[None]
 
     every = np.arange(len(pieces))
     track = cheapest_track(
         np.arange(len(pieces) + 1), -np.array(weight), np.zeros(len(pieces)), np.inf, len(pieces), step_costs
     )
     chosen = every[(track != NOBODY) & (np.array(weight) > 0.0)]
-    starts = [told[rows[0]] for rows in pieces] + [len(pixel)]
+    starts = [shown[rows[0]] for rows in pieces] + [len(pixel)]
     for number in set(every) - set(chosen):
         kept[starts[number] : starts[number + 1]] = False
     return kept
@@ -275,8 +275,8 @@ def _pieces(frames: IndexArray, pixel: Array, fps: float, looked: Mapping[int, b
         else:
             speed = np.where(np.isfinite(speed), SMOOTH * now + (1.0 - SMOOTH) * speed, now)
     jumps = bool(cuts)
-    asked = [row for row, frame in enumerate(map(int, frames)) if frame in looked]
-    for first, last in itertools.pairwise(asked):
+    answered = [row for row, frame in enumerate(map(int, frames)) if frame in looked]
+    for first, last in itertools.pairwise(answered):
         differ = looked[int(frames[first])] != looked[int(frames[last])]
         if differ and jumps and cuts.isdisjoint(range(first + 1, last + 1)):
             cuts.add(first + 1 + int(off[first:last].argmax()))

@@ -30,7 +30,7 @@ SEEN_SHARE = 0.9  # of the frames; where somebody is seen in less, that is said
 
 
 def agreement(
-    given: PosingInput, postures: Posture, frames: Sequence[MatchedFrame], floor_m: float | None
+    posing: PosingInput, postures: Posture, frames: Sequence[MatchedFrame], floor_m: float | None
 ) -> tuple[float, str]:
     """Probability that a found motion is usable, and a sentence with what speaks for or against it.
 
@@ -41,26 +41,26 @@ def agreement(
     probability = float(np.mean(chosen)) if chosen else 0.0
     agree: list[str] = []
     against: list[str] = []
-    points = given.body.points(given.body.pose(postures[given.sampled]))
-    size = None if given.unseen else _relative_size(given, points)  # it has learned whole bodies
+    points = posing.body.points(posing.body.pose(postures[posing.sampled]))
+    size = None if posing.unseen else _relative_size(posing, points)  # it has learned whole bodies
     if size is not None:
         own = _right(float(np.log(size)), GUESSED_SIZE_STD, 0.7)  # in a range of wrong heights
         probability *= own
         what = f"by the detector's guess in space the performer is {abs(size - 1.0):.0%} "
-        said = what + ("taller" if size > 1.0 else "shorter") + " than stated"
-        (agree if own >= AGREES else against).append("the detector's sizes" if own >= AGREES else said)
-    if floor_m is not None and any(given.feet_seen):
-        off_m = feet_over_floor_m(given.body, points, floor_m)
+        fault = what + ("taller" if size > 1.0 else "shorter") + " than stated"
+        (agree if own >= AGREES else against).append("the detector's sizes" if own >= AGREES else fault)
+    if floor_m is not None and any(posing.feet_seen):
+        off_m = feet_over_floor_m(posing.body, points, floor_m)
         own = _right(off_m, GROUND_STD_M, 1.0)  # anywhere in it where camera, height or floor are wrong [m]
         probability *= own
-        said = f"the feet are {abs(off_m) * 100.0:.0f} cm {'above' if off_m > 0.0 else 'below'} the floor"
-        (agree if own >= AGREES else against).append("the floor" if own >= AGREES else said)
-    probability *= given.share
-    if given.share < SEEN_SHARE:
-        against.append(f"nobody is seen in {1.0 - given.share:.0%} of the frames")
-    if given.unseen:
-        probability *= 0.5 ** len(given.unseen)  # that a limb which is never seen is about right
-        against.append(f"{named_limbs(given.unseen)} never seen")
+        fault = f"the feet are {abs(off_m) * 100.0:.0f} cm {'above' if off_m > 0.0 else 'below'} the floor"
+        (agree if own >= AGREES else against).append("the floor" if own >= AGREES else fault)
+    probability *= posing.share
+    if posing.share < SEEN_SHARE:
+        against.append(f"nobody is seen in {1.0 - posing.share:.0%} of the frames")
+    if posing.unseen:
+        probability *= 0.5 ** len(posing.unseen)  # that a limb which is never seen is about right
+        against.append(f"{named_limbs(posing.unseen)} never seen")
     if not against and probability < USABLE:
         against.append("other postures look alike")
     probability = float(np.clip(probability, *PROBABILITY_BOUNDS))
@@ -73,11 +73,11 @@ def agreement(
     )
 
 
-def _relative_size(given: PosingInput, points: Array) -> float | None:
+def _relative_size(posing: PosingInput, points: Array) -> float | None:
     """How tall the performer is by the network's guess, over points (T, P, 3); None without one."""
-    keypoints = given.evidence.keypoints
+    keypoints = posing.evidence.keypoints
     # Of points beyond the picture's edge a network guesses even the place.
-    hints = np.where(keypoints.seen[..., None], keypoints.hint_m, np.nan)[given.sampled]
+    hints = np.where(keypoints.seen[..., None], keypoints.hint_m, np.nan)[posing.sampled]
     names = keypoints.names
     ratios = []
     for pair in [(f"{root}.{side}", f"{end}.{side}") for side in SIDES for _, root, end in LIMB_SEGMENTS]:

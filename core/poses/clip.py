@@ -61,23 +61,23 @@ def pose_clip(
     usable = usable_libraries(libraries)
     take = seen.take
     with threadpool_limits(limits=1, user_api="blas"):
-        given = posing_input(seen, keyframe_count)
+        posing = posing_input(seen, keyframe_count)
         if frames is not None:
-            given = replace(given, keyframes=np.unique(np.array(frames, dtype=np.intp)))
-        floor_m = given.posed.floor_m() if floor_m is None else floor_m
-        count = given.evidence.tracks.frame_count
+            posing = replace(posing, keyframes=np.unique(np.array(frames, dtype=np.intp)))
+        floor_m = posing.posed.floor_m() if floor_m is None else floor_m
+        count = posing.evidence.tracks.frame_count
         if between is not None:
-            given = stretch_of(given, *between)
+            posing = stretch_of(posing, *between)
         yield Progress("Learning the parts of postures", 0.0)
-        composing = compose_frames(given, floor_m, usable, floor_open)
+        composing = compose_frames(posing, floor_m, usable, floor_open)
         composed = yield from within("Composing postures", composing, 0.05, 0.8)
-        fitting = within("Fitting the postures", _fitting(take, given, composed), 0.0, 1.0)
+        fitting = within("Fitting the postures", _fitting(take, posing, composed), 0.0, 1.0)
         result = yield from stretch(fitting, 0.8, 1.0)
-        postures = rested(given.body, result.posture, given.unseen)
-        explained, off = _explained(given, postures[given.sampled])
-        candidates = _candidates(given, composed, postures, explained)
+        postures = rested(posing.body, result.posture, posing.unseen)
+        explained, off = _explained(posing, postures[posing.sampled])
+        candidates = _candidates(posing, composed, postures, explained)
         ground_m = 0.0 if floor_m is None and not floor_open else floor_m
-        fit, reason = agreement(given, postures, candidates, ground_m)
+        fit, reason = agreement(posing, postures, candidates, ground_m)
         if between is not None:
             ends = Keyframe(between[0], postures[0]), Keyframe(between[1], postures[-1])
             elsewhere = interpolate(take.keyframes or ends, count)
@@ -91,52 +91,52 @@ def pose_clip(
         fit,
         composed.floor_m,
         reason,
-        _contradictions(take, given, off),
+        _contradictions(take, posing, off),
         one,
         between,
     )
 
 
-def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[WholeClipResult]:
+def _fitting(take: Take, posing: PosingInput, composed: Composition) -> Part[WholeClipResult]:
     """The estimate that holds the composed postures against the footage; posed frames stay."""
-    sampled = given.sampled
-    scale = np.full(len(sampled), 1.0 / np.sqrt(tempering(given.time_s)))  # neighbors err alike
+    sampled = posing.sampled
+    scale = np.full(len(sampled), 1.0 / np.sqrt(tempering(posing.time_s)))  # neighbors err alike
     own = [composed.posture[row] for row in range(len(sampled))]
     corrected = np.zeros(len(sampled), dtype=bool)
-    posed = given.posed
+    posed = posing.posed
     for frame, posture, depth_found in zip(posed.frames, posed.postures, posed.depth_found, strict=True):
         row = int(np.searchsorted(sampled, frame))
         own[row], corrected[row] = posture, depth_found
         scale[row] = 1.0 if depth_found else 0.0
-    tracks = given.evidence.tracks
+    tracks = posing.evidence.tracks
     keyframes = tuple(Keyframe(int(frame), posture) for frame, posture in zip(sampled, own, strict=True))
     return estimate_whole_clip(
-        given.body,
-        given.camera,
-        Seen(tracks, take.marker_segments, given.keypoints, there=given.there),
+        posing.body,
+        posing.camera,
+        Seen(tracks, take.marker_segments, posing.keypoints, there=posing.there),
         Belief(
             interpolate(keyframes, tracks.frame_count),
             sampled,
             scale,
             corrected,
-            found_ankle_m(given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m),
-            given.feet_seen,
+            found_ankle_m(posing.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m),
+            posing.feet_seen,
         ),
         hold_rests=False,  # a held foot would pull on the postures around
     )
 
 
-def _explained(given: PosingInput, posture: Posture) -> tuple[Array, Array]:
+def _explained(posing: PosingInput, posture: Posture) -> tuple[Array, Array]:
     """How much postures (T,) of the frames that are looked at explain.
 
     Returns:
         (T,) mean weight under Student's t of the places of markers and keypoints, 0 where none is seen, and
         (T, A) how far each is off in standard deviations of performers' differences; NaN where not seen.
     """
-    places = marker_moments(given.body, given.evidence, posture).centroid + posture.translation[:, None]
-    shares, off = np.zeros(len(given.sampled)), np.full(places.shape[:2], np.nan)
-    for row, frame in enumerate(given.sampled):
-        seen = frame_likelihood(given.camera, given.evidence, int(frame))
+    places = marker_moments(posing.body, posing.evidence, posture).centroid + posture.translation[:, None]
+    shares, off = np.zeros(len(posing.sampled)), np.full(places.shape[:2], np.nan)
+    for row, frame in enumerate(posing.sampled):
+        seen = frame_likelihood(posing.camera, posing.evidence, int(frame))
         if seen.visible.any():
             residual = np.einsum("aki,ai->ak", seen.rows, places[row] - seen.location)
             off[row, seen.visible] = np.linalg.norm(residual, axis=-1)[seen.visible]
@@ -145,30 +145,30 @@ def _explained(given: PosingInput, posture: Posture) -> tuple[Array, Array]:
 
 
 def _candidates(
-    given: PosingInput, composed: Composition, fitted: Posture, explained: Array
+    posing: PosingInput, composed: Composition, fitted: Posture, explained: Array
 ) -> tuple[MatchedFrame, ...]:
     found = []
-    for frame in given.keyframes:
-        row = int(np.searchsorted(given.sampled, frame))
+    for frame in posing.keyframes:
+        row = int(np.searchsorted(posing.sampled, frame))
         own = composed_candidates(
             composed.stances,
-            *composed.asked[row],
+            *composed.wanted[row],
             fitted[int(frame)],
             int(composed.stance[row]) // HEADINGS,
             float(explained[row]),
         )
-        found.append(MatchedFrame(int(frame) + given.first, own))
+        found.append(MatchedFrame(int(frame) + posing.first, own))
     return tuple(found)
 
 
-def _contradictions(take: Take, given: PosingInput, off: Array) -> Mapping[int, tuple[str, ...]]:
+def _contradictions(take: Take, posing: PosingInput, off: Array) -> Mapping[int, tuple[str, ...]]:
     """Names of what a proposed frame's posture does not explain, by its index in the clip."""
     markers = tuple(style.name for style in take.markers)
-    names = (*markers, *given.evidence.keypoints.names)
+    names = (*markers, *posing.evidence.keypoints.names)
     found = {}
-    for row in map(int, np.searchsorted(given.sampled, given.keyframes)):
+    for row in map(int, np.searchsorted(posing.sampled, posing.keyframes)):
         # Three deviations between performers are no longer explained.
         wrong = tuple(names[column] for column in np.flatnonzero(np.nan_to_num(off[row]) > 3.0))
         if wrong:
-            found[int(given.sampled[row]) + given.first] = wrong
+            found[int(posing.sampled[row]) + posing.first] = wrong
     return found

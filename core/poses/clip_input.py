@@ -110,8 +110,8 @@ def posing_input(seen: SeenTake, keyframe_count: int | None = None) -> PosingInp
     take, tracks, keypoints, there = seen.take, seen.reading.tracks, seen.keypoints, seen.there
     check_followed(take)
     if not (tracks.visible.any() or keypoints.seen.any()):
-        given = (("marker", take.markers), ("keypoint", take.keypoints))
-        missing = " and ".join(name for name, has in given if has)
+        sources = (("marker", take.markers), ("keypoint", take.keypoints))
+        missing = " and ".join(name for name, has in sources if has)
         raise InputError(f"{take.clip}: no {missing} is seen in the footage, so no posture can be found")
     keypoints = sided_by_pictures(keypoints, take.keypoints, take.body.actor.stature_m, tracks.time_s)
     speed = run(evidence_speed(tracks, take.marker_segments, keypoints)).values
@@ -156,8 +156,8 @@ def stretch_of(whole: PosingInput, first: int, last: int) -> PosingInput:
     """The frames from a first to a last one, both included."""
     own, posed = slice(first, last + 1), whole.posed
     rows = np.flatnonzero((posed.frames >= first) & (posed.frames <= last))
-    asked = whole.keyframes
-    inside = asked[(asked >= first) & (asked <= last) & ~np.isin(asked, posed.frames)]
+    frames = whole.keyframes
+    inside = frames[(frames >= first) & (frames <= last) & ~np.isin(frames, posed.frames)]
     camera = whole.camera
     if camera.is_moving:
         camera = replace(camera, matrix_world=camera.matrix_world[own])

@@ -79,14 +79,14 @@ class Composition:
 
     stances: StanceFeatures
     stance: IndexArray  # (T,) the likeliest
-    asked: dict[int, tuple[FrameStates, SingleArray]]
+    wanted: dict[int, tuple[FrameStates, SingleArray]]
     """By the row of each frame whose posture is asked for: its states, and their probabilities."""
     posture: Posture  # (T,)
     floor_m: float  # height of the floor
 
 
 def compose_frames(
-    given: PosingInput, floor_m: float | None, libraries: Sequence[Library], floor_open: bool = False
+    posing: PosingInput, floor_m: float | None, libraries: Sequence[Library], floor_open: bool = False
 ) -> Part[Composition]:
     """Compose the postures of the T frames of a clip that are looked at; `floor_m` is None where unknown.
 
@@ -94,12 +94,12 @@ def compose_frames(
 
     At least one library has a posture.
     """
-    evidence, camera = given.evidence, given.camera
-    stances = stance_features(part_pools(libraries, given.body), evidence)
-    sampled, time_s = given.sampled, given.time_s
+    evidence, camera = posing.evidence, posing.camera
+    stances = stance_features(part_pools(libraries, posing.body), evidence)
+    sampled, time_s = posing.sampled, posing.time_s
     # Distances tried about the first path.
     rounds: tuple[tuple[float, ...], ...] = (WIDE, (1.0, 0.96, 1.04, 0.92, 1.08))
-    known = given.posed
+    known = posing.posed
     # Between posed frames that are no farther apart nobody goes far away and comes back: the place is known.
     ends_posed = {int(sampled[0]), int(sampled[-1])} <= set(map(int, known.frames))
     if ends_posed and (np.diff(evidence.tracks.time_s[known.frames]) <= 2.0).all():
@@ -107,34 +107,34 @@ def compose_frames(
         rough = np.interp(sampled, known.frames, depths)
         rounds = ((1.0, 0.96, 1.04),)  # distances tried between two posed frames, which tell the place
     else:
-        rough = rough_depths(given.body, camera, evidence, sampled, time_s)
+        rough = rough_depths(posing.body, camera, evidence, sampled, time_s)
     if floor_m is None:
-        floor_m = floor_height_m(given, stances, rough, floor_open)
-    floor_seen_m = floor_m if any(given.feet_seen) else None  # feet never seen tell no place
+        floor_m = floor_height_m(posing, stances, rough, floor_open)
+    floor_seen_m = floor_m if any(posing.feet_seen) else None  # feet never seen tell no place
     yield 0.1
     # Seconds that are composed together, and those on either side that are looked at besides: a posture
     # depends on those of a second about it.
     length, margin = (round(one / float(np.median(np.diff(time_s)))) for one in (20.0, 2.0))
     spans = list(windows(len(sampled), length, margin))
-    rows = np.searchsorted(sampled, given.keyframes)
-    stance, asked, pieces = [], {}, []
+    rows = np.searchsorted(sampled, posing.keyframes)
+    stance, wanted, pieces = [], {}, []
     for number, span in enumerate(spans):
         begun, ended = (0.1 + 0.9 * (number + end) / len(spans) for end in (0, 1))
-        looking = _likeliest(given, stances, np.arange(span.first, span.last), rough, rounds, floor_seen_m)
+        looking = _likeliest(posing, stances, np.arange(span.first, span.last), rough, rounds, floor_seen_m)
         states, path = yield from scaled(looking, begun, ended)
         pieces.append(mean_postures(stances, states, path)[span.kept])
         stance.append(path.stance[span.kept])
         for row in rows[(rows >= span.keep_first) & (rows < span.keep_last)]:
-            asked[int(row)] = states[row - span.first], path.posterior[row - span.first]
+            wanted[int(row)] = states[row - span.first], path.posterior[row - span.first]
     posture = Posture.concatenate(pieces)
-    if floor_seen_m is not None and not len(given.posed.frames):
-        posture = _on_floor(given, posture, floor_seen_m)
-    posture = rested(given.body, posture, given.unseen)
-    return Composition(stances, np.concatenate(stance), asked, posture, floor_m)
+    if floor_seen_m is not None and not len(posing.posed.frames):
+        posture = _on_floor(posing, posture, floor_seen_m)
+    posture = rested(posing.body, posture, posing.unseen)
+    return Composition(stances, np.concatenate(stance), wanted, posture, floor_m)
 
 
 def _likeliest(
-    given: PosingInput,
+    posing: PosingInput,
     stances: StanceFeatures,
     own: IndexArray,
     rough: Array,
@@ -145,8 +145,8 @@ def _likeliest(
 
     `rough`: (T,) distances of all rows, about which shares of them are tried, in `rounds`.
     """
-    camera, evidence, sampled, time_s = given.camera, given.evidence, given.sampled[own], given.time_s[own]
-    rough = rough[own]
+    camera, evidence = posing.camera, posing.evidence
+    sampled, time_s, rough = posing.sampled[own], posing.time_s[own], rough[own]
     for turn, shares in enumerate(rounds):
         # The second of two rounds takes three times as long: all frames, and exchanged sides.
         begun, ended = (((turn + end) / len(rounds)) ** 2 for end in (0, 1))
@@ -154,7 +154,7 @@ def _likeliest(
         is_last = turn == len(rounds) - 1
         # The first round is for the place; exchanged sides are tried where it is known.
         rows = np.unique(np.append(np.arange(0, len(sampled), 1 if is_last else 2), len(sampled) - 1))
-        weight, posed = tempering(time_s[rows]), given.posed
+        weight, posed = tempering(time_s[rows]), posing.posed
         costs = frame_costs(camera, evidence, stances, sampled[rows], floor_m)
         for index, frame in enumerate(posed.frames):
             for row in np.flatnonzero(sampled[rows] == frame):
@@ -173,19 +173,19 @@ def _likeliest(
     return states, path
 
 
-def _on_floor(given: PosingInput, posture: Posture, floor_m: float) -> Posture:
+def _on_floor(posing: PosingInput, posture: Posture, floor_m: float) -> Posture:
     """(T,) postures nearer to the camera or farther away, so that the lower foot is on the floor over a time.
 
     The floor is the better ruler of distance, the more the camera looks down on it; a detector's body is
     smaller than the skeleton. Feet far above the floor, on steps or in flight, say nothing.
     """
-    sampled, time_s = given.sampled, given.time_s
-    points = given.body.points(given.body.pose(posture))
+    sampled, time_s = posing.sampled, posing.time_s
+    points = posing.body.points(posing.body.pose(posture))
     feet = points[:, ANKLES]
     foot = feet[np.arange(len(feet)), feet[..., 2].argmin(axis=1)]
-    _, eye = given.camera.pose(sampled)
+    _, eye = posing.camera.pose(sampled)
     eye = np.broadcast_to(eye, foot.shape)
-    wanted_m = floor_m + standing_ankle_m(given.body)
+    wanted_m = floor_m + standing_ankle_m(posing.body)
     below, wanted_below = eye[:, 2] - foot[:, 2], eye[:, 2] - wanted_m
     usable = (np.minimum(below, wanted_below) > SAME_FLOOR_M) & (foot[:, 2] - wanted_m < SAME_FLOOR_M)
     if not usable.any():
@@ -193,7 +193,7 @@ def _on_floor(given: PosingInput, posture: Posture, floor_m: float) -> Posture:
     sized_m = SIZE_STD * np.linalg.norm(foot - eye, axis=-1)
     sure = (
         1.0
-        - (place_depth_std_m(points, np.full(len(points), wanted_m), given.camera, frame=sampled) / sized_m)
+        - (place_depth_std_m(points, np.full(len(points), wanted_m), posing.camera, frame=sampled) / sized_m)
         ** 2
     )
     share = sure * (wanted_below / np.maximum(below, SAME_FLOOR_M) - 1.0)
@@ -215,15 +215,15 @@ def frame_costs(
     return [FrameCosts(each, stances, floor_m) for each in seen]
 
 
-def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array, floor_open: bool) -> float:
+def floor_height_m(posing: PosingInput, stances: StanceFeatures, rough: Array, floor_open: bool) -> float:
     """Height of the floor by where feet are without it; 0 where sizes allow it, as scenes are built.
 
     `floor_open`: that height has no such preference, as before a camera whose own height was assumed.
     """
-    sampled = given.sampled
+    sampled = posing.sampled
     rows = np.unique(np.linspace(0, len(sampled) - 1, MOST_PLACED).astype(int))
     free, heights, eyes = [], [], []
-    every = frame_costs(given.camera, given.evidence, stances, sampled[rows], None)
+    every = frame_costs(posing.camera, posing.evidence, stances, sampled[rows], None)
     for row, cost in zip(rows, every, strict=True):
         if not cost.likelihood.visible.any():
             continue
@@ -248,7 +248,7 @@ def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array, fl
     if not (eye - found) / 1.5 < eye < (eye - found) * 1.5:
         return found
     seen = np.array([row for row, _ in free])
-    grounded = frame_costs(given.camera, given.evidence, stances, sampled[seen], 0.0)
+    grounded = frame_costs(posing.camera, posing.evidence, stances, sampled[seen], 0.0)
     added = [
         float(cost.states(rough[row] * np.array(WIDE)).cost.min()) - least
         for (row, least), cost in zip(free, grounded, strict=True)

@@ -131,8 +131,8 @@ class FoundPoses:
         chosen = frame.candidates[0]
         at = frame.index if index is None else index
         posture = chosen.posture if at == frame.index else self.postures[at]
-        said = Matched(COMPOSED, chosen.name, chosen.mirrored, chosen.confidence)
-        return Keyframe(at, posture, matched=said)
+        match = Matched(COMPOSED, chosen.name, chosen.mirrored, chosen.confidence)
+        return Keyframe(at, posture, matched=match)
 
     def lowered(self, by_m: float) -> "FoundPoses":
         """The same in a world that is so much lower."""
@@ -168,21 +168,22 @@ def with_found(take: Take, found: FoundPoses) -> Take:
     return replace(take, keyframes=tuple(each for _, each in sorted((keyframes | kept).items())))
 
 
-def referred_poses(take: Take, said: ReferenceEvidence) -> FoundPoses:
+def referred_poses(take: Take, reference: ReferenceEvidence) -> FoundPoses:
     """The poses that a take has from its reference motion, among its keyframes already."""
-    count = len(said.expected.points)
+    count = len(reference.expected.points)
     postures = interpolate(take.keyframes, count)
     frames = tuple(
-        MatchedFrame(key.index, (Candidate(key.posture, "", False, said.confidence),))
-        for key in said.keyframes
+        MatchedFrame(key.index, (Candidate(key.posture, "", False, reference.confidence),))
+        for key in reference.keyframes
     )
     every = np.arange(count)
     lower = found_ankle_m(take.body, postures, every, count)
     floor_m = float(np.min(lower)) - standing_ankle_m(take.body)
     reason = (
-        f"the found poses are those of {said.name}, which fits the footage {said.gain:.0%} better than chance"
+        f"the found poses are those of {reference.name}, which fits the footage {reference.gain:.0%} better "
+        "than chance"
     )
-    return FoundPoses(frames, postures, said.gain, floor_m, reason, library=REFERENCE)
+    return FoundPoses(frames, postures, reference.gain, floor_m, reason, library=REFERENCE)
 
 
 # --- Notes on evidence that no plausible posture explains, one sentence each

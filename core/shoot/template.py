@@ -284,8 +284,8 @@ def _keyframes(survey: ClipSurvey) -> dict[str, Any]:
         "keyframes": EVERY_LIBRARY,
     }
     if survey.any_posed:
-        said = "height of the floor in the world; 0 where height_m above is the height over it"
-        fields |= {"//floor_m": said, "floor_m": 0.0}
+        words = "height of the floor in the world; 0 where height_m above is the height over it"
+        fields |= {"//floor_m": words, "floor_m": 0.0}
     return fields
 
 

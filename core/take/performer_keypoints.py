@@ -63,8 +63,8 @@ def performer_keypoints(take: Take, tracks: RegionTracks | None = None) -> Keypo
             people, jumped = _of_same_person(people, chosen, take.fps)
             notes += jumped
         if not people.by_hand:
-            points, seen = _with_middles(people, take, tracks, frames)
-            expected = _expected(take, tracks, hand, points, seen, frames)
+            seen = _with_middles(people, take, tracks, frames)
+            expected = _expected(take, tracks, hand, people.names, seen, frames)
             if expected is not None or people.most_people > 1:
                 chosen = choose_performer(seen, expected, take.fps)
                 fits = [  # of posed keyframes that show people, whether one of them is the performer
@@ -132,10 +132,8 @@ def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: 
     return Keypoints(people.names, people.sources, pixel, score, hint, notes, face, hands, beside)
 
 
-def _with_middles(
-    people: People, take: Take, tracks: RegionTracks | None, frames: int
-) -> tuple[tuple[str, ...], Sightings]:
-    """Everyone's points, and the middle of each marker's segment behind them; the names of the first."""
+def _with_middles(people: People, take: Take, tracks: RegionTracks | None, frames: int) -> Sightings:
+    """Everyone's points, and the middle of each marker's segment behind them."""
     names, empty = people.names, np.zeros((0, len(people.names)))
     segments = take.marker_segments if tracks is not None else ()
     middles = [_middle_of(segment, names) for segment in segments]
@@ -151,7 +149,7 @@ def _with_middles(
         trust = [score[:, middle].mean(axis=1) if middle else np.zeros(len(pixel)) for middle in middles]
         pixels.append(np.concatenate([pixel, *(end[:, None] for end in ends)], axis=1))
         scores.append(np.concatenate([score, *(one[:, None] for one in trust)], axis=1))
-    return names, Sightings(tuple(pixels), tuple(scores))
+    return Sightings(tuple(pixels), tuple(scores))
 
 
 def _middle_of(segment: str, names: tuple[str, ...]) -> list[int]:

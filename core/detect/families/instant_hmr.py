@@ -66,10 +66,10 @@ class InstantHMR(Network):
         off, side = box.center - 0.5 * whole, float(box.size.max())
         if self._by_angle:
             focal_px = DIAGONALS * float(np.hypot(width, height))
-            told = [*np.arctan(off / focal_px), side / focal_px]
+            place = [*np.arctan(off / focal_px), side / focal_px]
         else:
-            told = [*(2.0 * off / whole), side / max(width, height)]
-        return window, [*inputs, np.array([told], dtype=np.float32)]
+            place = [*(2.0 * off / whole), side / max(width, height)]
+        return window, [*inputs, np.array([place], dtype=np.float32)]
 
     def read(self, outputs: Sequence[Array], window: Window) -> Look:
         """See `Network`."""
