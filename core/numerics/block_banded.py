@@ -40,18 +40,18 @@ class BlockBanded:
         self.next += other.next
         self.after_next += other.after_next
 
-    def add_rows(self, jacobians: tuple[Array, ...]) -> None:
+    def add_rows(self, jacobians: tuple[Array, ...], first: int = 0) -> None:
         """Add JᵀJ of whitened rows that touch one frame or two consecutive ones.
 
-        One (R, m, n) array for each frame a row touches, about its leading n unknowns; row r touches frames r
-        and r + 1.
+        One (R, m, n) array for each frame a row touches, about its leading n unknowns; row r touches frames
+        `first` + r and `first` + r + 1.
         """
         rows, n = len(jacobians[0]), jacobians[0].shape[-1]
         turned = [np.swapaxes(jacobian, -1, -2) for jacobian in jacobians]
-        for offset, jacobian in enumerate(jacobians):
-            self.diagonal[offset : offset + rows, :n, :n] += turned[offset] @ jacobian
+        for start, (across, jacobian) in enumerate(zip(turned, jacobians, strict=True), first):
+            self.diagonal[start : start + rows, :n, :n] += across @ jacobian
         for left, right in zip(turned, jacobians[1:], strict=False):
-            self.next[:rows, :n, :n] += left @ right
+            self.next[first : first + rows, :n, :n] += left @ right
 
     def add_combination(
         self, columns: slice, coefficients: tuple[Array | float, ...], information: Array

@@ -99,29 +99,35 @@ class NormalEquations:
         self.matrix = BlockBanded(frames, size)
         self.gradient = np.zeros((frames, size))
 
-    def add_rows(self, residual: Array, *jacobians: Array) -> None:
+    def add_rows(self, residual: Array, *jacobians: Array, first: int = 0) -> None:
         """Add rows that touch one frame or two consecutive ones.
 
-        `residual` (R, m), row r touching frames r, r + 1, ...; one Jacobian (R, m, n) a touched frame, both
-        whitened.
+        `residual` (R, m), row r touching frames `first` + r, `first` + r + 1, ...; one Jacobian (R, m, n) a
+        touched frame, both whitened.
         """
-        self.matrix.add_rows(jacobians)
-        for offset, jacobian in enumerate(jacobians):
+        self.matrix.add_rows(jacobians, first)
+        for start, jacobian in enumerate(jacobians, first):
             gradient = (residual[:, None] @ jacobian)[:, 0]
-            self.gradient[offset : offset + len(residual), : jacobian.shape[-1]] += gradient
+            self.gradient[start : start + len(residual), : jacobian.shape[-1]] += gradient
 
-    def add_biases(self, residual: Array, jacobian: Array, weight: Array, bias: IndexArray) -> None:
+    def add_biases(
+        self, residual: Array, jacobian: Array, weight: Array, bias: IndexArray, first: int
+    ) -> None:
         """Add what rows that each have a bias of their own say of the biases.
 
-        `residual` (F, m) with biases, `jacobian` (F, m, n) by the leading unknowns, both whitened; `weight`
-        (F, m): derivative of each row by its bias, which is the unknown `bias` (m,).
+        `residual` (R, m) with biases, of frames from `first` on; `jacobian` (R, m, n) by the leading
+        unknowns, both whitened; `weight` (R, m): derivative of each row by its bias, the one `bias` (m,).
         """
-        n, block = jacobian.shape[-1], self.matrix.diagonal
+        n, at = jacobian.shape[-1], slice(first, first + len(residual))
+        block, bias = self.matrix.diagonal[at], n + bias
         mixed = jacobian * weight[..., None]
         block[:, bias, :n] += mixed
         block[:, :n, bias] += np.swapaxes(mixed, -1, -2)
         block[:, bias, bias] += weight**2
-        self.gradient[:, bias] += weight * residual
+        self.gradient[at, bias] += weight * residual
+
+
+FRAMES_AT_ONCE = 64  # whose rows are weighed and added together, so that they fit in the cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,20 +165,24 @@ class Term:
             error = np.where(rows.used[..., None], rows.error, 0.0)
             frames, groups, size = error.shape
             assert rows.slopes is not None
-            slopes = np.where(rows.used[..., None, None], rows.slopes, 0.0)
-            jacobian = slopes.reshape(frames, groups * size, slopes.shape[-1]) @ state.tangent_jacobian
+            slopes = rows.slopes.reshape(frames, groups * size, rows.slopes.shape[-1])
+            used = np.repeat(rows.used, size, axis=-1)[..., None]
             level = self._levels(error, rows.used, temperature)
             if self.lasting is not None:
+                jacobian = np.where(used, slopes, 0.0) @ state.tangent_jacobian
                 _add_lasting(equations, error, level, jacobian, self.lasting, temperature)
                 continue
             weight = np.repeat(np.sqrt(level * (self.counts / temperature)), size, axis=-1)
-            jacobian *= weight[..., None]
             residual = error.reshape(frames, -1) * weight
-            equations.add_rows(residual, jacobian)
-            if rows.bias is not None:
-                by_bias, index = rows.bias
-                bias = jacobian.shape[-1] + index.ravel()
-                equations.add_biases(residual, jacobian, by_bias.reshape(frames, -1) * weight, bias)
+            for first in range(0, frames, FRAMES_AT_ONCE):
+                at = slice(first, first + FRAMES_AT_ONCE)
+                whitened = np.where(used[at], slopes[at] * weight[at, :, None], 0.0)
+                jacobian = whitened @ state.tangent_jacobian[at]
+                equations.add_rows(residual[at], jacobian, first=first)
+                if rows.bias is not None:
+                    by_bias, index = rows.bias
+                    own = by_bias[at].reshape(len(jacobian), -1) * weight[at]
+                    equations.add_biases(residual[at], jacobian, own, index.ravel(), first)
 
     def cost(self, state: ClipState) -> Array:
         """(F,) negative logarithm of each frame's probability, up to a constant."""
