@@ -45,7 +45,6 @@ def open_session(weights: bytes, finds: str) -> Any:
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.log_severity_level = 4
-    options.enable_cpu_mem_arena = False
     return onnxruntime.InferenceSession(
         weights, options, providers=["CPUExecutionProvider"], enable_fallback=0
     )

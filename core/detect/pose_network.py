@@ -7,6 +7,7 @@ crop must move and turn with the person: `Pose.crop` is where to look next.
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import TypeVar
 
@@ -52,12 +53,17 @@ Seen = TypeVar("Seen")
 
 
 def in_parallel(look: Callable[[Item], Seen], items: Sequence[Item]) -> list[Seen]:
-    """What looks see, in order.
+    """What looks see, in order; a look must not call this itself.
 
     Two at a time with one thread each are faster than several threads for one.
     """
-    with ThreadPoolExecutor(max(1, min(len(items), cv2.getNumThreads(), MOST_AT_ONCE))) as pool:
-        return list(pool.map(look, items))
+    return list(_threads(max(1, min(cv2.getNumThreads(), MOST_AT_ONCE))).map(look, items))
+
+
+@lru_cache
+def _threads(count: int) -> ThreadPoolExecutor:
+    """Threads that stay: each new one would take memory of its own, which the system does not get back."""
+    return ThreadPoolExecutor(count)
 
 
 @dataclass(frozen=True, eq=False)
