@@ -32,7 +32,8 @@ from .refinement import as_found, refine, rests_of
 from .window_problem import WindowProblem
 from .windows import spliced, windows
 
-MARKERS_SHARE, REFINED_SHARE = 0.35, 0.6  # of the work: following markers, all before contours
+SHARES = {True: (0.2, 0.28), False: (0.6, 0.7)}
+"""Of the work: following the markers, and all before the last steps; with pictures of frames and without."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,17 +122,17 @@ def _solve(problem: ClipProblem, hold_rests: bool, contours: ContourEvidence | N
     shares = np.concatenate([[0.0], np.cumsum([w.keep_last - w.keep_first for w in spans]) / total])
     stretches = list(zip(spans, shares[:-1], shares[1:], strict=True))
     # All windows by their markers first: contours learned from the whole clip then join them without a seam.
-    states = []
+    states, (followed, refined) = [], SHARES[data.seen.album is not None]
     hold_rests = hold_rests and bool(data.belief.doubt.any())
     doubted = as_found(problem) if hold_rests else problem
     for window, begun, ended in stretches:
         part = WindowProblem(doubted, window, problem.start(window))
-        yield from scaled(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
+        yield from scaled(part.follow_markers(), followed * begun, followed * ended)
         states.append(part.state.without_cache())
     if hold_rests:
         problem = replace(problem, rests=rests_of(doubted, spans, states))
     refining = refine(problem, spans, states, contours)
-    problem, states, contours = yield from scaled(refining, MARKERS_SHARE, REFINED_SHARE)
+    problem, states, contours = yield from scaled(refining, followed, refined)
     dofs = data.body.skeleton.dof_count
     # Half of what is kept of a frame, even in single precision.
     covariance = np.full((problem.frames, dofs, dofs), np.nan, dtype=np.float32)
@@ -141,7 +142,7 @@ def _solve(problem: ClipProblem, hold_rests: bool, contours: ContourEvidence | N
     residual_px = np.full(data.observed.quality.shape, np.nan)
     postures: list[Posture] = []
     for window, begun, ended in stretches:
-        first, last = (REFINED_SHARE + (1.0 - REFINED_SHARE) * share for share in (begun, ended))
+        first, last = (refined + (1.0 - refined) * share for share in (begun, ended))
         part = WindowProblem(problem, window, states.pop(0))
         last_steps = part.converge() if contours is None else part.follow_contours(contours)
         yield from scaled(last_steps, first, last)

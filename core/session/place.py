@@ -52,7 +52,7 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
     return inputs.shot, take.camera, take.body.actor.segments_m, take.fps, inputs.open_lens, posed
 
 
-PLACE = Stage("place", place, _uses, lambda _inputs: 0.2)
+PLACE = Stage("place", place, _uses, lambda _inputs: 0.1)
 
 
 def find_camera(

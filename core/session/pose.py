@@ -70,7 +70,7 @@ def _uses(inputs: Inputs) -> tuple[object, ...]:
     return libraries, asked, take.keyframes, take.reference, inputs.method == "map"
 
 
-POSE = Stage("pose", pose, _uses, lambda inputs: 0.0 if inputs.libraries is None else 2.3)
+POSE = Stage("pose", pose, _uses, lambda inputs: 0.0 if inputs.libraries is None else 2.2)
 
 
 def make_motion(session: Session) -> Job[Reconstruction]:
@@ -93,5 +93,5 @@ def hands_in_words(hands: Hands) -> str:
 
 
 RECONSTRUCT = Stage(
-    "reconstruct", make_motion, lambda inputs: (inputs.method, inputs.hands), lambda _inputs: 2.0
+    "reconstruct", make_motion, lambda inputs: (inputs.method, inputs.hands), lambda _inputs: 1.8
 )

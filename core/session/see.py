@@ -3,6 +3,8 @@
 from dataclasses import replace
 from functools import lru_cache
 
+import numpy as np
+
 from ..detect.closer_look import CloserLook
 from ..detect.keypoints import People, SeenPeople
 from ..detect.picture_check import applied, check_by_pictures
@@ -41,7 +43,13 @@ def _reads(inputs: Inputs) -> tuple[object, ...]:
     return key, clip, take.contours, expected, *inputs.closer
 
 
-READ = Stage("read", read, _reads, lambda inputs: 5.5 if inputs.detects and inputs.kept is None else 1.5)
+def _pass_work(inputs: Inputs, looks: bool) -> float:
+    """Work of a pass over the clip, and of looking at its people meanwhile."""
+    megapixels = float(np.prod(inputs.take.camera.resolution)) / 1e6
+    return 1.6 + megapixels if looks else 0.2 + 0.5 * megapixels
+
+
+READ = Stage("read", read, _reads, lambda inputs: _pass_work(inputs, inputs.detects and inputs.kept is None))
 
 SEEN = 0.95
 """Share of the stage after which everybody is detected."""
@@ -71,7 +79,11 @@ def _sees(inputs: Inputs) -> tuple[object, ...]:
     return (*sees, inputs.evidence, inputs.take.keypoints, posed)
 
 
-SEE = Stage("see", see, _sees, lambda inputs: 4.5 if inputs.detects and inputs.kept is not None else 0.1)
+def _see_work(inputs: Inputs) -> float:
+    return _pass_work(inputs, True) if inputs.detects and inputs.kept is not None else 0.05
+
+
+SEE = Stage("see", see, _sees, _see_work)
 
 
 def people_in_words(people: People) -> str:

@@ -27,8 +27,8 @@ STAGES = (
     PLACE,
     POSE,
     RECONSTRUCT,
-    _by_bridge("finish", 0.8),
-    _by_bridge("retarget", 2.5),
+    _by_bridge("finish", 0.4),
+    _by_bridge("retarget", 0.9),
 )
 
 

@@ -72,6 +72,8 @@ def test_the_network_looks_while_the_clip_is_read_or_by_itself_where_that_is_kno
     asked = replace(inputs, detects=True, kept=known[Reading] if is_kept else None)
     assert run(reach(Session(asked), "see"))[Sight].people == (people,)
     assert (finder.count, len(found)) == ((0, 0) if is_kept else (16, 1))
+    work = {stage.name: stage.work(asked) for stage in STAGES[:2]}
+    assert work["see" if is_kept else "read"] > 1.6 > 1.0 > work["read" if is_kept else "see"]
 
 
 def test_stages_of_blender_are_done_by_its_bridge_and_told_as_they_are_complete(inputs: Inputs) -> None:
