@@ -67,6 +67,7 @@ def test_the_network_looks_while_the_clip_is_read_or_by_itself_where_that_is_kno
         return people
 
     monkeypatch.setattr(see, "PoseNetwork", SimpleNamespace)
+    monkeypatch.setattr(see, "_network", lambda: None)  # which is kept for other tests
     monkeypatch.setattr(see, "PeopleFinder", lambda *_given: finder)
     monkeypatch.setattr(see, "find_people", find)
     asked = replace(inputs, detects=True, kept=known[Reading] if is_kept else None)
