@@ -84,9 +84,21 @@ def fit_camera(camera: Camera, evidence: CameraEvidence, lens_is_known: bool = F
     problem = _Problem(camera, evidence, lens_is_known)
     everything = problem.descend()
     covariance = problem.covariance(everything)
-    shares = np.sqrt(np.diag(covariance))[: len(PARAMETERS)]
-    kept = _undetermined(covariance, problem.believed_std)
-    best = problem.descend_from(everything, kept)
+    count = len(PARAMETERS)
+    shares = np.sqrt(np.diag(covariance))[:count]
+    # The fewest parameters are kept that leave the others determined: what a picture says of two together, as
+    # of height and tilt by someone who stands in one place, holds for the one once the other is kept.
+    kept = [index for index, std in enumerate(problem.believed_std[:count]) if std <= KNOWN_LENS_STD]
+    while len(kept) < count:
+        free = np.setdiff1d(np.arange(len(covariance)), kept)
+        # Given those kept, the others have the inverse of what is left of the information.
+        variance = np.diag(np.linalg.inv(np.linalg.inv(covariance)[np.ix_(free, free)]))
+        uncertain = (np.sqrt(variance) / problem.believed_std[free])[free < count]
+        if uncertain.max() <= DETERMINED:
+            break
+        kept.append(int(free[uncertain.argmax()]))
+    kept.sort()
+    best = problem.descend_from(everything, np.array(kept, dtype=np.intp))
     found = problem.camera_of(best)
     placement = CameraPlacement.of(found.matrix_world)
     unit = np.array([placement.height_m, 1.0, 1.0, found.lens_mm])
@@ -98,26 +110,6 @@ def fit_camera(camera: Camera, evidence: CameraEvidence, lens_is_known: bool = F
         float(np.sqrt(np.mean(off_px**2))) if off_px.size else 0.0,
         problem.excess(best),
     )
-
-
-def _undetermined(covariance: Array, believed_std: Array) -> IndexArray:
-    """Indices of the parameters to keep: the fewest that leave the others determined.
-
-    What a picture says of two together, as of height and tilt by someone who stands in one place, holds for
-    the one once the other is kept.
-    """
-    count = len(PARAMETERS)
-    kept = [index for index in range(count) if believed_std[index] <= KNOWN_LENS_STD]
-    while len(kept) < count:
-        free = np.setdiff1d(np.arange(len(covariance)), kept)
-        # Given those kept, the others have the inverse of what is left of the information.
-        information = np.linalg.inv(covariance)[np.ix_(free, free)]
-        variance = np.diag(np.linalg.inv(information))
-        shares = (np.sqrt(variance) / believed_std[free])[free < count]
-        if shares.max() <= DETERMINED:
-            break
-        kept.append(int(free[shares.argmax()]))
-    return np.array(sorted(kept), dtype=np.intp)
 
 
 @dataclass(frozen=True, eq=False)

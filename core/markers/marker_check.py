@@ -254,7 +254,19 @@ def check_markers(
     found = [gather_candidates(regions, color, scale) for color in range(len(colors.groups))]
     own = assign_regions(found, colors.groups, at_samples, _cheapest)
     areas = [own[marker].moments[:, 0] for marker in range(len(styles))]
-    likenesses = _likenesses([style.name for style in styles], colors, found, areas)
+    names, claims = [style.name for style in styles], color_confusion(colors.model)
+    together = [" and ".join(names[marker] for marker in group) for group in colors.groups]
+    likenesses = {}
+    for color, group in enumerate(colors.groups):
+        colored = float(found[color].area.sum())
+        theirs = sum(float(areas[marker].sum()) for marker in group)
+        clutter = max(colored - theirs, 0.0) / max(colored, 1.0)
+        shares = list(zip(together, map(float, claims[color, :-1]), strict=True))
+        claimed = [*shares[:color], *shares[color + 1 :]]
+        for marker in group:
+            alike = [names[other] for other in group if other != marker]
+            rivals = 1.0 - float(areas[marker].sum()) / max(theirs, 1.0)
+            likenesses[marker] = Likeness(alike, claimed, float(claims[color, -1]), clutter, rivals)
     complaints = colors.complaints()
     still = still_areas(samples, colors.model, colors.groups, found, pixels)
     readouts = [
@@ -274,29 +286,6 @@ def _cheapest(found: Candidates, cost: Array, _length_px: float) -> IntArray:
             best = first + int(np.argmin(cost[first:end]))
             path[frame] = best if cost[best] <= HIGHEST_FRAGMENT_COST else -1
     return path
-
-
-def _likenesses(
-    names: Sequence[str], colors: ColorLearner, found: Sequence[Candidates], areas: Sequence[Array]
-) -> dict[int, Likeness]:
-    """Likeness of each marker to other things, by its index, from its area in every frame."""
-    claims = color_confusion(colors.model)
-    together = [" and ".join(names[marker] for marker in group) for group in colors.groups]
-    likenesses = {}
-    for color, group in enumerate(colors.groups):
-        colored = float(found[color].area.sum())
-        theirs = sum(float(areas[marker].sum()) for marker in group)
-        clutter = max(colored - theirs, 0.0) / max(colored, 1.0)
-        claimed = [
-            (other, float(share))
-            for index, (other, share) in enumerate(zip(together, claims[color, :-1], strict=True))
-            if index != color
-        ]
-        for marker in group:
-            alike = [names[other] for other in group if other != marker]
-            rivals = 1.0 - float(areas[marker].sum()) / max(theirs, 1.0)
-            likenesses[marker] = Likeness(alike, claimed, float(claims[color, -1]), clutter, rivals)
-    return likenesses
 
 
 def _readout(

@@ -57,6 +57,9 @@ def performer_keypoints(take: Take, tracks: RegionTracks | None = None) -> Keypo
     hand = [people for people in take.keypoints if people.by_hand]
     vouched = take.keyframes or hand or (tracks is not None and tracks.visible.any())
     parts = []
+    voices = ["the clicked or tracked points"] if hand else []
+    voices += ["the keyframes"] if take.keyframes else []
+    voices += ["the markers"] if not voices and tracks is not None and take.markers else []
     for people in take.keypoints:
         chosen, notes = np.zeros(frames, dtype=np.intp), people.notes
         if not vouched and people.most_people == 1:
@@ -79,7 +82,7 @@ def performer_keypoints(take: Take, tracks: RegionTracks | None = None) -> Keypo
                         "performer, so it is left out; it must be of this clip",
                     )
                 else:
-                    notes += _notes(people, chosen, _said_by(take, tracks, hand))
+                    notes += _notes(people, chosen, voices)
             if not vouched and people.most_people > 1:
                 people, jumped = _of_same_person(people, chosen, take.fps)
                 notes += jumped
@@ -216,19 +219,6 @@ def _from_keyframes(take: Take, names: tuple[str, ...], frames: int) -> tuple[Ar
     return pixel, std_m[:, None] * take.camera.focal_px / np.where(depth > 0.0, depth, 1.0), index
 
 
-def _said_by(take: Take, tracks: RegionTracks | None, hand: list[People]) -> str:
-    """Who says which of several people the performer is."""
-    voices = ["the clicked or tracked points"] if hand else []
-    voices += ["the keyframes"] if take.keyframes else []
-    voices += ["the markers"] if not voices and tracks is not None and take.markers else []
-    if voices:
-        return f"the performer is the one that {' and '.join(voices)} show"
-    return (
-        "the performer is taken to be the largest who is there longest; click on another, or name one with "
-        "--performer, counted from the left, to change it"
-    )
-
-
 def _of_same_person(people: People, chosen: IndexArray, fps: float) -> tuple[People, tuple[str, ...]]:
     """The people without frames in which those chosen are somebody else than in most, and a note on them."""
     path = _of_one(people, chosen, (), len(chosen)).pixel
@@ -280,7 +270,14 @@ def _centered(pixel: Array) -> Array:
     return np.asarray(there / np.median(person_size(pixel)))
 
 
-def _notes(people: People, chosen: IndexArray, why: str) -> tuple[str, ...]:
+def _notes(people: People, chosen: IndexArray, voices: list[str]) -> tuple[str, ...]:
+    """Sentences on who of several people was taken, by what says which of them the performer is."""
+    why = (
+        f"the performer is the one that {' and '.join(voices)} show"
+        if voices
+        else "the performer is taken to be the largest who is there longest; click on another, or name one "
+        "with --performer, counted from the left, to change it"
+    )
     counts = np.array([len(frame.pixel) for frame in people.frames[: len(chosen)]])
     several = int((counts > 1).sum())
     left_out = int(((counts > 0) & (chosen[: len(counts)] == NOBODY)).sum())

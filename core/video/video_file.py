@@ -63,8 +63,16 @@ class VideoFile:
             self.is_trimmed = shown_s is not None
             if shown_s is not None:
                 claimed = min(claimed, max(1.0, round(shown_s * self.fps)))
-            notes = (_pixel_note(path, shape, self.stored_size, self.size), dynamic_range_note(path))
-            self.notes = tuple(note for note in notes if note)
+            self.notes = tuple(note for note in (dynamic_range_note(path),) if note)
+            if shape != 1.0:
+                stored = " x ".join(map(str, self.stored_size))
+                scaled = f": its pictures of {stored} were scaled to {self.size[0]} x {self.size[1]}"
+                unscaled = (
+                    ", and its size is given as if they were square: the motion is out of shape; convert the "
+                    "clip first, as with ffmpeg -i CLIP -vf scale=iw*sar:ih,setsar=1"
+                )
+                what = f"the pixels of {path.name} are {shape:.3g} times as wide as high"
+                self.notes = (what + (scaled if self.size != self.stored_size else unscaled), *self.notes)
         most = path.stat().st_size // 8  # bytes a frame bound what a header may claim
         self.frame_count = int(min(claimed, most)) if np.isfinite(claimed) else 0
         if self.frame_count < 2:  # it claims nothing
@@ -204,16 +212,3 @@ def _steps(capture: cv2.VideoCapture) -> Iterator[int]:
             failures = 0
         else:
             failures += 1
-
-
-def _pixel_note(path: Path, shape: float, stored: tuple[int, int], size: tuple[int, int]) -> str | None:
-    """A sentence on pixels that are not square."""
-    if shape == 1.0:
-        return None
-    what = f"the pixels of {path.name} are {shape:.3g} times as wide as high"
-    if size != stored:
-        return f"{what}: its pictures of {stored[0]} x {stored[1]} were scaled to {size[0]} x {size[1]}"
-    return (
-        f"{what}, and its size is given as if they were square: the motion is out of shape; convert the clip "
-        "first, as with ffmpeg -i CLIP -vf scale=iw*sar:ih,setsar=1"
-    )

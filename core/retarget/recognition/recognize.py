@@ -123,7 +123,19 @@ def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -
     if figure is not None:
         facing = find_facing(figure)
         roles = _roles_of(figure, facing)
-        doubts += _side_doubts(facing)
+        if facing.by_names * facing.by_shape < 0.0 and abs(facing.by_shape) > 1.0:
+            doubts.append(
+                "left and right are taken from the shape, against the names of the bones: feet and knees "
+                "point the other way"
+                if facing.by_names < 0.0
+                else "left and right are taken from the names of the bones, although the feet point the "
+                "other way"
+            )
+        elif facing.confidence < 0.9:
+            doubts.append(
+                "left and right may be swapped for all roles of a side: names, feet, knees and elbows hardly "
+                "tell where the character faces"
+            )
         if preset is None:
             character_map = CharacterMap(character.name, roles)
             doubts += _place_doubts(figure, roles)
@@ -202,22 +214,6 @@ def _roles_of(figure: Figure, facing: Facing) -> dict[str, RoleBones]:
         names = tuple(bones.names[bone] for bone in those)
         found[role] = RoleBones(names, (NAMED if named else PLACED) * share, "names" if named else "shape")
     return found
-
-
-def _side_doubts(facing: Facing) -> list[str]:
-    if facing.by_names * facing.by_shape < 0.0 and abs(facing.by_shape) > 1.0:
-        if facing.by_names < 0.0:
-            return [
-                "left and right are taken from the shape, against the names of the bones: feet and knees "
-                "point the other way"
-            ]
-        return ["left and right are taken from the names of the bones, although the feet point the other way"]
-    if facing.confidence >= 0.9:
-        return []
-    return [
-        "left and right may be swapped for all roles of a side: names, feet, knees and elbows hardly tell "
-        "where the character faces"
-    ]
 
 
 def _place_doubts(figure: Figure, roles: Mapping[str, RoleBones]) -> list[str]:
