@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from _recorded import assert_recorded
 from _scene import BODY, CAMERA, exercise
 from keymark.core.body.fingers import SURE
 from keymark.core.body.posture import Posture
@@ -67,6 +68,14 @@ def test_one_look_that_takes_the_back_for_the_palm_is_passed_over() -> None:
     found, hands = seen_hands(BODY, posture, TIME_S, wrong, CAMERA)
     assert off_deg(found)[:, 0].max() < 35.0
     assert hands is not None and hands.sure[12, 0] < 0.9 < hands.sure[12, 1]
+    rng = np.random.default_rng(3)
+    for first in (2, 12):  # both looks
+        looks[..., first : first + 3] += 0.5 * rng.normal(size=(FRAMES, 2, 3))
+        looks[..., first + 3] = rng.uniform(0.2, 1.0, (FRAMES, 2))
+    shaken = Keypoints((), (), seen.pixel, seen.score, seen.hint_m, (), None, looks)
+    found, hands = seen_hands(BODY, posture, TIME_S, shaken, CAMERA)
+    assert hands is not None
+    assert_recorded("palms", found.angles, hands.bend, hands.sure, share=1e-4)
 
 
 @pytest.mark.parametrize("frame", [0, 21])
