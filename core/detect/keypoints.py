@@ -97,7 +97,7 @@ class Keypoints:
     face: Array = field(default_factory=no_face)  # (F, 6) faces as in `face`, NaN where not looked at
     hands: Array = field(default_factory=no_hands)  # (F, 2, 22) left and right as in `hands`, likewise
     beside: Mapping[str, str] = field(default_factory=dict)
-    """Sources that looked at whom another one follows, and that one."""
+    """Sources without hints that looked at whom another one follows, and that one."""
 
     def __post_init__(self) -> None:
         frames, count = len(self.pixel), len(self.names)

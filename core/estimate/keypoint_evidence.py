@@ -135,7 +135,7 @@ class KeypointEvidence:
         model = KeypointModel.usual(body, camera, names)
         depths = DepthEvidence.usual(DepthLinks.between(names, sources), model)
         # Points of one source on one segment, wrist and knuckles, err together: they weigh as much as one.
-        # So do those of a network beside it: the same pictures mislead both, and depths would be outvoted.
+        # So do those of a network beside it that guesses no depths: its points would outvote the other's.
         places = [USUAL_PLACES[name] for name in names]
         first = [beside.get(source, source) for source in sources]
         together = tuple(zip([place.joint for place in places], first, strict=True))

@@ -91,7 +91,8 @@ def _given(body: Body, camera: Camera, seen: Seen, belief: Belief) -> tuple[Clip
     """What is known, with the keypoints' sides set right, and what is usual of these keypoints."""
     every, prior, time_s = np.arange(seen.tracks.frame_count), belief.prior, seen.tracks.time_s
     keypoints = Keypoints.none(len(every)) if seen.keypoints is None else seen.keypoints
-    usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources, keypoints.beside)
+    beside = keypoints.beside if belief.reference is None else {}  # which has depths for its points
+    usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources, beside)
     scale = camera.pixels_per_meter(camera.depth(prior.translation, every))
     predicted = usual.model.pixels(body.pose(prior), every)
     swapped = find_swaps(keypoints, predicted, scale, belief.frame, time_s)

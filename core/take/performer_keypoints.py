@@ -131,7 +131,9 @@ def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: 
         if row != NOBODY and len(seen.pixel):
             pixel[index], score[index], hint[index] = seen.pixel[row], seen.score[row], seen.hint_m[row]
             face[index], hands[index] = seen.face[row], seen.hands[row]
-    beside = {} if people.second is None else {people.second.detector: people.source}
+    beside = {}
+    if people.second is not None and not np.isfinite(hint[:, -len(people.second.names) :]).any():
+        beside = {people.second.detector: people.source}
     return Keypoints(people.names, people.sources, pixel, score, hint, notes, face, hands, beside)
 
 
