@@ -4,7 +4,7 @@ Postures are composed of the libraries' parts (`compose_clip`), then held agains
 that reconstructs motions, with the composed postures for its keyframes (`estimate/whole_clip`).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -84,6 +84,14 @@ def pose_clip(
             rest = elsewhere[: between[0]], postures, elsewhere[between[1] + 1 :]
             postures = Posture.concatenate(list(rest))
     yield Progress("Done", 1.0)
+    markers = tuple(style.name for style in take.markers)
+    names = (*markers, *posing.evidence.keypoints.names)
+    contradictions = {}
+    for row in map(int, np.searchsorted(posing.sampled, posing.keyframes)):
+        # Three deviations between performers are no longer explained.
+        wrong = tuple(names[column] for column in np.flatnonzero(np.nan_to_num(off[row]) > 3.0))
+        if wrong:
+            contradictions[int(posing.sampled[row]) + posing.first] = wrong
     one = usable[0].identifier if len(usable) == 1 else COMPOSED
     return FoundPoses(
         candidates,
@@ -91,7 +99,7 @@ def pose_clip(
         fit,
         composed.floor_m,
         reason,
-        _contradictions(take, posing, off),
+        contradictions,
         one,
         between,
     )
@@ -159,16 +167,3 @@ def _candidates(
         )
         found.append(MatchedFrame(int(frame) + posing.first, own))
     return tuple(found)
-
-
-def _contradictions(take: Take, posing: PosingInput, off: Array) -> Mapping[int, tuple[str, ...]]:
-    """Names of what a proposed frame's posture does not explain, by its index in the clip."""
-    markers = tuple(style.name for style in take.markers)
-    names = (*markers, *posing.evidence.keypoints.names)
-    found = {}
-    for row in map(int, np.searchsorted(posing.sampled, posing.keyframes)):
-        # Three deviations between performers are no longer explained.
-        wrong = tuple(names[column] for column in np.flatnonzero(np.nan_to_num(off[row]) > 3.0))
-        if wrong:
-            found[int(posing.sampled[row]) + posing.first] = wrong
-    return found

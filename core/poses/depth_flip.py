@@ -66,7 +66,22 @@ def _with_trunk(body: Body, posture: Posture, camera: Camera, upper: bool, lower
     bend = rotations.logarithm(below.T @ above)
     matrices[ball] = rotations.exponential(np.clip(bend, *skeleton.limits[skeleton.ball_dofs[ball]].T))
     leaning = Posture(skeleton, posture.translation, matrices, posture.angles)
-    return _with_the_rest(body, posture, leaning, camera)
+    start = dict(zip(skeleton.point_names, body.points(pose), strict=True))
+    now = dict(zip(skeleton.point_names, body.points(body.pose(leaning)), strict=True))
+    legs = {f"{joint}.{side}": 1.0 for joint in ("hip", "knee") for side in ("L", "R")}
+    held = pulled(body, leaning, planted(start), legs)
+    for name in LIMBS[:2]:
+        limb = LimbChain.of(body, name)
+        lines = limb.sight_lines(posture, camera)
+        leans = limb.depths_m(posture, lines) > 0.0
+        ways = limb.ways_in_sight(held, lines)
+        if ways:
+            held = min(ways, key=lambda way: (int((way.leans != leans).sum()), way.strain)).posture
+    line = SightLine.to(camera, start["head"])
+    shoulders = ("shoulder.L", "shoulder.R")
+    moved = np.mean([now[name] - start[name] for name in shoulders], axis=0)
+    pull = Pull("head", line.nearest(start["head"] + moved), 0.01, line.direction, 0.1)
+    return pulled(body, held, [pull], {"neck": 1.0})
 
 
 def _other_place(
@@ -78,24 +93,3 @@ def _other_place(
     beyond = bool((place - before) @ line.direction > 0.0)
     length = float(np.linalg.norm(place - before))
     return np.asarray(line.at_distance(center, length)[int(beyond != flip)])
-
-
-def _with_the_rest(body: Body, before: Posture, leaning: Posture, camera: Camera) -> Posture:
-    """A posture whose trunk has moved, with arms and head where they were seen and feet where they stood."""
-    skeleton = body.skeleton
-    start = dict(zip(skeleton.point_names, body.points(body.pose(before)), strict=True))
-    now = dict(zip(skeleton.point_names, body.points(body.pose(leaning)), strict=True))
-    legs = {f"{joint}.{side}": 1.0 for joint in ("hip", "knee") for side in ("L", "R")}
-    held = pulled(body, leaning, planted(start), legs)
-    for name in LIMBS[:2]:
-        limb = LimbChain.of(body, name)
-        lines = limb.sight_lines(before, camera)
-        leans = limb.depths_m(before, lines) > 0.0
-        ways = limb.ways_in_sight(held, lines)
-        if ways:
-            held = min(ways, key=lambda way: (int((way.leans != leans).sum()), way.strain)).posture
-    line = SightLine.to(camera, start["head"])
-    shoulders = ("shoulder.L", "shoulder.R")
-    moved = np.mean([now[name] - start[name] for name in shoulders], axis=0)
-    pull = Pull("head", line.nearest(start["head"] + moved), 0.01, line.direction, 0.1)
-    return pulled(body, held, [pull], {"neck": 1.0})

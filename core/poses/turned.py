@@ -5,7 +5,6 @@ Wrong about a pose that faces the wrong way is either the trunk alone, where eac
 which leaves its outline as it is.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -76,29 +75,23 @@ def turned(body: Body, posture: Posture, camera: Camera, facing: Facing, sides: 
         base, names = _at_heading(posture, goal), {limb: limb for limb in LIMBS}
     else:
         base, names = _exchanged(posture, camera, goal), {limb: other_side(limb) for limb in LIMBS}
-    return _with_image(body, posture, base, camera, names, sides)
-
-
-def _with_image(
-    body: Body, seen: Posture, base: Posture, camera: Camera, names: Mapping[str, str], sides: Sides
-) -> Turned:
-    """A turned posture whose limbs are laid on the lines of sight to where those of another were seen."""
+    # The limbs are laid on the lines of sight to where they, or those of the other side, were seen.
     strain = 0.0
-    posture = base
+    laid = base
     for name, source in names.items():
         limb = LimbChain.of(body, name)
-        ways = limb.ways_in_sight(posture, LimbChain.of(body, source).sight_lines(seen, camera))
+        ways = limb.ways_in_sight(laid, LimbChain.of(body, source).sight_lines(posture, camera))
         if ways:
             # Of two ways the one more like before: mean square change of the limb's joints [rad²].
             changed = [float(np.mean(way.posture.minus(base)[limb.dofs] ** 2)) for way in ways]
             best = ways[int(np.argmin(np.add([way.strain for way in ways], changed)))]
-            posture, strain = best.posture, strain + best.strain
+            laid, strain = best.posture, strain + best.strain
     column = body.skeleton.point_names.index("head")
-    head, now = (body.points(body.pose(each))[column] for each in (seen, posture))
+    head, now = (body.points(body.pose(each))[column] for each in (posture, laid))
     line = SightLine.to(camera, head)
     # How near the head comes to its sight, and to its turned depth [m].
     pull = Pull("head", line.nearest(now), 0.02, line.direction, 0.3)
-    return Turned(pulled(body, posture, [pull], {"neck": 1.0}), sides, strain)
+    return Turned(pulled(body, laid, [pull], {"neck": 1.0}), sides, strain)
 
 
 def _at_heading(posture: Posture, heading_rad: float) -> Posture:

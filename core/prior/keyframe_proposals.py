@@ -143,11 +143,8 @@ def propose_keyframes(
         wanted = max(wanted, math.ceil((frames - 1) / largest_gap) + 1)
     even = np.rint(np.linspace(0, frames - 1, min(max(wanted, 2), frames))).astype(np.intp)
     gap = (frames - 1) / (len(even) - 1)
-    return _snap(V, even, largest_gap if largest_gap is not None else math.ceil(1.5 * gap))
-
-
-def _snap(V: Array, even: IndexArray, largest_gap: int) -> IndexArray:
-    """Move inner keyframes to the lowest minimum within reach, keeping every gap at most `largest_gap`."""
+    largest_gap = largest_gap if largest_gap is not None else math.ceil(1.5 * gap)
+    # Inner keyframes move to the lowest minimum within reach.
     V = np.where(np.isfinite(V), V, np.inf)
     padded = np.concatenate([[np.inf], V, [np.inf]])
     minimum = np.isfinite(V) & (V <= padded[:-2]) & (V <= padded[2:])

@@ -75,6 +75,10 @@ def score_points(
     rooted = np.linalg.norm(error - error[:, HIPS].mean(axis=1, keepdims=True), axis=-1)
     bend = np.linalg.norm(np.diff(error, n=2, axis=0), axis=-1)
     bend = bend[np.isfinite(bend).all(axis=1)]
+    # An ankle whose true position moves less than this in a frame stands.
+    stands = np.linalg.norm(np.diff(truth[:, ANKLES], axis=0), axis=-1) < 0.004
+    travel = np.linalg.norm(np.diff(points[:, ANKLES, :2], axis=0), axis=-1)
+    stands &= np.isfinite(travel)
     # Half-width of a normal distribution's 95 % interval, in standard deviations.
     covered = None if sigma_m is None else float(np.mean((distance <= 1.96 * sigma_m)[known]))
     return Score(
@@ -87,7 +91,7 @@ def score_points(
         image=1e3 * float(across[free].mean()),
         worst_p95=1e3 * float(np.percentile(distance[free], 95)),
         jitter=1e3 * float(bend.mean()) if len(bend) else 0.0,
-        skate=_skate(points, truth),
+        skate=1e3 * float(travel[stands].mean()) if stands.any() else None,
         coverage95=covered,
     )
 
@@ -129,11 +133,3 @@ def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
     if any(len(places) != frame_count for places in truth.points.values()):
         raise InputError(f"{path}: points: each point needs {frame_count} [x, y, z] in m")
     return np.stack(list(truth.points.values()), axis=1)
-
-
-def _skate(points: Array, truth: Array) -> float | None:
-    # An ankle whose true position moves less than this in a frame stands.
-    stands = np.linalg.norm(np.diff(truth[:, ANKLES], axis=0), axis=-1) < 0.004
-    travel = np.linalg.norm(np.diff(points[:, ANKLES, :2], axis=0), axis=-1)
-    stands &= np.isfinite(travel)
-    return 1e3 * float(travel[stands].mean()) if stands.any() else None

@@ -70,31 +70,6 @@ def take_name(path: PurePath) -> str:
     return path.as_posix().encode("utf-8", "backslashreplace").decode("utf-8")
 
 
-def check_names(shoot: Path, takes: Sequence[ShootTake]) -> None:
-    """Refuse takes whose results would lie in one folder on some file system, or one below another."""
-    known: dict[str, ShootTake] = {}
-    for take in takes:
-        if _folded(take.name.split("/")[0]) in RESERVED:
-            raise InputError(
-                f"{take.path}: its results would lie where a batch keeps its own {take.name.split('/')[0]}; "
-                "rename it"
-            )
-        twin = known.setdefault(_folded(take.name), take)
-        if twin is not take:
-            raise InputError(
-                f"{shoot}: the takes {shown(str(twin.path))} and {shown(str(take.path))} have one name, "
-                f"{shown(take.name)}, and their results would lie in one folder; rename one of them"
-            )
-    for take in takes:
-        for parent in PurePosixPath(_folded(take.name)).parents:
-            above = known.get(str(parent))
-            if above is not None and above is not take:
-                raise InputError(
-                    f"{shoot}: the results of {shown(str(take.path))} would lie among those of "
-                    f"{shown(str(above.path))}; rename one of them"
-                )
-
-
 def check_output(shoot: Shoot, output: Path) -> None:
     """Refuse an output folder in which results would lie among the takes."""
     target = Path(os.path.realpath(output))
@@ -168,7 +143,28 @@ def _listed_take(path: Path, where: str, line: str) -> ShootTake:
 
 
 def _shoot(path: Path, takes: Sequence[ShootTake]) -> Shoot:
-    check_names(path, takes)
+    """A shoot of takes whose results lie in folders of their own on any file system, none below another."""
+    known: dict[str, ShootTake] = {}
+    for take in takes:
+        if _folded(take.name.split("/")[0]) in RESERVED:
+            raise InputError(
+                f"{take.path}: its results would lie where a batch keeps its own {take.name.split('/')[0]}; "
+                "rename it"
+            )
+        twin = known.setdefault(_folded(take.name), take)
+        if twin is not take:
+            raise InputError(
+                f"{path}: the takes {shown(str(twin.path))} and {shown(str(take.path))} have one name, "
+                f"{shown(take.name)}, and their results would lie in one folder; rename one of them"
+            )
+    for take in takes:
+        for parent in PurePosixPath(_folded(take.name)).parents:
+            above = known.get(str(parent))
+            if above is not None and above is not take:
+                raise InputError(
+                    f"{path}: the results of {shown(str(take.path))} would lie among those of "
+                    f"{shown(str(above.path))}; rename one of them"
+                )
     return Shoot(path, tuple(sorted(takes, key=lambda take: take.name)))
 
 

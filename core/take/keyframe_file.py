@@ -95,7 +95,21 @@ def read_keyframes(
             f"{path}: keyframes has {len(rows)} of them; at least {fewest} are needed, "
             "better 10 per 100 frames"
         )
-    _check_frames(path, [row.frame for row in rows], frame_start, frame_count)
+    last = frame_start + (frame_count or MOST_FRAMES) - 1
+    seen: set[int] = set()
+    for index, frame in enumerate(row.frame for row in rows):
+        if not frame_start <= frame <= last:
+            clip = (
+                f"the clip's frames are {frame_start} to {last}"
+                if frame_count
+                else f"the clip begins at {frame_start}"
+            )
+            raise InputError(
+                f"{path}: keyframes[{index}]: frame is {frame}; it must lie in the clip, and {clip}"
+            )
+        if frame in seen:
+            raise InputError(f"{path}: frame {frame} is given twice; each frame may be posed once")
+        seen.add(frame)
     keyframes = _keyframes(rows, frame_start, body)
     return tuple(sorted(keyframes, key=lambda keyframe: keyframe.index))
 
@@ -110,24 +124,6 @@ def write_keyframes(path: Path, keyframes: Sequence[Keyframe], body: Body, frame
         frame = keyframe.index + frame_start
         rows.append(KeyframeRow(frame, keyframe.posture, named, keyframe.matched, depth))
     write_json(path, KeyframeFile(tuple(rows)).to_json(), indent=1)
-
-
-def _check_frames(path: Path, frames: Sequence[int], frame_start: int, frame_count: int | None) -> None:
-    last = frame_start + (frame_count or MOST_FRAMES) - 1
-    seen: set[int] = set()
-    for index, frame in enumerate(frames):
-        if not frame_start <= frame <= last:
-            clip = (
-                f"the clip's frames are {frame_start} to {last}"
-                if frame_count
-                else f"the clip begins at {frame_start}"
-            )
-            raise InputError(
-                f"{path}: keyframes[{index}]: frame is {frame}; it must lie in the clip, and {clip}"
-            )
-        if frame in seen:
-            raise InputError(f"{path}: frame {frame} is given twice; each frame may be posed once")
-        seen.add(frame)
 
 
 def _keyframes(rows: Sequence[KeyframeRow], frame_start: int, body: Body) -> list[Keyframe]:
