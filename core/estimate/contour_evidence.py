@@ -50,21 +50,54 @@ class ContourEvidence:
     along: BandColors | None = None  # colors along each part, for shifts; None where markers tell these
 
     def measure(
-        self, posture: Posture, frame: IndexArray, search: SearchRange = NARROW
-    ) -> Generator[float, None, ContourTerm]:
-        """Measure the edges near the contours of F postures; yields the fraction done."""
-        model, album = self.model, self.album
-        edge = np.full((len(frame), len(model.part_of), 2), np.nan)
-        normal, variance = np.zeros_like(edge), np.ones(edge.shape[:2])
+        self, posture: Posture, frame: IndexArray, search: SearchRange = NARROW, step_s: Array | None = None
+    ) -> Generator[float, None, tuple[ContourTerm, AxialTerm | None]]:
+        """Measure the edges near the contours of F postures; yields the fraction done.
+
+        With the times `step_s` between the clip's frames [s] also how parts are shifted along their axes.
+        """
+        edges, shifts = [], []
         for chunk in chunks(np.arange(len(frame)), CHUNK_FRAMES):
-            predicted, edges = self.near(posture[chunk], frame[chunk], search)
-            found = np.isfinite(edges.variance)
-            place = predicted.pixel + edges.distance[..., None] * predicted.normal
-            edge[chunk] = np.where(found[..., None], place, np.nan)
-            normal[chunk] = predicted.normal
-            variance[chunk] = edges.variance + (PIXEL_STD * album.factor) ** 2
+            at = posture[chunk], frame[chunk], search, self.album.pictures(frame[chunk])
+            edges.append(self._edges(*at))
+            if step_s is not None:
+                shifts.append(self._shifts(*at))
             yield (chunk[-1] + 1) / len(frame)
-        return ContourTerm(model, edge, normal, variance)
+        term = ContourTerm(self.model, *map(np.concatenate, zip(*edges, strict=True)))
+        if step_s is None:
+            return term, None
+        # 0.3: Time in which such an error fades to a third. Believed as if each frame erred anew, it would
+        # turn limbs toward or away from the camera.
+        kept = np.exp(-step_s[frame[:-1]] / 0.3)[:, None]
+        axes = LimbAxes(self.model.parts, self.model.camera)
+        share, place, direction, variance = map(np.concatenate, zip(*shifts, strict=True))
+        return term, AxialTerm(axes, share, place, direction, variance, kept)
+
+    def _edges(
+        self, posture: Posture, frame: IndexArray, search: SearchRange, pictures: tuple[Image, BoolArray]
+    ) -> tuple[Array, Array, Array]:
+        """Places, normals and variances of the edges, as `ContourTerm` has them."""
+        predicted, edges = self.near(posture, frame, search, pictures)
+        place = predicted.pixel + edges.distance[..., None] * predicted.normal
+        place[~np.isfinite(edges.variance)] = np.nan
+        variance = edges.variance + (PIXEL_STD * self.album.factor) ** 2
+        return place, predicted.normal, variance
+
+    def _shifts(
+        self, posture: Posture, frame: IndexArray, search: SearchRange, pictures: tuple[Image, BoolArray]
+    ) -> tuple[Array, Array, Array, Array]:
+        """Shares, places, directions and variances of parts along their axes, as `AxialTerm` has them."""
+        model, factor, (images, known) = self.model, self.album.factor, pictures
+        assert self.along is not None
+        pose = model.body.pose(posture)
+        found = find_shifts(model, pose, frame, images, factor, self.appearance, self.along, search)
+        _, pixel = LimbAxes(model.parts, model.camera).points(pose, frame, found.share)
+        usable = np.isfinite(found.variance) & known[:, None]
+        place = np.sum(pixel * found.direction, axis=-1) + found.distance
+        # A part's colors lie 2 pixels off along its axis, and 3 cm: cuffs slip by 2 to 3.
+        spread = (2.0 * factor) ** 2 + (0.03 * found.scale) ** 2
+        variance = np.where(usable, found.variance, 1.0) + spread
+        return found.share, np.where(usable, place, np.nan), found.direction, variance
 
     def near(
         self,
@@ -81,39 +114,6 @@ class ContourEvidence:
         edges = find_edges(self.model, predicted, pose, frame, image, factor, self.appearance, search)
         edges.distance[~known], edges.variance[~known] = 0.0, np.inf
         return predicted, edges
-
-    def measure_along(
-        self, posture: Posture, frame: IndexArray, search: SearchRange, step_s: Array
-    ) -> Generator[float, None, AxialTerm]:
-        """Measure how parts are shifted along their axes, near F postures; yields the fraction done.
-
-        `step_s`: times between all of the clip's frames [s].
-        """
-        model, album = self.model, self.album
-        # 0.3: Time in which such an error fades to a third. Believed as if each frame erred anew, it would
-        # turn limbs toward or away from the camera.
-        kept = np.exp(-step_s[frame[:-1]] / 0.3)[:, None]
-        axes = LimbAxes(model.parts, model.camera)
-        assert self.along is not None
-        shape = len(frame), len(model.parts.segments)
-        share, place, variance = np.full(shape, 0.5), np.full(shape, np.nan), np.ones(shape)
-        direction = np.zeros((*shape, 2))
-        for chunk in chunks(np.arange(len(frame)), CHUNK_FRAMES):
-            pictures, known = album.pictures(frame[chunk])
-            pose = model.body.pose(posture[chunk])
-            found = find_shifts(
-                model, pose, frame[chunk], pictures, album.factor, self.appearance, self.along, search
-            )
-            _, pixel = axes.points(pose, frame[chunk], found.share)
-            usable = np.isfinite(found.variance) & known[:, None]
-            at = np.sum(pixel * found.direction, axis=-1) + found.distance
-            share[chunk], direction[chunk] = found.share, found.direction
-            place[chunk] = np.where(usable, at, np.nan)
-            # A part's colors lie 2 pixels off along its axis, and 3 cm: cuffs slip by 2 to 3.
-            spread = (2.0 * album.factor) ** 2 + (0.03 * found.scale) ** 2
-            variance[chunk] = np.where(usable, found.variance, 1.0) + spread
-            yield (chunk[-1] + 1) / len(frame)
-        return AxialTerm(axes, share, place, direction, variance, kept)
 
 
 def learn_contours(

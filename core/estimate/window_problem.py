@@ -21,7 +21,7 @@ from .windows import Window
 TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)  # of a first descent, which need not converge yet
 FOUND_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
 """From found keyframes the descent is longer and has more local minima."""
-MOST_UNPACKED = 256 << 20  # bytes of pictures unpacked once: half a minute at 320 x 240
+MOST_UNPACKED = 64 << 20  # bytes of pictures unpacked once; others are unpacked for every look
 
 
 @dataclass(eq=False)
@@ -61,15 +61,11 @@ class WindowProblem:
         contours = replace(contours, album=contours.album.opened(MOST_UNPACKED))
         looks = len(contours.schedule.looks)
         for number, search in enumerate(contours.schedule.looks):
-            measuring = contours.measure(self.state.posture, self.state.frame, search)
+            step_s = None if contours.along is None else self.clip.data.step_s
+            measuring = contours.measure(self.state.posture, self.state.frame, search, step_s)
             begun, measured = number / looks, (number + 0.5) / looks
-            term = yield from scaled(measuring, begun, measured)
-            self.terms = [*others, term]
-            if contours.along is not None:
-                shifts = contours.measure_along(
-                    self.state.posture, self.state.frame, search, self.clip.data.step_s
-                )
-                self.terms.append((yield from scaled(shifts, measured, measured)))
+            edges, shifts = yield from scaled(measuring, begun, measured)
+            self.terms = [*others, edges] if shifts is None else [*others, edges, shifts]
             yield from scaled(self._gauss_newton((1.0, 1.0)), measured, (number + 1) / looks)
 
     def _gauss_newton(self, temperatures: tuple[float, ...]) -> Part[None]:

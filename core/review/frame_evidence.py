@@ -44,7 +44,7 @@ def contour_sight(reconstruction: Reconstruction) -> Generator[float, None, Cont
     frame = np.arange(len(motion.time_s))
     if reconstruction.reading.tracks.names or solution is None or solution.contours is None:
         return ContourSight.none(len(frame))
-    found = yield from solution.contours.measure(motion.posture, frame)
+    found, _ = yield from solution.contours.measure(motion.posture, frame)
     model = found.model
     predicted = model.evaluate(motion.body.pose(motion.posture), frame)
     distance = np.sum(found.normal * (predicted.pixel - found.edge), axis=-1)

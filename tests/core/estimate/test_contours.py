@@ -37,7 +37,7 @@ def measure(posture: Posture, keyframes: np.ndarray) -> ContourTerm:
     """What is measured from roughly known postures."""
     contours = run(learn_contours(BODY, CAMERA, album(), posture, keyframes))
     assert contours is not None
-    return run(contours.measure(posture, FRAME))
+    return run(contours.measure(posture, FRAME))[0]
 
 
 def test_edges_follow_the_true_contours_and_not_the_predicted_ones() -> None:
@@ -131,7 +131,8 @@ def test_shifts_along_a_limb_are_found_where_its_colors_end() -> None:
     contours = learned()
     wrong = TRUTH.plus(step)
     steps = np.full(FRAMES - 1, 1.0 / 30.0)
-    term = run(contours.measure_along(wrong, FRAME, contours.schedule.looks[0], steps))
+    _, term = run(contours.measure(wrong, FRAME, contours.schedule.looks[0], steps))
+    assert term is not None
     pose, true = BODY.pose(wrong), BODY.pose(TRUTH)
     part = contours.model.parts.segments.index("thigh.R")
     predicted, actual = (
