@@ -119,10 +119,11 @@ registered_library = of_context(
     lambda context: len(context.window_manager.keymark_shelf.libraries), "Load a keyframe library first"
 )
 object_mode_possible = of_context(
-    lambda context: _mode(context) == "OBJECT", "Leave the active object's mode first (Tab)"
+    lambda context: _mode(context) == "OBJECT", "Choose Object Mode first, at the top left of the view"
 )
 bones_editable = of_context(
-    lambda context: _mode(context) in ("OBJECT", "POSE"), "Leave the active object's mode first (Tab)"
+    lambda context: _mode(context) in ("OBJECT", "POSE"),
+    "Choose Object Mode first, at the top left of the view",
 )
 idle = of_context(
     lambda context: not job_is_running(context),
