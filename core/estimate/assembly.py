@@ -5,6 +5,7 @@ belongs to: a window of a clip, the same once its contours are measured, a singl
 order, since rounding depends on it.
 """
 
+from collections.abc import Sequence
 from itertools import compress
 
 import numpy as np
@@ -12,8 +13,9 @@ import numpy as np
 from ..arrays import Array
 from ..body.human import ANKLES
 from ..body.kinematics import Body
+from ..body.posture import Posture
 from ..numerics.block_banded import BlockBanded
-from ..prior.frame_prior import REFERENCE_STEP_S, FramePrior
+from ..prior.frame_prior import REFERENCE_STEP_S
 from ..terms.contact import BalanceTerm, FloorTerm, GroundTerm, StillnessTerm
 from ..terms.depths import DepthHintTerm, DepthTerm, point_depths
 from ..terms.head import MEMORY_S, HeadTerm
@@ -88,68 +90,47 @@ def _seen_ankles(data: ClipData) -> tuple[int, ...]:
 def frame_terms(
     evidence: KeyframeEvidence,
     observed: ObservedRegions,
-    belief: FramePrior,
-    width_px: Array,
-    points: ObservedKeypoints,
-) -> list[Term]:
-    """The terms of one frame, for as many states of it as the belief has starts, S.
-
-    Regions (1, M), NaN where hidden, and keypoints (1, N) are those of this one frame.
-    """
-    body, starts = evidence.model.body, belief.starts.batch[0]
-    terms = [_own_belief(body, width_px, starts), *_seen_in_frame(evidence, observed, width_px, starts)]
-    if belief.grounded is not None:
-        standing = body.points(body.pose(belief.grounded))
-        terms.append(GroundTerm(ANKLES, float(standing[:, list(ANKLES), 2].min())))
-    return terms + _frame_point_terms(evidence.keypoints, points, starts)
-
-
-def free_frame_terms(
-    evidence: KeyframeEvidence,
-    observed: ObservedRegions,
     starts: int,
-    floor_m: float | None,
     width_px: Array,
     points: ObservedKeypoints,
-) -> tuple[Term, list[Term]]:
-    """The terms of one frame of which nothing is believed but that a person stands before the camera.
-
-    `starts`: number of states of it; `floor_m`: None where it is not known. The belief of each descent in its
-    own start, and all else.
-    """
-    body = evidence.model.body
-    terms = [*_seen_in_frame(evidence, observed, width_px, starts), BalanceTerm(body)]
-    if floor_m is not None:
-        standing_m = floor_m + standing_ankle_m(body)
-        terms += [GroundTerm(ANKLES, standing_m), FloorTerm(ANKLES, standing_m - SHOE_M)]
-    terms += _frame_point_terms(evidence.keypoints, points, starts)
-    return _own_belief(body, width_px, starts), terms
-
-
-def _own_belief(body: Body, width_px: Array, starts: int) -> Term:
-    return belief_term(starts, body.skeleton.dof_count, NOISE.bias_std(width_px).reshape(1, -1))
-
-
-def _seen_in_frame(
-    evidence: KeyframeEvidence, observed: ObservedRegions, width_px: Array, starts: int
+    standing: Sequence[Term] = (),
 ) -> list[Term]:
-    repeated, width = observed[np.zeros(starts, dtype=np.intp)], np.repeat(width_px, starts, axis=0)
-    return [
-        RegionTerm(evidence.model, repeated, width, evidence.distrust, evidence.area_ratio),
+    """The terms of one frame, for as many states of it as there are starts: first the belief in each start.
+
+    Regions (1, M), NaN where hidden, and keypoints (1, N) are those of this one frame; `standing` is what
+    is believed of feet and floor.
+    """
+    again, model = np.zeros(starts, dtype=np.intp), evidence.keypoints.model
+    width = np.repeat(width_px, starts, axis=0)
+    terms: list[Term] = [
+        belief_term(starts, evidence.model.body.skeleton.dof_count, NOISE.bias_std(width_px).reshape(1, -1)),
+        RegionTerm(evidence.model, observed[again], width, evidence.distrust, evidence.area_ratio),
         LimitTerm(),
+        *standing,
     ]
-
-
-def _frame_point_terms(evidence: KeypointEvidence, points: ObservedKeypoints, starts: int) -> list[Term]:
-    """The keypoints of one frame, and the depths guessed with them, in as many states."""
-    if not evidence.model.names:
-        return []
-    std_m = np.where(evidence.trust > 0.0, evidence.std_m, np.inf)
-    repeated = points[np.zeros(starts, dtype=np.intp)]
-    terms: list[Term] = [KeypointTerm(evidence.model, repeated, std_m)]
-    if np.isfinite(points.depth_m).any():
-        terms.append(_hint_term(evidence, repeated, evidence.depths.std_m, None))
+    if model.names:
+        std_m = np.where(evidence.keypoints.trust > 0.0, evidence.keypoints.std_m, np.inf)
+        terms.append(KeypointTerm(model, points[again], std_m))
+        if np.isfinite(points.depth_m).any():
+            hints = evidence.keypoints.depths
+            terms.append(_hint_term(evidence.keypoints, points[again], hints.std_m, None))
     return terms
+
+
+def grounded_terms(body: Body, grounded: Posture | None) -> list[Term]:
+    """Feet on the floor that a posture stands on, where one is believed to."""
+    if grounded is None:
+        return []
+    ankles = body.points(body.pose(grounded))[:, list(ANKLES), 2]
+    return [GroundTerm(ANKLES, float(ankles.min()))]
+
+
+def upright_terms(body: Body, floor_m: float | None) -> list[Term]:
+    """Somebody of whom nothing is believed but to stand; `floor_m`: None where it is not known."""
+    if floor_m is None:
+        return [BalanceTerm(body)]
+    ankle_m = floor_m + standing_ankle_m(body)
+    return [BalanceTerm(body), GroundTerm(ANKLES, ankle_m), FloorTerm(ANKLES, ankle_m - SHOE_M)]
 
 
 def _picture_term(data: ClipData, window: Window) -> KeypointTerm:

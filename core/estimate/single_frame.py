@@ -16,7 +16,7 @@ from ..terms.region_model import RegionModel
 from ..terms.regions import FEATURES, ObservedRegions, limb_widths
 from ..terms.solver import descend
 from ..terms.term import ClipState
-from .assembly import frame_terms
+from .assembly import frame_terms, grounded_terms
 from .clip_problem import KeyframeEvidence, uncalibrated
 from .keyframe_evidence import SeenAtKeyframes, read_keyframes
 from .keypoint_evidence import KeypointEvidence
@@ -148,7 +148,8 @@ def _fitted(
     frames = np.full(count, frame, dtype=np.intp)
     state = ClipState(model.body, believed, frames, factor, variation, bias)
     width_px = limb_widths(model, belief.posture.translation[None], np.array([frame]))
-    best, least = descend(state, frame_terms(evidence, observed, belief, width_px, points))
+    standing = grounded_terms(model.body, belief.grounded)
+    best, least = descend(state, frame_terms(evidence, observed, count, width_px, points, standing))
     chosen = int(np.argmin(least))
     posture, cost = best.posture[chosen], float(least[chosen])
     return FrameFit(posture, frame_residuals(evidence, observed, points, posture, frame), cost)

@@ -11,7 +11,7 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..camera.camera import Camera
 from ..detect.keypoints import Keypoints
-from ..estimate.assembly import free_frame_terms
+from ..estimate.assembly import frame_terms, upright_terms
 from ..estimate.clip_problem import KeyframeEvidence
 from ..estimate.performer_placement import place_standing
 from ..estimate.single_frame import exchanged
@@ -178,9 +178,10 @@ class FrameSearch:
         bias = np.zeros((count, len(model.placements) * FEATURES))
         state = ClipState(shown.body, starts, frames, np.diag(std), np.zeros((count, len(std))), bias)
         points = shown.points_of(is_exchanged)
-        belief, terms = free_frame_terms(shown.evidence, shown.regions, count, self.floor_m, width, points)
-        best, _ = descend(state, [belief, *terms], temperatures)
-        return best.posture, total_cost(terms, best)
+        standing = upright_terms(model.body, self.floor_m)
+        terms = frame_terms(shown.evidence, shown.regions, count, width, points, standing)
+        best, _ = descend(state, terms, temperatures)
+        return best.posture, total_cost(terms[1:], best)
 
 
 def points_from_hips(body: Body, posture: Posture) -> Array:
