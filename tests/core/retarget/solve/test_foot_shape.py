@@ -58,6 +58,10 @@ def test_tails_are_believed_where_they_meet_heads() -> None:
     )
     meant, anywhere = RestBody.of(character, character_map), RestBody.of(astray, character_map)
     assert character.tails_are_meant and not astray.tails_are_meant
+    size_m = np.ptp([bone.head for bone in character.bones], axis=0).max()
+    for share, near in ((0.005, True), (0.007, False)):
+        beside = [replace(bone, tail=bone.tail + [share * size_m, 0.0, 0.0]) for bone in character.bones]
+        assert replace(character, bones=tuple(beside)).tails_are_meant == near
     assert anywhere.tip("toe.L") is None
     tips = [foot_shape(body, "L", 0.0).toe[:, 1].min() for body in (meant, anywhere)]
     np.testing.assert_allclose(tips, [-0.08, -0.052], atol=0.01)
