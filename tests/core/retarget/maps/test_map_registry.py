@@ -10,7 +10,8 @@ from keymark.core.errors import InputError
 from keymark.core.prior.library import write_library
 from keymark.core.prior.registry import identifier_of, registered_libraries
 from keymark.core.retarget.maps.character_map import write_character_map
-from keymark.core.retarget.maps.map_registry import find_map, map_for, map_path, registered_maps
+from keymark.core.retarget.maps.map_registry import find_map, map_digests, map_for, map_path, registered_maps
+from keymark.core.take.conversion_settings import AUTO, NO_MAP
 
 PLAIN = plain_map(plain_character())
 UPPER = {key: key.upper() for key in plain_character().index}
@@ -45,6 +46,8 @@ def test_maps_and_libraries_share_folders_and_a_broken_file_hides_nothing(folder
 def test_maps_are_found_by_title_file_and_path(folders: list[Path]) -> None:
     for name in ("anna, GRÖSSER", "anna", folders[2] / "anna.json", str(folders[2] / "anna.json")):
         assert find_map(name, folders).content == full_map()
+    (own,), every = map_digests("anna", folders), map_digests(AUTO, folders)
+    assert own in every and len(set(every)) == 2 and map_digests(NO_MAP, folders) == ()
     with pytest.raises(InputError, match="no character map 'Plane' .is 'Plain' meant.*known are Anna, gr"):
         find_map("Plane", folders)
     with pytest.raises(InputError, match="known are none"):
