@@ -8,7 +8,7 @@ import pytest
 from _synthetic_take import write_synthetic_take
 from keymark.core.arrays import Array
 from keymark.core.body.mirror import other_side
-from keymark.core.detect.keypoints import Keypoints, People, SeenPeople
+from keymark.core.detect.keypoints import Keypoints, People, SecondSource, SeenPeople
 from keymark.core.errors import InputError
 from keymark.core.markers.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Matched, interpolate
@@ -61,6 +61,21 @@ def test_keyframes_say_who_the_performer_is(take: Take) -> None:
         f"detector: up to 2 people in {FRAMES} frames, copies of each other, of whom the one on the left is "
         "taken; the performer is the one that the keyframes show"
     )
+
+
+@pytest.mark.parametrize("guessed", [False, True])
+def test_a_network_beside_another_is_told_from_one_that_guesses_depths(take: Take, guessed: bool) -> None:
+    people, _ = two_people(take)
+    second = replace(people, second=SecondSource("another", people.names[3:]))
+    if guessed:
+        hints = [np.where(np.arange(13)[:, None] < 12, np.nan, 0.1) * np.ones((2, 13, 3))] * FRAMES
+        pairs = zip(second.frames, hints, strict=True)
+        second = replace(second, frames=tuple(replace(one, hint_m=hint) for one, hint in pairs))
+    found = performer_keypoints(replace(take, keypoints=(second,)))
+    assert found.sources == ("detector",) * 3 + ("another",) * 10
+    assert found.beside == ({} if guessed else {"another": "detector"})
+    joined = Keypoints.side_by_side([Keypoints.none(FRAMES), found], FRAMES)
+    assert joined.beside == found.beside
 
 
 def test_keyframes_count_in_their_own_frames_before_there_is_a_prior(take: Take) -> None:
