@@ -13,7 +13,6 @@ import numpy as np
 from ..arrays import Array, IndexArray, SingleArray
 from ..body.body_volume import rested
 from ..body.human import ANKLES, LIMBS
-from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..camera.camera import Camera
 from ..estimate.performer_placement import SAME_FLOOR_M, place_standing, standing_ankle_m
@@ -107,7 +106,16 @@ def compose_frames(
         rough = np.interp(sampled, known.frames, depths)
         rounds = ((1.0, 0.96, 1.04),)  # distances tried between two posed frames, which tell the place
     else:
-        rough = rough_depths(posing.body, camera, evidence, sampled, time_s)
+        # Distances of the hips along the camera's axis by sizes in the picture [m].
+        far_m = np.full(len(sampled), np.nan)
+        seen = evidence.visible[sampled].any(axis=1)
+        for row in np.flatnonzero(seen)[:: max(1, seen.sum() // MOST_PLACED)]:
+            frame = int(sampled[row])
+            regions, keypoints = evidence.tracks.frame(frame), evidence.keypoints.frame(frame)
+            placed = place_standing(posing.body, camera, frame, regions, evidence.segments, keypoints)
+            far_m[row] = float(camera.depth(placed.translation, frame))
+        known = np.isfinite(far_m)
+        rough = _smoothed(np.interp(time_s, time_s[known], far_m[known]), time_s)
     if floor_m is None:
         floor_m = floor_height_m(posing, stances, rough, floor_open)
     floor_seen_m = floor_m if any(posing.feet_seen) else None  # feet never seen tell no place
@@ -269,21 +277,6 @@ def _states(
         found.append(states)
         yield index / len(costs)
     return found
-
-
-def rough_depths(
-    body: Body, camera: Camera, evidence: MatchEvidence, frames: IndexArray, time_s: Array
-) -> Array:
-    """(T,) distances of the hips along the camera's axis by sizes in the picture [m], smoothed."""
-    depths = np.full(len(frames), np.nan)
-    seen = evidence.visible[frames].any(axis=1)
-    for row in np.flatnonzero(seen)[:: max(1, seen.sum() // MOST_PLACED)]:
-        frame = int(frames[row])
-        regions, keypoints = evidence.tracks.frame(frame), evidence.keypoints.frame(frame)
-        placed = place_standing(body, camera, frame, regions, evidence.segments, keypoints)
-        depths[row] = float(camera.depth(placed.translation, frame))
-    known = np.isfinite(depths)
-    return _smoothed(np.interp(time_s, time_s[known], depths[known]), time_s)
 
 
 def _smoothed(values: Array, time_s: Array) -> Array:

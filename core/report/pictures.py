@@ -7,7 +7,6 @@ import cv2
 import numpy as np
 
 from ..arrays import Array, Image
-from ..body.kinematics import Pose
 from ..camera.camera import Camera
 from ..errors import InputError
 from ..estimate.reconstruct import Reconstruction
@@ -50,21 +49,6 @@ def performer_contours(reconstruction: Reconstruction) -> ContourModel:
     if solution is not None and solution.contours is not None:
         return solution.contours.model
     return ContourModel.average(reconstruction.motion.body, reconstruction.model.camera)
-
-
-def draw_outlines(
-    canvas: Canvas, model: ContourModel, pose: Pose, frame: int, to_canvas: Callable[[Array], Array]
-) -> None:
-    """Draw the contour lines that the motion predicts in one frame, those of nearer parts over others."""
-    index = slice(frame, frame + 1)
-    predicted = model.evaluate(pose[index], np.array([frame]))
-    pixels = to_canvas(predicted.pixel[0]).reshape(-1, len(SHARES), len(SIDES), 2)
-    depth = predicted.depth[0].reshape(len(pixels), -1).mean(axis=1)
-    for part in np.argsort(-depth):
-        for side in range(len(SIDES)):
-            line = pixels[part, :, side]
-            canvas.line(line, WHITE, 2.4)
-            canvas.line(line, OUTLINE, 1.2)
 
 
 SOURCE_COLORS: tuple[Color, ...] = ((167, 121, 204), (66, 228, 240), (233, 180, 86), (0, 159, 230))
@@ -191,7 +175,16 @@ def overlay_sheet(
         tile = Canvas(*size)  # of its own, which clips what leaves the picture
         tile.paste(paler(images[frame]), 0, 0, *size)
         if outlines is not None:
-            draw_outlines(tile, outlines, pose, frame, lambda pixels: scale * pixels)
+            # Contour lines that the motion predicts, those of nearer parts over others.
+            index = slice(frame, frame + 1)
+            predicted = outlines.evaluate(pose[index], np.array([frame]))
+            pixels = (scale * predicted.pixel[0]).reshape(-1, len(SHARES), len(SIDES), 2)
+            depth = predicted.depth[0].reshape(len(pixels), -1).mean(axis=1)
+            for part in np.argsort(-depth):
+                for side in range(len(SIDES)):
+                    line = pixels[part, :, side]
+                    tile.line(line, WHITE, 2.4)
+                    tile.line(line, OUTLINE, 1.2)
 
         def project(points: Array) -> tuple[Array, Array]:
             pixels, depth = take.camera.project(points, frame)

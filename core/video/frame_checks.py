@@ -16,13 +16,6 @@ STEP = 8  # difference of neighboring rows where a moving edge is combed, in lev
 TEETH = 5  # alternating steps that make a comb; noise and textures seldom have as many
 
 
-def combed_shares(image: Image) -> tuple[float, float]:
-    """Combed shares of a picture as decoded: by rows, as of interlacing, and by columns, to compare."""
-    green = image[..., 1].astype(np.int16)
-    down, across = (max(length // 320, 1) for length in image.shape[:2])
-    return _teeth(green[:, ::across]), _teeth(green[::down].T)
-
-
 def _teeth(levels: NDArray[np.int16]) -> float:
     step = np.diff(levels, axis=0)
     if len(step) < TEETH:
@@ -125,7 +118,10 @@ class FrameChecks:
         spread = np.sort(np.ptp(small, axis=-1), axis=None)  # of each pixel's channels
         self._color = max(self._color, int(spread[max(len(spread) - 4, 0)]))  # some have colors by accident
         if index % 15 == 0:
-            self._combed.append(combed_shares(image))
+            # By rows, as of interlacing, and by columns, to compare.
+            green = image[..., 1].astype(np.int16)
+            down, across = (max(length // 320, 1) for length in image.shape[:2])
+            self._combed.append((_teeth(green[:, ::across]), _teeth(green[::down].T)))
         if self._last is not None:
             change = cv2.absdiff(small, self._last)
             self._changes[index] = float(np.median(change))
