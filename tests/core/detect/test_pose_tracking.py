@@ -2,6 +2,7 @@
 
 import hashlib
 import sys
+import threading
 import weakref
 from collections.abc import Sequence
 from dataclasses import replace
@@ -20,11 +21,13 @@ from keymark.core.detect.pose_network import (
     CENTER,
     LAYOUT,
     MODEL,
+    MOST_AT_ONCE,
     POINTS,
     SIDE,
     Crop,
     Pose,
     PoseNetwork,
+    in_parallel,
 )
 from keymark.core.detect.pose_tracking import AHEAD, STRETCH, PeopleFinder, find_people
 from keymark.core.errors import InputError
@@ -296,3 +299,8 @@ def test_a_mirror_image_is_as_deep(repository: Path) -> None:
         sums.append(sum(one.hint_m[sides[0], 2] - one.hint_m[sides[1], 2] for one in both))
     # As the large network has them the hips' sum is .1 m, the shoulders' -.1.
     assert np.abs(np.mean(sums, axis=0)).max() < 0.04, sums
+
+
+def test_all_looks_share_a_few_threads_whose_memory_they_use_again() -> None:
+    names = {name for _ in range(9) for name in in_parallel(lambda _: threading.current_thread().name, "ab")}
+    assert 1 <= len(names) <= MOST_AT_ONCE
